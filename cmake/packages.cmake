@@ -1,0 +1,10 @@
+# Every package is Debian 12's own; docs/dependencies.md says what each is for.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(spdlog REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(Ceres REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Threads REQUIRED)

@@ -1,0 +1,41 @@
+#include "common/base/spatial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fathom {
+
+Eigen::Matrix3d rotation_from_euler(const Eigen::Vector3d& euler) {
+  return (Eigen::AngleAxisd(euler.z(), Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(euler.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(euler.x(), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Eigen::Vector3d euler_from_rotation(const Eigen::Matrix3d& R_WB) {
+  return {std::atan2(R_WB(2, 1), R_WB(2, 2)), -std::asin(std::clamp(R_WB(2, 0), -1.0, 1.0)),
+          std::atan2(R_WB(1, 0), R_WB(0, 0))};
+}
+
+Eigen::Quaterniond quaternion_from_rotation_vector(const Eigen::Vector3d& phi) {
+  const double angle = phi.norm();
+  // Series of sin(a/2)/a below 1e-4 rad: the next term is under 1e-19.
+  const double scale = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
+  return Eigen::Quaterniond(std::cos(0.5 * angle), scale * phi.x(), scale * phi.y(), scale * phi.z());
+}
+
+Eigen::Vector3d rotation_vector_from_quaternion(const Eigen::Quaterniond& q) {
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  const double sine = q.vec().norm();
+  const double angle = 2.0 * std::atan2(sine, sign * q.w());
+  const double scale = sine < 1e-8 ? 2.0 : angle / sine;
+  return sign * scale * q.vec();
+}
+
+double wrap_angle(double angle) {
+  const double folded = std::remainder(angle, 2.0 * std::numbers::pi);
+  return folded <= -std::numbers::pi ? folded + 2.0 * std::numbers::pi : folded;
+}
+
+}  // namespace fathom

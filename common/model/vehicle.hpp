@@ -1,0 +1,58 @@
+// A vehicle as its file describes it: what moves, what drives it, and what is known beforehand.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/base/spatial.hpp"
+
+namespace fathom::model {
+
+/// Force of a thruster over its command, piecewise linear, at `voltage`.
+struct ThrustCurve {
+  std::vector<double> pwm_us;  ///< us, rising
+  std::vector<double> force;   ///< N
+  double voltage{};            ///< V at which the curve was measured; 0 when unknown
+  [[nodiscard]] bool empty() const { return pwm_us.empty(); }
+  /// Force [N] at `pwm` [us]; held at the ends.
+  [[nodiscard]] double force_at(double pwm) const;
+};
+
+struct Thruster {
+  std::string name;
+  Eigen::Vector3d p_BJ{Eigen::Vector3d::Zero()};       ///< m, position in the body
+  Eigen::Vector3d axis_B{Eigen::Vector3d::UnitX()};    ///< unit, direction of positive force
+  double pwm_sign{1.0};                                ///< -1: the command is mirrored about neutral before the curve
+};
+
+/// Prior of one base parameter. sigma > 0 small: known constant; large: to be found.
+struct Prior {
+  double mean{};
+  double sigma{};
+};
+
+/// Degrees of freedom in the order X Y Z K M N.
+constexpr std::array<const char*, 6> kAxisNames{"X", "Y", "Z", "K", "M", "N"};
+constexpr std::array<const char*, 6> kVelocityNames{"u", "v", "w", "p", "q", "r"};
+
+struct Vehicle {
+  std::string name;
+  std::array<bool, 6> dof{};      ///< simulated degrees of freedom; the others enter as measured
+  double mass{};                  ///< kg, rigid body (dry); 0 when unknown
+  Eigen::Vector3d inertia{Eigen::Vector3d::Zero()};  ///< kg m^2, rigid body diagonal; 0 when unknown
+  double buoyancy{};              ///< N; 0 when unknown
+  double water_density{};         ///< kg/m^3
+  double nominal_voltage{};       ///< V; 0 when unknown
+  std::vector<Thruster> thrusters;
+  ThrustCurve curve;
+  std::vector<std::string> parameters;  ///< base parameters that this vehicle enables, e.g. "m_X", "X_u", "X_u|u|", "W-B", "G_z"
+  std::vector<Prior> priors;            ///< one per parameter
+  Eigen::Matrix<double, 6, Eigen::Dynamic> allocation;  ///< tau = allocation * force; 6 x N
+
+  /// Reads a vehicle file; InputError with file and line when anything is missing, unknown or in a wrong unit.
+  [[nodiscard]] static Vehicle load(const std::string& path);
+};
+
+}  // namespace fathom::model

@@ -1,0 +1,111 @@
+// The answer of `fathom diagnose`: what result.json holds and the report shows. Field names are those of the file.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/samples/estimates.hpp"
+
+namespace fathom {
+
+/// One disagreement between two sensors (or a statement that a signal is doubtful).
+struct ConsistencyFinding {
+  std::string run;        ///< recording it was found in; "all" when pooled
+  std::string signal;     ///< e.g. "gyro.r", "dvl.u"
+  std::string reference;  ///< e.g. "pose_capture"
+  std::string finding;    ///< "delay", "scale", "bias", "sign", "axes", "lever_arm", "noise", "gap", ...
+  double size{};
+  std::string unit;
+  std::string evidence;   ///< one sentence with the numbers
+  std::string action;     ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
+};
+
+/// Open-loop prediction error at one horizon. Axis order u v w p q r; NaN where the axis is not simulated.
+struct PredictionError {
+  double horizon_s{};
+  std::array<double, 6> rmse{};  ///< m/s, rad/s
+  std::array<double, 6> r2{};
+};
+
+/// Errors of one model on the validation runs.
+struct ModelError {
+  std::map<std::string, double> force_rmse;  ///< per axis letter X Y Z K M N, N or N m
+  std::vector<PredictionError> prediction;
+};
+
+/// Residual of one degree of freedom.
+struct AxisWhiteness {
+  std::string axis;                ///< "X" .. "N"
+  double p_value{};                ///< of the whiteness test (Ljung-Box on the one-step residual)
+  double autocorrelation_time_s{};
+  double explained{};              ///< share of variance explained, of the applied wrench's axis
+};
+
+struct EffectFound {
+  std::string name;
+  std::string variant;  ///< e.g. "thruster 3"; empty when the effect has one form only
+  bool accepted{true};
+  std::vector<NamedValue> parameters;
+  double log_odds{};
+  double error_reduction{};
+  std::vector<std::string> alternatives;
+  std::string sentence;
+};
+
+struct CandidateTried {
+  std::string name;
+  std::string variant;
+  double log_odds{};
+  double error_reduction{};
+  std::vector<std::string> aliased_with;
+  std::string reason;
+};
+
+struct Interval {
+  double value{};
+  double low{};   ///< 95 %
+  double high{};
+};
+
+struct DiagnosisResult {
+  std::string vehicle;
+  std::vector<std::string> train;
+  std::vector<std::string> validate;
+  std::vector<ConsistencyFinding> consistency;
+  std::string verdict;  ///< "adequate", "effect", "ambiguous", "unexplained"
+  std::string paragraph;  ///< verdict in plain words: how sure, and which manoeuvre would settle what is open
+  std::vector<EffectFound> effects;
+  std::vector<CandidateTried> candidates;
+  ModelError error_before;
+  ModelError error_after;
+  Interval improvement;  ///< relative reduction of the normalised 5 s prediction error on validation
+  std::vector<NamedValue> parameters_before;
+  std::vector<NamedValue> parameters_after;
+  std::vector<AxisWhiteness> residual_before;
+  std::vector<AxisWhiteness> residual_after;
+};
+
+/// One stretch of validation data with the open-loop predictions laid over it, for the plots.
+struct PredictionTrace {
+  std::string run;
+  std::vector<double> t;                           ///< s
+  std::vector<std::array<double, 6>> measured;     ///< u v w p q r
+  std::vector<std::array<double, 6>> before;       ///< restarted at each window; NaN where not simulated
+  std::vector<std::array<double, 6>> after;
+  std::vector<std::array<double, 6>> residual_before;  ///< wrench residual X..N [N, N m]
+  std::vector<std::array<double, 6>> residual_after;
+  std::vector<std::array<double, 3>> position;     ///< m, NED
+  std::vector<double> heading;                     ///< rad
+  std::vector<std::array<double, 6>> tau;          ///< applied wrench, N, N m
+  std::vector<double> voltage;                     ///< V; empty when not logged
+};
+
+/// Everything that the report draws.
+struct DiagnosisReport {
+  DiagnosisResult result;
+  std::vector<PredictionTrace> traces;  ///< validation runs
+};
+
+}  // namespace fathom
