@@ -1,0 +1,35 @@
+#include "common/model/effect.hpp"
+
+#include <array>
+
+namespace fathom::model {
+
+namespace effects {
+#define EFFECT(name) const Effect& name();
+#include "common/model/effects/effects.def"
+#undef EFFECT
+}  // namespace effects
+
+std::span<const Effect* const> all_effects() {
+#define EFFECT(name) &effects::name(),
+  static const std::array kEffects{
+#include "common/model/effects/effects.def"
+  };
+#undef EFFECT
+  return kEffects;
+}
+
+const Effect* find_effect(std::string_view name) {
+  for (const Effect* effect : all_effects()) {
+    if (effect->name() == name) return effect;
+  }
+  return nullptr;
+}
+
+std::vector<std::vector<double>> Effect::starts(const Scene&, int) const {
+  std::vector<double> start;
+  for (const EffectParameter& parameter : parameters()) start.push_back(0.1 * parameter.sigma);
+  return {start};
+}
+
+}  // namespace fathom::model

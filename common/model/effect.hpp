@@ -1,0 +1,79 @@
+// One physical effect that a model may lack: one file in effects/ and one line in effects/effects.def.
+// Simulator, identifier and diagnoser use the same object; it is const, and every number that changes is passed in.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/model/motion.hpp"
+
+namespace fathom::model {
+
+/// What a data set offers and how large things are in it. Effects choose their variants and starting points from it.
+struct Scene {
+  const Vehicle* vehicle{};
+  bool position{false}, attitude{false}, velocity{false}, rates{false};  ///< which groups were measured
+  bool input_is_wrench{false};                   ///< inputs are the six axes of the wrench, not single thrusters
+  bool voltage{false};
+  double duration{};                             ///< s, longest run
+  double mean_voltage{};                         ///< V
+  double voltage_range{};                        ///< V
+  Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
+  Vector6d nu_rms{Vector6d::Zero()};
+  Vector6d tau_rms{Vector6d::Zero()};
+  ActuatorForces force_rms;                      ///< N per actuator
+};
+
+/// One number of an effect. Zero means: the effect is absent.
+struct EffectParameter {
+  std::string_view name;
+  std::string_view unit;
+  double sigma{1.0};  ///< prior standard deviation around zero: what would be ordinary
+  double low{-std::numeric_limits<double>::infinity()};
+  double high{std::numeric_limits<double>::infinity()};
+};
+
+using EffectTheta = std::span<const double>;
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;      ///< = file name = registry line
+  [[nodiscard]] virtual std::string_view sentence() const = 0;  ///< for people
+  [[nodiscard]] virtual std::string_view revealed_by() const = 0;  ///< the motion that shows it best
+  [[nodiscard]] virtual std::span<const EffectParameter> parameters() const = 0;
+
+  /// The forms it can take on this data ("thruster 3"); one unnamed form by default. Empty: cannot act or be seen here.
+  [[nodiscard]] virtual std::vector<std::string> variants(const Scene&) const { return {""}; }
+  /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
+  [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
+
+  /// Alters what is felt (forces that reach the water, the water's motion). `z` is the effect's memory.
+  virtual void feel(Motion&, EffectTheta, int /*variant*/, std::span<const double> /*z*/) const {}
+  /// Adds wrench and inertia. Sees the motion after all feel().
+  virtual void load(const Motion&, EffectTheta, int /*variant*/, Load&) const {}
+  /// Size of the memory z.
+  [[nodiscard]] virtual int state_size(const Vehicle&, int /*actuators*/) const { return 0; }
+  /// Memory at rest in this motion (steady state).
+  virtual void settle(const Motion&, EffectTheta, std::span<double> /*z*/) const {}
+  /// Memory after dt, exact for constant input. Sees the motion as felt before this effect.
+  virtual void advance(const Motion&, EffectTheta, double /*dt*/, std::span<double> /*z*/) const {}
+};
+
+/// All effects, in the order in which they act: from the command to the water.
+[[nodiscard]] std::span<const Effect* const> all_effects();
+/// The effect of that name, or nullptr.
+[[nodiscard]] const Effect* find_effect(std::string_view name);
+
+/// An effect with numbers: part of a model.
+struct ActiveEffect {
+  const Effect* effect{};
+  int variant{};
+  std::string variant_name;
+  std::vector<double> theta;
+};
+
+}  // namespace fathom::model

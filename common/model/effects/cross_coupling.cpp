@@ -1,0 +1,99 @@
+// Physics: motion along one axis loads another. Off-diagonal drag w_i = D_ij nu_r,j or D_ij |nu_r,j| nu_r,j, and
+// off-diagonal added mass (symmetric; its Coriolis part is ignored). Only pairs that a hull symmetric about its x-z plane
+// allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4).
+// Revealed by single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/model/effect.hpp"
+#include "common/model/vehicle.hpp"
+
+namespace fathom::model::effects {
+namespace {
+
+constexpr std::array kParameters{EffectParameter{"coefficient", "SI", 1.0}};
+constexpr std::array<std::array<int, 3>, 2> kPlanes{{{0, 2, 4}, {1, 3, 5}}};
+
+enum class Form { kLinear, kQuadratic, kInertia };
+
+struct Term {
+  int row;
+  int column;
+  Form form;
+};
+
+constexpr std::array<Term, 30> make_terms() {
+  std::array<Term, 30> terms{};
+  std::size_t n = 0;
+  for (const auto& plane : kPlanes) {
+    for (const int row : plane) {
+      for (const int column : plane) {
+        if (row == column) continue;
+        terms[n++] = {row, column, Form::kLinear};
+        terms[n++] = {row, column, Form::kQuadratic};
+        if (row < column) terms[n++] = {row, column, Form::kInertia};
+      }
+    }
+  }
+  return terms;
+}
+constexpr auto kTerms = make_terms();
+
+std::string term_name(const Term& term) {
+  const auto row = static_cast<std::size_t>(term.row);
+  const auto column = static_cast<std::size_t>(term.column);
+  const std::string v = kVelocityNames[column];
+  const std::string base = std::string(kAxisNames[row]) + "_";
+  if (term.form == Form::kLinear) return base + v;
+  if (term.form == Form::kQuadratic) return base + v + "|" + v + "|";
+  return base + v + "_dot";
+}
+
+class CrossCoupling final : public Effect {
+ public:
+  std::string_view name() const override { return "cross_coupling"; }
+  std::string_view sentence() const override { return "Motion along one axis loads another axis."; }
+  std::string_view revealed_by() const override { return "motion along one axis at a time, at several speeds"; }
+  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::vector<std::string> variants(const Scene& scene) const override {
+    // Positions in this list are the variant numbers, so a term whose axes stand still keeps its place with no name.
+    std::vector<std::string> names;
+    for (const Term& term : kTerms) {
+      const bool free = scene.vehicle->dof[static_cast<std::size_t>(term.row)];
+      const bool moves = scene.nu_rms[term.column] > 0.0 &&
+                         (term.form != Form::kInertia || scene.vehicle->dof[static_cast<std::size_t>(term.column)]);
+      names.push_back(free && moves ? term_name(term) : "-");
+    }
+    return names;
+  }
+  std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
+    const Term& term = kTerms[static_cast<std::size_t>(variant)];
+    const double speed = std::max(scene.nu_rms[term.column], 1e-3);
+    const double force = 0.02 * std::max(scene.tau_rms[term.row], 1e-3);
+    if (term.form == Form::kLinear) return {{force / speed}};
+    if (term.form == Form::kQuadratic) return {{force / (speed * speed)}};
+    return {{0.2 * force / speed}};
+  }
+
+  void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
+    const Term& term = kTerms[static_cast<std::size_t>(variant)];
+    const double velocity = motion.nu_r()[term.column];
+    if (term.form == Form::kLinear) load.wrench[term.row] += theta[0] * velocity;
+    if (term.form == Form::kQuadratic) load.wrench[term.row] += theta[0] * std::abs(velocity) * velocity;
+    if (term.form == Form::kInertia) {
+      load.inertia(term.row, term.column) += theta[0];
+      load.inertia(term.column, term.row) += theta[0];
+      load.has_inertia = true;
+    }
+  }
+};
+
+}  // namespace
+
+const Effect& cross_coupling() {
+  static const CrossCoupling kEffect;
+  return kEffect;
+}
+
+}  // namespace fathom::model::effects

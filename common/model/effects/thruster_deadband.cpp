@@ -1,0 +1,50 @@
+// Physics: small commands turn no propeller (static friction, ESC threshold). Two forms: `offset` f = sign(f_c)
+// max(|f_c| - d, 0), and `step`, nothing below d and the full force above it. Ignores: a band of its own per thruster.
+// Revealed by small commands around zero. Confused with lower thruster gain when all commands are alike in size.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/model/effect.hpp"
+
+namespace fathom::model::effects {
+namespace {
+
+constexpr std::array kParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50.0}};
+constexpr int kOffset = 0;
+
+class ThrusterDeadband final : public Effect {
+ public:
+  std::string_view name() const override { return "thruster_deadband"; }
+  std::string_view sentence() const override { return "Small commands produce no thrust."; }
+  std::string_view revealed_by() const override { return "small thrust commands that change sign"; }
+  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::vector<std::string> variants(const Scene&) const override { return {"offset", "step"}; }
+  std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
+    const double typical = scene.force_rms.size() > 0 ? scene.force_rms.maxCoeff() : 1.0;
+    return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
+  }
+
+  void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {
+    const double half = theta[0];
+    if (half <= 0.0) return;
+    for (double& force : motion.force) {
+      if (variant == kOffset) {
+        force = std::copysign(std::max(std::abs(force) - half, 0.0), force);
+      } else {
+        // A flank of a tenth of the width keeps the step differentiable.
+        const double share = std::clamp((std::abs(force) - 0.95 * half) / (0.1 * half), 0.0, 1.0);
+        force *= share;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+const Effect& thruster_deadband() {
+  static const ThrusterDeadband kEffect;
+  return kEffect;
+}
+
+}  // namespace fathom::model::effects

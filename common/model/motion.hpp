@@ -1,0 +1,60 @@
+// What the vehicle feels at one instant. Effects read it and alter it; the dynamics turn it into an acceleration.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "common/base/spatial.hpp"
+
+namespace fathom::model {
+
+constexpr int kMaxActuators = 16;
+using ActuatorForces = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxActuators, 1>;                 ///< N each
+using Allocation = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxActuators>;  ///< tau = B f
+
+struct Vehicle;
+
+/// The actuators' commanded forces over time, linear between samples, held before the first and after the last.
+class InputSignal {
+ public:
+  InputSignal() = default;
+  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s].
+  InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples) : t0_{t0}, dt_{dt}, samples_{samples} {}
+  void at(double t, ActuatorForces& force) const;
+
+ private:
+  double t0_{0.0};
+  double dt_{1.0};
+  std::span<const Eigen::VectorXd> samples_;
+};
+
+/// State, environment and forces at time `t`, as felt.
+struct Motion {
+  double t{};                                                ///< s from the run's start
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};             ///< m, NED
+  Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
+  Vector6d nu{Vector6d::Zero()};                             ///< B in W, in B: m/s, rad/s
+  Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};           ///< m/s, water velocity seen in B; effects add to it
+  ActuatorForces force;                                      ///< N, as they reach the water; effects alter it
+  double voltage{};                                          ///< V; 0 when not logged
+  const InputSignal* input{};                                ///< commanded forces at other times (delay)
+  const Vehicle* vehicle{};
+
+  /// Velocity relative to the water.
+  [[nodiscard]] Vector6d nu_r() const {
+    Vector6d relative = nu;
+    relative.head<3>() -= v_WF_B;
+    return relative;
+  }
+};
+
+/// What an effect adds to the right-hand side, and the inertia it adds on the left.
+struct Load {
+  Vector6d wrench{Vector6d::Zero()};   ///< N, N m at Bo, body axes
+  Matrix6d inertia{Matrix6d::Zero()};  ///< added to M; symmetric
+  bool has_inertia{false};
+};
+
+}  // namespace fathom::model
