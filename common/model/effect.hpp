@@ -24,7 +24,7 @@ struct Scene {
   Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
   Vector6d nu_rms{Vector6d::Zero()};
   Vector6d tau_rms{Vector6d::Zero()};
-  ActuatorForces force_rms;                      ///< N per actuator
+  ActuatorForces force_rms{};                    ///< N per actuator
 };
 
 /// One number of an effect. Zero means: the effect is absent.

@@ -1,0 +1,71 @@
+#include "common/identification/parameter_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fathom::identification {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Masses stay above this share of their prior's size: a vehicle without inertia cannot be simulated.
+constexpr double kSmallestMassShare = 1e-3;
+constexpr double kScaleFloorShare = 0.02;  // of the prior's sigma: the scale of a number that is still zero
+
+}  // namespace
+
+ParameterMap::ParameterMap(const model::Model& model) {
+  const model::Vehicle& vehicle = *model.vehicle;
+  for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
+    const auto parameter = model::parameter_from_name(vehicle.parameters[i]);
+    if (!parameter) continue;
+    FreeParameter free{.base = model::index(*parameter), .name = vehicle.parameters[i], .unit = std::string(model::unit(*parameter))};
+    free.prior_mean = vehicle.priors[i].mean;
+    free.prior_sigma = vehicle.priors[i].sigma;
+    free.scale = std::max(std::abs(model.theta[free.base]), kScaleFloorShare * free.prior_sigma);
+    const int sign = model::sign_constraint(*parameter);
+    free.low = sign > 0 ? kSmallestMassShare * std::max(free.prior_mean, free.prior_sigma) : -kInfinity;
+    free.high = sign < 0 ? 0.0 : kInfinity;
+    free_.push_back(std::move(free));
+  }
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    const model::ActiveEffect& active = model.effects[e];
+    const auto parameters = active.effect->parameters();
+    for (std::size_t c = 0; c < parameters.size(); ++c) {
+      FreeParameter free{.effect = static_cast<int>(e), .component = static_cast<int>(c)};
+      free.name = std::string(active.effect->name()) + "." + std::string(parameters[c].name);
+      free.unit = std::string(parameters[c].unit);
+      free.prior_sigma = parameters[c].sigma;
+      free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameters[c].sigma);
+      free.low = parameters[c].low;
+      free.high = parameters[c].high;
+      free_.push_back(std::move(free));
+    }
+  }
+}
+
+Eigen::VectorXd ParameterMap::pack(const model::Model& model) const {
+  Eigen::VectorXd x(static_cast<Eigen::Index>(free_.size()));
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const FreeParameter& free = free_[i];
+    const double value = free.base >= 0 ? model.theta[free.base]
+                                        : model.effects[static_cast<std::size_t>(free.effect)]
+                                              .theta[static_cast<std::size_t>(free.component)];
+    x[static_cast<Eigen::Index>(i)] = value / free.scale;
+  }
+  return x;
+}
+
+void ParameterMap::unpack(const Eigen::Ref<const Eigen::VectorXd>& x, model::Model& model) const {
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const FreeParameter& free = free_[i];
+    const double value = x[static_cast<Eigen::Index>(i)] * free.scale;
+    if (free.base >= 0) {
+      model.theta[free.base] = value;
+    } else {
+      model.effects[static_cast<std::size_t>(free.effect)].theta[static_cast<std::size_t>(free.component)] = value;
+    }
+  }
+}
+
+}  // namespace fathom::identification

@@ -1,0 +1,45 @@
+// What a model leaves of one window: simulated minus measured velocity, and its derivatives.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/identification/parameter_map.hpp"
+#include "common/model/rollout.hpp"
+
+namespace fathom::identification {
+
+/// Cuts trials into windows of `length` seconds that follow one another, each beginning at a sample with everything
+/// valid and keeping at least half of its samples valid.
+[[nodiscard]] std::vector<model::Window> cut_windows(std::span<const Trial> trials, double length);
+
+/// Residual rows of one window: valid samples of observed, simulated axes, each divided by the axis' `sigma`.
+class WindowResidual {
+ public:
+  WindowResidual(const model::Window& window, const model::Vehicle& vehicle);
+
+  [[nodiscard]] const model::Window& window() const { return window_; }
+  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
+  /// Axis (0..5) of a row.
+  [[nodiscard]] int axis(Eigen::Index row) const { return rows_[static_cast<std::size_t>(row)].axis; }
+
+  /// Simulated minus measured over sigma; `trace` is workspace. False when the simulation diverged.
+  bool evaluate(const model::Model& model, const Vector6d& nu0, const Vector6d& sigma, model::VelocityTrace& trace,
+                Eigen::Ref<Eigen::VectorXd> residual) const;
+  /// Forward differences with respect to the free parameters (scaled); rows x map.size().
+  void parameter_jacobian(const model::Model& model, const ParameterMap& map, const Vector6d& nu0, const Vector6d& sigma,
+                          const Eigen::VectorXd& residual, Eigen::Ref<Eigen::MatrixXd> jacobian) const;
+  /// With respect to the initial velocity of the simulated axes [m/s, rad/s]; rows x 6, zero columns where not simulated.
+  void initial_jacobian(const model::Model& model, const Vector6d& nu0, const Vector6d& sigma,
+                        const Eigen::VectorXd& residual, Eigen::Ref<Eigen::MatrixXd> jacobian) const;
+
+ private:
+  struct Row {
+    int sample;
+    int axis;
+  };
+  model::Window window_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace fathom::identification

@@ -1,0 +1,148 @@
+#include "common/model/dynamics.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+
+namespace fathom::model {
+namespace {
+
+constexpr double kUnknownRigidShare = 0.5;  // of the lumped mass, when the vehicle file does not say: added mass of a blunt hull
+
+std::ptrdiff_t registry_rank(const Effect* effect) {
+  const auto all = all_effects();
+  return std::find(all.begin(), all.end(), effect) - all.begin();
+}
+
+int actuators(const Model& model) { return static_cast<int>(model.allocation.cols()); }
+
+Vector6d inertia_diagonal(const Model& model) { return model.theta.head<6>(); }
+
+}  // namespace
+
+void Model::add(ActiveEffect effect) {
+  const auto place = std::upper_bound(effects.begin(), effects.end(), effect, [](const auto& a, const auto& b) {
+    return registry_rank(a.effect) < registry_rank(b.effect);
+  });
+  effects.insert(place, std::move(effect));
+}
+
+int Model::memory_size() const {
+  int size = 0;
+  for (const ActiveEffect& active : effects) size += active.effect->state_size(*vehicle, actuators(*this));
+  return size;
+}
+
+Model nominal_model(const Vehicle& vehicle, bool input_is_wrench) {
+  Model model{.vehicle = &vehicle};
+  if (input_is_wrench || vehicle.thrusters.empty()) {
+    model.allocation = Matrix6d::Identity();
+  } else {
+    model.allocation = vehicle.allocation;
+  }
+  for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
+    if (const auto parameter = parameter_from_name(vehicle.parameters[i])) {
+      model.theta[index(*parameter)] = vehicle.priors[i].mean;
+    }
+  }
+  return model;
+}
+
+void feel(const Model& model, Motion& motion, std::span<double> memory, double dt) {
+  std::size_t offset = 0;
+  for (const ActiveEffect& active : model.effects) {
+    const auto size = static_cast<std::size_t>(active.effect->state_size(*model.vehicle, actuators(model)));
+    const std::span<double> z = memory.subspan(offset, size);
+    if (dt > 0.0 && size > 0) active.effect->advance(motion, active.theta, dt, z);
+    active.effect->feel(motion, active.theta, active.variant, z);
+    offset += size;
+  }
+}
+
+void settle(const Model& model, Motion motion, std::span<double> memory) {
+  std::size_t offset = 0;
+  for (const ActiveEffect& active : model.effects) {
+    const auto size = static_cast<std::size_t>(active.effect->state_size(*model.vehicle, actuators(model)));
+    const std::span<double> z = memory.subspan(offset, size);
+    active.effect->settle(motion, active.theta, z);
+    active.effect->feel(motion, active.theta, active.variant, z);
+    offset += size;
+  }
+}
+
+Vector6d generalised_force(const Model& model, const Motion& motion, Load& load) {
+  const auto& theta = model.theta;
+  const Vector6d inertia = inertia_diagonal(model);
+  const Vector6d nu_r = motion.nu_r();
+  const Eigen::Vector3d v = motion.nu.head<3>();
+  const Eigen::Vector3d w = motion.nu.tail<3>();
+  const bool water_moves = !motion.v_WF_B.isZero(0.0);
+
+  Vector6d force = model.allocation * motion.force;
+
+  // Kirchhoff: C(nu) nu = [w x P; w x L + v x P] with momenta P, L (Fossen 2011, eq. 6.44 for diagonal M).
+  if (!water_moves) {
+    const Eigen::Vector3d momentum = inertia.head<3>().cwiseProduct(v);
+    const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
+    force.head<3>() -= w.cross(momentum);
+    force.tail<3>() -= w.cross(angular) + v.cross(momentum);
+  } else {
+    const double mass = model.vehicle->mass;
+    Eigen::Vector3d rigid = kUnknownRigidShare * inertia.head<3>();
+    if (mass > 0.0) rigid.setConstant(mass);
+    const Eigen::Vector3d added = inertia.head<3>() - rigid;
+    const Eigen::Vector3d v_r = nu_r.head<3>();
+    const Eigen::Vector3d momentum_r = added.cwiseProduct(v_r);
+    const Eigen::Vector3d momentum = rigid.cwiseProduct(v);
+    const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
+    // Steady water in W: its velocity seen in B turns with the body, nu_c_dot = -w x v_c.
+    force.head<3>() -= w.cross(momentum + momentum_r) + added.cwiseProduct(w.cross(motion.v_WF_B));
+    force.tail<3>() -= w.cross(angular) + v_r.cross(momentum_r) + v.cross(momentum);
+  }
+
+  force += theta.segment<6>(index(BaseParameter::X_u)).cwiseProduct(nu_r);
+  force += theta.segment<6>(index(BaseParameter::X_uu)).cwiseProduct(nu_r.cwiseAbs().cwiseProduct(nu_r));
+
+  const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
+  force.head<3>() += theta[index(BaseParameter::W_B)] * down_B;
+  force.tail<3>() += theta.segment<3>(index(BaseParameter::G_x)).cross(down_B);
+
+  load = Load{};
+  for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
+  return force + load.wrench;
+}
+
+Vector6d acceleration(const Model& model, const Motion& motion) {
+  Load load;
+  const Vector6d force = generalised_force(model, motion, load);
+  const Vector6d inertia = inertia_diagonal(model);
+  const auto& dof = model.vehicle->dof;
+  Vector6d nu_dot = Vector6d::Zero();
+  if (!load.has_inertia) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (dof[static_cast<std::size_t>(i)]) nu_dot[i] = force[i] / inertia[i];
+    }
+    return nu_dot;
+  }
+  Matrix6d M = load.inertia;
+  M.diagonal() += inertia;
+  Vector6d right = force;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (dof[static_cast<std::size_t>(i)]) continue;
+    M.row(i).setZero();
+    M.col(i).setZero();
+    M(i, i) = 1.0;
+    right[i] = 0.0;
+  }
+  return M.partialPivLu().solve(right);
+}
+
+Vector6d residual_wrench(const Model& model, const Motion& motion, const Vector6d& nu_dot) {
+  Load load;
+  const Vector6d force = generalised_force(model, motion, load);
+  Vector6d inertial = inertia_diagonal(model).cwiseProduct(nu_dot);
+  if (load.has_inertia) inertial += load.inertia * nu_dot;
+  return inertial - force;
+}
+
+}  // namespace fathom::model

@@ -1,0 +1,30 @@
+// Open-loop simulation over a stretch of a trial: initial velocity and inputs in, velocities out.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "common/model/dynamics.hpp"
+#include "common/samples/trial.hpp"
+
+namespace fathom::model {
+
+/// A stretch of a trial: samples [start, start + count).
+struct Window {
+  const Trial* trial{};
+  std::size_t start{};
+  std::size_t count{};
+};
+
+/// Velocities of a rollout, one column per sample of the window: u v w [m/s], p q r [rad/s].
+using VelocityTrace = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// Simulates the window from the measured pose at its start and `nu0`, with the trial's inputs only. Degrees of freedom
+/// that the vehicle file leaves out follow the measurement. Second-order midpoint steps of at most 50 ms; effects with
+/// memory are run in over the 3 s before the window. Returns false when the motion diverged (the rest is held).
+bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
+
+/// Scene of a set of trials, for effects that choose starts and variants by it.
+[[nodiscard]] Scene scene_of(const Vehicle& vehicle, std::span<const Trial> trials);
+
+}  // namespace fathom::model
