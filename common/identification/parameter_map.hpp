@@ -13,8 +13,8 @@ struct FreeParameter {
   int base{-1};         ///< index into BaseTheta, or -1 for an effect's number
   int effect{-1};       ///< index into Model::effects, or -1
   int component{};      ///< index into that effect's theta
-  std::string name;     ///< "X_u", or "thruster_lag.time_constant"
-  std::string unit;
+  std::string name{};   ///< "X_u", or "thruster_lag.time_constant"
+  std::string unit{};
   double scale{1.0};    ///< x = value / scale
   double prior_mean{};
   double prior_sigma{};

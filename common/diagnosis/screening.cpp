@@ -1,0 +1,241 @@
+#include "common/diagnosis/screening.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fathom::diagnosis {
+namespace {
+
+using identification::ProjectedWindow;
+
+constexpr int kBestStarts = 2;
+constexpr int kNewtonSteps = 4;
+constexpr double kSmallStep = 1e-3;  // of the parameter's sigma or value, for differences
+constexpr int kFolds = 5;
+constexpr std::size_t kFoldBlock = 3;  // windows that stay together, so that held-out data is not a neighbour's echo
+
+/// Projected residuals of all windows with the candidate at theta, the base parameters unchanged.
+class CandidateModel {
+ public:
+  CandidateModel(const Linearisation& base, const model::Effect& effect, int variant, const std::string& name)
+      : base_{base}, model_{base.fit().model} {
+    model_.add({&effect, variant, name, std::vector<double>(effect.parameters().size(), 0.0)});
+    const auto place = std::find_if(model_.effects.begin(), model_.effects.end(), [&](const auto& active) {
+      return active.effect == &effect && active.variant == variant;
+    });
+    theta_ = &place->theta;
+  }
+
+  Eigen::VectorXd residual(const std::vector<double>& theta) {
+    *theta_ = theta;
+    Eigen::VectorXd all(total_rows());
+    Eigen::Index offset = 0;
+    for (std::size_t w = 0; w < base_.windows().size(); ++w) {
+      const auto& window = base_.problem().windows()[w];
+      const ProjectedWindow& projected = base_.windows()[w];
+      auto segment = all.segment(offset, window.rows());
+      window.evaluate(model_, base_.fit().nu0[w], base_.fit().sigma, trace_, segment);
+      // Windows beyond the outlier bound were weighted down; their base residual tells by how much.
+      if (projected.initial_basis.cols() > 0) {
+        segment -= projected.initial_basis * (projected.initial_basis.transpose() * segment).eval();
+      } else {
+        const double norm = segment.norm();
+        if (norm > 0.0) segment *= std::min(1.0, projected.residual.norm() / norm);
+      }
+      offset += window.rows();
+    }
+    return all;
+  }
+
+  [[nodiscard]] Eigen::Index total_rows() const {
+    Eigen::Index rows = 0;
+    for (const auto& window : base_.problem().windows()) rows += window.rows();
+    return rows;
+  }
+
+ private:
+  const Linearisation& base_;
+  model::Model model_;
+  std::vector<double>* theta_{};
+  model::VelocityTrace trace_;
+};
+
+/// b -> the part of b that base parameters cannot imitate.
+void remove_base(const Linearisation& base, Eigen::MatrixXd& columns) {
+  const auto n = base.windows()[0].jacobian.cols();
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, columns.cols());
+  Eigen::Index offset = 0;
+  for (const ProjectedWindow& window : base.windows()) {
+    product += window.jacobian.transpose() * columns.middleRows(offset, window.jacobian.rows());
+    offset += window.jacobian.rows();
+  }
+  const Eigen::MatrixXd step = base.solve(product);
+  offset = 0;
+  for (const ProjectedWindow& window : base.windows()) {
+    columns.middleRows(offset, window.jacobian.rows()) -= window.jacobian * step;
+    offset += window.jacobian.rows();
+  }
+}
+
+std::vector<double> clamped(const model::Effect& effect, std::vector<double> theta) {
+  const auto parameters = effect.parameters();
+  for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = std::clamp(theta[i], parameters[i].low, parameters[i].high);
+  return theta;
+}
+
+std::vector<double> window_costs(const Linearisation& base, const Eigen::VectorXd& residual) {
+  std::vector<double> costs;
+  Eigen::Index offset = 0;
+  for (const ProjectedWindow& window : base.windows()) {
+    costs.push_back(0.5 * residual.segment(offset, window.residual.size()).squaredNorm());
+    offset += window.residual.size();
+  }
+  return costs;
+}
+
+/// Share of the cost that an amplitude of the candidate saves on blocks whose data did not set the amplitude.
+double held_out_gain(const Linearisation& base, const Eigen::VectorXd& without, const Eigen::VectorXd& direction) {
+  std::array<double, kFolds> top{}, bottom{}, cost{};
+  Eigen::Index offset = 0;
+  for (std::size_t w = 0; w < base.windows().size(); ++w) {
+    const auto rows = base.windows()[w].residual.size();
+    const std::size_t fold = (w / kFoldBlock) % kFolds;
+    top[fold] += direction.segment(offset, rows).dot(without.segment(offset, rows));
+    bottom[fold] += direction.segment(offset, rows).squaredNorm();
+    cost[fold] += without.segment(offset, rows).squaredNorm();
+    offset += rows;
+  }
+  double all_top = 0.0, all_bottom = 0.0, all_cost = 0.0, saved = 0.0;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    all_top += top[fold];
+    all_bottom += bottom[fold];
+    all_cost += cost[fold];
+  }
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    if (all_bottom - bottom[fold] <= 0.0) continue;
+    const double amplitude = -(all_top - top[fold]) / (all_bottom - bottom[fold]);
+    saved -= 2.0 * amplitude * top[fold] + amplitude * amplitude * bottom[fold];
+  }
+  return all_cost > 0.0 ? saved / all_cost : 0.0;
+}
+
+}  // namespace
+
+Linearisation::Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit)
+    : problem_{problem}, fit_{fit}, windows_{problem.linearise(fit)} {
+  const identification::ParameterMap map{fit.model};
+  const auto n = static_cast<Eigen::Index>(map.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& free = map[static_cast<std::size_t>(i)];
+    information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
+  }
+  for (const ProjectedWindow& window : windows_) information += window.jacobian.transpose() * window.jacobian;
+  information_.compute(information);
+}
+
+Screened screen(const Linearisation& base, const model::Effect& effect, int variant, const std::string& variant_name,
+                const model::Scene& scene) {
+  CandidateModel candidate{base, effect, variant, variant_name};
+  const auto parameters = effect.parameters();
+  const std::size_t k = parameters.size();
+
+  Eigen::MatrixXd without(candidate.total_rows(), 1);
+  Eigen::Index offset = 0;
+  for (const ProjectedWindow& window : base.windows()) {
+    without.col(0).segment(offset, window.residual.size()) = window.residual;
+    offset += window.residual.size();
+  }
+  const Eigen::VectorXd unfitted = without.col(0);
+  remove_base(base, without);
+  const double cost_without = 0.5 * without.squaredNorm();
+
+  // Rank the starts by what an amplitude along (start - absent) would gain.
+  struct Start {
+    double gain;
+    std::vector<double> theta;
+  };
+  std::vector<Start> ranked;
+  const auto starts = effect.starts(scene, variant);
+  for (const auto& start : starts) {
+    if (starts.size() == 1) {
+      ranked.push_back({0.0, start});
+      break;
+    }
+    Eigen::MatrixXd direction = candidate.residual(start) - unfitted;
+    remove_base(base, direction);
+    const double bottom = direction.squaredNorm();
+    const double top = direction.col(0).dot(without.col(0));
+    ranked.push_back({bottom > 0.0 && top < 0.0 ? 0.5 * top * top / bottom : 0.0, start});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Start& a, const Start& b) { return a.gain > b.gain; });
+  if (ranked.size() > kBestStarts) ranked.resize(kBestStarts);
+
+  Screened best{.effect = &effect, .variant = variant, .variant_name = variant_name, .theta = std::vector<double>(k, 0.0), .window_cost = {}, .signature = {}};
+  Eigen::VectorXd best_residual = without.col(0);
+  double best_cost = cost_without;
+  for (const Start& start : ranked) {
+    std::vector<double> theta = clamped(effect, start.theta);
+    Eigen::MatrixXd residual = candidate.residual(theta);
+    remove_base(base, residual);
+    double cost = 0.5 * residual.squaredNorm();
+    double damping = 0.0;
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      Eigen::MatrixXd columns(residual.rows(), static_cast<Eigen::Index>(k));
+      std::vector<double> sizes(k);
+      for (std::size_t i = 0; i < k; ++i) {
+        sizes[i] = kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
+        if (theta[i] + sizes[i] > parameters[i].high) sizes[i] = -sizes[i];
+        std::vector<double> moved = theta;
+        moved[i] += sizes[i];
+        columns.col(static_cast<Eigen::Index>(i)) = candidate.residual(moved);
+      }
+      remove_base(base, columns);
+      for (std::size_t i = 0; i < k; ++i) {
+        const auto c = static_cast<Eigen::Index>(i);
+        columns.col(c) = (columns.col(c) - residual.col(0)) * (parameters[i].sigma / sizes[i]);
+      }
+      // Unknowns in units of their prior sigma, which is also their prior.
+      Eigen::MatrixXd normal = columns.transpose() * columns;
+      Eigen::VectorXd gradient = columns.transpose() * residual.col(0);
+      for (std::size_t i = 0; i < k; ++i) {
+        const auto c = static_cast<Eigen::Index>(i);
+        normal(c, c) += 1.0 + damping * normal(c, c);
+        gradient[c] += theta[i] / parameters[i].sigma;
+      }
+      const Eigen::VectorXd move = -normal.ldlt().solve(gradient);
+      std::vector<double> next = theta;
+      for (std::size_t i = 0; i < k; ++i) next[i] += move[static_cast<Eigen::Index>(i)] * parameters[i].sigma;
+      next = clamped(effect, next);
+      Eigen::MatrixXd next_residual = candidate.residual(next);
+      remove_base(base, next_residual);
+      const double next_cost = 0.5 * next_residual.squaredNorm();
+      if (next_cost >= cost) {
+        damping = damping == 0.0 ? 1.0 : 10.0 * damping;
+        continue;
+      }
+      const bool settled = cost - next_cost < 1e-3 * (cost_without - next_cost);
+      theta = next;
+      residual = next_residual;
+      cost = next_cost;
+      damping *= 0.1;
+      if (settled) break;
+    }
+    if (cost < best_cost) {
+      best_cost = cost;
+      best.theta = theta;
+      best_residual = residual.col(0);
+    }
+  }
+  best.gain = cost_without - best_cost;
+  best.window_cost = window_costs(base, best_residual);
+  best.signature = best_residual - without.col(0);
+  best.held_out_gain = held_out_gain(base, without.col(0), best.signature);
+  const double norm = best.signature.norm();
+  if (norm > 0.0) best.signature /= norm;
+  return best;
+}
+
+}  // namespace fathom::diagnosis

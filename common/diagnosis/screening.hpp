@@ -1,0 +1,51 @@
+// Fast first look at a candidate: its trajectories change to first order, and everything that the base parameters and
+// the initial velocities can imitate is projected out before it may claim any of the residual.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/identification/trajectory_fit.hpp"
+#include "common/model/effect.hpp"
+
+namespace fathom::diagnosis {
+
+/// A fit with its derivatives, prepared once and used by every candidate.
+class Linearisation {
+ public:
+  Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit);
+
+  [[nodiscard]] const identification::TrajectoryFit& problem() const { return problem_; }
+  [[nodiscard]] const identification::FitResult& fit() const { return fit_; }
+  [[nodiscard]] std::span<const identification::ProjectedWindow> windows() const { return windows_; }
+  [[nodiscard]] std::span<const double> window_cost() const { return window_cost_; }
+  /// Solves (J'J + prior) x = b for the parameters of the fit.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return information_.solve(b); }
+
+ private:
+  const identification::TrajectoryFit& problem_;
+  const identification::FitResult& fit_;
+  std::vector<identification::ProjectedWindow> windows_;
+  std::vector<double> window_cost_;
+  Eigen::LDLT<Eigen::MatrixXd> information_;
+};
+
+/// What a candidate would do, to first order around its best values.
+struct Screened {
+  const model::Effect* effect{};
+  int variant{};
+  std::string variant_name;
+  std::vector<double> theta;            ///< best values found
+  double gain{};                        ///< fall of the cost
+  std::vector<double> window_cost;      ///< cost per window with the candidate
+  Eigen::VectorXd signature;            ///< change of all residuals that only this candidate can make; unit norm
+  double held_out_gain{};               ///< fall of the cost on blocks left out of the estimate, share of the cost
+};
+
+/// Searches the candidate's numbers from all its starts.
+[[nodiscard]] Screened screen(const Linearisation& base, const model::Effect& effect, int variant,
+                              const std::string& variant_name, const model::Scene& scene);
+
+}  // namespace fathom::diagnosis

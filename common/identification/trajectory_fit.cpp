@@ -1,0 +1,284 @@
+#include "common/identification/trajectory_fit.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "common/base/error.hpp"
+
+namespace fathom::identification {
+namespace {
+
+// A window whose residual is this many times its expected norm pulls no harder than one at that size: capture glitches
+// and collisions must not bend the model.
+constexpr double kWindowOutlier = 2.5;
+constexpr double kTrimmedShare = 0.05;  // worst windows left out when the residual's scale is measured
+constexpr double kSmallestSigma = 1e-5; // m/s, rad/s: below any sensor's noise; keeps perfect data finite
+
+/// Weighted residual of one window: parameter blocks theta (scaled) and nu0.
+class WindowCost final : public ceres::CostFunction {
+ public:
+  WindowCost(const WindowResidual& window, const model::Model& model, const ParameterMap& map, const Vector6d& sigma)
+      : window_{window}, model_{model}, map_{map}, sigma_{sigma} {
+    set_num_residuals(static_cast<int>(window.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(map.size()));
+    mutable_parameter_block_sizes()->push_back(6);
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    model::Model model = model_;
+    map_.unpack(Eigen::Map<const Eigen::VectorXd>(blocks[0], static_cast<Eigen::Index>(map_.size())), model);
+    const Vector6d nu0 = Eigen::Map<const Vector6d>(blocks[1]);
+    model::VelocityTrace trace;
+    Eigen::VectorXd residual(window_.rows());
+    window_.evaluate(model, nu0, sigma_, trace, residual);
+    Eigen::Map<Eigen::VectorXd>(residuals, window_.rows()) = residual;
+    if (jacobians == nullptr) return residual.allFinite();
+    if (jacobians[0] != nullptr) {
+      Eigen::MatrixXd jacobian(window_.rows(), static_cast<Eigen::Index>(map_.size()));
+      window_.parameter_jacobian(model, map_, nu0, sigma_, residual, jacobian);
+      Eigen::Map<RowMajor>(jacobians[0], jacobian.rows(), jacobian.cols()) = jacobian;
+    }
+    if (jacobians[1] != nullptr) {
+      Eigen::MatrixXd jacobian(window_.rows(), 6);
+      window_.initial_jacobian(model, nu0, sigma_, residual, jacobian);
+      Eigen::Map<RowMajor>(jacobians[1], jacobian.rows(), 6) = jacobian;
+    }
+    return residual.allFinite();
+  }
+
+ private:
+  const WindowResidual& window_;
+  const model::Model& model_;
+  const ParameterMap& map_;
+  Vector6d sigma_;
+};
+
+/// Priors on the parameters, and on nothing else.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  explicit PriorCost(const ParameterMap& map) : map_{map} {
+    set_num_residuals(static_cast<int>(map.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(map.size()));
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const std::size_t n = map_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      residuals[i] = (blocks[0][i] * map_[i].scale - map_[i].prior_mean) / map_[i].prior_sigma;
+    }
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      std::fill(jacobians[0], jacobians[0] + n * n, 0.0);
+      for (std::size_t i = 0; i < n; ++i) jacobians[0][i * n + i] = map_[i].scale / map_[i].prior_sigma;
+    }
+    return true;
+  }
+
+ private:
+  const ParameterMap& map_;
+};
+
+}  // namespace
+
+std::vector<NamedValue> FitResult::parameters() const {
+  const ParameterMap map{model};
+  const Eigen::VectorXd x = map.pack(model);
+  std::vector<NamedValue> values;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double std = covariance.rows() == x.size() ? std::sqrt(std::max(covariance(k, k), 0.0)) : 0.0;
+    values.push_back({map[i].name, x[k] * map[i].scale, std, map[i].unit});
+  }
+  return values;
+}
+
+TrajectoryFit::TrajectoryFit(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings)
+    : vehicle_{vehicle}, settings_{settings} {
+  for (const model::Window& window : cut_windows(trials, settings.window)) {
+    WindowResidual residual{window, vehicle};
+    if (residual.rows() > 0) windows_.push_back(std::move(residual));
+  }
+  if (windows_.empty()) {
+    throw InputError("no stretch of " + std::to_string(static_cast<int>(settings.window)) +
+                     " s with valid velocity or rates in the training runs; check the flags in the map or record longer");
+  }
+}
+
+Vector6d TrajectoryFit::residual_scale(const FitResult& fit) const {
+  Vector6d sigma = fit.sigma;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    std::vector<std::pair<double, double>> windows;  // mean square, count
+    for (std::size_t w = 0; w < windows_.size(); ++w) {
+      if (fit.window_count[w][axis] > 0.0) {
+        windows.emplace_back(fit.window_square[w][axis] / fit.window_count[w][axis], fit.window_count[w][axis]);
+      }
+    }
+    if (windows.empty()) continue;
+    std::sort(windows.begin(), windows.end());
+    const auto kept = std::max<std::size_t>(1, windows.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(windows.size())));
+    double square = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < kept; ++i) {
+      square += windows[i].first * windows[i].second;
+      count += windows[i].second;
+    }
+    sigma[static_cast<Eigen::Index>(axis)] = std::max(std::sqrt(square / count), kSmallestSigma);
+  }
+  return sigma;
+}
+
+void TrajectoryFit::score(FitResult& fit) const {
+  fit.window_cost.assign(windows_.size(), 0.0);
+  fit.window_square.assign(windows_.size(), {});
+  fit.window_count.assign(windows_.size(), {});
+  fit.cost = 0.0;
+  model::VelocityTrace trace;
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    const WindowResidual& window = windows_[w];
+    Eigen::VectorXd residual(window.rows());
+    window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, residual);
+    fit.window_cost[w] = 0.5 * residual.squaredNorm();
+    fit.cost += fit.window_cost[w];
+    for (Eigen::Index i = 0; i < residual.size(); ++i) {
+      const int axis = window.axis(i);
+      const double error = residual[i] * fit.sigma[axis];
+      fit.window_square[w][static_cast<std::size_t>(axis)] += error * error;
+      fit.window_count[w][static_cast<std::size_t>(axis)] += 1.0;
+    }
+  }
+}
+
+void TrajectoryFit::solve(FitResult& fit) const {
+  const ParameterMap map{fit.model};
+  const model::Model shape = fit.model;
+  Eigen::VectorXd x = map.pack(fit.model);
+  ceres::Problem::Options ownership;
+  ownership.loss_function_ownership = ceres::TAKE_OWNERSHIP;
+  ceres::Problem problem{ownership};
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
+  ordering->AddElementToGroup(x.data(), 1);
+  problem.AddResidualBlock(new PriorCost(map), nullptr, x.data());
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    const double norm = std::sqrt(static_cast<double>(windows_[w].rows()));
+    problem.AddResidualBlock(new WindowCost(windows_[w], shape, map, fit.sigma), new ceres::HuberLoss(kWindowOutlier * norm),
+                             x.data(), fit.nu0[w].data());
+    ordering->AddElementToGroup(fit.nu0[w].data(), 0);
+    std::vector<int> fixed;
+    for (int axis = 0; axis < 6; ++axis) {
+      if (!vehicle_.dof[static_cast<std::size_t>(axis)]) fixed.push_back(axis);
+    }
+    if (!fixed.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, fixed));
+  }
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (std::isfinite(map[i].low)) problem.SetParameterLowerBound(x.data(), static_cast<int>(i), map[i].low / map[i].scale);
+    if (std::isfinite(map[i].high)) problem.SetParameterUpperBound(x.data(), static_cast<int>(i), map[i].high / map[i].scale);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_ordering = ordering;
+  options.num_threads = settings_.threads;
+  options.max_num_iterations = settings_.iterations;
+  options.function_tolerance = settings_.tolerance;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  map.unpack(x, fit.model);
+}
+
+FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) const {
+  FitResult fit;
+  fit.model = start;
+  if (like != nullptr) {
+    fit.sigma = like->sigma;
+    fit.nu0 = like->nu0;
+    solve(fit);
+    score(fit);
+    return fit;
+  }
+  for (const WindowResidual& window : windows_) fit.nu0.push_back(window.window().trial->nu[window.window().start]);
+  score(fit);
+  constexpr int kWeightRounds = 3;  // the weights change by a few per cent after the second
+  for (int round = 0; round < kWeightRounds; ++round) {
+    fit.sigma = residual_scale(fit);
+    solve(fit);
+    score(fit);
+  }
+  fit.sigma = residual_scale(fit);
+  score(fit);
+  return fit;
+}
+
+std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit) const {
+  const ParameterMap map{fit.model};
+  std::vector<ProjectedWindow> projected(windows_.size());
+  model::VelocityTrace trace;
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    const WindowResidual& window = windows_[w];
+    ProjectedWindow& out = projected[w];
+    out.residual.resize(window.rows());
+    window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, out.residual);
+    out.jacobian.resize(window.rows(), static_cast<Eigen::Index>(map.size()));
+    window.parameter_jacobian(fit.model, map, fit.nu0[w], fit.sigma, out.residual, out.jacobian);
+    Eigen::MatrixXd initial(window.rows(), 6);
+    window.initial_jacobian(fit.model, fit.nu0[w], fit.sigma, out.residual, initial);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};
+    out.initial_basis = Eigen::MatrixXd::Identity(window.rows(), qr.rank());
+    out.initial_basis.applyOnTheLeft(qr.householderQ());
+    out.residual -= out.initial_basis * (out.initial_basis.transpose() * out.residual);
+    out.jacobian -= out.initial_basis * (out.initial_basis.transpose() * out.jacobian);
+    // The same weight as in the fit: a window beyond the outlier bound counts less.
+    const double bound = kWindowOutlier * std::sqrt(static_cast<double>(window.rows()));
+    const double norm = out.residual.norm();
+    if (norm > bound) {
+      const double weight = std::sqrt(bound / norm);
+      out.residual *= weight;
+      out.jacobian *= weight;
+      out.initial_basis.resize(window.rows(), 0);
+    }
+  }
+  return projected;
+}
+
+void TrajectoryFit::add_covariance(FitResult& fit) const {
+  const ParameterMap map{fit.model};
+  const auto n = static_cast<Eigen::Index>(map.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeParameter& free = map[static_cast<std::size_t>(i)];
+    information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
+    meat(i, i) = information(i, i);
+  }
+  for (const ProjectedWindow& window : linearise(fit)) {
+    information += window.jacobian.transpose() * window.jacobian;
+    const Eigen::VectorXd gradient = window.jacobian.transpose() * window.residual;
+    meat += gradient * gradient.transpose();
+  }
+  const auto clusters = static_cast<double>(windows_.size());
+  const double small_sample = clusters > static_cast<double>(n) + 1.0 ? clusters / (clusters - static_cast<double>(n)) : 2.0;
+  const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) scale[i] = map[static_cast<std::size_t>(i)].scale;
+  fit.covariance = small_sample * scale.asDiagonal() * (inverse * meat * inverse) * scale.asDiagonal();
+}
+
+FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings) {
+  model::Model model = model::nominal_model(vehicle, trials[0].input_is_wrench);
+  // Short windows forgive wrong parameters (little time to diverge); each stage starts where the last one ended.
+  for (const double length : {0.2 * settings.window, 0.5 * settings.window}) {
+    FitSettings stage = settings;
+    stage.window = length;
+    stage.iterations = 8;
+    stage.tolerance = 1e-3;
+    model = TrajectoryFit{vehicle, trials, stage}.fit(model).model;
+  }
+  return TrajectoryFit{vehicle, trials, settings}.fit(model);
+}
+
+}  // namespace fathom::identification

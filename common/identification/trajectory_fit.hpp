@@ -1,0 +1,74 @@
+// Output-error fit: parameters and each window's initial velocity such that simulated trajectories match measured ones.
+// The simulation never sees a measured velocity after the window's start, so noise in the states does not bias the
+// parameters (Jategaonkar 2015, ch. 4). Solved with Ceres; initial velocities are eliminated by the Schur complement.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/identification/window_residual.hpp"
+#include "common/samples/estimates.hpp"
+
+namespace fathom::identification {
+
+struct FitSettings {
+  double window{10.0};    ///< s
+  int threads{2};
+  int iterations{15};     ///< of the solver, at most
+  double tolerance{1e-5}; ///< relative decrease of the cost that ends the solver
+};
+
+struct FitResult {
+  model::Model model;
+  Vector6d sigma{Vector6d::Ones()};        ///< residual scale per axis used as weight, m/s and rad/s
+  std::vector<Vector6d> nu0;               ///< per window, m/s and rad/s
+  std::vector<double> window_cost;         ///< half the sum of squared, weighted residuals per window
+  std::vector<std::array<double, 6>> window_square;  ///< sum of squared residuals per window and axis, unweighted
+  std::vector<std::array<double, 6>> window_count;   ///< rows per window and axis
+  double cost{};                           ///< sum of window_cost
+  Eigen::MatrixXd covariance;              ///< of the free parameters in physical units, order of ParameterMap
+  bool converged{false};
+
+  [[nodiscard]] std::vector<NamedValue> parameters() const;  ///< with standard deviations when covariance is there
+};
+
+/// One window's residual and derivatives with the initial velocity projected out (orthogonally).
+struct ProjectedWindow {
+  Eigen::VectorXd residual;       ///< weighted, projected
+  Eigen::MatrixXd jacobian;       ///< with respect to the scaled free parameters, projected
+  Eigen::MatrixXd initial_basis;  ///< orthonormal basis of the initial velocity's columns
+};
+
+class TrajectoryFit {
+ public:
+  TrajectoryFit(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings);
+
+  /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs can
+  /// be compared); without, sigma is found by iteration.
+  [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr) const;
+  /// Residuals and derivatives at a fit, per window.
+  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit) const;
+  /// Fills fit.covariance: sandwich with windows as clusters, so that correlation inside a window is counted.
+  void add_covariance(FitResult& fit) const;
+
+  [[nodiscard]] std::span<const WindowResidual> windows() const { return windows_; }
+  [[nodiscard]] const model::Vehicle& vehicle() const { return vehicle_; }
+  [[nodiscard]] const FitSettings& settings() const { return settings_; }
+
+ private:
+  void solve(FitResult& fit) const;
+  void score(FitResult& fit) const;
+  [[nodiscard]] Vector6d residual_scale(const FitResult& fit) const;
+
+  const model::Vehicle& vehicle_;
+  FitSettings settings_;
+  std::vector<WindowResidual> windows_;
+};
+
+/// Fits the base model from the priors alone: short windows first, then longer ones, then all data.
+[[nodiscard]] FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                                        const FitSettings& settings);
+
+}  // namespace fathom::identification
