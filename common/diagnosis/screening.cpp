@@ -134,6 +134,21 @@ Linearisation::Linearisation(const identification::TrajectoryFit& problem, const
   }
   for (const ProjectedWindow& window : windows_) information += window.jacobian.transpose() * window.jacobian;
   information_.compute(information);
+  unexplained_ = stacked_residual();
+  remove_base(*this, unexplained_);
+  window_cost_ = window_costs(*this, unexplained_.col(0));
+}
+
+Eigen::VectorXd Linearisation::stacked_residual() const {
+  Eigen::Index rows = 0;
+  for (const ProjectedWindow& window : windows_) rows += window.residual.size();
+  Eigen::VectorXd all(rows);
+  Eigen::Index offset = 0;
+  for (const ProjectedWindow& window : windows_) {
+    all.segment(offset, window.residual.size()) = window.residual;
+    offset += window.residual.size();
+  }
+  return all;
 }
 
 Screened screen(const Linearisation& base, const model::Effect& effect, int variant, const std::string& variant_name,
@@ -142,14 +157,8 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
   const auto parameters = effect.parameters();
   const std::size_t k = parameters.size();
 
-  Eigen::MatrixXd without(candidate.total_rows(), 1);
-  Eigen::Index offset = 0;
-  for (const ProjectedWindow& window : base.windows()) {
-    without.col(0).segment(offset, window.residual.size()) = window.residual;
-    offset += window.residual.size();
-  }
-  const Eigen::VectorXd unfitted = without.col(0);
-  remove_base(base, without);
+  const Eigen::VectorXd unfitted = base.stacked_residual();
+  const Eigen::MatrixXd& without = base.unexplained();
   const double cost_without = 0.5 * without.squaredNorm();
 
   // Rank the starts by what an amplitude along (start - absent) would gain.

@@ -20,7 +20,12 @@ class Linearisation {
   [[nodiscard]] const identification::TrajectoryFit& problem() const { return problem_; }
   [[nodiscard]] const identification::FitResult& fit() const { return fit_; }
   [[nodiscard]] std::span<const identification::ProjectedWindow> windows() const { return windows_; }
+  /// Cost per window after the last step of the base parameters.
   [[nodiscard]] std::span<const double> window_cost() const { return window_cost_; }
+  /// All residuals, as one column, after that step.
+  [[nodiscard]] const Eigen::MatrixXd& unexplained() const { return unexplained_; }
+  /// All residuals before it.
+  [[nodiscard]] Eigen::VectorXd stacked_residual() const;
   /// Solves (J'J + prior) x = b for the parameters of the fit.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return information_.solve(b); }
 
@@ -30,6 +35,7 @@ class Linearisation {
   std::vector<identification::ProjectedWindow> windows_;
   std::vector<double> window_cost_;
   Eigen::LDLT<Eigen::MatrixXd> information_;
+  Eigen::MatrixXd unexplained_;
 };
 
 /// What a candidate would do, to first order around its best values.

@@ -37,7 +37,7 @@ struct Motion {
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
   Vector6d nu{Vector6d::Zero()};                             ///< B in W, in B: m/s, rad/s
   Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};           ///< m/s, water velocity seen in B; effects add to it
-  ActuatorForces force;                                      ///< N, as they reach the water; effects alter it
+  ActuatorForces force{};                                    ///< N, as they reach the water; effects alter it
   double voltage{};                                          ///< V; 0 when not logged
   const InputSignal* input{};                                ///< commanded forces at other times (delay)
   const Vehicle* vehicle{};

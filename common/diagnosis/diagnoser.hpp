@@ -1,0 +1,31 @@
+// Closes the loop: fits the base model, asks every registered effect "could you be this?", adds what the evidence
+// supports, fits again, and reports the error before and after on runs that no fit has seen.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "common/identification/trajectory_fit.hpp"
+#include "common/samples/diagnosis_result.hpp"
+
+namespace fathom::diagnosis {
+
+struct Settings {
+  identification::FitSettings fit;
+  double accept_log_odds{3.0};       ///< odds of 20 to 1 after paying for parameters and for all candidates tried
+  double smallest_reduction{0.005};  ///< of the training error (RMS): less changes no prediction worth the name
+  double alias_correlation{0.9};     ///< of two effects' predictions, what the base parameters can imitate taken out
+  int most_effects{8};
+  int threads{2};
+};
+
+/// Called with what is being done and the share of the work that is done, 0..1.
+using Progress = std::function<void(const std::string&, double)>;
+
+/// Diagnosis of `train`, judged on `validate`. Consistency findings are the caller's to add.
+[[nodiscard]] DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train,
+                                       std::span<const Trial> validate, const Settings& settings,
+                                       const Progress& progress);
+
+}  // namespace fathom::diagnosis

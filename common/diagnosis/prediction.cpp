@@ -1,0 +1,180 @@
+#include "common/diagnosis/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace fathom::diagnosis {
+namespace {
+
+constexpr double kStride = 5.0;          // s
+constexpr std::size_t kBlock = 6;        // windows per bootstrap block: 30 s, longer than the residual's memory
+constexpr int kDraws = 1000;
+constexpr unsigned kSeed = 20240607;
+constexpr double kDerivativeSpan = 0.5;  // s, of the local fit that gives nu_dot
+constexpr std::size_t kScoredHorizon = 1;
+
+bool sample_valid(const Trial& trial, std::size_t k, std::size_t axis) {
+  return axis < 3 ? trial.observed.velocity && trial.velocity_valid[k] != 0
+                  : trial.observed.rates && trial.rates_valid[k] != 0;
+}
+
+double normalised(const Predictions& predictions, std::span<const std::size_t> chosen, const model::Vehicle& vehicle) {
+  double sum = 0.0, axes = 0.0;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!vehicle.dof[axis] || predictions.variance[kScoredHorizon][axis] <= 0.0) continue;
+    double square = 0.0, count = 0.0;
+    for (const std::size_t w : chosen) {
+      square += predictions.windows[w].square[kScoredHorizon][axis];
+      count += predictions.windows[w].count[kScoredHorizon][axis];
+    }
+    if (count > 0.0) {
+      sum += std::sqrt(square / count / predictions.variance[kScoredHorizon][axis]);
+      axes += 1.0;
+    }
+  }
+  return axes > 0.0 ? sum / axes : 0.0;
+}
+
+}  // namespace
+
+std::vector<model::Window> prediction_windows(std::span<const Trial> trials) {
+  std::vector<model::Window> windows;
+  for (const Trial& trial : trials) {
+    const auto count = static_cast<std::size_t>(kHorizons.back() / trial.dt + 0.5) + 1;
+    const auto stride = static_cast<std::size_t>(kStride / trial.dt + 0.5);
+    for (std::size_t start = 0; start + count <= trial.size(); start += stride) {
+      // The start may slip to the next sample at which everything observed is valid.
+      std::size_t begin = start;
+      const auto ready = [&](std::size_t k) {
+        return (!trial.observed.velocity || trial.velocity_valid[k] != 0) &&
+               (!trial.observed.rates || trial.rates_valid[k] != 0) &&
+               (!trial.observed.attitude || trial.pose_valid[k] != 0);
+      };
+      while (begin < start + stride && begin + count <= trial.size() && !ready(begin)) ++begin;
+      if (begin < start + stride && begin + count <= trial.size()) windows.push_back({&trial, begin, count});
+    }
+  }
+  return windows;
+}
+
+Predictions predict(const model::Model& model, std::span<const model::Window> windows) {
+  Predictions predictions;
+  std::array<std::array<double, 6>, 3> sum{}, square{}, count{};
+  model::VelocityTrace trace;
+  for (const model::Window& window : windows) {
+    const Trial& trial = *window.trial;
+    model::rollout(model, window, trial.nu[window.start], trace);
+    WindowErrors errors;
+    for (std::size_t k = 1; k < window.count; ++k) {
+      const double elapsed = static_cast<double>(k) * trial.dt;
+      for (std::size_t axis = 0; axis < 6; ++axis) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        if (!sample_valid(trial, window.start + k, axis)) continue;
+        const double measured = trial.nu[window.start + k][a];
+        const double error = trace(a, static_cast<Eigen::Index>(k)) - measured;
+        for (std::size_t h = 0; h < kHorizons.size(); ++h) {
+          if (elapsed > kHorizons[h] + 1e-9) continue;
+          errors.square[h][axis] += error * error;
+          errors.count[h][axis] += 1.0;
+          sum[h][axis] += measured;
+          square[h][axis] += measured * measured;
+          count[h][axis] += 1.0;
+        }
+      }
+    }
+    predictions.windows.push_back(errors);
+  }
+  for (std::size_t h = 0; h < kHorizons.size(); ++h) {
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      if (count[h][axis] <= 1.0) continue;
+      const double mean = sum[h][axis] / count[h][axis];
+      predictions.variance[h][axis] = std::max(square[h][axis] / count[h][axis] - mean * mean, 0.0);
+    }
+  }
+  return predictions;
+}
+
+std::vector<PredictionError> Predictions::summary(const model::Vehicle& vehicle) const {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  std::vector<PredictionError> rows;
+  for (std::size_t h = 0; h < kHorizons.size(); ++h) {
+    PredictionError row{.horizon_s = kHorizons[h]};
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      double total = 0.0, samples = 0.0;
+      for (const WindowErrors& window : windows) {
+        total += window.square[h][axis];
+        samples += window.count[h][axis];
+      }
+      const bool known = vehicle.dof[axis] && samples > 0.0;
+      row.rmse[axis] = known ? std::sqrt(total / samples) : kNaN;
+      row.r2[axis] = known && variance[h][axis] > 0.0 ? 1.0 - total / samples / variance[h][axis] : kNaN;
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Interval improvement(const Predictions& before, const Predictions& after, const model::Vehicle& vehicle) {
+  std::vector<std::size_t> chosen(before.windows.size());
+  for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] = w;
+  const auto fall = [&](std::span<const std::size_t> windows) {
+    const double old_error = normalised(before, windows, vehicle);
+    return old_error > 0.0 ? 1.0 - normalised(after, windows, vehicle) / old_error : 0.0;
+  };
+  Interval interval{.value = fall(chosen)};
+  const std::size_t n = chosen.size();
+  if (n < 2 * kBlock) {
+    interval.low = -std::numeric_limits<double>::infinity();
+    interval.high = std::numeric_limits<double>::infinity();
+    return interval;
+  }
+  std::mt19937 random{kSeed};
+  std::uniform_int_distribution<std::size_t> start{0, n - kBlock};
+  std::vector<double> draws;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<std::size_t> sample;
+    while (sample.size() < n) {
+      const std::size_t first = start(random);
+      for (std::size_t i = 0; i < kBlock && sample.size() < n; ++i) sample.push_back(first + i);
+    }
+    draws.push_back(fall(sample));
+  }
+  std::sort(draws.begin(), draws.end());
+  interval.low = draws[static_cast<std::size_t>(0.025 * kDraws)];
+  interval.high = draws[static_cast<std::size_t>(0.975 * kDraws)];
+  return interval;
+}
+
+std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
+  const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kDerivativeSpan / trial.dt + 0.5));
+  double weight = 0.0;  // sum of squared offsets [s^2]: slope of the local straight line through symmetric samples
+  for (std::size_t i = 1; i <= half; ++i) weight += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
+  std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  const model::InputSignal input{trial.t.empty() ? 0.0 : trial.t.front(), trial.dt, trial.input};
+  std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    model::Motion motion{.t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = trial.nu[k]};
+    input.at(motion.t, motion.force);
+    motion.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
+    motion.input = &input;
+    motion.vehicle = model.vehicle;
+    if (k == 0) model::settle(model, motion, memory);
+    model::feel(model, motion, memory, k == 0 ? 0.0 : trial.dt);
+    if (k < half || k + half >= trial.size()) continue;
+    bool valid = true;
+    Vector6d slope = Vector6d::Zero();
+    for (std::size_t i = 1; i <= half; ++i) {
+      slope += static_cast<double>(i) * trial.dt * (trial.nu[k + i] - trial.nu[k - i]);
+      for (const std::size_t j : {k - i, k + i}) {
+        valid = valid && (!trial.observed.velocity || trial.velocity_valid[j] != 0) &&
+                (!trial.observed.rates || trial.rates_valid[j] != 0);
+      }
+    }
+    if (valid) residuals[k] = model::residual_wrench(model, motion, slope / weight);
+  }
+  return residuals;
+}
+
+}  // namespace fathom::diagnosis

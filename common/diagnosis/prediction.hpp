@@ -1,0 +1,40 @@
+// Open-loop prediction on validation runs: how far off a model is 1, 5 and 10 s after it last saw a measurement.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "common/model/rollout.hpp"
+#include "common/samples/diagnosis_result.hpp"
+
+namespace fathom::diagnosis {
+
+constexpr std::array<double, 3> kHorizons{1.0, 5.0, 10.0};  // s
+
+/// Squared errors of one prediction window.
+struct WindowErrors {
+  std::array<std::array<double, 6>, 3> square{};  ///< per horizon and axis, summed over (0, horizon]
+  std::array<std::array<double, 6>, 3> count{};
+};
+
+/// Prediction errors of one model on a set of windows, and what R2 is measured against.
+struct Predictions {
+  std::vector<WindowErrors> windows;
+  std::array<std::array<double, 6>, 3> variance{};  ///< of the measured velocity over the same samples
+
+  [[nodiscard]] std::vector<PredictionError> summary(const model::Vehicle& vehicle) const;
+};
+
+/// Windows of 10 s whose starts follow one another every 5 s, each beginning at a valid sample.
+[[nodiscard]] std::vector<model::Window> prediction_windows(std::span<const Trial> trials);
+[[nodiscard]] Predictions predict(const model::Model& model, std::span<const model::Window> windows);
+
+/// Fall of the normalised 5 s error (mean over axes of RMSE over the measured standard deviation) from `before` to
+/// `after`, relative to before, with a 95 % interval by bootstrap over blocks of windows (seeded: repeatable).
+[[nodiscard]] Interval improvement(const Predictions& before, const Predictions& after, const model::Vehicle& vehicle);
+
+/// Wrench residual X..N [N, N m] per sample: what acts and the model lacks, with nu_dot from a local quadratic fit to nu.
+[[nodiscard]] std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial);
+
+}  // namespace fathom::diagnosis

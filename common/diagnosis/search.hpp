@@ -1,0 +1,36 @@
+// The greedy search for effects: screen all, refit the best, accept or stop, then test each accepted one again in the
+// company of the others.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/diagnosis/diagnoser.hpp"
+#include "common/diagnosis/screening.hpp"
+
+namespace fathom::diagnosis {
+
+/// A candidate with the numbers that decided about it.
+struct Judged {
+  const model::Effect* effect{};
+  int variant{};
+  std::string variant_name;
+  double log_odds{};
+  double error_reduction{};
+  double held_out_gain{};
+  std::vector<std::string> aliased_with{};   ///< other effects whose predictions look alike
+  std::vector<std::string> alternatives{};   ///< of those, the ones that the odds cannot rule out
+  std::string reason{};                      ///< why it was refused; empty when accepted
+};
+
+struct SearchResult {
+  identification::FitResult before;
+  identification::FitResult after;
+  std::vector<Judged> accepted;              ///< in the order of acceptance
+  std::vector<Judged> refused;               ///< best form of every other effect, from the last round
+};
+
+[[nodiscard]] SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,
+                                  const Progress& progress);
+
+}  // namespace fathom::diagnosis

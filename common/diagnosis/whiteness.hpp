@@ -1,0 +1,35 @@
+// What structure is left in a residual: is it white, how long is its memory, and what does it go with.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/spatial.hpp"
+#include "common/model/dynamics.hpp"
+#include "common/samples/diagnosis_result.hpp"
+#include "common/samples/trial.hpp"
+
+namespace fathom::diagnosis {
+
+/// Autocorrelation of a series at lags 0..most; NaN samples are skipped, gaps respected.
+[[nodiscard]] std::vector<double> autocorrelation(std::span<const double> series, std::size_t most);
+/// P-value of Ljung and Box's portmanteau test over `rho[1..]` of a series with `count` samples (1978, eq. 2.5).
+[[nodiscard]] double ljung_box_p(std::span<const double> rho, double count);
+
+/// Whiteness, memory and explained share of the wrench residual, per simulated axis.
+[[nodiscard]] std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,
+                                                   std::span<const std::vector<Vector6d>> residuals);
+
+/// A quantity that the residual of one axis goes with, on blocks of data that did not set the relation.
+struct Association {
+  std::string axis;  ///< "X" .. "N"
+  std::string with;  ///< "position", "heading", "depth", "speed", "thrust", "voltage", "time"
+  double share{};    ///< of the residual's variance, out of block
+};
+
+/// Strongest associations of the residual, best first; empty when nothing exceeds `smallest`.
+[[nodiscard]] std::vector<Association> associations(const model::Model& model, std::span<const Trial> trials,
+                                                    std::span<const std::vector<Vector6d>> residuals, double smallest);
+
+}  // namespace fathom::diagnosis
