@@ -10,6 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/model/base_parameters.hpp"
+#include "common/tables/import.hpp"
 
 using fathom::InputError;
 using fathom::Vector6d;
@@ -199,4 +200,35 @@ TEST_CASE("base parameters: every name is found again, with a unit that the unit
     CHECK(fathom::model::find_base_parameter(one.name) == &one);
     CHECK_FALSE(one.unit.empty());
   }
+}
+
+TEST_CASE("beluga: the thrust curve gives back the wrench that was logged, from command and voltage alone") {
+  constexpr double kForceRms =
+      0.3;  // N: found 0.20 to 0.24 per axis; the tail comes from interpolation on the 10 Hz grid
+  constexpr double kMomentRms = 0.15;  // N m: found 0.06 to 0.11
+  const Vehicle vehicle = Vehicle::load(vehicle_file("beluga"));
+  const std::string root = FATHOM_SOURCE_DIR;
+  Vector6d square = Vector6d::Zero();
+  double count = 0.0;
+  for (const char* run : {"surge-1", "sway-1", "heave-1", "yaw-1", "random-1", "random-2"}) {
+    const auto imported =
+        fathom::tables::import_csv(root + "/test/data/beluga/" + run + ".csv", root + "/config/maps/beluga.yaml");
+    const auto& recording = imported.recording;
+    REQUIRE(recording.battery.size() == recording.thrusters.size());
+    for (std::size_t k = 0; k < recording.thrusters.size(); ++k) {
+      const fathom::Thrusters& sample = recording.thrusters[k];
+      Eigen::VectorXd force(8);
+      for (std::size_t j = 0; j < 8; ++j) {
+        force[static_cast<Eigen::Index>(j)] =
+            vehicle.curve.force_at(sample.pwm_us[j], vehicle.thrusters[j].pwm_sign, recording.battery[k].voltage);
+      }
+      const Vector6d error = vehicle.allocation * force - Eigen::Map<const Vector6d>(sample.tau.data());
+      square += error.cwiseAbs2();
+      count += 1.0;
+    }
+  }
+  const Vector6d rms = (square / count).cwiseSqrt();
+  MESSAGE("wrench from commands, RMS error per axis: " << rms.transpose());
+  CHECK(rms.head<3>().maxCoeff() < kForceRms);
+  CHECK(rms.tail<3>().maxCoeff() < kMomentRms);
 }
