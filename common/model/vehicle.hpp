@@ -13,18 +13,22 @@ namespace fathom::model {
 /// Force of a thruster over its command, piecewise linear, at `voltage`.
 struct ThrustCurve {
   std::vector<double> pwm_us;  ///< us, rising
-  std::vector<double> force;   ///< N
+  std::vector<double> force;   ///< N, never falling
+  double neutral_us{};         ///< us, command that means "stop": the mirror of `pwm_sign`
   double voltage{};            ///< V at which the curve was measured; 0 when unknown
+  double voltage_exponent{};   ///< force ~ (V / voltage)^exponent; 0: the voltage plays no part
   [[nodiscard]] bool empty() const { return pwm_us.empty(); }
   /// Force [N] at `pwm` [us]; held at the ends.
   [[nodiscard]] double force_at(double pwm) const;
+  /// Force [N] of a thruster whose command is mirrored about neutral when `pwm_sign` is -1, at `battery` [V].
+  [[nodiscard]] double force_at(double pwm, double pwm_sign, double battery) const;
 };
 
 struct Thruster {
   std::string name;
-  Eigen::Vector3d p_BJ{Eigen::Vector3d::Zero()};       ///< m, position in the body
-  Eigen::Vector3d axis_B{Eigen::Vector3d::UnitX()};    ///< unit, direction of positive force
-  double pwm_sign{1.0};                                ///< -1: the command is mirrored about neutral before the curve
+  Eigen::Vector3d p_BJ{Eigen::Vector3d::Zero()};     ///< m, position in the body
+  Eigen::Vector3d axis_B{Eigen::Vector3d::UnitX()};  ///< unit, direction of positive force
+  double pwm_sign{1.0};                              ///< -1: the command is mirrored about neutral before the curve
 };
 
 /// Prior of one base parameter. sigma > 0 small: known constant; large: to be found.
@@ -39,17 +43,21 @@ constexpr std::array<const char*, 6> kVelocityNames{"u", "v", "w", "p", "q", "r"
 
 struct Vehicle {
   std::string name;
-  std::array<bool, 6> dof{};      ///< simulated degrees of freedom; the others enter as measured
-  double mass{};                  ///< kg, rigid body (dry); 0 when unknown
+  std::array<bool, 6> dof{};                         ///< simulated degrees of freedom; the others enter as measured
+  double mass{};                                     ///< kg, rigid body (dry); 0 when unknown
   Eigen::Vector3d inertia{Eigen::Vector3d::Zero()};  ///< kg m^2, rigid body diagonal; 0 when unknown
-  double buoyancy{};              ///< N; 0 when unknown
-  double water_density{};         ///< kg/m^3
-  double nominal_voltage{};       ///< V; 0 when unknown
+  double buoyancy{};                                 ///< N; 0 when unknown
+  double water_density{};                            ///< kg/m^3
+  double nominal_voltage{};                          ///< V; 0 when unknown
   std::vector<Thruster> thrusters;
   ThrustCurve curve;
-  std::vector<std::string> parameters;  ///< base parameters that this vehicle enables, e.g. "m_X", "X_u", "X_u|u|", "W-B", "G_z"
-  std::vector<Prior> priors;            ///< one per parameter
+  std::vector<std::string>
+      parameters;             ///< base parameters that this vehicle enables, e.g. "m_X", "X_u", "X_u|u|", "W-B", "G_z"
+  std::vector<Prior> priors;  ///< one per parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> allocation;  ///< tau = allocation * force; 6 x N
+
+  /// False for a vehicle that is driven by a body wrench (no thrusters in its file).
+  [[nodiscard]] bool has_thrusters() const { return !thrusters.empty(); }
 
   /// Reads a vehicle file; InputError with file and line when anything is missing, unknown or in a wrong unit.
   [[nodiscard]] static Vehicle load(const std::string& path);

@@ -16,6 +16,8 @@ struct PoseCapture {
   Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};             ///< m, NED
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};  ///< unit
   bool valid{true};                                          ///< false where capture was lost, frozen or jumped
+  bool has_position{true};                                   ///< false: attitude only
+  bool has_attitude{true};                                   ///< false: position only
 };
 
 /// Rate gyro and, where `has_*` says so, specific force and attitude (AHRS).

@@ -1,0 +1,195 @@
+#include "common/tables/column_map.hpp"
+
+#include <algorithm>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/base/units.hpp"
+
+namespace fathom::tables {
+namespace {
+
+double factor_to(const Config& config, const std::string& key, const std::string& unit) {
+  try {
+    return unit_factor(config.text(key), unit);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    if (message.rfind("unit '", 0) != 0 && message.rfind("the unit", 0) != 0) throw;
+    config.fail(key, message);
+  }
+}
+
+std::vector<Column> columns_of(const Config& config, const std::string& key) {
+  std::vector<Column> columns;
+  for (const std::string& name : config.texts(key)) columns.push_back({name, config.where(key)});
+  if (columns.empty()) config.fail(key, "'" + key + "' names no column");
+  return columns;
+}
+
+Eigen::Matrix3d body_frame(const Config& config, const std::string& key) {
+  const std::string name = config.text(key);
+  if (name == "FRD") return Eigen::Matrix3d::Identity();
+  if (name == "FLU") return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  config.fail(key, "'" + name + "' is no body frame: FRD (forward, right, down) or FLU (forward, left, up)");
+}
+
+Eigen::Matrix3d world_frame(const Config& config, const std::string& key) {
+  const std::string name = config.text(key);
+  if (name == "NED") return Eigen::Matrix3d::Identity();
+  if (name == "NWU") return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  if (name == "ENU") return (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished();
+  config.fail(key, "'" + name + "' is no world frame: NED, NWU (z up, y to the left of x) or ENU");
+}
+
+void need_count(const Config& config, const std::string& key, const std::vector<Column>& columns, std::size_t count) {
+  if (columns.size() == count) return;
+  config.fail(key, "'" + key + "' needs " + std::to_string(count) + " columns, not " + std::to_string(columns.size()));
+}
+
+ColumnGroup group_of(const Config& config, const std::string& unit) {
+  ColumnGroup group;
+  group.columns = columns_of(config, "columns");
+  group.factor = factor_to(config, "unit", unit);
+  return group;
+}
+
+ColumnGroup body_vector(const Config& config, const std::string& unit) {
+  ColumnGroup group = group_of(config, unit);
+  need_count(config, "columns", group.columns, 3);
+  group.to_house = body_frame(config, "frame");
+  return group;
+}
+
+ColumnGroup scalar(const Config& config, const std::string& unit) {
+  ColumnGroup group;
+  group.columns = {{config.text("column"), config.where("column")}};
+  group.factor = factor_to(config, "unit", unit);
+  return group;
+}
+
+// Whichever of `quaternion` and `euler` the section holds.
+std::optional<AttitudeColumns> attitude_of(const Config& config) {
+  const bool quaternion = config.has("quaternion");
+  const bool euler = config.has("euler");
+  if (quaternion && euler) config.fail("euler", "state 'quaternion' or 'euler', not both");
+  if (!quaternion && !euler) return std::nullopt;
+  const Config section = config.section(quaternion ? "quaternion" : "euler");
+  AttitudeColumns attitude;
+  attitude.euler = euler;
+  if (euler) {
+    attitude.group = group_of(section, "rad");
+    need_count(section, "columns", attitude.group.columns, 3);
+  } else {
+    std::vector<Column> columns = columns_of(section, "columns");
+    need_count(section, "columns", columns, 4);
+    const std::string order = section.text("order");
+    if (order != "wxyz" && order != "xyzw") section.fail("order", "'order' must be wxyz or xyzw, not '" + order + "'");
+    if (order == "xyzw") std::rotate(columns.begin(), columns.begin() + 3, columns.end());
+    attitude.group.columns = std::move(columns);
+  }
+  attitude.world_to_house = world_frame(section, "world");
+  attitude.body_to_house = body_frame(section, "body");
+  return attitude;
+}
+
+std::vector<Column> invalid_of(const Config& config) {
+  return config.has("invalid_where") ? columns_of(config, "invalid_where") : std::vector<Column>{};
+}
+
+HeldRule held_of(const Config& config) {
+  HeldRule rule;
+  if (!config.has("held")) return rule;
+  if (config.is_section("held")) {
+    const Config section = config.section("held");
+    rule.flag = Column{section.text("column"), section.where("column")};
+  } else if (config.text("held") == "detect") {
+    rule.detect = true;
+  } else {
+    config.fail("held", "'held' must be 'detect' or '{column: NAME}'");
+  }
+  return rule;
+}
+
+ThrusterColumns thrusters_of(const Config& config) {
+  ThrusterColumns thrusters;
+  if (config.has("pwm")) thrusters.pwm = group_of(config.section("pwm"), "us");
+  if (config.has("force")) thrusters.force = group_of(config.section("force"), "N");
+  if (config.has("wrench")) {
+    const Config wrench = config.section("wrench");
+    std::vector<Column> columns = columns_of(wrench, "columns");
+    need_count(wrench, "columns", columns, 6);
+    const Eigen::Matrix3d frame = body_frame(wrench, "frame");
+    thrusters.wrench_force = {{columns.begin(), columns.begin() + 3}, factor_to(wrench, "force_unit", "N"), frame};
+    thrusters.wrench_moment = {{columns.begin() + 3, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
+  }
+  if (!thrusters.pwm && !thrusters.force && !thrusters.wrench_force) {
+    config.fail("", "'thrusters' needs pwm, force or wrench");
+  }
+  thrusters.invalid_where = invalid_of(config);
+  return thrusters;
+}
+
+ColumnMap read(const Config& config) {
+  ColumnMap map;
+  map.source = config.text("source");
+  map.licence = config.text("licence");
+  map.time = scalar(config.section("time"), "s");
+  if (config.has("pose_capture")) {
+    const Config section = config.section("pose_capture");
+    PoseColumns pose;
+    if (section.has("position")) {
+      const Config position = section.section("position");
+      pose.position = group_of(position, "m");
+      need_count(position, "columns", pose.position->columns, 3);
+      pose.position->to_house = world_frame(position, "frame");
+    }
+    pose.attitude = attitude_of(section);
+    if (!pose.position && !pose.attitude) section.fail("", "'pose_capture' needs position, quaternion or euler");
+    pose.held = held_of(section);
+    pose.invalid_where = invalid_of(section);
+    map.pose_capture = std::move(pose);
+  }
+  if (config.has("ahrs")) {
+    const Config section = config.section("ahrs");
+    AhrsColumns ahrs;
+    if (section.has("rates")) ahrs.rates = body_vector(section.section("rates"), "rad/s");
+    if (section.has("specific_force")) ahrs.specific_force = body_vector(section.section("specific_force"), "m/s^2");
+    ahrs.attitude = attitude_of(section);
+    if (!ahrs.rates && !ahrs.specific_force && !ahrs.attitude) {
+      section.fail("", "'ahrs' needs rates, specific_force, quaternion or euler");
+    }
+    ahrs.invalid_where = invalid_of(section);
+    map.ahrs = std::move(ahrs);
+  }
+  if (config.has("dvl")) {
+    const Config section = config.section("dvl");
+    DvlColumns dvl;
+    dvl.velocity = body_vector(section.section("velocity"), "m/s");
+    if (section.has("altitude")) dvl.altitude = scalar(section.section("altitude"), "m");
+    dvl.held = held_of(section);
+    dvl.invalid_where = invalid_of(section);
+    map.dvl = std::move(dvl);
+  }
+  if (config.has("depth")) {
+    const Config section = config.section("depth");
+    map.depth = ScalarColumn{scalar(section, "m"), invalid_of(section)};
+    const std::string direction = section.text("direction");
+    if (direction != "down" && direction != "up") section.fail("direction", "'direction' must be down or up");
+    if (direction == "up") map.depth->group.factor *= -1.0;
+  }
+  if (config.has("thrusters")) map.thrusters = thrusters_of(config.section("thrusters"));
+  if (config.has("battery")) {
+    const Config section = config.section("battery");
+    map.battery = ScalarColumn{scalar(section, "V"), invalid_of(section)};
+  }
+  config.finish();
+  return map;
+}
+
+}  // namespace
+
+ColumnMap ColumnMap::load(const std::string& path) { return read(Config::load(path)); }
+
+ColumnMap ColumnMap::parse(const std::string& text, const std::string& name) { return read(Config::parse(text, name)); }
+
+}  // namespace fathom::tables

@@ -1,0 +1,92 @@
+// What the columns of a table mean: stream, unit and frame of each. Nothing about any one data set is in code.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fathom::tables {
+
+/// A column of the table and the line of the map that names it.
+struct Column {
+  std::string name;
+  std::string where;  ///< "map.yaml:12", or empty when no map was used
+};
+
+/// Three or more columns with one factor to SI; `to_house` turns a vector's frame into W (NED) or B
+/// (forward-right-down).
+struct ColumnGroup {
+  std::vector<Column> columns;
+  double factor{1.0};
+  Eigen::Matrix3d to_house{Eigen::Matrix3d::Identity()};
+};
+
+/// Attitude as a quaternion (columns sorted w x y z) or Euler angles (roll pitch yaw, ZYX), of `body` in `world`.
+struct AttitudeColumns {
+  ColumnGroup group;
+  bool euler{false};
+  Eigen::Matrix3d world_to_house{Eigen::Matrix3d::Identity()};
+  Eigen::Matrix3d body_to_house{Eigen::Matrix3d::Identity()};
+};
+
+/// Rows in which a stream says nothing: a flag column is not zero, or (detect) the values repeat those of the row
+/// before.
+struct HeldRule {
+  std::optional<Column> flag;
+  bool detect{false};
+};
+
+struct PoseColumns {
+  std::optional<ColumnGroup> position;
+  std::optional<AttitudeColumns> attitude;
+  HeldRule held;
+  std::vector<Column> invalid_where;
+};
+
+struct AhrsColumns {
+  std::optional<ColumnGroup> rates;
+  std::optional<ColumnGroup> specific_force;
+  std::optional<AttitudeColumns> attitude;
+  std::vector<Column> invalid_where;
+};
+
+struct DvlColumns {
+  ColumnGroup velocity;
+  std::optional<ColumnGroup> altitude;  ///< one column
+  HeldRule held;
+  std::vector<Column> invalid_where;
+};
+
+struct ThrusterColumns {
+  std::optional<ColumnGroup> pwm;    ///< factor to us
+  std::optional<ColumnGroup> force;  ///< order of the vehicle file
+  std::optional<ColumnGroup> wrench_force;
+  std::optional<ColumnGroup> wrench_moment;
+  std::vector<Column> invalid_where;
+};
+
+struct ScalarColumn {
+  ColumnGroup group;  ///< one column; the sign of its direction is in the factor
+  std::vector<Column> invalid_where;
+};
+
+struct ColumnMap {
+  std::string source;   ///< where the data come from
+  std::string licence;  ///< under which terms
+  ColumnGroup time;     ///< one column, factor to s
+  std::optional<PoseColumns> pose_capture;
+  std::optional<AhrsColumns> ahrs;
+  std::optional<DvlColumns> dvl;
+  std::optional<ScalarColumn> depth;
+  std::optional<ThrusterColumns> thrusters;
+  std::optional<ScalarColumn> battery;
+
+  /// Reads a map; InputError "file:line: what" for an unknown key, unit or frame.
+  [[nodiscard]] static ColumnMap load(const std::string& path);
+  /// The same for text; `name` stands for the file in messages.
+  [[nodiscard]] static ColumnMap parse(const std::string& text, const std::string& name);
+};
+
+}  // namespace fathom::tables

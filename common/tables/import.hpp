@@ -1,0 +1,32 @@
+// From a table of numbers to a recording: units, frames, flags, held values, and a count of everything that was
+// refused.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/samples/recording.hpp"
+#include "common/tables/column_map.hpp"
+#include "common/tables/csv.hpp"
+
+namespace fathom::tables {
+
+struct Imported {
+  Recording recording;
+  std::vector<std::string> notes;  ///< what was refused, held or left out, one sentence each
+  std::string source;
+  std::string licence;
+};
+
+/// Applies a map. A row whose time does not rise is dropped; a sample with an empty or NaN cell is refused; both are
+/// counted in the notes. InputError for a missing column, a column without a number, a stream without one whole sample.
+[[nodiscard]] Imported import_table(const CsvTable& table, const ColumnMap& map);
+
+/// The map of the canonical columns (docs/configuration.md) that the table has; InputError for unknown or incomplete
+/// groups.
+[[nodiscard]] ColumnMap canonical_map(const CsvTable& table);
+
+/// Reads a file with a map, or as canonical columns when `map_path` is empty.
+[[nodiscard]] Imported import_csv(const std::string& csv_path, const std::string& map_path = "");
+
+}  // namespace fathom::tables

@@ -1,0 +1,123 @@
+// Canonical CSV in, and back out again.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/base/spatial.hpp"
+#include "common/tables/import.hpp"
+#include "common/tables/writer.hpp"
+
+using Eigen::Vector3d;
+using namespace fathom;
+using namespace fathom::tables;
+
+namespace {
+
+constexpr double kAttitude = 1e-12;  // rad: Euler angles and back
+
+Imported read(const std::string& csv) {
+  const CsvTable table = parse_csv(csv, "run.csv");
+  return import_table(table, canonical_map(table));
+}
+
+std::string complaint(const std::string& csv) {
+  try {
+    static_cast<void>(read(csv));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+}  // namespace
+
+TEST_CASE("canonical: each group of columns goes to its stream") {
+  const Recording run = read(
+                            "t,x,y,z,phi,theta,psi,u,v,w,p,q,r,ax,ay,az,f1,f2,voltage,depth\n"
+                            "1.5,1,2,3,0.1,0.2,0.3,4,5,6,7,8,9,0,0,-9.8,10,-11,12.5,3.1\n")
+                            .recording;
+  CHECK(run.pose_capture.at(0).utime == 1'500'000);
+  CHECK(run.pose_capture[0].p_WB == Vector3d(1, 2, 3));
+  CHECK((euler_from_rotation(run.pose_capture[0].q_WB.toRotationMatrix()) - Vector3d(0.1, 0.2, 0.3)).norm() <
+        kAttitude);
+  CHECK(run.dvl.at(0).v_WB_B == Vector3d(4, 5, 6));
+  CHECK(run.ahrs.at(0).w_WB_B == Vector3d(7, 8, 9));
+  CHECK(run.ahrs[0].f_B == Vector3d(0, 0, -9.8));
+  CHECK(run.ahrs[0].has_specific_force);
+  CHECK_FALSE(run.ahrs[0].has_attitude);
+  CHECK(run.thrusters.at(0).force == std::vector<double>{10, -11});
+  CHECK_FALSE(run.thrusters[0].has_tau);
+  CHECK(run.battery.at(0).voltage == 12.5);
+  CHECK(run.depth.at(0).z == 3.1);
+}
+
+TEST_CASE("canonical: attitude alone is an attitude sensor, position alone a pose without attitude") {
+  const Recording attitude = read("t,phi,theta,psi,X,Y,Z,K,M,N\n0,0,0,1,1,2,3,4,5,6\n").recording;
+  CHECK(attitude.pose_capture.empty());
+  CHECK(attitude.ahrs.at(0).has_attitude);
+  CHECK_FALSE(attitude.ahrs[0].has_rates);
+  CHECK(attitude.thrusters.at(0).tau == std::array<double, 6>{1, 2, 3, 4, 5, 6});
+  const Recording position = read("t,x,y,z\n0,1,2,3\n").recording;
+  CHECK(position.ahrs.empty());
+  CHECK(position.pose_capture.at(0).has_position);
+  CHECK_FALSE(position.pose_capture[0].has_attitude);
+}
+
+TEST_CASE("canonical: unknown and incomplete columns are named") {
+  CHECK(complaint("time,u,v,w\n0,1,2,3\n") ==
+        "run.csv:1: column 't' (time in seconds) is missing; describe other columns with a map (--map)");
+  CHECK(complaint("t,u,v\n0,1,2\n") == "run.csv:1: columns 'u', 'v' stand without 'w'; they go together");
+  CHECK(complaint("t,u,v,w,foo,f2\n0,1,2,3,4,5\n").rfind("run.csv:1: unknown columns 'foo', 'f2'; without a map", 0) ==
+        0);
+  CHECK(complaint("t\n0\n") == "run.csv:1: there is no column besides time");
+  CHECK(complaint("t,u,v,w\n0,1,2,\n1,1,2,nan\n") == "run.csv: column 'w' holds no number at all");
+}
+
+TEST_CASE("canonical: a recording survives writing and reading, stream by stream, each on its own clock") {
+  Recording run;
+  run.pose_capture.push_back(
+      {.utime = 100'000, .p_WB = {1, 2, 3}, .q_WB = Eigen::Quaterniond(rotation_from_euler({0.1, -0.2, 3}))});
+  run.pose_capture.push_back({.utime = 200'000, .p_WB = {9, 9, 9}, .valid = false});
+  run.ahrs.push_back({.utime = 100'001, .w_WB_B = {1.0 / 3.0, 1e-17, -2}, .has_rates = true});
+  run.dvl.push_back({.utime = 200'000, .v_WB_B = {0.1, 0.2, 0.3}});
+  run.dvl.push_back({.utime = 300'000, .v_WB_B = {0.1, 0.2, 0.3}, .held = true});
+  run.thrusters.push_back(
+      {.utime = 100'000, .pwm_us = {1500, 1501.5}, .force = {}, .tau = {1, 2, 3, 4, 5, 6}, .has_tau = true});
+  run.battery.push_back({.utime = -1'250'000, .voltage = 14.8});
+  const Recording back = read(to_csv(run)).recording;
+  REQUIRE(back.pose_capture.size() == 1);
+  CHECK(back.pose_capture[0].utime == 100'000);
+  CHECK(back.pose_capture[0].p_WB == run.pose_capture[0].p_WB);
+  CHECK(back.pose_capture[0].q_WB.angularDistance(run.pose_capture[0].q_WB) < kAttitude);
+  REQUIRE(back.ahrs.size() == 1);
+  CHECK(back.ahrs[0].utime == 100'001);
+  CHECK(back.ahrs[0].w_WB_B == run.ahrs[0].w_WB_B);
+  REQUIRE(back.dvl.size() == 1);
+  CHECK(back.dvl[0].v_WB_B == run.dvl[0].v_WB_B);
+  REQUIRE(back.thrusters.size() == 1);
+  CHECK(back.thrusters[0].pwm_us == run.thrusters[0].pwm_us);
+  CHECK(back.thrusters[0].tau == run.thrusters[0].tau);
+  REQUIRE(back.battery.size() == 1);
+  CHECK(back.battery[0].utime == -1'250'000);
+  CHECK(back.battery[0].voltage == 14.8);
+}
+
+TEST_CASE("canonical: a trial is written with its gaps as empty cells") {
+  Trial trial;
+  trial.name = "box";
+  trial.dt = 0.5;
+  trial.observed = {.position = false, .attitude = false, .velocity = true, .rates = true};
+  trial.t = {0.0, 0.5};
+  trial.p_WB.assign(2, Vector3d::Zero());
+  trial.q_WB.assign(2, Eigen::Quaterniond::Identity());
+  trial.nu.assign(2, (Vector6d() << 1, 2, 3, 4, 5, 6).finished());
+  trial.pose_valid = {1, 1};
+  trial.velocity_valid = {1, 0};
+  trial.rates_valid = {1, 1};
+  trial.input.assign(2, Eigen::Vector2d(7, -8));
+  trial.voltage = {12, 11.5};
+  CHECK(to_csv(trial) == "t,u,v,w,p,q,r,f1,f2,voltage\n0.000000,1,2,3,4,5,6,7,-8,12\n0.500000,,,,4,5,6,7,-8,11.5\n");
+  CHECK_THROWS_WITH_AS(write_file("/nowhere/run.csv", "t\n"), "/nowhere/run.csv: cannot write this file", InputError);
+}

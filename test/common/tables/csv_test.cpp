@@ -1,0 +1,73 @@
+#include "common/tables/csv.hpp"
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "common/base/error.hpp"
+
+using namespace fathom;
+using namespace fathom::tables;
+
+namespace {
+
+constexpr double kTenMegabytesSeconds = 1.0;  // what the reader promises; an ordinary machine needs a tenth of it
+
+std::string complaint(const std::string& text) {
+  try {
+    static_cast<void>(parse_csv(text, "run.csv"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+}  // namespace
+
+TEST_CASE("csv: names, numbers, Windows line ends, comments, blank lines and a byte order mark are read") {
+  const CsvTable table =
+      parse_csv("\xEF\xBB\xBF# a comment\r\nt, \"u\" ,v\r\n0, 1.5,-2e-3\r\n\r\n0.1,+3,4\r\n", "run.csv");
+  CHECK(table.names == std::vector<std::string>{"t", "u", "v"});
+  REQUIRE(table.rows() == 2);
+  CHECK(*table.find("u") == std::vector<double>{1.5, 3.0});
+  CHECK(*table.find("v") == std::vector<double>{-2e-3, 4.0});
+  CHECK(table.find("w") == nullptr);
+  CHECK(table.where(1) == "run.csv:5");
+}
+
+TEST_CASE("csv: empty, nan and infinite cells are missing numbers, not errors") {
+  const CsvTable table = parse_csv("t,u\n0,\n1,nan\n2,inf\n3,-Infinity\n4,7", "run.csv");
+  REQUIRE(table.rows() == 5);
+  for (std::size_t row = 0; row < 4; ++row) CHECK(std::isnan((*table.find("u"))[row]));
+  CHECK((*table.find("u"))[4] == 7.0);
+}
+
+TEST_CASE("csv: what is wrong is said in one line with the file's line") {
+  CHECK(complaint("t,u\n0,1\n1,x1\n") == "run.csv:3: column 'u': 'x1' is not a number");
+  CHECK(complaint("t,u\n0,1\n1,1 2\n") == "run.csv:3: column 'u': '1 2' is not a number");
+  CHECK(complaint("t,u\n0,1e999\n") == "run.csv:2: column 'u': '1e999' is not a number");
+  CHECK(complaint("t,u\n0,1\n1\n2,3\n") == "run.csv:3: this row has 1 cells, the header names 2");
+  CHECK(complaint("t,u\n0,1\n1,2,3\n4,5\n") == "run.csv:3: this row has 3 cells, the header names 2");
+  CHECK(complaint("t,u\n0,1\n1") == "run.csv:3: this row has 1 cells, the header names 2 (was the file cut off?)");
+  CHECK(complaint("t,u,t\n0,1,2\n") == "run.csv:1: column 't' stands here twice");
+  CHECK(complaint("t,,u\n0,1,2\n") == "run.csv:1: column 2 has no name");
+  CHECK(complaint("") == "run.csv: the file is empty");
+  CHECK(complaint("t,u\n") == "run.csv: there is a header but not one row of numbers");
+  for (const char* path : {"/nowhere/run.csv", "/tmp"}) {
+    CHECK_THROWS_WITH_AS(static_cast<void>(read_csv(path)), (std::string(path) + ": cannot read this file").c_str(),
+                         InputError);
+  }
+}
+
+TEST_CASE("csv: ten megabytes take less than a second") {
+  std::string text = "t,a,b,c,d,e,f,g,h,i\n";
+  while (text.size() < 10'000'000) text += "12.345678,-0.001234,1.5e-3,1580.25,0,1,-2.718281828,3.14159,42,0.5\n";
+  const auto start = std::chrono::steady_clock::now();
+  const CsvTable table = parse_csv(text, "big.csv");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  MESSAGE("10 MB of CSV: " << seconds << " s");
+  CHECK(table.rows() > 100'000);
+  CHECK(seconds < kTenMegabytesSeconds);
+}

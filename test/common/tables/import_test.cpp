@@ -1,0 +1,208 @@
+#include "common/tables/import.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/base/spatial.hpp"
+
+using Eigen::Vector3d;
+using namespace fathom;
+using namespace fathom::tables;
+
+namespace {
+
+constexpr double kRounding = 1e-12;  // products of a few rotations
+constexpr double kPi = std::numbers::pi;
+const std::string kAbout = "source: nobody\nlicence: none\ntime: {column: t, unit: s}\n";
+
+Imported import_text(const std::string& csv, const std::string& map) {
+  return import_table(parse_csv(csv, "run.csv"), ColumnMap::parse(map, "map.yaml"));
+}
+
+std::string complaint(const std::string& csv, const std::string& map) {
+  try {
+    static_cast<void>(import_text(csv, map));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+bool noted(const Imported& imported, const std::string& note) {
+  return std::find(imported.notes.begin(), imported.notes.end(), note) != imported.notes.end();
+}
+
+}  // namespace
+
+TEST_CASE("import: forward-left-up body vectors and wrenches turn over in y and z") {
+  const Imported imported = import_text(
+      "t,u,v,w,p,q,r,ax,ay,az,X,Y,Z,K,M,N\n5,1,2,3,10,20,30,0.1,0.2,9.81,1,2,3,4,5,6\n",
+      kAbout +
+          "dvl:\n  velocity: {columns: [u, v, w], unit: cm/s, frame: FLU}\n"
+          "ahrs:\n  rates: {columns: [p, q, r], unit: deg/s, frame: FLU}\n"
+          "  specific_force: {columns: [ax, ay, az], unit: m/s^2, frame: FLU}\n"
+          "thrusters:\n  wrench: {columns: [X, Y, Z, K, M, N], force_unit: kN, moment_unit: N m, frame: FLU}\n");
+  REQUIRE(imported.recording.dvl.size() == 1);
+  CHECK(imported.recording.dvl[0].utime == 5'000'000);
+  CHECK(imported.recording.dvl[0].v_WB_B.isApprox(Vector3d(0.01, -0.02, -0.03), kRounding));
+  CHECK(imported.recording.ahrs[0].w_WB_B.isApprox(Vector3d(10, -20, -30) * kPi / 180.0, kRounding));
+  // At rest an upward accelerometer reads +g; downward it reads -g.
+  CHECK(imported.recording.ahrs[0].f_B.isApprox(Vector3d(0.1, -0.2, -9.81), kRounding));
+  CHECK_FALSE(imported.recording.ahrs[0].has_attitude);
+  const auto& tau = imported.recording.thrusters[0].tau;
+  CHECK(tau == std::array<double, 6>{1000, -2000, -3000, 4, -5, -6});
+}
+
+TEST_CASE("import: a pose in z-up worlds becomes NED, by hand") {
+  // NWU, nose turned 90 degrees to the left (counter-clockwise from above): in NED that is yaw -90, pointing west.
+  const Imported nwu =
+      import_text("t,x,y,z,qw,qx,qy,qz\n0,1,2,3,0.7071067811865476,0,0,0.7071067811865476\n",
+                  kAbout +
+                      "pose_capture:\n  position: {columns: [x, y, z], unit: m, frame: NWU}\n"
+                      "  quaternion: {columns: [qw, qx, qy, qz], order: wxyz, world: NWU, body: FLU}\n");
+  const PoseCapture& west = nwu.recording.pose_capture.at(0);
+  CHECK(west.p_WB.isApprox(Vector3d(1, -2, -3), kRounding));
+  CHECK(euler_from_rotation(west.q_WB.toRotationMatrix()).isApprox(Vector3d(0, 0, -kPi / 2), kRounding));
+
+  // ENU, nose along x (east), in NED yaw +90; nose up 10 degrees in FLU is a negative rotation about y (left).
+  const Imported enu = import_text("t,x,y,z,roll,pitch,yaw\n0,1,2,3,20,-10,0\n",
+                                   kAbout +
+                                       "pose_capture:\n  position: {columns: [x, y, z], unit: mm, frame: ENU}\n"
+                                       "  euler: {columns: [roll, pitch, yaw], unit: deg, world: ENU, body: FLU}\n");
+  const PoseCapture& east = enu.recording.pose_capture.at(0);
+  CHECK(east.p_WB.isApprox(Vector3d(0.002, 0.001, -0.003), kRounding));
+  CHECK(euler_from_rotation(east.q_WB.toRotationMatrix()).isApprox(Vector3d(20, 10, 90) * kPi / 180.0, kRounding));
+}
+
+TEST_CASE("import: quaternion order is obeyed and one that is not of unit length is invalid") {
+  const Imported imported = import_text(
+      "t,a,b,c,d\n0,0,0,1,0\n1,0,0,0.5,0\n2,0,0,0,0\n",
+      kAbout + "pose_capture:\n  quaternion: {columns: [a, b, c, d], order: xyzw, world: NED, body: FRD}\n");
+  const auto& poses = imported.recording.pose_capture;
+  REQUIRE(poses.size() == 3);
+  CHECK(poses[0].q_WB.isApprox(Eigen::Quaterniond(0, 0, 0, 1), kRounding));
+  CHECK(poses[0].valid);
+  CHECK_FALSE(poses[0].has_position);
+  CHECK_FALSE(poses[1].valid);
+  CHECK_FALSE(poses[2].valid);
+  CHECK(poses[2].q_WB.coeffs().allFinite());
+  CHECK(noted(imported, "pose_capture: 2 samples invalid because their quaternion is not of unit length"));
+}
+
+TEST_CASE("import: NaN refuses only its own stream's sample, flags mark, held values are found") {
+  const Imported imported = import_text(
+      "t,u,v,w,volts,bad,extra\n0,1,1,1,12,0,0\n1,1,1,1,,0,0\n2,nan,1,1,11,0,0\n3,2,1,1,10,1,0\n",
+      kAbout +
+          "dvl:\n  velocity: {columns: [u, v, w], unit: m/s, frame: FRD}\n  held: detect\n  invalid_where: [bad]\n"
+          "battery: {column: volts, unit: V}\n");
+  const auto& dvl = imported.recording.dvl;
+  REQUIRE(dvl.size() == 3);
+  CHECK_FALSE(dvl[0].held);
+  CHECK(dvl[1].held);
+  CHECK(dvl[1].valid);
+  CHECK_FALSE(dvl[2].held);
+  CHECK_FALSE(dvl[2].valid);
+  CHECK(imported.recording.battery.size() == 3);
+  CHECK(noted(imported, "dvl: 1 samples refused (empty or NaN)"));
+  CHECK(noted(imported, "dvl: 1 samples repeat the one before (held)"));
+  CHECK(noted(imported, "dvl: 1 samples marked or left out as invalid by their flags"));
+  CHECK(noted(imported, "battery: 1 samples refused (empty or NaN)"));
+  CHECK(noted(imported, "columns not used: extra"));
+}
+
+TEST_CASE("import: rows whose time does not rise are dropped and counted, a gap is kept and named") {
+  const std::string map = kAbout + "depth: {column: z, unit: m, direction: up}\n";
+  const Imported imported = import_text("t,z\n0,-1\n1,-2\n1,-3\n0.5,-4\n,5\n2,-6\n3,-6\n20,-7\n", map);
+  REQUIRE(imported.recording.depth.size() == 5);
+  CHECK(imported.recording.depth[1].z == 2.0);
+  CHECK(imported.recording.depth[4].utime == 20'000'000);
+  CHECK(noted(imported, "time: 2 rows dropped because time did not rise, first at run.csv:4"));
+  CHECK(noted(imported, "time: 1 rows dropped (empty or NaN)"));
+  CHECK(noted(imported, "time: the longest gap is 17.000 s, after 3.000 s"));
+  CHECK(complaint("t,z\n5,1\n4,1\n3,1\n2,1\n", map) ==
+        "run.csv:3: time does not rise here nor in 2 more of 4 rows; is it the time column, and is its unit right?");
+  CHECK(complaint("t,z\n1e18,1\n", map).rfind("run.csv:2: time ", 0) == 0);
+}
+
+TEST_CASE("import: a map that does not fit is refused with its own line") {
+  const std::string csv = "t,u,v,w\n0,1,2,3\n";
+  const auto dvl = [](const std::string& line) { return kAbout + "dvl:\n  velocity: " + line + "\n"; };
+  CHECK(complaint(csv, dvl("{columns: [u, v, speed], unit: m/s, frame: FLU}")) ==
+        "map.yaml:5: column 'speed' is not in run.csv, which has: t, u, v, w");
+  CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: m, frame: FLU}")) ==
+        "map.yaml:5: unit 'm' does not fit: expected 'm/s'");
+  CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: knots, frame: FLU}")) ==
+        "map.yaml:5: unit 'knots': 'knots' is not a known unit");
+  CHECK(complaint(csv, dvl("{columns: [u, v, w], frame: FLU}")) ==
+        "map.yaml:5: key 'unit' is missing in 'dvl.velocity'");
+  CHECK(complaint(csv, dvl("{columns: [u, v], unit: m/s, frame: FLU}")) ==
+        "map.yaml:5: 'columns' needs 3 columns, not 2");
+  CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: m/s, frame: NED}")) ==
+        "map.yaml:5: 'NED' is no body frame: FRD (forward, right, down) or FLU (forward, left, up)");
+  CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: m/s, fram: FLU}")) ==
+        "map.yaml:5: unknown key 'fram' in 'dvl.velocity'; did you mean 'frame'?");
+  CHECK(complaint(csv, kAbout + "dvll: 3\n") == "map.yaml:4: unknown key 'dvll'; did you mean 'dvl'?");
+  CHECK(complaint(csv, "source: a\ntime: {column: t, unit: s}\n") == "map.yaml:1: key 'licence' is missing");
+  CHECK(complaint("t,u,v,w\n0,1,,3\n1,1,nan,3\n", dvl("{columns: [u, v, w], unit: m/s, frame: FLU}")) ==
+        "run.csv: column 'v' holds no number at all");
+  CHECK(complaint("t,u,v,w\n0,1,,3\n1,,2,3\n", dvl("{columns: [u, v, w], unit: m/s, frame: FLU}")) ==
+        "run.csv: not one whole sample of dvl");
+  CHECK(complaint(csv, kAbout + "thrusters: {invalid_where: [u]}\n") ==
+        "map.yaml:4: 'thrusters' needs pwm, force or wrench");
+}
+
+TEST_CASE("beluga: every run is imported with the counts that its flag columns state") {
+  const std::string root = FATHOM_SOURCE_DIR;
+  struct Facts {
+    const char* run;
+    std::size_t rows;
+    std::size_t held;
+    std::size_t invalid;
+  };
+  // Counted with awk over the files.
+  for (const Facts& facts :
+       {Facts{"heave-1", 2629, 566, 1}, Facts{"random-1", 6664, 1334, 48}, Facts{"random-2", 5980, 1170, 96},
+        Facts{"surge-1", 7961, 1577, 205}, Facts{"sway-1", 7988, 1602, 210}, Facts{"yaw-1", 6597, 1299, 12}}) {
+    CAPTURE(facts.run);
+    const Imported imported =
+        import_csv(root + "/test/data/beluga/" + facts.run + ".csv", root + "/config/maps/beluga.yaml");
+    const Recording& run = imported.recording;
+    CHECK(run.name == facts.run);
+    CHECK(run.pose_capture.size() == facts.rows);
+    CHECK(run.ahrs.size() == facts.rows);
+    CHECK(run.dvl.size() == facts.rows);
+    CHECK(run.thrusters.size() == facts.rows);
+    CHECK(run.battery.size() == facts.rows);
+    CHECK(run.depth.empty());
+    const auto held = std::count_if(run.dvl.begin(), run.dvl.end(), [](const Dvl& one) { return one.held; });
+    CHECK(static_cast<std::size_t>(held) == facts.held);
+    const auto invalid = std::count_if(run.pose_capture.begin(), run.pose_capture.end(),
+                                       [](const PoseCapture& one) { return !one.valid; });
+    CHECK(static_cast<std::size_t>(invalid) == facts.invalid);
+  }
+}
+
+TEST_CASE("beluga: the first row of surge-1 arrives in NED and forward-right-down") {
+  const std::string root = FATHOM_SOURCE_DIR;
+  const Imported imported = import_csv(root + "/test/data/beluga/surge-1.csv", root + "/config/maps/beluga.yaml");
+  const Recording& run = imported.recording;
+  CHECK(imported.licence == "MIT, Copyright (c) 2021 Vortex NTNU");
+  CHECK(run.pose_capture[0].utime == 0);
+  CHECK(run.pose_capture[1].utime == 100'000);
+  CHECK(run.pose_capture[0].p_WB.isApprox(Vector3d(-1.65704, 0.09614, -0.29673), kRounding));
+  // (w, x, y, z) = (0.8178, 0.070642, 0.001202, -0.571149) turned over in y and z on both sides.
+  const Eigen::Quaterniond expected = Eigen::Quaterniond(0.817800, 0.070642, -0.001202, 0.571149).normalized();
+  CHECK(run.pose_capture[0].q_WB.angularDistance(expected) < 1e-9);
+  CHECK(run.ahrs[0].w_WB_B.isApprox(Vector3d(-0.00172, 0.00200, 0.00108), kRounding));
+  CHECK(run.dvl[0].v_WB_B.isApprox(Vector3d(0.00153, 0.00140, -0.00926), kRounding));
+  CHECK(run.thrusters[0].tau == std::array<double, 6>{-0.0888, -0.6513, -6.4308, 0.0, 0.0, 0.0004});
+  CHECK(run.thrusters[0].pwm_us == std::vector<double>{1598, 1525, 1635, 1547, 1562.2, 1525, 1635, 1613});
+  CHECK(run.thrusters[0].force.empty());
+  CHECK(run.battery[0].voltage == 15.301);
+}
