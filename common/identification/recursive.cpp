@@ -1,0 +1,266 @@
+// Factored recursive least squares: forgetting, Bierman rows, Schmidt freezing, honest covariance.
+#include "common/identification/recursive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "common/base/error.hpp"
+
+namespace fathom::identification {
+namespace {
+
+// Columns are walked in packets of four: entries of U below its diagonal are zero and stay so, and kMaxParameters is a
+// multiple of four, but a matrix of n rows is not. So U is kept with its row count rounded up.
+Eigen::Index padded(Eigen::Index n) { return (n + 3) / 4 * 4; }
+using Packet = Eigen::Array4d;
+using ConstPacketMap = Eigen::Map<const Packet>;
+using PacketMap = Eigen::Map<Packet>;
+
+constexpr double kLargestCorrelation = 0.995;  // beyond this the AR(1) factor says more about the sample than the noise
+
+}  // namespace
+
+RecursiveEstimator::RecursiveEstimator(RecursiveSettings settings) : settings_(std::move(settings)) {
+  const Eigen::Index n = settings_.mean.size();
+  if (settings_.cap.size() == 0) settings_.cap = settings_.sigma;
+  if (n == 0 || settings_.sigma.size() != n || settings_.cap.size() != n) {
+    throw InputError("recursive estimator: prior mean, sigma and cap must have one entry per parameter");
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!std::isfinite(settings_.mean(i)) || !(settings_.sigma(i) > 0.0) || !std::isfinite(settings_.sigma(i))) {
+      throw InputError("recursive estimator: prior of parameter " + std::to_string(i) +
+                       " needs a finite mean and sigma > 0");
+    }
+    settings_.cap(i) = std::max(settings_.cap(i), settings_.sigma(i));
+  }
+  if (!(settings_.forgetting > 0.0 && settings_.forgetting <= 1.0)) {
+    throw InputError("recursive estimator: forgetting must lie in (0, 1]");
+  }
+  reset();
+}
+
+void RecursiveEstimator::reset() {
+  const Eigen::Index n = settings_.mean.size();
+  state_ = State{};
+  state_.estimate = settings_.mean;
+  state_.U = ParameterMatrix::Zero(padded(n), n);
+  state_.U.diagonal().setOnes();
+  state_.D = settings_.sigma.cwiseAbs2();
+  state_.information = ParameterVector::Zero(n);
+  state_.score0 = ParameterVector::Zero(n);
+  state_.score1 = ParameterVector::Zero(n);
+  state_.last_score = ParameterVector::Zero(n);
+  any_frozen_ = false;
+  score_ = ParameterVector::Zero(n);
+}
+
+void RecursiveEstimator::freeze(int parameter) {
+  state_.frozen.at(static_cast<std::size_t>(parameter)) = true;
+  any_frozen_ = true;
+}
+
+void RecursiveEstimator::resume(int parameter) {
+  state_.frozen.at(static_cast<std::size_t>(parameter)) = false;
+  any_frozen_ = std::any_of(state_.frozen.begin(), state_.frozen.end(), [](bool f) { return f; });
+  state_.steps_until_check = 0.0;
+}
+
+// P <- S P S with a diagonal S: 1/sqrt(forgetting) where a parameter may grow, less where it would pass its cap, 1
+// where it is frozen. In factors: U_ij s_i / s_j and D_j s_j^2, so P stays positive whatever happens. As long as
+// nothing can have reached a cap, S is a multiple of the identity and U stays as it is.
+void RecursiveEstimator::forget() {
+  if (settings_.forgetting >= 1.0) return;
+  const double growth = 1.0 / settings_.forgetting;
+  const Eigen::Index n = state_.estimate.size();
+  if (!any_frozen_ && state_.steps_until_check >= 1.0) {
+    state_.D *= growth;
+    state_.steps_until_check -= 1.0;
+    return;
+  }
+  std::array<double, kMaxParameters> s{};
+  double steps = 1e6;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double variance = state_.D(j);
+    for (Eigen::Index k = j + 1; k < n; ++k) variance += state_.U(j, k) * state_.U(j, k) * state_.D(k);
+    const double room = settings_.cap(j) * settings_.cap(j) / variance;
+    const double scale = state_.frozen[static_cast<std::size_t>(j)] ? 1.0 : std::clamp(room, 1.0, growth);
+    s[static_cast<std::size_t>(j)] = std::sqrt(scale);
+    steps = std::min(steps, std::floor(std::log(room / scale) / std::log(growth)));
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double s_j = s[static_cast<std::size_t>(j)];
+    for (Eigen::Index i = 0; i < j; ++i) state_.U(i, j) *= s[static_cast<std::size_t>(i)] / s_j;
+    state_.D(j) *= s_j * s_j;
+  }
+  state_.steps_until_check = std::max(0.0, steps);
+}
+
+// One scalar row: Bierman's update of U and D with the gain built alongside; then, for frozen parameters, Schmidt's
+// gain: they are not moved, and what the optimal update took from their variance is given back.
+void RecursiveEstimator::take(const Row& row) {
+  const Eigen::Index n = state_.estimate.size();
+  const Eigen::Index stride = state_.U.rows();
+  alignas(32) std::array<double, kMaxParameters> h{};
+  alignas(32) std::array<double, kMaxParameters> gain{};
+  std::copy_n(row.h.data(), n, h.data());
+  const double innovation = row.y - row.h.dot(state_.estimate);
+
+  double alpha = row.variance;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double* column = state_.U.data() + j * stride;
+    Packet sum = Packet::Zero();
+    for (Eigen::Index i = 0; i <= j; i += 4) sum += ConstPacketMap(column + i) * ConstPacketMap(h.data() + i);
+    const double f = sum.sum();
+    if (f == 0.0) continue;
+    const double g = state_.D(j) * f;
+    const double before = alpha;
+    alpha += f * g;
+    const double per_before = 1.0 / before;
+    state_.D(j) *= before / alpha;
+    const double lambda = -f * per_before;
+    // The unit diagonal would be touched by the packet that holds it: take it out, put it back.
+    column[j] = 0.0;
+    for (Eigen::Index i = 0; i < j; i += 4) {
+      PacketMap U(column + i);
+      PacketMap K(gain.data() + i);
+      const Packet beta = U;
+      U = beta + lambda * K;
+      K += g * beta;
+    }
+    column[j] = 1.0;
+    gain[static_cast<std::size_t>(j)] += g;
+  }
+
+  const double per_alpha = 1.0 / alpha;
+  const double step = innovation * per_alpha;
+  if (!any_frozen_) {
+    for (Eigen::Index i = 0; i < n; ++i) state_.estimate(i) += gain[static_cast<std::size_t>(i)] * step;
+  } else {
+    ParameterVector v = ParameterVector::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (state_.frozen[static_cast<std::size_t>(i)]) {
+        v(i) = gain[static_cast<std::size_t>(i)];
+      } else {
+        state_.estimate(i) += gain[static_cast<std::size_t>(i)] * step;
+      }
+    }
+    add_outer(per_alpha, v);
+  }
+
+  // The innovation has variance alpha; scaled by sqrt(variance / alpha) it has the row's, from the first step on.
+  const double residual = innovation * std::sqrt(row.variance * per_alpha);
+  const double weight = residual / row.variance;
+  const double information = 1.0 / row.variance;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double h_i = h[static_cast<std::size_t>(i)];
+    score_(i) += h_i * weight;
+    state_.information(i) += h_i * h_i * information;
+  }
+
+  AxisStatistics& axis = state_.axes[static_cast<std::size_t>(row.axis)];
+  axis.weight = settings_.forgetting * axis.weight + 1.0;
+  const double share = 1.0 / axis.weight;
+  const double off = residual - axis.mean;
+  const double product = off * (axis.last - axis.mean);
+  const double covariance = axis.lag1 * axis.variance;
+  axis.mean += share * off;
+  axis.variance = (1.0 - share) * (axis.variance + share * off * off);
+  const double next = axis.weight > 1.0 ? covariance + share * (product - covariance) : 0.0;
+  axis.lag1 = axis.variance > 0.0 ? next / axis.variance : 0.0;
+  axis.last = residual;
+  ++state_.updates;
+}
+
+// U D U' += factor v v' (Agee & Turner 1972); v is used up.
+void RecursiveEstimator::add_outer(double factor, ParameterVector& v) {
+  for (Eigen::Index j = state_.estimate.size() - 1; j >= 0 && factor > 0.0; --j) {
+    if (v(j) == 0.0) continue;
+    const double before = state_.D(j);
+    const double after = before + factor * v(j) * v(j);
+    const double b = factor * v(j) / after;
+    for (Eigen::Index i = 0; i < j; ++i) {
+      v(i) -= v(j) * state_.U(i, j);
+      state_.U(i, j) += b * v(i);
+    }
+    factor *= before / after;
+    state_.D(j) = after;
+  }
+}
+
+void RecursiveEstimator::step(std::span<const Row> rows) {
+  forget();
+  const double keep = settings_.forgetting;
+  state_.information *= keep;
+  score_.setZero();
+  for (const Row& row : rows) take(row);
+  const Eigen::Index n = state_.estimate.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double score = score_(i);
+    state_.score0(i) = keep * state_.score0(i) + score * score;
+    state_.score1(i) = keep * state_.score1(i) + score * state_.last_score(i);
+    state_.last_score(i) = score;
+  }
+}
+
+ParameterMatrix RecursiveEstimator::covariance() const {
+  const Eigen::Index n = state_.estimate.size();
+  const ParameterMatrix UD = state_.U.topRows(n) * state_.D.asDiagonal();
+  return UD * state_.U.topRows(n).transpose();
+}
+
+ParameterVector RecursiveEstimator::projected() const {
+  if (obeys(state_.estimate, settings_.signs)) return state_.estimate;
+  return project_on_signs(state_.estimate, covariance(), settings_.signs);
+}
+
+// The estimate errs by P times the sum of the scores. White residuals of the stated variance give that sum a variance
+// equal to the information; what it really is, is read off the scores: their size, and their correlation from one step
+// to the next taken as AR(1), (1 + rho) / (1 - rho) (the effective sample size; compare Grauer & Morelli 2016). This
+// sees the colour of residual and regressor together. The prior's share of the information is taken at its word.
+ParameterVector RecursiveEstimator::inflation() const {
+  const Eigen::Index n = state_.estimate.size();
+  ParameterVector factor = ParameterVector::Ones(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!(state_.score0(i) > 0.0)) continue;
+    const double rho = std::clamp(state_.score1(i) / state_.score0(i), 0.0, kLargestCorrelation);
+    const double prior = 1.0 / (settings_.sigma(i) * settings_.sigma(i));
+    const double seen = state_.score0(i) * (1.0 + rho) / (1.0 - rho);
+    factor(i) = std::max(1.0, (prior + seen) / (prior + state_.information(i)));
+  }
+  return factor;
+}
+
+RecursiveReport RecursiveEstimator::report() const {
+  RecursiveReport report;
+  report.covariance = covariance();
+  report.estimate = project_on_signs(state_.estimate, report.covariance, settings_.signs);
+  const Eigen::Index n = state_.estimate.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    report.active[static_cast<std::size_t>(i)] =
+        settings_.signs[static_cast<std::size_t>(i)] != 0 && report.estimate(i) == 0.0;
+  }
+  report.inflation = inflation();
+  const ParameterVector widen = report.inflation.cwiseSqrt();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) report.covariance(i, j) *= widen(i) * widen(j);
+  }
+  report.sigma = report.covariance.diagonal().cwiseSqrt();
+  return report;
+}
+
+void RecursiveEstimator::restore(const State& state) {
+  const Eigen::Index n = settings_.mean.size();
+  const bool fits = state.estimate.size() == n && state.D.size() == n && state.U.rows() == padded(n) &&
+                    state.U.cols() == n && state.information.size() == n && state.score0.size() == n &&
+                    state.score1.size() == n && state.last_score.size() == n;
+  if (!fits) throw InputError("recursive estimator: saved state is of another number of parameters");
+  if (!state.estimate.allFinite() || !state.U.allFinite() || !state.D.allFinite() || !(state.D.minCoeff() > 0.0)) {
+    throw InputError("recursive estimator: saved state is not finite or its covariance is not positive");
+  }
+  state_ = state;
+  any_frozen_ = std::any_of(state_.frozen.begin(), state_.frozen.end(), [](bool f) { return f; });
+}
+
+}  // namespace fathom::identification

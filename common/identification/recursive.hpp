@@ -1,0 +1,91 @@
+// Constrained recursive least squares in factored form: P = U D U', rows one by one (Bierman 1977), so that rounding
+// stays harmless over hours. Constraints act on the reported estimate alone and are never fed back.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "common/identification/projection.hpp"
+#include "common/identification/rows.hpp"
+
+namespace fathom::identification {
+
+struct RecursiveSettings {
+  ParameterVector mean;    ///< prior
+  ParameterVector sigma;   ///< prior standard deviation, > 0
+  Signs signs{};           ///< constraints on the report
+  double forgetting{1.0};  ///< weight that a step leaves to everything before it, (0, 1]
+  ParameterVector cap;     ///< sigma beyond which forgetting does not let a parameter grow; empty: the prior's
+};
+
+/// What is left on one axis: the innovation, scaled so that its variance is the row's when the model is right.
+struct AxisStatistics {
+  double weight{};    ///< effective number of residuals
+  double mean{};      ///< N, N m
+  double variance{};  ///< about the mean
+  double lag1{};      ///< autocorrelation from one step to the next
+  double last{};
+};
+
+struct RecursiveReport {
+  ParameterVector estimate;                   ///< nearest admissible point
+  ParameterVector sigma;                      ///< honest: widened for coloured and larger residuals
+  ParameterMatrix covariance;                 ///< honest, unconstrained
+  ParameterVector inflation;                  ///< per parameter, >= 1: honest over nominal variance
+  std::array<bool, kMaxParameters> active{};  ///< held at zero by its sign
+};
+
+class RecursiveEstimator {
+ public:
+  /// Everything that step() changes: copy it to save, hand it back to resume.
+  struct State {
+    ParameterVector estimate;  ///< unconstrained
+    ParameterMatrix U;         ///< unit upper triangular
+    ParameterVector D;
+    std::array<bool, kMaxParameters> frozen{};
+    std::int64_t updates{};  ///< rows used
+    std::array<AxisStatistics, 6> axes{};
+    ParameterVector information;  ///< sum of h^2 / variance
+    ParameterVector score0;       ///< sum of the squared score, score = sum over rows of h * residual / variance
+    ParameterVector score1;       ///< sum of score times the score before
+    ParameterVector last_score;
+    double steps_until_check{};
+  };
+
+  /// InputError when sizes disagree or a sigma or the forgetting factor is out of range.
+  explicit RecursiveEstimator(RecursiveSettings settings);
+
+  /// Forgets once, then takes the rows (of one instant) in. Allocates nothing.
+  void step(std::span<const Row> rows);
+
+  /// Frozen parameters keep value and variance, but their doubt still widens that of the others (Schmidt 1966).
+  void freeze(int parameter);
+  void resume(int parameter);
+
+  /// Estimate moved to the nearest admissible point.
+  [[nodiscard]] ParameterVector projected() const;
+  [[nodiscard]] RecursiveReport report() const;
+
+  [[nodiscard]] int size() const { return static_cast<int>(state_.estimate.size()); }
+  [[nodiscard]] const ParameterVector& unconstrained() const { return state_.estimate; }
+  [[nodiscard]] ParameterMatrix covariance() const;  ///< nominal: trusts the stated variances
+  [[nodiscard]] const State& state() const { return state_; }
+  /// InputError when the state is of another size, not finite, or its covariance not positive.
+  void restore(const State& state);
+  /// Back to the prior.
+  void reset();
+
+ private:
+  void forget();
+  void take(const Row& row);
+  void add_outer(double factor, ParameterVector& v);
+  [[nodiscard]] ParameterVector inflation() const;
+
+  RecursiveSettings settings_;
+  State state_;
+  bool any_frozen_{};
+  ParameterVector score_;
+};
+
+}  // namespace fathom::identification
