@@ -76,6 +76,7 @@ struct DiagnosisResult {
   std::vector<ConsistencyFinding> consistency;
   std::string verdict;  ///< "adequate", "effect", "ambiguous", "unexplained"
   std::string paragraph;  ///< verdict in plain words: how sure, and which manoeuvre would settle what is open
+  std::string manoeuvre;  ///< the motion that would settle what is open; empty when nothing is (report only)
   std::vector<EffectFound> effects;
   std::vector<CandidateTried> candidates;
   ModelError error_before;
@@ -100,6 +101,7 @@ struct PredictionTrace {
   std::vector<double> heading;                     ///< rad
   std::vector<std::array<double, 6>> tau;          ///< applied wrench, N, N m
   std::vector<double> voltage;                     ///< V; empty when not logged
+  std::vector<std::size_t> restarts;               ///< indices into t where the predictions start anew, rising
 };
 
 /// Everything that the report draws.

@@ -1,0 +1,127 @@
+// Writes result.json. Keys are a contract with other programs: never rename, only add.
+#include "common/report/json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/report/text.hpp"
+
+namespace fathom::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSchema = 1;
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json named(const std::vector<NamedValue>& values) {
+  Json object = Json::object();
+  for (const auto& v : values) {
+    object[v.name] = {{"value", finite(v.value)}, {"std", finite(v.std)}, {"unit", v.unit}};
+  }
+  return object;
+}
+
+Json per_axis(const std::array<double, 6>& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < values.size(); ++i) object[kAxes[i].velocity] = finite(values[i]);
+  return object;
+}
+
+// 1 s is written 1, as the schema shows it.
+Json horizon(double seconds) {
+  if (seconds == std::floor(seconds) && std::abs(seconds) < 1e9) return static_cast<long>(seconds);
+  return finite(seconds);
+}
+
+Json error(const ModelError& error) {
+  Json force = Json::object();
+  for (const auto& [axis, rmse] : error.force_rmse) force[axis] = finite(rmse);
+  Json prediction = Json::array();
+  for (const auto& p : error.prediction) {
+    prediction.push_back({{"horizon_s", horizon(p.horizon_s)}, {"rmse", per_axis(p.rmse)}, {"r2", per_axis(p.r2)}});
+  }
+  return {{"force_rmse", force}, {"prediction", prediction}};
+}
+
+Json whiteness(const std::vector<AxisWhiteness>& axes) {
+  Json object = Json::object();
+  for (const auto& axis : axes) {
+    object[axis.axis] = {{"p_value", finite(axis.p_value)},
+                         {"autocorrelation_time_s", finite(axis.autocorrelation_time_s)},
+                         {"explained", finite(axis.explained)}};
+  }
+  return object;
+}
+
+Json consistency(const std::vector<ConsistencyFinding>& findings) {
+  Json array = Json::array();
+  for (const auto& f : findings) {
+    array.push_back({{"run", f.run},
+                     {"signal", f.signal},
+                     {"reference", f.reference},
+                     {"finding", f.finding},
+                     {"size", finite(f.size)},
+                     {"unit", f.unit},
+                     {"evidence", f.evidence},
+                     {"action", f.action}});
+  }
+  return array;
+}
+
+Json effects(const std::vector<EffectFound>& found) {
+  Json array = Json::array();
+  for (const auto& e : found) {
+    array.push_back({{"name", e.name},
+                     {"variant", e.variant},
+                     {"accepted", e.accepted},
+                     {"parameters", named(e.parameters)},
+                     {"log_odds", finite(e.log_odds)},
+                     {"error_reduction", finite(e.error_reduction)},
+                     {"alternatives", e.alternatives},
+                     {"sentence", e.sentence}});
+  }
+  return array;
+}
+
+Json candidates(const std::vector<CandidateTried>& tried) {
+  Json array = Json::array();
+  for (const auto& c : tried) {
+    array.push_back({{"name", c.name},
+                     {"variant", c.variant},
+                     {"log_odds", finite(c.log_odds)},
+                     {"error_reduction", finite(c.error_reduction)},
+                     {"aliased_with", c.aliased_with},
+                     {"reason", c.reason}});
+  }
+  return array;
+}
+
+}  // namespace
+
+std::string to_json(const DiagnosisResult& result) {
+  Json improvement;
+  improvement["value"] = finite(result.improvement.value);
+  improvement["ci95"] = Json::array({finite(result.improvement.low), finite(result.improvement.high)});
+
+  Json file;
+  file["schema"] = kSchema;
+  file["vehicle"] = result.vehicle;
+  file["train"] = result.train;
+  file["validate"] = result.validate;
+  file["consistency"] = consistency(result.consistency);
+  file["verdict"] = result.verdict;
+  file["effects"] = effects(result.effects);
+  file["candidates"] = candidates(result.candidates);
+  file["error"]["before"] = error(result.error_before);
+  file["error"]["after"] = error(result.error_after);
+  file["error"]["improvement"] = improvement;
+  file["parameters"]["before"] = named(result.parameters_before);
+  file["parameters"]["after"] = named(result.parameters_after);
+  file["residual"]["before"] = whiteness(result.residual_before);
+  file["residual"]["after"] = whiteness(result.residual_after);
+  return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace fathom::report

@@ -1,0 +1,48 @@
+// Building blocks of the report page: figures that are drawn last, all in one go, and small helpers for tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/report/plot.hpp"
+#include "common/samples/diagnosis_result.hpp"
+
+namespace fathom::report {
+
+/// Collects figures while the page is written; their places are filled when all have been drawn.
+class Album {
+ public:
+  /// Keeps the figure and returns the mark that stands for it in the page.
+  [[nodiscard]] std::string place(Figure figure);
+  /// The page with every mark replaced by its picture.
+  [[nodiscard]] std::string fill(const std::string& page, const std::string& gnuplot) const;
+
+ private:
+  std::vector<Figure> figures_;
+};
+
+/// The sections, in the order of the page. Each is complete HTML; empty when there is nothing to say.
+[[nodiscard]] std::string verdict_section(const DiagnosisReport& report);
+[[nodiscard]] std::string error_section(const DiagnosisResult& result, Album& album);
+[[nodiscard]] std::string motion_section(const DiagnosisReport& report, Album& album);
+[[nodiscard]] std::string sensor_section(const DiagnosisReport& report);
+[[nodiscard]] std::string leftover_section(const DiagnosisReport& report, Album& album);
+[[nodiscard]] std::string memory_section(const DiagnosisReport& report, Album& album);
+[[nodiscard]] std::string candidate_section(const DiagnosisResult& result);
+[[nodiscard]] std::string parameter_section(const DiagnosisResult& result);
+[[nodiscard]] std::string certainty_section(const DiagnosisResult& result);
+
+/// "<td class=c>text</td>"; the text is HTML already.
+[[nodiscard]] std::string cell(const std::string& html, const std::string& css = "");
+[[nodiscard]] std::string heading_cells(const std::vector<std::string>& titles, const std::vector<std::size_t>& right);
+[[nodiscard]] std::string figure(const std::string& picture, const std::string& caption);
+/// A line with a dot and its interval, in the range [low, high]; drawn small enough for a table cell.
+struct Whisker {
+  double low{};
+  double value{};
+  double high{};
+  const char* colour{};
+};
+[[nodiscard]] std::string whiskers(const std::vector<Whisker>& rows, double low, double high, double zero);
+
+}  // namespace fathom::report

@@ -1,0 +1,55 @@
+// The pictures of the report, each as a script for gnuplot; and the numbers that stand beside them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/report/plot.hpp"
+#include "common/samples/diagnosis_result.hpp"
+
+namespace fathom::report {
+
+/// Measured dark, before orange, after blue: told apart by every kind of colour vision, and in grey.
+constexpr const char* kMeasuredColour = "#22262b";
+constexpr const char* kBeforeColour = "#e07b00";
+constexpr const char* kAfterColour = "#0a5ea8";
+
+/// A quantity that the residual might follow.
+struct Quantity {
+  std::string name;            ///< "heading"
+  std::string label;           ///< "heading [deg]"
+  std::vector<double> values;  ///< of all traces, one after the other
+};
+
+/// Residuals of all traces of one axis [N or N m], one after the other.
+struct Leftover {
+  std::vector<double> before;
+  std::vector<double> after;
+};
+
+/// Autocorrelation before and after.
+struct Memory {
+  std::vector<double> lag;  ///< s
+  std::vector<double> before;
+  std::vector<double> after;
+  double band{};  ///< half width of the 95 % band of a series without memory
+};
+
+/// Nothing where the axis has no residual.
+[[nodiscard]] std::optional<Leftover> leftover(std::span<const PredictionTrace> traces, std::size_t axis);
+/// What the residual of this axis is held against; quantities that were not recorded or never changed are left out.
+[[nodiscard]] std::vector<Quantity> quantities(std::span<const PredictionTrace> traces, std::size_t axis);
+[[nodiscard]] Memory memory(std::span<const PredictionTrace> traces, std::size_t axis);
+/// Independent samples among those of one series, from its autocorrelation.
+[[nodiscard]] double effective_samples(const std::vector<double>& series, const std::vector<double>& correlation,
+                                       double samples_per_lag);
+
+[[nodiscard]] Figure draw_errors(const DiagnosisResult& result, std::size_t axis);
+[[nodiscard]] Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t max_points);
+[[nodiscard]] Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::size_t axis);
+[[nodiscard]] Figure draw_memory(const Memory& memory, std::size_t axis);
+
+}  // namespace fathom::report

@@ -1,0 +1,105 @@
+// result.json keeps its names and its types, whatever the numbers are.
+#include "common/report/json.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "test/support/diagnosis_fixture.hpp"
+
+using fathom::report::to_json;
+using nlohmann::json;
+
+namespace {
+
+std::vector<std::string> keys(const json& object) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : object.items()) names.push_back(name);
+  return names;  // nlohmann::json sorts them
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("result.json holds exactly the promised names") {
+  const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
+  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "parameters", "residual", "schema",
+                            "train", "validate", "vehicle", "verdict"});
+  CHECK(file["schema"] == 1);
+  CHECK(file["vehicle"] == "Beluga <test>");
+  CHECK(file["verdict"] == "effect");
+  CHECK(file["train"].size() == 5);
+  CHECK(keys(file["consistency"][0]) ==
+        Names{"action", "evidence", "finding", "reference", "run", "signal", "size", "unit"});
+  CHECK(keys(file["effects"][0]) ==
+        Names{"accepted", "alternatives", "error_reduction", "log_odds", "name", "parameters", "sentence", "variant"});
+  CHECK(keys(file["candidates"][0]) ==
+        Names{"aliased_with", "error_reduction", "log_odds", "name", "reason", "variant"});
+  CHECK(keys(file["error"]) == Names{"after", "before", "improvement"});
+  CHECK(keys(file["error"]["before"]) == Names{"force_rmse", "prediction"});
+  CHECK(keys(file["error"]["improvement"]) == Names{"ci95", "value"});
+  CHECK(keys(file["parameters"]) == Names{"after", "before"});
+  CHECK(keys(file["residual"]) == Names{"after", "before"});
+  CHECK(keys(file["residual"]["after"]["X"]) == Names{"autocorrelation_time_s", "explained", "p_value"});
+}
+
+TEST_CASE("Named values become objects with value, std and unit, and arrive unchanged") {
+  const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
+  const json& lag = file["effects"][0]["parameters"]["time_constant"];
+  CHECK(lag["value"] == 0.352);
+  CHECK(lag["std"] == 0.012);
+  CHECK(lag["unit"] == "s");
+  CHECK(file["parameters"]["after"]["X_u|u|"]["value"] == -12.4);
+  CHECK(file["effects"][0]["accepted"] == true);
+  CHECK(file["error"]["improvement"]["ci95"] == json::array({0.36, 0.55}));
+}
+
+TEST_CASE("Effects and candidates keep their order") {
+  const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
+  CHECK(file["effects"][0]["name"] == "thruster_lag");
+  CHECK(file["effects"][1]["name"] == "current");
+  CHECK(file["candidates"].size() == 10);
+  CHECK(file["candidates"][5]["variant"] == "thruster 3");
+  CHECK(file["candidates"][2]["aliased_with"] == json::array({"current"}));
+}
+
+TEST_CASE("Horizons are 1, 5 and 10, and axes are u v w p q r in SI units") {
+  const auto report = fathom::test::made_up_report({.samples = 0});
+  const json file = json::parse(to_json(report.result));
+  const json& prediction = file["error"]["before"]["prediction"];
+  REQUIRE(prediction.size() == 3);
+  CHECK(prediction[0]["horizon_s"] == 1);
+  CHECK(prediction[0]["horizon_s"].is_number_integer());
+  CHECK(prediction[2]["horizon_s"] == 10);
+  CHECK(keys(prediction[0]["rmse"]) == Names{"p", "q", "r", "u", "v", "w"});
+  CHECK(prediction[1]["rmse"]["r"] == report.result.error_before.prediction[1].rmse[5]);
+}
+
+TEST_CASE("A number that does not exist is null") {
+  auto result = fathom::test::made_up_report({.samples = 0}).result;
+  result.improvement.low = std::numeric_limits<double>::infinity();
+  const json file = json::parse(to_json(result));
+  CHECK(file["error"]["before"]["prediction"][0]["rmse"]["p"].is_null());
+  CHECK(file["error"]["before"]["prediction"][0]["r2"]["p"].is_null());
+  CHECK(file["candidates"][9]["log_odds"].is_null());
+  CHECK(file["parameters"]["before"]["W-B"]["std"].is_null());
+  CHECK(file["error"]["improvement"]["ci95"][0].is_null());
+}
+
+TEST_CASE("An empty result is still a complete file") {
+  const json file = json::parse(to_json({}));
+  CHECK(file["effects"] == json::array());
+  CHECK(file["candidates"] == json::array());
+  CHECK(file["consistency"] == json::array());
+  CHECK(file["parameters"]["before"] == json::object());
+  CHECK(file["residual"]["after"] == json::object());
+  CHECK(file["error"]["after"]["prediction"] == json::array());
+}
+
+TEST_CASE("Text that is not UTF-8 does not stop the file") {
+  fathom::DiagnosisResult result;
+  result.vehicle = "broken \xff name";
+  const json file = json::parse(to_json(result));
+  CHECK(file["vehicle"].is_string());
+}
