@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -13,9 +14,9 @@ namespace fathom {
 /// Motion capture: pose of the body in the world.
 struct PoseCapture {
   Utime utime{};
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};             ///< m, NED
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};            ///< m, NED
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};  ///< unit
-  bool valid{true};                                          ///< false where capture was lost, frozen or jumped
+  bool valid{true};                                         ///< false where capture was lost, frozen or jumped
 };
 
 /// Rate gyro and, where `has_*` says so, specific force and attitude (AHRS).
@@ -47,9 +48,9 @@ struct Depth {
 /// What the thrusters were told and, as far as known, what they gave. Order: as in the vehicle file.
 struct Thrusters {
   Utime utime{};
-  std::vector<double> pwm_us;  ///< us, as commanded; empty when not logged
-  std::vector<double> force;   ///< N, along each thruster's axis; empty when not known
-  std::array<double, 6> tau{}; ///< N, N m: wrench at the body origin, body axes
+  std::vector<double> pwm_us;   ///< us, as commanded; empty when not logged
+  std::vector<double> force;    ///< N, along each thruster's axis; empty when not known
+  std::array<double, 6> tau{};  ///< N, N m: wrench at the body origin, body axes
   bool has_tau{false};
 };
 
@@ -57,6 +58,27 @@ struct Thrusters {
 struct Battery {
   Utime utime{};
   double voltage{};  ///< V
+};
+
+/// Acoustic position fix, lever arms removed.
+struct Usbl {
+  Utime utime{};
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};   ///< m, NED
+  Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};  ///< m, std of p_WB
+  bool valid{true};
+};
+
+/// Single-beam echo sounders. Order: as in the vehicle file.
+struct Ranges {
+  Utime utime{};
+  std::vector<double> range;        ///< m along each beam's axis; 0 when not valid
+  std::vector<std::uint8_t> valid;  ///< 1: an echo was found
+};
+
+/// Load cells. Order: as in the vehicle file.
+struct Loads {
+  Utime utime{};
+  std::vector<double> load;  ///< N, tension along each cell's axis
 };
 
 }  // namespace fathom
