@@ -1,4 +1,5 @@
-// The one door to YAML: every key must be known, every number carries its unit, and every complaint names file and line.
+// The one door to YAML: every key must be known, every number carries its unit, and every complaint names file and
+// line.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,21 +19,26 @@ class Config {
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] Config section(const std::string& key) const;
-  [[nodiscard]] std::vector<Config> list(const std::string& key) const;          ///< a sequence of sections
-  [[nodiscard]] std::vector<std::string> keys() const;                           ///< of this section, in file order
+  [[nodiscard]] std::vector<Config> list(const std::string& key) const;  ///< a sequence of sections
+  [[nodiscard]] std::vector<std::string> keys() const;                   ///< of this section, in file order
   [[nodiscard]] std::string text(const std::string& key) const;
-  [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;    ///< a sequence of words
+  [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;  ///< a sequence of words
   [[nodiscard]] bool flag(const std::string& key) const;
   [[nodiscard]] int integer(const std::string& key) const;
-  /// "11.5 kg" read as `unit` "kg": value in SI. A missing or different unit is refused. `unit` "" = dimensionless.
+  /// "11.5 kg" read as `unit` "kg": value in `unit`. A missing or different unit is refused. `unit` "" = dimensionless.
   [[nodiscard]] double quantity(const std::string& key, const std::string& unit) const;
-  [[nodiscard]] std::vector<double> quantities(const std::string& key, const std::string& unit) const;  ///< "[1, 2, 3] m": see docs/configuration.md
+  [[nodiscard]] std::vector<double> quantities(
+      const std::string& key, const std::string& unit) const;  ///< "[1, 2, 3] m": see docs/configuration.md
   [[nodiscard]] Eigen::Vector3d vector3(const std::string& key, const std::string& unit) const;
 
   /// InputError for the first key, in this section or below, that nobody has read.
   void finish() const;
   /// "file:line" of this section (or of `key`), for messages of the caller.
   [[nodiscard]] std::string where(const std::string& key = "") const;
+  /// Throws InputError "file:line: what" at `key` of this section.
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const;
+  /// True when `key` holds a section (a map), not a value or a list.
+  [[nodiscard]] bool is_section(const std::string& key) const;
 
  private:
   struct Node;
