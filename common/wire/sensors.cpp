@@ -125,7 +125,9 @@ std::optional<PoseCapture> decode(const fathom_lcm::pose_capture_t& message) {
   return PoseCapture{.utime = message.utime,
                      .p_WB = vector(message.p_WB),
                      .q_WB = quaternion(message.q_WB),
-                     .valid = message.valid != 0};
+                     .valid = message.valid != 0,
+                     .has_position = message.has_position != 0,
+                     .has_attitude = message.has_attitude != 0};
 }
 
 fathom_lcm::pose_capture_t encode(const PoseCapture& sample) {
@@ -134,6 +136,8 @@ fathom_lcm::pose_capture_t encode(const PoseCapture& sample) {
   put(sample.p_WB, message.p_WB);
   put(sample.q_WB, message.q_WB);
   message.valid = sample.valid;
+  message.has_position = sample.has_position;
+  message.has_attitude = sample.has_attitude;
   return message;
 }
 
