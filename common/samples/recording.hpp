@@ -4,12 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
+#include "common/samples/health.hpp"
 #include "common/samples/sensors.hpp"
+#include "common/samples/truth.hpp"
+#include "common/samples/vision.hpp"
 
 namespace fathom {
 
-/// Streams of one run. An empty stream means: not recorded.
+/// Streams of one run. An empty stream means: not recorded. Pictures stay in the log: they do not fit into memory.
 struct Recording {
   std::string name;  ///< file name without folder and extension
   std::vector<PoseCapture> pose_capture;
@@ -19,6 +23,21 @@ struct Recording {
   std::vector<Thrusters> thrusters;
   std::vector<Battery> battery;
   std::vector<StateEstimate> state;  ///< from an estimator, when the log holds it
+  std::vector<Usbl> usbl;
+  std::vector<Ranges> ranges;
+  std::vector<Loads> loads;
+  std::vector<TagPose> tag_pose;
+  std::vector<OpticalFlow> optical_flow;
+  std::vector<LaserRange> laser_range;
+  std::vector<WrenchCommand> wrench_command;
+  std::vector<Operator> operator_orders;
+  std::vector<Excitation> excitation;
+  std::vector<ModelEstimate> model;
+  std::vector<Residual> residual;
+  std::vector<EffectRanking> effects;
+  std::vector<Truth> truth;
+  std::vector<Health> health;
+  std::vector<ProcessInfo> process_info;
 };
 
 }  // namespace fathom

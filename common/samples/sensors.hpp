@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -59,6 +60,27 @@ struct Thrusters {
 struct Battery {
   Utime utime{};
   double voltage{};  ///< V
+};
+
+/// Acoustic position fix, lever arms removed.
+struct Usbl {
+  Utime utime{};
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};   ///< m, NED
+  Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};  ///< m, std of p_WB
+  bool valid{true};
+};
+
+/// Single-beam echo sounders. Order: as in the vehicle file.
+struct Ranges {
+  Utime utime{};
+  std::vector<double> range;        ///< m along each beam's axis; 0 when not valid
+  std::vector<std::uint8_t> valid;  ///< 1: an echo was found
+};
+
+/// Load cells. Order: as in the vehicle file.
+struct Loads {
+  Utime utime{};
+  std::vector<double> load;  ///< N, tension along each cell's axis
 };
 
 }  // namespace fathom

@@ -1,0 +1,23 @@
+// The command line that every process understands.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/runtime/bus.hpp"
+
+namespace fathom::runtime {
+
+struct Arguments {
+  std::vector<std::string> config;  ///< paths
+  std::vector<Url> in;              ///< all live or all logs
+  Url out;
+  std::string log_level{"info"};
+  bool interface_only{false};
+
+  /// Nothing when help or version was asked for and printed. InputError for anything else than a good command line.
+  [[nodiscard]] static std::optional<Arguments> parse(const std::string& name, int argc, const char* const* argv);
+};
+
+}  // namespace fathom::runtime

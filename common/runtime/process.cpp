@@ -1,0 +1,291 @@
+#include "common/runtime/process.hpp"
+
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/process_info_t.hpp>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "common/runtime/arguments.hpp"
+#include "common/runtime/bus.hpp"
+#include "common/runtime/stop_signal.hpp"
+
+namespace fathom::runtime {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr Utime kRestartJump = 1'000'000;  // us; devices are late by less
+constexpr int kWaitMs = 50;                // half of the promised 100 ms, should a signal miss the descriptor
+constexpr char kHealthChannel[] = "HEALTH";
+constexpr char kInfoChannel[] = "PROCESS_INFO";
+
+struct Hearing {
+  std::string channel;
+  std::string type;
+  std::size_t capacity{};
+  std::function<bool(std::span<const std::uint8_t>)> deliver;
+  std::optional<Utime> newest;
+  std::int64_t rejected{};
+};
+
+struct Speech {
+  std::string channel;
+  std::string type;
+};
+
+Utime wall_clock() {
+  using std::chrono::duration_cast;
+  return duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string content(const std::string& path) {
+  std::ifstream file{path};
+  std::ostringstream text;
+  text << "# file " << path << "\n" << file.rdbuf();
+  return text.str();
+}
+
+template <class Channels>
+auto find_channel(Channels& channels, const std::string& channel) {
+  return std::find_if(channels.begin(), channels.end(), [&](const auto& each) { return each.channel == channel; });
+}
+
+}  // namespace
+
+struct Process::State {
+  std::string name;
+  Arguments arguments;
+  spdlog::logger logger;
+  std::vector<Hearing> hearings{};
+  std::vector<Speech> speeches{};
+  std::vector<Config> sections{};  // handed out by config(), to be checked for unread keys
+  std::function<void()> restart{};
+  std::function<void()> end{};
+  std::optional<StopSignal> stop{};
+  std::optional<LiveInput> live{};
+  std::optional<Output> out{};
+  bool introduced{false};
+  std::int64_t received{};
+  std::int64_t published{};
+  Clock::duration busy{};  // in handlers, since the last HEALTH
+  Clock::time_point last_health{};
+};
+
+Process::Process(std::string name, Arguments arguments)
+    : state_{new State{.name = name,
+                       .arguments = std::move(arguments),
+                       .logger = {name, std::make_shared<spdlog::sinks::stderr_color_sink_st>()}}} {
+  state_->logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
+  state_->logger.set_level(spdlog::level::from_str(state_->arguments.log_level));
+}
+
+Process::~Process() = default;
+
+void Process::add_hearing(const std::string& channel, const std::string& type, std::size_t capacity, Deliver deliver) {
+  if (find_channel(state_->hearings, channel) != state_->hearings.end()) {
+    throw std::logic_error("two handlers for channel " + channel);
+  }
+  state_->hearings.push_back({channel, type, capacity, std::move(deliver), {}, 0});
+}
+
+void Process::add_speech(const std::string& channel, const std::string& type) {
+  state_->speeches.push_back({channel, type});
+}
+
+void Process::on_restart(std::function<void()> callback) { state_->restart = std::move(callback); }
+void Process::on_end(std::function<void()> callback) { state_->end = std::move(callback); }
+void Process::log_info(const std::string& text) { state_->logger.info(text); }
+void Process::log_warning(const std::string& text) { state_->logger.warn(text); }
+
+void Process::reject(const std::string& channel) {
+  const auto hearing = find_channel(state_->hearings, channel);
+  if (hearing == state_->hearings.end()) throw std::logic_error("reject on unheard channel " + channel);
+  ++hearing->rejected;
+}
+
+Config Process::config() {
+  std::optional<Config> found;
+  for (const std::string& path : state_->arguments.config) {
+    const Config file = Config::load(path);
+    if (!file.has(state_->name)) continue;
+    if (found) throw InputError(file.where(state_->name) + ": a second section " + state_->name + "; keep one");
+    found = file.section(state_->name);
+  }
+  if (!found) throw InputError("no --config file has a section " + state_->name + "; give one of config/pipelines");
+  state_->sections.push_back(*found);
+  return *found;
+}
+
+std::string Process::config_path(const std::string& key) const {
+  std::string found;
+  for (const std::string& path : state_->arguments.config) {
+    if (!Config::load(path).has(key)) continue;
+    if (!found.empty()) throw InputError(path + ": " + found + " has the key " + key + " too; give one of them");
+    found = path;
+  }
+  if (found.empty()) throw InputError("no --config file has the key " + key + "; add the file that has it");
+  return found;
+}
+
+void Process::send(const std::string& channel, const std::string& type, Utime utime) {
+  const auto speech = find_channel(state_->speeches, channel);
+  if (speech == state_->speeches.end() || speech->type != type) {
+    throw std::logic_error("publish of " + type + " on channel " + channel + " was not declared");
+  }
+  if (!state_->out) throw std::logic_error("publish before run()");
+  state_->out->write(channel, buffer_, utime);
+  ++state_->published;
+}
+
+// Channels are judged one by one: an operator's clock may differ from a replayed log's. After a jump all begin anew, so
+// that one restart of a log is one call.
+void Process::arrived(const std::string& channel, Utime utime) {
+  introduce(utime);
+  auto& newest = find_channel(state_->hearings, channel)->newest;
+  if (newest && utime < *newest - kRestartJump) {
+    state_->logger.info("time jumped back on {}: starting over", channel);
+    for (Hearing& hearing : state_->hearings) hearing.newest.reset();
+    if (state_->restart) state_->restart();
+  }
+  newest = std::max(utime, newest.value_or(utime));
+}
+
+void Process::deliver(std::size_t index, std::span<const std::uint8_t> bytes) {
+  Hearing& hearing = state_->hearings[index];
+  const auto begin = Clock::now();
+  if (hearing.deliver(bytes)) {
+    ++state_->received;
+  } else if (hearing.rejected++ == 0) {
+    state_->logger.warn("{}: not a {} of this version; is every process of the same build?", hearing.channel,
+                        hearing.type);
+  }
+  state_->busy += Clock::now() - begin;
+}
+
+void Process::introduce(Utime utime) {
+  if (std::exchange(state_->introduced, true)) return;
+  fathom_lcm::process_info_t info{};
+  info.utime = utime;
+  info.process = state_->name;
+  info.version = FATHOM_VERSION;
+  for (const std::string& path : state_->arguments.config) info.config += content(path);
+  info.channels = interface_text();
+  publish(kInfoChannel, info);
+}
+
+void Process::report_health(const std::string& state, const std::string& reason) {
+  if (!state_->out || !state_->out->live()) return;
+  const auto now = Clock::now();
+  fathom_lcm::health_t health{};
+  health.utime = wall_clock();
+  health.process = state_->name;
+  health.state = state;
+  health.detail = reason;
+  health.received = state_->received;
+  health.published = state_->published;
+  const auto tell = [&](const Hearing& hearing, const char* what, std::int64_t count) {
+    if (count > 0) health.detail += hearing.channel + " " + what + " " + std::to_string(count) + "; ";
+  };
+  for (std::size_t i = 0; i < state_->hearings.size(); ++i) {
+    const Hearing& hearing = state_->hearings[i];
+    const auto dropped = state_->live ? static_cast<std::int64_t>(state_->live->dropped(i)) : 0;
+    health.dropped += dropped;
+    health.rejected += hearing.rejected;
+    tell(hearing, "dropped", dropped);
+    tell(hearing, "rejected", hearing.rejected);
+  }
+  const std::chrono::duration<double> elapsed = now - state_->last_health;
+  health.busy = elapsed.count() > 0.0 ? std::chrono::duration<double>(state_->busy) / elapsed : 0.0;
+  state_->busy = {};
+  state_->last_health = now;
+  publish(kHealthChannel, health);
+}
+
+std::string Process::interface_text() const {
+  std::string text;
+  for (const Hearing& each : state_->hearings) text += "hears " + each.channel + " " + each.type + "\n";
+  for (const Speech& each : state_->speeches) text += "says " + each.channel + " " + each.type + "\n";
+  return text;
+}
+
+void Process::run() {
+  publishes<fathom_lcm::health_t>(kHealthChannel);
+  publishes<fathom_lcm::process_info_t>(kInfoChannel);
+  if (state_->arguments.interface_only) {
+    std::cout << interface_text() << std::flush;
+    return;
+  }
+  for (const Config& section : state_->sections) section.finish();
+  state_->stop.emplace();
+  state_->last_health = Clock::now();
+  try {
+    if (state_->arguments.in.front().live()) {
+      run_live();
+    } else {
+      run_logs();
+    }
+    if (state_->end) state_->end();
+    report_health("stopped", "");
+    state_->out->finish();
+  } catch (const std::exception& error) {
+    report_health("fault", error.what());
+    throw;
+  }
+}
+
+void Process::run_logs() {
+  MergedLogs logs{state_->arguments.in};
+  state_->out.emplace(state_->arguments.out);
+  std::optional<LogEvent> event;
+  while (!state_->stop->raised() && (event = logs.next())) {
+    const auto& hearings = state_->hearings;
+    const auto found = std::find_if(hearings.begin(), hearings.end(),
+                                    [&](const Hearing& hearing) { return hearing.channel == event->channel; });
+    if (found != hearings.end()) deliver(static_cast<std::size_t>(found - hearings.begin()), event->data);
+    if (state_->out->live() && Clock::now() - state_->last_health >= std::chrono::seconds{1})
+      report_health("running", "");
+  }
+  for (const std::string& warning : logs.warnings()) state_->logger.warn(warning);
+  for (const Hearing& hearing : state_->hearings) {
+    if (hearing.rejected > 0) state_->logger.warn("{}: {} messages rejected", hearing.channel, hearing.rejected);
+  }
+}
+
+void Process::run_live() {
+  std::vector<Subscription> subscriptions;
+  for (const Hearing& hearing : state_->hearings) subscriptions.push_back({hearing.channel, hearing.capacity});
+  state_->out.emplace(state_->arguments.out);
+  state_->live.emplace(state_->arguments.in, subscriptions);
+  introduce(wall_clock());
+  while (!state_->stop->raised()) {
+    state_->live->wait(state_->stop->descriptor(), kWaitMs);
+    if (const auto message = state_->live->next()) deliver(message->subscription, message->bytes);
+    if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
+  }
+}
+
+int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup) {
+  try {
+    auto arguments = Arguments::parse(name, argc, argv);
+    if (!arguments) return 0;
+    Process process{name, std::move(*arguments)};
+    setup(process);
+    return 0;
+  } catch (const std::exception& error) {
+    spdlog::logger logger{name, std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
+    logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
+    logger.critical(error.what());
+    return 1;
+  }
+}
+
+}  // namespace fathom::runtime

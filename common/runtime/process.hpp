@@ -1,0 +1,106 @@
+// What every process shares: arguments, configuration, the bus, stopping, health. A process registers handlers and
+// runs.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/config.hpp"
+#include "common/base/time.hpp"
+
+namespace fathom::runtime {
+
+struct Arguments;
+
+class Process {
+ public:
+  Process(std::string name, Arguments arguments);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// Hears every message of a channel; up to 1000 may wait. handler(const Message&).
+  template <class Message, class Handler>
+  void on(const std::string& channel, Handler handler) {
+    subscribe<Message>(channel, kQueue, std::move(handler));
+  }
+  /// Hears only the latest message of a channel: for commands and pictures. When reading a log it hears all.
+  template <class Message, class Handler>
+  void on_latest(const std::string& channel, Handler handler) {
+    subscribe<Message>(channel, 1, std::move(handler));
+  }
+  /// Declares what is said on a channel; needed before publish().
+  template <class Message>
+  void publishes(const std::string& channel) {
+    add_speech(channel, Message::getTypeName());
+  }
+  template <class Message>
+  void publish(const std::string& channel, const Message& message) {
+    const int length = message.getEncodedSize();
+    buffer_.resize(static_cast<std::size_t>(length));
+    message.encode(buffer_.data(), 0, length);
+    send(channel, Message::getTypeName(), message.utime);
+  }
+
+  /// Counts a message that was decoded but refused; HEALTH shows the counts.
+  void reject(const std::string& channel);
+
+  /// This process's section, taken from the one --config file that has it. run() refuses keys that nobody read.
+  [[nodiscard]] Config config();
+  /// Path of the one --config file with this top-level key, for files that others load (the vehicle).
+  [[nodiscard]] std::string config_path(const std::string& key) const;
+
+  /// Called when message time jumps back by more than a second: a log started over.
+  void on_restart(std::function<void()> callback);
+  /// Called once at the end of the input or at a stop, while publishing is still possible.
+  void on_end(std::function<void()> callback);
+
+  /// For an operator: a change of state, never per sample.
+  void log_info(const std::string& text);
+  void log_warning(const std::string& text);
+
+  /// Serves messages until the input ends or SIGINT or SIGTERM comes.
+  void run();
+
+ private:
+  static constexpr std::size_t kQueue = 1000;
+  /// Decodes and hands over; false when it cannot be decoded.
+  using Deliver = std::function<bool(std::span<const std::uint8_t>)>;
+
+  template <class Message, class Handler>
+  void subscribe(const std::string& channel, std::size_t capacity, Handler handler) {
+    add_hearing(channel, Message::getTypeName(), capacity,
+                [this, channel, handler = std::move(handler)](std::span<const std::uint8_t> bytes) mutable {
+                  Message message{};
+                  const int length = static_cast<int>(bytes.size());
+                  if (message.decode(bytes.data(), 0, length) != length) return false;
+                  arrived(channel, message.utime);
+                  handler(static_cast<const Message&>(message));
+                  return true;
+                });
+  }
+  void add_hearing(const std::string& channel, const std::string& type, std::size_t capacity, Deliver deliver);
+  void add_speech(const std::string& channel, const std::string& type);
+  void send(const std::string& channel, const std::string& type, Utime utime);  ///< what is in buffer_
+  void arrived(const std::string& channel, Utime utime);
+  void deliver(std::size_t hearing, std::span<const std::uint8_t> bytes);
+  void run_logs();
+  void run_live();
+  void introduce(Utime utime);
+  void report_health(const std::string& state, const std::string& reason);
+  [[nodiscard]] std::string interface_text() const;
+
+  struct State;
+  std::unique_ptr<State> state_;
+  std::vector<std::uint8_t> buffer_;  ///< of the message that is being sent
+};
+
+/// The main() of every process: reads the arguments, calls setup (which ends with run()), turns every exception into
+/// one critical line and exit code 1.
+int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup);
+
+}  // namespace fathom::runtime

@@ -1,0 +1,33 @@
+// What every process says about itself: HEALTH, PROCESS_INFO.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/base/time.hpp"
+
+namespace fathom {
+
+/// Once a second on a live bus; counts are since the start.
+struct Health {
+  Utime utime{};  ///< wall clock
+  std::string process;
+  std::string state;        ///< "running", "stopped", "fault"
+  std::int64_t received{};  ///< delivered to handlers
+  std::int64_t published{};
+  std::int64_t dropped{};   ///< lost to a full queue
+  std::int64_t rejected{};  ///< undecodable or not plausible
+  double busy{};            ///< share of the last second spent in handlers, 0..1
+  std::string detail;       ///< counts per channel; the reason of a fault
+};
+
+/// Said once at the start, so that a log explains itself.
+struct ProcessInfo {
+  Utime utime{};
+  std::string process;
+  std::string version;
+  std::string config;    ///< text of all configuration files
+  std::string channels;  ///< one "hears|says CHANNEL TYPE" per line
+};
+
+}  // namespace fathom

@@ -1,0 +1,121 @@
+#include "common/wire/log_reader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <sstream>
+#include <type_traits>
+
+#include "common/base/error.hpp"
+#include "common/base/event_log.hpp"
+#include "common/wire/streams.hpp"
+
+namespace fathom::wire {
+namespace {
+
+struct Stream {
+  std::function<bool(const LogEvent&)> take;  ///< false: rejected
+  ChannelCount count;
+};
+
+std::string fingerprint(std::span<const std::uint8_t> bytes) {
+  std::ostringstream text;
+  text << std::hex;
+  for (const unsigned byte : bytes.first(std::min<std::size_t>(bytes.size(), 8))) text << (byte >> 4U) << (byte & 15U);
+  return text.str();
+}
+
+template <class Message>
+void require_type(const std::string& path, const LogEvent& event) {
+  Message probe{};
+  std::uint64_t stated = 0;
+  for (const std::uint64_t byte : event.data.first(std::min<std::size_t>(event.data.size(), 8))) {
+    stated = stated << 8U | byte;
+  }
+  if (event.data.size() < 8 || stated == static_cast<std::uint64_t>(probe.getHash())) return;
+  throw InputError(path + ": byte " + std::to_string(event.offset) + ": channel " + std::string{event.channel} +
+                   " does not hold this version's " + Message::getTypeName() + " (fingerprint " +
+                   fingerprint(event.data) + "); read the log with the version of Fathom that made it");
+}
+
+template <class Sample>
+bool take(const LogEvent& event, std::vector<Sample>& stream, ChannelCount& count) {
+  MessageOf<Sample> message{};
+  const int length = static_cast<int>(event.data.size());
+  if (message.decode(event.data.data(), 0, length) != length) return false;
+  std::optional<Sample> sample = decode(message);
+  if (!sample) return false;
+  if (!stream.empty() && sample->utime < stream.back().utime) ++count.late;
+  stream.push_back(std::move(*sample));
+  return true;
+}
+
+}  // namespace
+
+LogContents read_log(const std::string& path) {
+  LogContents contents;
+  contents.recording.name = std::filesystem::path{path}.stem().string();
+  std::map<std::string, Stream, std::less<>> streams;
+  visit_streams(contents.recording, [&](const char* channel, auto& samples) {
+    using Sample = typename std::remove_reference_t<decltype(samples)>::value_type;
+    Stream& stream = streams[channel];
+    stream.take = [&path, &samples, &count = stream.count](const LogEvent& event) {
+      require_type<MessageOf<Sample>>(path, event);
+      return take(event, samples, count);
+    };
+  });
+
+  EventLog log{path};
+  bool known = false;
+  while (const auto event = log.next()) {
+    known = known || event->channel == kCamera;
+    const auto found = streams.find(event->channel);
+    if (found == streams.end()) {
+      ++contents.report.foreign;
+      continue;
+    }
+    ChannelCount& count = found->second.count;
+    if (found->second.take(*event)) {
+      ++count.accepted;
+    } else if (count.rejected++ == 0) {
+      count.first_rejected = event->offset;
+    }
+  }
+  contents.report.events = log.events();
+  contents.report.warning = log.warning();
+  for (const auto& [channel, stream] : streams) {
+    if (stream.count.accepted + stream.count.rejected > 0) contents.report.channels.emplace(channel, stream.count);
+  }
+  if (contents.report.channels.empty() && !known) {
+    throw InputError(
+        path + ": none of its " + std::to_string(log.events()) +
+        " events is on a channel that Fathom knows (docs/messages.md); was another program's bus recorded?");
+  }
+  visit_streams(contents.recording, [](const char*, auto& samples) {
+    const auto older = [](const auto& a, const auto& b) { return a.utime < b.utime; };
+    if (!std::is_sorted(samples.begin(), samples.end(), older)) {
+      std::stable_sort(samples.begin(), samples.end(), older);
+    }
+  });
+  return contents;
+}
+
+std::string complaints(const std::string& path, const LogReport& report) {
+  std::string text;
+  for (const auto& [channel, count] : report.channels) {
+    if (count.rejected > 0) {
+      text += path + ": channel " + channel + ": " + std::to_string(count.rejected) + " of " +
+              std::to_string(count.accepted + count.rejected) +
+              " messages refused (non-finite number, wrong length or non-unit quaternion), first at byte " +
+              std::to_string(count.first_rejected) + "\n";
+    }
+    if (count.late > 0) {
+      text += path + ": channel " + channel + ": " + std::to_string(count.late) +
+              " messages older than the one before, sorted into place\n";
+    }
+  }
+  if (!report.warning.empty()) text += report.warning + "\n";
+  return text;
+}
+
+}  // namespace fathom::wire

@@ -1,0 +1,233 @@
+#include "common/wire/minds.hpp"
+
+#include <fathom_lcm/effects_t.hpp>
+#include <fathom_lcm/excitation_t.hpp>
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/model_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/process_info_t.hpp>
+#include <fathom_lcm/residual_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/truth_t.hpp>
+#include <fathom_lcm/wrench_command_t.hpp>
+
+#include "common/wire/plausible.hpp"
+
+namespace fathom::wire {
+
+std::optional<StateEstimate> decode(const fathom_lcm::state_t& message) {
+  if (!finite(message.p_WB) || !unit(message.q_WB) || !finite(message.nu) || !finite(message.sigma)) return {};
+  return StateEstimate{.utime = message.utime,
+                       .p_WB = vector(message.p_WB),
+                       .q_WB = quaternion(message.q_WB),
+                       .nu = vector(message.nu),
+                       .sigma = vector(message.sigma),
+                       .valid = message.valid != 0};
+}
+
+fathom_lcm::state_t encode(const StateEstimate& sample) {
+  fathom_lcm::state_t message{};
+  message.utime = sample.utime;
+  put(sample.p_WB, message.p_WB);
+  put(sample.q_WB, message.q_WB);
+  put(sample.nu, message.nu);
+  put(sample.sigma, message.sigma);
+  message.valid = sample.valid;
+  return message;
+}
+
+std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
+  if (!length(message.n_parameters, message.parameters.size())) return {};
+  if (!length(message.n_effects, message.effects.size())) return {};
+  ModelEstimate sample{
+      .utime = message.utime, .parameters = {}, .effects = message.effects, .updates = message.updates};
+  sample.parameters.reserve(message.parameters.size());
+  for (const auto& part : message.parameters) {
+    if (!finite(part.value) || !finite(part.std)) return {};
+    sample.parameters.push_back({.name = part.name, .value = part.value, .std = part.std, .unit = part.unit});
+  }
+  return sample;
+}
+
+fathom_lcm::model_t encode(const ModelEstimate& sample) {
+  fathom_lcm::model_t message{};
+  message.utime = sample.utime;
+  message.n_parameters = count(sample.parameters);
+  for (const auto& part : sample.parameters) {
+    auto& to = message.parameters.emplace_back();
+    to.name = part.name;
+    to.value = part.value;
+    to.std = part.std;
+    to.unit = part.unit;
+  }
+  message.n_effects = count(sample.effects);
+  message.effects = sample.effects;
+  message.updates = sample.updates;
+  return message;
+}
+
+std::optional<Residual> decode(const fathom_lcm::residual_t& message) {
+  if (!finite(message.wrench)) return {};
+  return Residual{.utime = message.utime, .wrench = vector(message.wrench)};
+}
+
+fathom_lcm::residual_t encode(const Residual& sample) {
+  fathom_lcm::residual_t message{};
+  message.utime = sample.utime;
+  put(sample.wrench, message.wrench);
+  return message;
+}
+
+std::optional<EffectRanking> decode(const fathom_lcm::effects_t& message) {
+  if (!length(message.n_candidates, message.candidates.size())) return {};
+  EffectRanking sample{.utime = message.utime, .verdict = message.verdict, .candidates = {}};
+  sample.candidates.reserve(message.candidates.size());
+  for (const auto& part : message.candidates) {
+    if (!finite(part.log_odds) || !finite(part.error_reduction)) return {};
+    sample.candidates.push_back(
+        {.name = part.name, .log_odds = part.log_odds, .error_reduction = part.error_reduction});
+  }
+  return sample;
+}
+
+fathom_lcm::effects_t encode(const EffectRanking& sample) {
+  fathom_lcm::effects_t message{};
+  message.utime = sample.utime;
+  message.verdict = sample.verdict;
+  message.n_candidates = count(sample.candidates);
+  for (const auto& part : sample.candidates) {
+    auto& to = message.candidates.emplace_back();
+    to.name = part.name;
+    to.log_odds = part.log_odds;
+    to.error_reduction = part.error_reduction;
+  }
+  return message;
+}
+
+std::optional<WrenchCommand> decode(const fathom_lcm::wrench_command_t& message) {
+  if (!finite(message.tau) || !finite(message.life)) return {};
+  return WrenchCommand{.utime = message.utime, .tau = vector(message.tau), .life = message.life};
+}
+
+fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
+  fathom_lcm::wrench_command_t message{};
+  message.utime = sample.utime;
+  put(sample.tau, message.tau);
+  message.life = sample.life;
+  return message;
+}
+
+std::optional<Operator> decode(const fathom_lcm::operator_t& message) {
+  // An abort must never be refused for a bad number that nobody will use.
+  const bool usable = finite(message.tau);
+  if (!usable && message.abort == 0) return {};
+  return Operator{.utime = message.utime,
+                  .abort = message.abort != 0,
+                  .enable = message.enable != 0,
+                  .order = message.order,
+                  .tau = usable ? vector(message.tau) : Vector6d(Vector6d::Zero())};
+}
+
+fathom_lcm::operator_t encode(const Operator& sample) {
+  fathom_lcm::operator_t message{};
+  message.utime = sample.utime;
+  message.abort = sample.abort;
+  message.enable = sample.enable;
+  message.order = sample.order;
+  put(sample.tau, message.tau);
+  return message;
+}
+
+std::optional<Excitation> decode(const fathom_lcm::excitation_t& message) {
+  if (!finite(message.elapsed) || !finite(message.duration) || !finite(message.probe)) return {};
+  return Excitation{.utime = message.utime,
+                    .active = message.active != 0,
+                    .signal = message.signal,
+                    .reason = message.reason,
+                    .elapsed = message.elapsed,
+                    .duration = message.duration,
+                    .probe = vector(message.probe)};
+}
+
+fathom_lcm::excitation_t encode(const Excitation& sample) {
+  fathom_lcm::excitation_t message{};
+  message.utime = sample.utime;
+  message.active = sample.active;
+  message.signal = sample.signal;
+  message.reason = sample.reason;
+  message.elapsed = sample.elapsed;
+  message.duration = sample.duration;
+  put(sample.probe, message.probe);
+  return message;
+}
+
+std::optional<Truth> decode(const fathom_lcm::truth_t& message) {
+  if (!finite(message.p_WB) || !unit(message.q_WB) || !finite(message.nu)) return {};
+  if (!finite(message.nu_dot) || !finite(message.v_WF) || !finite(message.tau_felt)) return {};
+  return Truth{.utime = message.utime,
+               .p_WB = vector(message.p_WB),
+               .q_WB = quaternion(message.q_WB),
+               .nu = vector(message.nu),
+               .nu_dot = vector(message.nu_dot),
+               .v_WF = vector(message.v_WF),
+               .tau_felt = vector(message.tau_felt)};
+}
+
+fathom_lcm::truth_t encode(const Truth& sample) {
+  fathom_lcm::truth_t message{};
+  message.utime = sample.utime;
+  put(sample.p_WB, message.p_WB);
+  put(sample.q_WB, message.q_WB);
+  put(sample.nu, message.nu);
+  put(sample.nu_dot, message.nu_dot);
+  put(sample.v_WF, message.v_WF);
+  put(sample.tau_felt, message.tau_felt);
+  return message;
+}
+
+std::optional<Health> decode(const fathom_lcm::health_t& message) {
+  if (!finite(message.busy)) return {};
+  return Health{.utime = message.utime,
+                .process = message.process,
+                .state = message.state,
+                .received = message.received,
+                .published = message.published,
+                .dropped = message.dropped,
+                .rejected = message.rejected,
+                .busy = message.busy,
+                .detail = message.detail};
+}
+
+fathom_lcm::health_t encode(const Health& sample) {
+  fathom_lcm::health_t message{};
+  message.utime = sample.utime;
+  message.process = sample.process;
+  message.state = sample.state;
+  message.received = sample.received;
+  message.published = sample.published;
+  message.dropped = sample.dropped;
+  message.rejected = sample.rejected;
+  message.busy = sample.busy;
+  message.detail = sample.detail;
+  return message;
+}
+
+std::optional<ProcessInfo> decode(const fathom_lcm::process_info_t& message) {
+  return ProcessInfo{.utime = message.utime,
+                     .process = message.process,
+                     .version = message.version,
+                     .config = message.config,
+                     .channels = message.channels};
+}
+
+fathom_lcm::process_info_t encode(const ProcessInfo& sample) {
+  fathom_lcm::process_info_t message{};
+  message.utime = sample.utime;
+  message.process = sample.process;
+  message.version = sample.version;
+  message.config = sample.config;
+  message.channels = sample.channels;
+  return message;
+}
+
+}  // namespace fathom::wire
