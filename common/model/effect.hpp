@@ -48,6 +48,8 @@ class Effect {
 
   /// The forms it can take on this data ("thruster 3"); one unnamed form by default. Empty: cannot act or be seen here.
   [[nodiscard]] virtual std::vector<std::string> variants(const Scene&) const { return {""}; }
+  /// True when several forms can act at once, so that results must say which one a number belongs to.
+  [[nodiscard]] virtual bool variants_matter() const { return false; }
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
 

@@ -19,6 +19,7 @@ class AsymmetricDrag final : public Effect {
   std::string_view sentence() const override { return "The hull drags differently in one direction than in the other."; }
   std::string_view revealed_by() const override { return "equal speeds in both directions along the axis"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     constexpr std::array<const char*, 3> kNames{"X_uu", "Y_vv", "Z_ww"};
     std::vector<std::string> names;

@@ -17,6 +17,7 @@ class ThrusterGain final : public Effect {
   std::string_view sentence() const override { return "One thruster gives more or less force than it should."; }
   std::string_view revealed_by() const override { return "sway, surge and yaw at constant thrust: the odd one turns the vehicle"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     if (scene.input_is_wrench) return {};
     std::vector<std::string> names;

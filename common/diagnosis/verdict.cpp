@@ -1,0 +1,150 @@
+#include "common/diagnosis/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace fathom::diagnosis {
+namespace {
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& last = " and ") {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? last : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+/// Numbers of one accepted effect, under names that stay apart when it was accepted in several forms.
+std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& found, bool several) {
+  std::vector<NamedValue> values;
+  const std::vector<NamedValue> all = found.after.parameters();
+  std::size_t place = all.size();
+  for (auto effect = found.after.model.effects.rbegin(); effect != found.after.model.effects.rend(); ++effect) {
+    place -= effect->theta.size();
+    if (effect->effect != judged.effect || effect->variant != judged.variant) continue;
+    for (std::size_t i = 0; i < effect->theta.size(); ++i) {
+      NamedValue value = all[place + i];
+      const std::string own{judged.effect->parameters()[i].name};
+      value.name = judged.variant_name.empty() || !several ? own : judged.variant_name + "." + own;
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
+void list_effects(const SearchResult& found, DiagnosisResult& result) {
+  for (const Judged& judged : found.accepted) {
+    const std::string name{judged.effect->name()};
+    const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(), [&](const Judged& j) { return j.effect == judged.effect; });
+    const std::vector<NamedValue> numbers = numbers_of(judged, found, judged.effect->variants_matter() || forms > 1);
+    const auto known = std::find_if(result.effects.begin(), result.effects.end(), [&](const EffectFound& e) { return e.name == name; });
+    if (known != result.effects.end()) {
+      known->variant += ", " + judged.variant_name;
+      known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
+      known->log_odds = std::max(known->log_odds, judged.log_odds);
+      known->error_reduction = 1.0 - (1.0 - known->error_reduction) * (1.0 - judged.error_reduction);
+      for (const std::string& other : judged.alternatives) {
+        if (std::find(known->alternatives.begin(), known->alternatives.end(), other) == known->alternatives.end()) {
+          known->alternatives.push_back(other);
+        }
+      }
+      continue;
+    }
+    result.effects.push_back({.name = name, .variant = judged.variant_name, .accepted = true, .parameters = numbers,
+                              .log_odds = judged.log_odds, .error_reduction = judged.error_reduction,
+                              .alternatives = judged.alternatives, .sentence = std::string(judged.effect->sentence())});
+  }
+}
+
+void list_candidates(const SearchResult& found, DiagnosisResult& result) {
+  for (const Judged& judged : found.accepted) {
+    const std::string name{judged.effect->name()};
+    const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
+                                    [&](const CandidateTried& c) { return c.name == name; });
+    if (listed) continue;
+    result.candidates.push_back({name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, "accepted"});
+  }
+  for (const Judged& judged : found.refused) {
+    const std::string name{judged.effect->name()};
+    const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
+                                    [&](const CandidateTried& c) { return c.name == name; });
+    if (listed) continue;
+    std::string reason = judged.reason;
+    if (reason.empty()) reason = "weaker than the accepted effects";
+    result.candidates.push_back({name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, reason});
+  }
+  for (const model::Effect* effect : model::all_effects()) {
+    const std::string name{effect->name()};
+    const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
+                                    [&](const CandidateTried& c) { return c.name == name; });
+    if (!listed) result.candidates.push_back({name, "", 0.0, 0.0, {}, "not applicable: the data lacks the signals that it needs"});
+  }
+}
+
+std::string improvement_sentence(const DiagnosisResult& result) {
+  const Interval& change = result.improvement;
+  std::string text = "On runs that no fit has seen, the 5 s prediction error " +
+                     std::string(change.value >= 0.0 ? "falls by " : "grows by ") + percent(std::abs(change.value));
+  if (std::isfinite(change.low) && std::isfinite(change.high)) {
+    text += " (95 % interval " + percent(change.low) + " to " + percent(change.high) + ")";
+  } else {
+    text += " (too little validation data for an interval)";
+  }
+  return text + ". ";
+}
+
+}  // namespace
+
+void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result) {
+  list_effects(found, result);
+  list_candidates(found, result);
+  std::vector<std::string> names, open;
+  for (const EffectFound& effect : result.effects) {
+    names.push_back(effect.name);
+    if (!effect.alternatives.empty()) open.push_back(effect.name + " (or " + joined(effect.alternatives, " or ") + ")");
+  }
+  const bool structure = !left.empty();
+  if (names.empty()) {
+    result.verdict = structure ? "unexplained" : "adequate";
+  } else {
+    result.verdict = open.empty() ? "effect" : "ambiguous";
+  }
+
+  std::string& text = result.paragraph;
+  if (names.empty() && !structure) {
+    text = "The base model explains these runs: none of the " + std::to_string(result.candidates.size()) +
+           " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. ";
+  } else if (names.empty()) {
+    text = "The base model leaves structure in the residual that no known effect explains. ";
+  } else {
+    text = "The motion shows what the base model lacks: " + joined(names) + ". ";
+    for (const EffectFound& effect : result.effects) text += effect.sentence + " ";
+    text += improvement_sentence(result);
+  }
+  if (!open.empty()) {
+    text += "On this data " + joined(open) + " cannot be told apart";
+    for (const Judged& judged : found.accepted) {
+      if (judged.alternatives.empty()) continue;
+      text += "; what would settle it: " + std::string(judged.effect->revealed_by());
+      break;
+    }
+    text += ". ";
+  }
+  if (structure) {
+    std::vector<std::string> words;
+    for (const Association& association : left.first(std::min<std::size_t>(left.size(), 3))) {
+      words.push_back(association.axis + " with " + association.with + " (" + percent(association.share) + " of its variance)");
+    }
+    text += "What is still left in the residual goes with: " + joined(words) + ".";
+  }
+}
+
+}  // namespace fathom::diagnosis

@@ -1,0 +1,17 @@
+// From numbers to words: the verdict, each effect's entry, and one paragraph for the engineer at the tank.
+#pragma once
+
+#include <span>
+
+#include "common/diagnosis/search.hpp"
+#include "common/diagnosis/whiteness.hpp"
+
+namespace fathom::diagnosis {
+
+/// Share of the validation residual's variance that must go with something before structure is called unexplained.
+constexpr double kSmallestAssociation = 0.1;
+
+/// Fills effects, candidates, verdict and paragraph of `result`, whose errors and parameters are already there.
+void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result);
+
+}  // namespace fathom::diagnosis
