@@ -171,7 +171,9 @@ Config Config::parse(const std::string& text, const std::string& name) {
             fail(key_line, "key '" + key + "' stands here twice (first in line " + std::to_string(other.line) + ")");
           }
         }
-        const std::string key_path = path.empty() ? key : path + "." + key;
+        std::string key_path = path;
+        if (!key_path.empty()) key_path += '.';
+        key_path += key;
         node->entries.push_back({key, key_line, self(self, pair.second, key_line, key_path, depth + 1), false});
       }
     }
@@ -267,13 +269,16 @@ double Config::quantity(const std::string& key, const std::string& unit) const {
 std::vector<double> Config::quantities(const std::string& key, const std::string& unit) const {
   Node::Entry& entry = node_->need(key);
   std::vector<double> values;
+  const auto must_be_finite = [&](const std::string& scalar) {
+    fail(key, "'" + key + "' must be finite, not '" + scalar + "'");
+  };
   const auto read = [&](const std::string& scalar) {
     std::string_view rest = trim(scalar);
     const bool bracket = !rest.empty() && rest.front() == '[';
     if (bracket) rest = trim(rest.substr(1));
     const std::size_t first = values.size();
     while (const auto number = number_at(rest)) {
-      if (!std::isfinite(number->value)) fail(key, "'" + key + "' must be finite, not '" + scalar + "'");
+      if (!std::isfinite(number->value)) must_be_finite(scalar);
       values.push_back(number->value);
       rest = trim(rest.substr(number->used));
       if (!rest.empty() && rest.front() == ',') rest = trim(rest.substr(1));
@@ -286,11 +291,15 @@ std::vector<double> Config::quantities(const std::string& key, const std::string
       fail(key,
            "'" + key + "' must begin with a number" + (unit.empty() ? "" : " in " + unit) + ", not '" + scalar + "'");
     }
+    double factor{};
     try {
-      const double factor = unit_factor(rest, unit);
-      for (std::size_t i = first; i < values.size(); ++i) values[i] *= factor;
+      factor = unit_factor(rest, unit);
     } catch (const InputError& error) {
       fail(key, "'" + key + "': " + error.what());
+    }
+    for (std::size_t i = first; i < values.size(); ++i) {
+      values[i] *= factor;
+      if (!std::isfinite(values[i])) must_be_finite(scalar);
     }
   };
   if (entry.value->kind == Node::Kind::kScalar) {

@@ -1,162 +1,22 @@
 #include "common/tables/import.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <optional>
-#include <set>
-#include <span>
 
 #include "common/base/error.hpp"
-#include "common/base/spatial.hpp"
+#include "common/tables/readers.hpp"
 
 namespace fathom::tables {
 namespace {
-
-constexpr double kMaxSeconds = 9e9;      // beyond, a double no longer resolves a microsecond
-constexpr double kNormTolerance = 0.01;  // a quaternion interpolated across a sign flip is shorter than this
-constexpr double kSmallestNorm = 1e-3;   // below, the direction of a quaternion means nothing
-constexpr double kGapPeriods = 5.0;      // a step of this many median periods is reported as a gap
-
-using ColumnData = const std::vector<double>*;
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-std::string in_seconds(double seconds) {
-  std::string text = std::to_string(std::round(seconds * 1e3) * 1e-3);
-  return text.substr(0, text.size() - 3) + " s";
-}
-
-// Finds columns once, remembers which were used, and complains in the words of the map.
-class Resolver {
- public:
-  explicit Resolver(const CsvTable& table) : table_(table) {}
-
-  ColumnData operator()(const Column& column) {
-    const std::string where = column.where.empty() ? "" : column.where + ": ";
-    ColumnData data = table_.find(column.name);
-    if (data == nullptr) {
-      throw InputError(where + "column '" + column.name + "' is not in " + table_.path +
-                       ", which has: " + joined(table_.names));
-    }
-    if (used_.insert(column.name).second &&
-        std::none_of(data->begin(), data->end(), [](double x) { return std::isfinite(x); })) {
-      throw InputError(table_.path + ": column '" + column.name + "' holds no number at all");
-    }
-    return data;
-  }
-
-  std::vector<ColumnData> operator()(const std::vector<Column>& columns) {
-    std::vector<ColumnData> data;
-    for (const Column& column : columns) data.push_back((*this)(column));
-    return data;
-  }
-
-  [[nodiscard]] std::vector<std::string> unused() const {
-    std::vector<std::string> names;
-    for (const std::string& name : table_.names) {
-      if (!used_.contains(name)) names.push_back(name);
-    }
-    return names;
-  }
-
- private:
-  const CsvTable& table_;
-  std::set<std::string> used_;
-};
-
-// A group of columns, ready to be read row by row.
-class Group {
- public:
-  Group(Resolver& resolve, const ColumnGroup& group)
-      : data_(resolve(group.columns)), factor_(group.factor), to_house_(group.to_house) {}
-
-  [[nodiscard]] bool complete(std::size_t row) const {
-    return std::all_of(data_.begin(), data_.end(), [&](ColumnData column) { return std::isfinite((*column)[row]); });
-  }
-  [[nodiscard]] bool repeats(std::size_t row, std::size_t before) const {
-    return std::all_of(data_.begin(), data_.end(),
-                       [&](ColumnData column) { return (*column)[row] == (*column)[before]; });
-  }
-  [[nodiscard]] std::size_t size() const { return data_.size(); }
-  [[nodiscard]] double raw(std::size_t i, std::size_t row) const { return (*data_[i])[row]; }
-  [[nodiscard]] double scalar(std::size_t row) const { return factor_ * raw(0, row); }
-  [[nodiscard]] Eigen::Vector3d vector(std::size_t row) const {
-    return factor_ * (to_house_ * Eigen::Vector3d(raw(0, row), raw(1, row), raw(2, row)));
-  }
-  [[nodiscard]] std::vector<double> values(std::size_t row) const {
-    std::vector<double> numbers(data_.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = factor_ * raw(i, row);
-    return numbers;
-  }
-
- private:
-  std::vector<ColumnData> data_;
-  double factor_;
-  Eigen::Matrix3d to_house_;
-};
 
 std::optional<Group> optional_group(Resolver& resolve, const std::optional<ColumnGroup>& group) {
   return group ? std::optional<Group>(Group(resolve, *group)) : std::nullopt;
 }
 
-class AttitudeReader {
- public:
-  AttitudeReader(Resolver& resolve, const AttitudeColumns& columns)
-      : group(resolve, columns.group),
-        euler_(columns.euler),
-        factor_(columns.group.factor),
-        world_(columns.world_to_house),
-        body_(columns.body_to_house) {}
-
-  /// Attitude of B in W; `unit` becomes false where the quaternion in the file is not of unit length.
-  [[nodiscard]] Eigen::Quaterniond read(std::size_t row, bool& unit) const {
-    if (euler_) {
-      const Eigen::Vector3d angles(group.raw(0, row), group.raw(1, row), group.raw(2, row));
-      return Eigen::Quaterniond(world_ * rotation_from_euler(factor_ * angles) * body_.toRotationMatrix().transpose());
-    }
-    Eigen::Quaterniond q(group.raw(0, row), group.raw(1, row), group.raw(2, row), group.raw(3, row));
-    const double norm = q.norm();
-    unit = std::abs(norm - 1.0) <= kNormTolerance;
-    if (norm < kSmallestNorm) return Eigen::Quaterniond::Identity();
-    q.coeffs() /= norm;
-    return (world_ * q * body_.conjugate()).normalized();
-  }
-
-  Group group;
-
- private:
-  bool euler_;
-  double factor_;
-  Eigen::Quaterniond world_;
-  Eigen::Quaterniond body_;
-};
-
 std::optional<AttitudeReader> optional_attitude(Resolver& resolve, const std::optional<AttitudeColumns>& columns) {
   return columns ? std::optional<AttitudeReader>(AttitudeReader(resolve, *columns)) : std::nullopt;
 }
-
-class Flags {
- public:
-  Flags(Resolver& resolve, const std::vector<Column>& columns) : data_(resolve(columns)) {}
-  /// True when any flag is set, or cannot be read.
-  [[nodiscard]] bool set(std::size_t row) const {
-    return std::any_of(data_.begin(), data_.end(), [&](ColumnData column) { return (*column)[row] != 0.0; });
-  }
-
- private:
-  std::vector<ColumnData> data_;
-};
-
-struct Rows {
-  std::vector<std::size_t> index;
-  std::vector<Utime> utime;
-};
 
 // What happened to one stream, as sentences.
 struct Count {
@@ -178,52 +38,6 @@ struct Count {
   }
 };
 
-Rows read_time(const CsvTable& table, const Group& time, std::vector<std::string>& notes) {
-  Rows rows;
-  std::size_t missing = 0;
-  std::size_t falling = 0;
-  std::size_t first_falling = 0;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double seconds = time.scalar(row);
-    if (!std::isfinite(seconds)) {
-      ++missing;
-      continue;
-    }
-    if (std::abs(seconds) > kMaxSeconds) {
-      throw InputError(table.where(row) + ": time " + std::to_string(seconds) + " s is too large; is its unit right?");
-    }
-    const Utime utime = utime_after(0, seconds);
-    if (!rows.utime.empty() && utime <= rows.utime.back()) {
-      if (falling++ == 0) first_falling = row;
-      continue;
-    }
-    rows.index.push_back(row);
-    rows.utime.push_back(utime);
-  }
-  if (falling > 0 && 2 * falling >= table.rows()) {
-    throw InputError(table.where(first_falling) + ": time does not rise here nor in " + std::to_string(falling - 1) +
-                     " more of " + std::to_string(table.rows()) +
-                     " rows; is it the time column, and is its unit right?");
-  }
-  if (missing > 0) notes.push_back("time: " + std::to_string(missing) + " rows dropped (empty or NaN)");
-  if (falling > 0) {
-    notes.push_back("time: " + std::to_string(falling) + " rows dropped because time did not rise, first at " +
-                    table.where(first_falling));
-  }
-  if (rows.utime.size() < 3) return rows;
-  std::vector<Utime> steps;
-  for (std::size_t i = 1; i < rows.utime.size(); ++i) steps.push_back(rows.utime[i] - rows.utime[i - 1]);
-  const auto longest = std::max_element(steps.begin(), steps.end()) - steps.begin();
-  const double gap = static_cast<double>(steps[static_cast<std::size_t>(longest)]) * 1e-6;
-  auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  if (gap > kGapPeriods * static_cast<double>(*middle) * 1e-6) {
-    notes.push_back("time: the longest gap is " + in_seconds(gap) + ", after " +
-                    in_seconds(seconds_between(0, rows.utime[static_cast<std::size_t>(longest)])));
-  }
-  return rows;
-}
-
 // Calls use(row, utime) for every row in which all of `groups` hold numbers; counts the others.
 template <typename Use>
 void each_complete(const Rows& rows, const std::vector<const Group*>& groups, Count& count, const Use& use) {
@@ -237,26 +51,6 @@ void each_complete(const Rows& rows, const std::vector<const Group*>& groups, Co
   }
 }
 
-// Tells whether a row repeats the one before it, by flag or by comparing.
-class HeldReader {
- public:
-  HeldReader(Resolver& resolve, const HeldRule& rule)
-      : flags_(resolve, rule.flag ? std::vector<Column>{*rule.flag} : std::vector<Column>{}), detect_(rule.detect) {}
-
-  bool held(std::size_t row, const std::vector<const Group*>& groups) {
-    const bool repeats = detect_ && before_ && std::all_of(groups.begin(), groups.end(), [&](const Group* group) {
-                           return group->repeats(row, *before_);
-                         });
-    before_ = row;
-    return repeats || flags_.set(row);
-  }
-
- private:
-  Flags flags_;
-  bool detect_;
-  std::optional<std::size_t> before_;
-};
-
 void import_pose(Resolver& resolve, const PoseColumns& columns, const Rows& rows, const CsvTable& table,
                  Imported& out) {
   const auto position = optional_group(resolve, columns.position);
@@ -265,7 +59,7 @@ void import_pose(Resolver& resolve, const PoseColumns& columns, const Rows& rows
   HeldReader held(resolve, columns.held);
   std::vector<const Group*> groups;
   if (position) groups.push_back(&*position);
-  if (attitude) groups.push_back(&attitude->group);
+  if (attitude) groups.push_back(&attitude->group());
   Count count{.stream = "pose_capture"};
   auto& poses = out.recording.pose_capture;
   poses.reserve(rows.index.size());
@@ -294,7 +88,7 @@ void import_ahrs(Resolver& resolve, const AhrsColumns& columns, const Rows& rows
   std::vector<const Group*> groups;
   if (rates) groups.push_back(&*rates);
   if (specific_force) groups.push_back(&*specific_force);
-  if (attitude) groups.push_back(&attitude->group);
+  if (attitude) groups.push_back(&attitude->group());
   Count count{.stream = "ahrs"};
   auto& samples = out.recording.ahrs;
   samples.reserve(rows.index.size());

@@ -71,6 +71,8 @@ TEST_CASE("config: complaints are one line that names file, line and remedy") {
   CHECK(message_of("mass: nan kg\n", mass) == "v.yaml:1: 'mass' must be finite, not 'nan kg'");
   CHECK(message_of("mass: .inf\n", mass).rfind("v.yaml:1: ", 0) == 0);
   CHECK(message_of("mass: 1e999 kg\n", mass).rfind("v.yaml:1: ", 0) == 0);
+  CHECK(message_of("mass: 1e308 (kg kg kg)/(g g)\n", mass) ==
+        "v.yaml:1: 'mass' must be finite, not '1e308 (kg kg kg)/(g g)'");
   CHECK(message_of("mass: 1 2 kg\n", mass) == "v.yaml:1: 'mass' must be one number, not 2");
   CHECK(message_of("mass:\n", mass) == "v.yaml:1: 'mass' must be a number in kg");
   CHECK(message_of("a: 1\n", mass) == "v.yaml:1: key 'mass' is missing");
