@@ -3,11 +3,12 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/model/base_parameters.hpp"
+#include "common/model/wide_prior.hpp"
 
 namespace fathom::model {
 namespace {
@@ -169,17 +170,16 @@ void check_authority(const Config& config, const Vehicle& vehicle) {
   }
 }
 
-Prior read_prior(const Config& config, const std::string& name, const BaseParameter& parameter) {
-  const std::string unit{parameter.unit};
-  const Config section = config.section(name);
-  const Prior prior{section.quantity("mean", unit), section.quantity("sigma", unit)};
+Prior read_prior(const Config& config, const std::string& key, BaseParameter parameter) {
+  const std::string wanted{unit(parameter)};
+  const Config section = config.section(key);
+  const Prior prior{section.quantity("mean", wanted), section.quantity("sigma", wanted)};
   if (prior.sigma <= 0.0) section.fail("sigma", "'sigma' must be positive");
-  if (parameter.kind == ParameterKind::kInertia && prior.mean <= 0.0) {
-    section.fail("mean", "'" + name + "' must be positive");
+  if (sign_constraint(parameter) > 0 && prior.mean <= 0.0) {
+    section.fail("mean", "'" + key + "' must be positive");
   }
-  const bool drag = parameter.kind == ParameterKind::kLinearDrag || parameter.kind == ParameterKind::kQuadraticDrag;
-  if (drag && prior.mean > 0.0) {
-    section.fail("mean", "'" + name + "' must not be positive: drag opposes motion (Fossen's sign)");
+  if (sign_constraint(parameter) < 0 && prior.mean > 0.0) {
+    section.fail("mean", "'" + key + "' must not be positive: drag opposes motion (Fossen's sign)");
   }
   return prior;
 }
@@ -194,8 +194,8 @@ void read_parameters(const Config& config, Vehicle& vehicle) {
   if (config.has("priors")) {
     const Config priors = config.section("priors");
     for (const std::string& name : priors.keys()) {
-      const BaseParameter* parameter = find_base_parameter(name);
-      if (parameter == nullptr)
+      const std::optional<BaseParameter> parameter = parameter_from_name(name);
+      if (!parameter)
         priors.fail(name, "'" + name + "' is no base parameter (docs/configuration.md lists them)");
       if (std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
         priors.fail(name, "'" + name + "' has a prior but is not enabled; add it to 'parameters' or free its motion");
@@ -204,8 +204,8 @@ void read_parameters(const Config& config, Vehicle& vehicle) {
     }
   }
   for (const std::string& name : vehicle.parameters) {
-    const BaseParameter* parameter = find_base_parameter(name);
-    if (parameter == nullptr) {
+    const std::optional<BaseParameter> parameter = parameter_from_name(name);
+    if (!parameter) {
       config.fail("parameters", "'" + name + "' is no base parameter (docs/configuration.md lists them)");
     }
     if (std::count(vehicle.parameters.begin(), vehicle.parameters.end(), name) > 1) {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/base/error.hpp"
-#include "common/model/base_parameters.hpp"
+#include "common/model/parameters.hpp"
 #include "common/tables/import.hpp"
 
 using fathom::InputError;
@@ -194,11 +194,11 @@ TEST_CASE("bluerov2: the file loads and its thrusters reach every motion it name
   CHECK(vehicle.curve.force_at(1500.0) == 0.0);
 }
 
-TEST_CASE("base parameters: every name is found again, with a unit that the unit reader knows") {
-  CHECK(fathom::model::find_base_parameter("X_v") == nullptr);
-  for (const auto& one : fathom::model::base_parameters()) {
-    CHECK(fathom::model::find_base_parameter(one.name) == &one);
-    CHECK_FALSE(one.unit.empty());
+TEST_CASE("base parameters: every name is found again") {
+  CHECK_FALSE(fathom::model::parameter_from_name("X_v").has_value());
+  for (const auto one : fathom::model::base_parameters()) {
+    CHECK(fathom::model::parameter_from_name(fathom::model::name(one)) == one);
+    CHECK_FALSE(fathom::model::unit(one).empty());
   }
 }
 
