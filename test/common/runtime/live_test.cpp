@@ -31,10 +31,15 @@ struct Listener {
   std::vector<fathom_lcm::health_t> health;
   int infos{};
   int depths{};
-  void on_health(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::health_t* m) { health.push_back(*m); }
-  void on_info(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::process_info_t*) { ++infos; }
-  void on_depth(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::depth_t*) { ++depths; }
 };
+using Buffer = lcm::ReceiveBuffer;
+void on_health(const Buffer*, const std::string&, const fathom_lcm::health_t* message, Listener* listener) {
+  listener->health.push_back(*message);
+}
+void on_info(const Buffer*, const std::string&, const fathom_lcm::process_info_t*, Listener* listener) {
+  ++listener->infos;
+}
+void on_depth(const Buffer*, const std::string&, const fathom_lcm::depth_t*, Listener* listener) { ++listener->depths; }
 
 struct Outcome {
   int code{-1};
@@ -101,9 +106,9 @@ TEST_CASE("live: messages pass, health is told once a second, overflow is counte
     return;
   }
   Listener listener;
-  bus.subscribe("HEALTH", &Listener::on_health, &listener);
-  bus.subscribe("PROCESS_INFO", &Listener::on_info, &listener);
-  auto* echo = bus.subscribe("ECHO", &Listener::on_depth, &listener);
+  bus.subscribeFunction("HEALTH", on_health, &listener);
+  bus.subscribeFunction("PROCESS_INFO", on_info, &listener);
+  auto* echo = bus.subscribeFunction("ECHO", on_depth, &listener);
   echo->setQueueCapacity(0);
   const Outcome outcome = converse(bus, false, [&](std::atomic<bool>& sent) {
     // While the handler is busy, 1500 messages arrive: 1000 may wait, and of the batteries only the last counts.
@@ -147,7 +152,7 @@ TEST_CASE("live: an exception in a handler is told as a fault and is exit code 1
   lcm::LCM bus{own_bus()};
   if (!bus.good()) return;
   Listener listener;
-  bus.subscribe("HEALTH", &Listener::on_health, &listener);
+  bus.subscribeFunction("HEALTH", on_health, &listener);
   const Outcome outcome = converse(bus, true, [](std::atomic<bool>&) {});
   hear(bus, 50ms);
   CHECK(outcome.code == 1);
