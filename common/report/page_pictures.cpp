@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 1200;    // per curve: one per pixel of a wide screen is plenty
 constexpr std::size_t kPointBudget = 60000;  // of all curves together: keeps the page small with many runs
+constexpr double kCloseUp = 60.0;            // s: six windows of 10 s
 constexpr std::size_t kDependenceBins = 10;
 
 const PredictionError* at_horizon(const ModelError& error, double horizon) {
@@ -36,10 +37,10 @@ std::string pair(const std::string& before, const std::string& after) {
 }
 
 std::string error_table(const DiagnosisResult& result) {
-  std::string html = "<table><tr><th></th>";
+  std::string html = "<table class=\"errors\"><tr><th></th>";
   std::string second = "<tr><th>Axis</th>";
   for (const double h : horizons(result)) {
-    html += "<th colspan=\"4\">" + escape(number(h, 2)) + " s ahead</th>";
+    html += "<th class=\"group\" colspan=\"4\">" + escape(plain(h)) + " s ahead</th>";
     second += "<th class=\"n\" colspan=\"2\">rms error</th><th class=\"n\" colspan=\"2\">R²</th>";
   }
   html += "</tr>\n" + second + "</tr>\n";
@@ -67,11 +68,14 @@ bool drawable(const PredictionTrace& trace, std::size_t axis) {
   return std::ranges::any_of(trace.before, finite) || std::ranges::any_of(trace.after, finite);
 }
 
+// Without decimals: "0 %" for a little.
+std::string whole_percent(double share) { return plain(std::round(100.0 * share)) + " %"; }
+
 // White to the given colour; the number on it stays readable.
 std::string shade(double share, const char* rgb) {
   if (!std::isfinite(share)) return "<span>-</span>";
   return "<span style=\"background:rgba(" + std::string(rgb) + "," + number(0.06 + 0.64 * std::sqrt(share), 2) +
-         ")\">" + escape(percent(share)) + "</span>";
+         ")\">" + escape(whole_percent(share)) + "</span>";
 }
 
 struct AxisStudy {
@@ -166,7 +170,7 @@ std::string error_section(const DiagnosisResult& result, Album& album) {
 std::string motion_section(const DiagnosisReport& report, Album& album) {
   std::size_t curves = 0;
   for (const auto& trace : report.traces) {
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) curves += drawable(trace, axis) ? 3 : 0;
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) curves += drawable(trace, axis) ? 6 : 0;
   }
   if (curves == 0) return "";
   const std::size_t points = std::clamp<std::size_t>(kPointBudget / curves, 150, kMostPoints);
@@ -175,13 +179,18 @@ std::string motion_section(const DiagnosisReport& report, Album& album) {
       "simulation "
       "takes the measured motion and then runs on thruster commands alone until the next line. The closer the coloured "
       "curves "
-      "stay to the dark one, the better the model. A curve that leaves the frame is cut at its edge.</p>\n";
+      "stay to the dark one, the better the model. A curve that leaves the frame is cut at its edge. The close-up is a "
+      "typical stretch: half of the others are predicted better by the base model, half worse.</p>\n";
   for (const auto& trace : report.traces) {
     std::string pictures;
+    const auto close_up = typical_stretch(trace, kCloseUp);
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      if (drawable(trace, axis)) pictures += "<figure>" + album.place(draw_motion(trace, axis, points)) + "</figure>\n";
+      if (!drawable(trace, axis)) continue;
+      pictures += "<figure>" + album.place(draw_motion(trace, axis, points)) + "</figure>\n";
+      if (close_up) pictures += "<figure>" + album.place(draw_motion(trace, axis, points, close_up)) + "</figure>\n";
     }
-    if (!pictures.empty()) html += "<h3>Run " + escape(trace.run) + "</h3>\n" + pictures;
+    if (!pictures.empty())
+      html += "<h3>Run " + escape(trace.run) + "</h3>\n<div class=\"grid" + " pair" + "\">" + pictures + "</div>\n";
   }
   return html + "</section>\n";
 }

@@ -38,6 +38,15 @@ struct Memory {
   double band{};  ///< half width of the 95 % band of a series without memory
 };
 
+/// Samples [begin, end) of a trace.
+struct Stretch {
+  std::size_t begin{};
+  std::size_t end{};
+};
+
+/// The stretch of about `seconds` in which the base model errs by its median: neither the best nor the worst is shown
+/// in close-up. Nothing when the trace is hardly longer than that.
+[[nodiscard]] std::optional<Stretch> typical_stretch(const PredictionTrace& trace, double seconds);
 /// Nothing where the axis has no residual.
 [[nodiscard]] std::optional<Leftover> leftover(std::span<const PredictionTrace> traces, std::size_t axis);
 /// What the residual of this axis is held against; quantities that were not recorded or never changed are left out.
@@ -48,7 +57,9 @@ struct Memory {
                                        double samples_per_lag);
 
 [[nodiscard]] Figure draw_errors(const DiagnosisResult& result, std::size_t axis);
-[[nodiscard]] Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t max_points);
+/// The whole run, or the close-up of a part of it.
+[[nodiscard]] Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t max_points,
+                                 const std::optional<Stretch>& close_up = std::nullopt);
 [[nodiscard]] Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::size_t axis);
 [[nodiscard]] Figure draw_memory(const Memory& memory, std::size_t axis);
 
