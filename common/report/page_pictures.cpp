@@ -94,14 +94,11 @@ std::vector<AxisStudy> studies(const DiagnosisReport& report) {
     if (!left) continue;
     AxisStudy study{axis, std::move(*left), quantities(report.traces, axis), {}, {}, 0.0};
     const Memory m = memory(report.traces, axis);
-    const double samples_per_lag = m.lag.size() < 2 || report.traces.front().t.size() < 2
-                                       ? 1.0
-                                       : m.lag[1] / (report.traces.front().t[1] - report.traces.front().t[0]);
-    const double free_before = effective_samples(study.left.before, m.before, samples_per_lag);
-    const double free_after = effective_samples(study.left.after, m.after, samples_per_lag);
+    const double share_before = independent_share(m, m.before);
+    const double share_after = independent_share(m, m.after);
     for (const Quantity& q : study.against) {
-      study.follows_before.push_back(dependence(q.values, study.left.before, kDependenceBins, free_before));
-      study.follows_after.push_back(dependence(q.values, study.left.after, kDependenceBins, free_after));
+      study.follows_before.push_back(dependence(q.values, study.left.before, kDependenceBins, share_before));
+      study.follows_after.push_back(dependence(q.values, study.left.after, kDependenceBins, share_after));
       if (study.follows_after.back() > study.worst) study.worst = study.follows_after.back();
     }
     all.push_back(std::move(study));
@@ -205,7 +202,7 @@ std::string leftover_section(const DiagnosisReport& report, Album& album) {
       "of the "
       "leftover that follows the quantity, beyond chance, <span class=\"b\">before</span> and <span "
       "class=\"a\">after</span>. "
-      "Stronger colour: more is still hidden there.</p>\n" +
+      "Stronger colour: more is still hidden there; a dash: too little data to say.</p>\n" +
       overview(all) +
       "<p>Below, axis by axis: dots are samples, the line joins the medians of ten groups, the vertical bars span the "
       "middle "

@@ -145,6 +145,7 @@ Memory memory(std::span<const PredictionTrace> traces, std::size_t axis) {
   if (dt <= 0.0) return result;
   const double longest = std::min(kLongestLag, 0.25 * duration);
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(longest / dt / (kLags - 1) - 1e-6)));
+  result.samples_per_lag = stride;
   const auto count = static_cast<std::size_t>(longest / (dt * static_cast<double>(stride)) + 1e-6) + 1;
   for (std::size_t i = 0; i < count; ++i) result.lag.push_back(dt * static_cast<double>(i * stride));
   result.before = autocorrelation(records[0], stride, count);
@@ -157,13 +158,11 @@ Memory memory(std::span<const PredictionTrace> traces, std::size_t axis) {
   return result;
 }
 
-double effective_samples(const std::vector<double>& series, const std::vector<double>& correlation,
-                         double samples_per_lag) {
-  const auto samples = static_cast<double>(std::ranges::count_if(series, [](double v) { return std::isfinite(v); }));
+double independent_share(const Memory& memory, const std::vector<double>& correlation) {
   // Integrated up to the first crossing of zero (Sokal's window in its simplest form).
   double integral = 0.5;
   for (std::size_t i = 1; i < correlation.size() && correlation[i] > 0.0; ++i) integral += correlation[i];
-  return samples / std::max(1.0, 2.0 * integral * samples_per_lag);
+  return 1.0 / std::max(1.0, 2.0 * integral * static_cast<double>(memory.samples_per_lag));
 }
 
 Figure draw_errors(const DiagnosisResult& result, std::size_t axis) {

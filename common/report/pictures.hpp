@@ -35,6 +35,7 @@ struct Memory {
   std::vector<double> lag;  ///< s
   std::vector<double> before;
   std::vector<double> after;
+  std::size_t samples_per_lag{1};
   double band{};  ///< half width of the 95 % band of a series without memory
 };
 
@@ -52,9 +53,8 @@ struct Stretch {
 /// What the residual of this axis is held against; quantities that were not recorded or never changed are left out.
 [[nodiscard]] std::vector<Quantity> quantities(std::span<const PredictionTrace> traces, std::size_t axis);
 [[nodiscard]] Memory memory(std::span<const PredictionTrace> traces, std::size_t axis);
-/// Independent samples among those of one series, from its autocorrelation.
-[[nodiscard]] double effective_samples(const std::vector<double>& series, const std::vector<double>& correlation,
-                                       double samples_per_lag);
+/// Independent samples per sample of a series with this autocorrelation: 1 without memory.
+[[nodiscard]] double independent_share(const Memory& memory, const std::vector<double>& correlation);
 
 [[nodiscard]] Figure draw_errors(const DiagnosisResult& result, std::size_t axis);
 /// The whole run, or the close-up of a part of it.
