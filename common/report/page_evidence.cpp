@@ -45,6 +45,7 @@ std::string odds_html(double log_odds) {
 
 std::string titles(const std::vector<std::string>& names) {
   std::vector<std::string> words;
+  words.reserve(names.size());
   for (const auto& name : names) words.push_back(effect_title(name));
   return join(words, ", ");
 }

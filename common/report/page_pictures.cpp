@@ -26,8 +26,7 @@ std::vector<double> horizons(const DiagnosisResult& result) {
     for (const auto& p : error->prediction) all.push_back(p.horizon_s);
   }
   std::ranges::sort(all);
-  const auto repeated = std::ranges::unique(all);
-  all.erase(repeated.begin(), repeated.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
