@@ -13,15 +13,16 @@ namespace fathom::report {
 namespace {
 
 struct Meaning {
-  const char* css;
-  const char* words;
+  std::string css;
+  std::string words;
 };
 
 Meaning meaning(const std::string& verdict) {
   if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
   if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
   if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
-  return {"unexplained", "Something is missing, and none of the known causes fits"};
+  if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
+  return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
 }
 
 std::string tile(const std::string& big, const std::string& small) {
@@ -43,8 +44,7 @@ const char* kKey =
     "<div class=\"key\"><span><i style=\"border-color:#22262b\"></i>measured</span>"
     "<span><i style=\"border-color:#e07b00\"></i>before: base model</span>"
     "<span><i style=\"border-color:#0a5ea8\"></i>after: with the accepted effects</span>"
-    "<span class=\"soft\">u, v, w: forward, right, down. p, q, r: roll, pitch, yaw rates (nose right "
-    "positive)</span></div>\n";
+    "<span class=\"soft\">u v w: forward, right, down; p q r: roll, pitch, yaw rate</span></div>\n";
 
 const char* kWords =
     "<section><h2>Words used here</h2><dl>"

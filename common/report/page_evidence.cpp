@@ -34,8 +34,18 @@ std::string bar(const Scale& scale, double value) {
   return html + "<u style=\"left:" + per_cent(zero) + "\"></u></div>";
 }
 
+// "10^23 : 1" with a raised exponent.
+std::string odds_html(double log_odds) {
+  std::string html = escape(odds(log_odds));
+  const std::size_t hat = html.find('^');
+  if (hat == std::string::npos) return html;
+  const std::size_t end = std::min(html.find(' ', hat), html.size());
+  return html.substr(0, hat) + "<sup>" + html.substr(hat + 1, end - hat - 1) + "</sup>" + html.substr(end);
+}
+
 std::string titles(const std::vector<std::string>& names) {
   std::vector<std::string> words;
+  words.reserve(names.size());
   for (const auto& name : names) words.push_back(effect_title(name));
   return join(words, ", ");
 }
@@ -69,7 +79,7 @@ std::string parameter_row(const NamedValue* before, const NamedValue* after) {
     high = std::fmax(high, std::fmax(w.high, w.value));
   }
   return "<tr>" + cell(escape(any.name), "k") + interval_cell(before) + interval_cell(after) + cell(escape(any.unit)) +
-         cell(whiskers(rows, low, high, 0.0)) + "</tr>\n";
+         cell(whiskers(rows, low, high, 0.0), "mid") + "</tr>\n";
 }
 
 }  // namespace
@@ -117,7 +127,7 @@ std::string candidate_section(const DiagnosisResult& result) {
       "it, to the left against it (the scale is compressed). \"Error removed\" is the share of the error that goes "
       "when "
       "the effect joins the model.</p>\n<table>" +
-      heading_cells({"Suspected cause", "", "evidence (log odds)", "", "odds", "error removed", "", "why"}, {2, 4, 5});
+      heading_cells({"Suspected cause", "evidence: log odds (odds)", "error removed", "why"}, {});
   std::vector<const CandidateTried*> ranked;
   for (const auto& candidate : result.candidates) ranked.push_back(&candidate);
   // Not a number ranks last, so that the order stays strict.
@@ -142,12 +152,14 @@ std::string candidate_section(const DiagnosisResult& result) {
       why += std::string(why.empty() ? "" : " ") + "<b>Looks the same as " + escape(titles(c->aliased_with)) +
              " on this data.</b>";
     }
+    const std::string mark = found ? "<span class=\"mark\">accepted</span>" : "<span class=\"mark no\">refused</span>";
+    const std::string score =
+        std::isnan(c->log_odds) ? "not scored" : escape(number(c->log_odds)) + " (" + odds_html(c->log_odds) + ")";
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
-            cell(escape(effect_title(c->name, c->variant)), "k") +
-            cell(found ? "<span class=\"mark\">accepted</span>" : "<span class=\"mark no\">refused</span>") +
-            cell(escape(number(c->log_odds)), "n") + cell(bar(evidence, compressed(c->log_odds))) +
-            cell(escape(odds(c->log_odds)), "n") + cell(escape(percent(c->error_reduction)), "n") +
-            cell(bar(error, c->error_reduction)) + cell(why) + "</tr>\n";
+            cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
+            cell(bar(evidence, compressed(c->log_odds)) + "<div>" + score + "</div>", "bars") +
+            cell(bar(error, c->error_reduction) + "<div>" + escape(percent(c->error_reduction)) + "</div>", "bars") +
+            cell(why) + "</tr>\n";
   }
   return html + "</table></section>\n";
 }
@@ -174,8 +186,9 @@ std::string parameter_section(const DiagnosisResult& result) {
   }
   if (rows.empty()) return html + "<p>No parameter was fitted.</p></section>\n";
   return html + "<table>" +
-         heading_cells({"Parameter", "before", "after", "unit", "before (orange) and after (blue)"}, {1, 2}) + rows +
-         "</table></section>\n";
+         heading_cells({"Parameter", "before", "after", "unit", "before (orange, above) and after (blue, below)"},
+                       {1, 2}) +
+         rows + "</table></section>\n";
 }
 
 std::string certainty_section(const DiagnosisResult& result) {
@@ -198,7 +211,7 @@ std::string certainty_section(const DiagnosisResult& result) {
   for (const auto& effect : result.effects) {
     if (!effect.sentence.empty()) {
       html += "<p class=\"note\">" + escape(effect.sentence) + " <b>Evidence: " + escape(strength(effect.log_odds)) +
-              " (" + escape(odds(effect.log_odds)) + ").</b></p>\n";
+              " (" + odds_html(effect.log_odds) + ").</b></p>\n";
     }
     if (!effect.alternatives.empty()) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +

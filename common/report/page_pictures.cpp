@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 1200;    // per curve: one per pixel of a wide screen is plenty
 constexpr std::size_t kPointBudget = 60000;  // of all curves together: keeps the page small with many runs
+constexpr double kCloseUp = 60.0;            // s: six windows of 10 s
 constexpr std::size_t kDependenceBins = 10;
 
 const PredictionError* at_horizon(const ModelError& error, double horizon) {
@@ -25,8 +26,7 @@ std::vector<double> horizons(const DiagnosisResult& result) {
     for (const auto& p : error->prediction) all.push_back(p.horizon_s);
   }
   std::ranges::sort(all);
-  const auto repeated = std::ranges::unique(all);
-  all.erase(repeated.begin(), repeated.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
@@ -36,10 +36,10 @@ std::string pair(const std::string& before, const std::string& after) {
 }
 
 std::string error_table(const DiagnosisResult& result) {
-  std::string html = "<table><tr><th></th>";
+  std::string html = "<table class=\"errors\"><tr><th></th>";
   std::string second = "<tr><th>Axis</th>";
   for (const double h : horizons(result)) {
-    html += "<th colspan=\"4\">" + escape(number(h, 2)) + " s ahead</th>";
+    html += "<th class=\"group\" colspan=\"4\">" + escape(plain(h)) + " s ahead</th>";
     second += "<th class=\"n\" colspan=\"2\">rms error</th><th class=\"n\" colspan=\"2\">R²</th>";
   }
   html += "</tr>\n" + second + "</tr>\n";
@@ -67,11 +67,14 @@ bool drawable(const PredictionTrace& trace, std::size_t axis) {
   return std::ranges::any_of(trace.before, finite) || std::ranges::any_of(trace.after, finite);
 }
 
+// Without decimals: "0 %" for a little.
+std::string whole_percent(double share) { return plain(std::round(100.0 * share)) + " %"; }
+
 // White to the given colour; the number on it stays readable.
 std::string shade(double share, const char* rgb) {
   if (!std::isfinite(share)) return "<span>-</span>";
   return "<span style=\"background:rgba(" + std::string(rgb) + "," + number(0.06 + 0.64 * std::sqrt(share), 2) +
-         ")\">" + escape(percent(share)) + "</span>";
+         ")\">" + escape(whole_percent(share)) + "</span>";
 }
 
 struct AxisStudy {
@@ -90,14 +93,11 @@ std::vector<AxisStudy> studies(const DiagnosisReport& report) {
     if (!left) continue;
     AxisStudy study{axis, std::move(*left), quantities(report.traces, axis), {}, {}, 0.0};
     const Memory m = memory(report.traces, axis);
-    const double samples_per_lag = m.lag.size() < 2 || report.traces.front().t.size() < 2
-                                       ? 1.0
-                                       : m.lag[1] / (report.traces.front().t[1] - report.traces.front().t[0]);
-    const double free_before = effective_samples(study.left.before, m.before, samples_per_lag);
-    const double free_after = effective_samples(study.left.after, m.after, samples_per_lag);
+    const double share_before = independent_share(m, m.before);
+    const double share_after = independent_share(m, m.after);
     for (const Quantity& q : study.against) {
-      study.follows_before.push_back(dependence(q.values, study.left.before, kDependenceBins, free_before));
-      study.follows_after.push_back(dependence(q.values, study.left.after, kDependenceBins, free_after));
+      study.follows_before.push_back(dependence(q.values, study.left.before, kDependenceBins, share_before));
+      study.follows_after.push_back(dependence(q.values, study.left.after, kDependenceBins, share_after));
       if (study.follows_after.back() > study.worst) study.worst = study.follows_after.back();
     }
     all.push_back(std::move(study));
@@ -166,7 +166,7 @@ std::string error_section(const DiagnosisResult& result, Album& album) {
 std::string motion_section(const DiagnosisReport& report, Album& album) {
   std::size_t curves = 0;
   for (const auto& trace : report.traces) {
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) curves += drawable(trace, axis) ? 3 : 0;
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) curves += drawable(trace, axis) ? 6 : 0;
   }
   if (curves == 0) return "";
   const std::size_t points = std::clamp<std::size_t>(kPointBudget / curves, 150, kMostPoints);
@@ -175,13 +175,18 @@ std::string motion_section(const DiagnosisReport& report, Album& album) {
       "simulation "
       "takes the measured motion and then runs on thruster commands alone until the next line. The closer the coloured "
       "curves "
-      "stay to the dark one, the better the model. A curve that leaves the frame is cut at its edge.</p>\n";
+      "stay to the dark one, the better the model. A curve that leaves the frame is cut at its edge. The close-up is a "
+      "typical stretch: half of the others are predicted better by the base model, half worse.</p>\n";
   for (const auto& trace : report.traces) {
     std::string pictures;
+    const auto close_up = typical_stretch(trace, kCloseUp);
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
-      if (drawable(trace, axis)) pictures += "<figure>" + album.place(draw_motion(trace, axis, points)) + "</figure>\n";
+      if (!drawable(trace, axis)) continue;
+      pictures += "<figure>" + album.place(draw_motion(trace, axis, points)) + "</figure>\n";
+      if (close_up) pictures += "<figure>" + album.place(draw_motion(trace, axis, points, close_up)) + "</figure>\n";
     }
-    if (!pictures.empty()) html += "<h3>Run " + escape(trace.run) + "</h3>\n" + pictures;
+    if (!pictures.empty())
+      html += "<h3>Run " + escape(trace.run) + "</h3>\n<div class=\"grid" + " pair" + "\">" + pictures + "</div>\n";
   }
   return html + "</section>\n";
 }
@@ -196,7 +201,7 @@ std::string leftover_section(const DiagnosisReport& report, Album& album) {
       "of the "
       "leftover that follows the quantity, beyond chance, <span class=\"b\">before</span> and <span "
       "class=\"a\">after</span>. "
-      "Stronger colour: more is still hidden there.</p>\n" +
+      "Stronger colour: more is still hidden there; a dash: too little data to say.</p>\n" +
       overview(all) +
       "<p>Below, axis by axis: dots are samples, the line joins the medians of ten groups, the vertical bars span the "
       "middle "

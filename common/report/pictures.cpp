@@ -30,13 +30,16 @@ std::string block(const char* name, const Polyline& line) {
   return data + "EOD\n";
 }
 
+// Narrow enough to stand over a bar: three decimals, more only for what would vanish.
+std::string short_number(double value) { return number(value, value < 0.01 && value >= 0.002 ? 1 : 2); }
+
 // The axis' name above the upper left corner: upright, and clear of the numbers.
 std::string heading(const std::string& words) {
   return "set label 100 " + quoted(words) + " at graph 0, graph 1 left offset -5, 0.8 textcolor rgb '#22262b'\n";
 }
 
 std::string below(const std::string& words) {
-  return "set xlabel " + quoted(words) + " offset 0, 0.4 textcolor rgb '#444b55'\n";
+  return "set xlabel " + quoted(words) + " offset 0, 0.6 textcolor rgb '#444b55'\n";
 }
 
 std::string range(const char* axis, double low, double high) {
@@ -104,7 +107,9 @@ std::vector<Quantity> quantities(std::span<const PredictionTrace> traces, std::s
   const Axis& a = kAxes[axis];
   std::vector<Quantity> all;
   const auto position = [&](std::size_t i) {
-    return gathered(traces, &PredictionTrace::position, [i](const auto& p) { return p[i]; });
+    return gathered(traces, &PredictionTrace::position, [i](const auto& p) {
+      return p == std::array<double, 3>{} ? kNaN : p[i];  // exactly zero stands for: not observed
+    });
   };
   all.push_back({"time", "time since start [s]", gathered(traces, &PredictionTrace::t, [](double t) { return t; })});
   all.push_back({"north", "position north [m]", position(0)});
@@ -140,6 +145,7 @@ Memory memory(std::span<const PredictionTrace> traces, std::size_t axis) {
   if (dt <= 0.0) return result;
   const double longest = std::min(kLongestLag, 0.25 * duration);
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(longest / dt / (kLags - 1) - 1e-6)));
+  result.samples_per_lag = stride;
   const auto count = static_cast<std::size_t>(longest / (dt * static_cast<double>(stride)) + 1e-6) + 1;
   for (std::size_t i = 0; i < count; ++i) result.lag.push_back(dt * static_cast<double>(i * stride));
   result.before = autocorrelation(records[0], stride, count);
@@ -152,13 +158,11 @@ Memory memory(std::span<const PredictionTrace> traces, std::size_t axis) {
   return result;
 }
 
-double effective_samples(const std::vector<double>& series, const std::vector<double>& correlation,
-                         double samples_per_lag) {
-  const auto samples = static_cast<double>(std::ranges::count_if(series, [](double v) { return std::isfinite(v); }));
+double independent_share(const Memory& memory, const std::vector<double>& correlation) {
   // Integrated up to the first crossing of zero (Sokal's window in its simplest form).
   double integral = 0.5;
   for (std::size_t i = 1; i < correlation.size() && correlation[i] > 0.0; ++i) integral += correlation[i];
-  return samples / std::max(1.0, 2.0 * integral * samples_per_lag);
+  return 1.0 / std::max(1.0, 2.0 * integral * static_cast<double>(memory.samples_per_lag));
 }
 
 Figure draw_errors(const DiagnosisResult& result, std::size_t axis) {
@@ -176,14 +180,14 @@ Figure draw_errors(const DiagnosisResult& result, std::size_t axis) {
   }
   std::ranges::sort(horizons);
   for (std::size_t h = 0; h < horizons.size(); ++h) {
-    ticks += (h ? ", " : "") + quoted(number(horizons[h], 2) + " s") + " " + std::to_string(h);
+    ticks += (h ? ", " : "") + quoted(plain(horizons[h]) + " s ahead") + " " + std::to_string(h);
     for (std::size_t k = 0; k < 2; ++k) {
       for (const auto& p : errors[k]->prediction) {
         if (p.horizon_s != horizons[h] || !std::isfinite(p.rmse[axis])) continue;
         const double value = a.scale * p.rmse[axis];
         top = std::max(top, value);
-        bars[k] +=
-            text(static_cast<double>(h) + (k ? kOffset : -kOffset)) + " " + text(value) + " " + number(value, 2) + "\n";
+        bars[k] += text(static_cast<double>(h) + (k ? kOffset : -kOffset)) + " " + text(value) + " " +
+                   short_number(value) + "\n";
       }
     }
   }
@@ -194,18 +198,63 @@ Figure draw_errors(const DiagnosisResult& result, std::size_t axis) {
                   range("x", -0.55, static_cast<double>(horizons.size()) - 0.45) +
                   range("y", 0.0, top > 0.0 ? 1.15 * top : 1.0) + "unset grid\nset grid ytics\nset ytics 0, " +
                   text(tick_step(top > 0.0 ? top : 1.0)) + "\nset xtics (" + ticks +
-                  ") scale 0\nset boxwidth 0.38\nplot $b w boxes lc rgb '" + kBeforeColour + "', $a w boxes lc rgb '" +
-                  kAfterColour +
+                  ") scale 0\nset boxwidth 0.38\nplot $b u 1:2 w boxes lc rgb '" + kBeforeColour +
+                  "', $a u 1:2 w boxes lc rgb '" + kAfterColour +
                   "', $b u 1:2:3 w labels offset 0,0.6 font ',11' textcolor rgb '#444b55', $a u 1:2:3 w labels offset "
                   "0,0.6 font ',11' textcolor rgb '#22262b'\n";
   return figure;
 }
 
-Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t max_points) {
+std::optional<Stretch> typical_stretch(const PredictionTrace& trace, double seconds) {
+  const double dt = spacing(trace);
+  const std::size_t size = std::min(trace.t.size(), trace.before.size());
+  const std::size_t length = dt > 0.0 ? static_cast<std::size_t>(seconds / dt) : 0;
+  if (length < 10 || 2 * length > size || trace.measured.size() < size) return std::nullopt;
+  std::vector<std::size_t> starts;
+  for (const std::size_t i : trace.restarts) {
+    if (i + length <= size && (starts.empty() || i >= starts.back() + length)) starts.push_back(i);
+  }
+  if (starts.empty()) {
+    for (std::size_t i = 0; i + length <= size; i += length) starts.push_back(i);
+  }
+  const auto squared = [&](std::size_t begin, std::size_t end) {
+    std::array<double, 6> sum{};
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        const double d = trace.before[i][k] - trace.measured[i][k];
+        if (std::isfinite(d)) sum[k] += d * d;
+      }
+    }
+    return sum;
+  };
+  const auto whole = squared(0, size);
+  std::vector<double> errors;  // every axis weighs the same
+  for (const std::size_t start : starts) {
+    const auto part = squared(start, start + length);
+    double error = 0.0;
+    for (std::size_t k = 0; k < 6; ++k) error += whole[k] > 0.0 ? part[k] / whole[k] : 0.0;
+    errors.push_back(error);
+  }
+  const auto median = static_cast<std::size_t>(std::ranges::find(errors, quantile(errors, 0.5)) - errors.begin());
+  return Stretch{starts[median], starts[median] + length};
+}
+
+Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t max_points,
+                   const std::optional<Stretch>& close_up) {
   const Axis& a = kAxes[axis];
-  const auto measured = column(trace.measured, axis, a.scale);
-  auto before = column(trace.before, axis, a.scale);
-  auto after = column(trace.after, axis, a.scale);
+  const std::size_t size = trace.t.size();
+  const Stretch shown = close_up.value_or(Stretch{0, size});
+  const std::size_t count = shown.end - shown.begin;
+  const auto part = [&](const std::vector<std::array<double, 6>>& rows) {
+    auto values = column(rows, axis, a.scale);
+    values.resize(size, kNaN);
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(shown.begin),
+                               values.begin() + static_cast<std::ptrdiff_t>(shown.end));
+  };
+  const std::span<const double> t = std::span(trace.t).subspan(shown.begin, count);
+  const auto measured = part(trace.measured);
+  auto before = part(trace.before);
+  auto after = part(trace.after);
   // A model that runs away must not squeeze the measurement flat: it may leave the frame by half its height.
   double low = quantile(measured, 0.0);
   double high = quantile(measured, 1.0);
@@ -220,20 +269,26 @@ Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t m
     for (double& v : *series) v = clamped(v, floor, ceiling);
   }
   Polyline marks;
+  std::vector<std::size_t> restarts;
   for (const std::size_t i : trace.restarts) {
-    if (i >= trace.t.size()) continue;
+    if (i < shown.begin || i >= shown.end) continue;
+    restarts.push_back(i - shown.begin);
     marks.x.insert(marks.x.end(), {trace.t[i], trace.t[i], kNaN});
     marks.y.insert(marks.y.end(), {floor, ceiling, kNaN});
   }
-  Figure figure{"Measured and predicted " + velocity_label(a) + " of run " + trace.run, 1120, 210};
-  figure.script = block("w", marks) + block("m", decimate(trace.t, measured, max_points)) +
-                  block("b", decimate(trace.t, before, max_points, trace.restarts)) +
-                  block("a", decimate(trace.t, after, max_points, trace.restarts)) + heading(velocity_label(a)) +
-                  below("time [s]") + range("x", trace.t.front(), trace.t.back()) + range("y", floor, ceiling) +
-                  "unset grid\nset grid ytics\nset xzeroaxis lc rgb '#b8bec7' lw 1\n"
-                  "plot $w w l lc rgb '#d3d8de' lw 1, $m w l lc rgb '" +
-                  kMeasuredColour + "' lw 2.2, $b w l lc rgb '" + kBeforeColour + "' lw 1.3, $a w l lc rgb '" +
-                  kAfterColour + "' lw 1.3\n";
+  const char* which = close_up ? "Close-up of" : "Measured and predicted";
+  Figure figure{std::string(which) + " " + velocity_label(a) + " of run " + trace.run, 580, 210};
+  const char* width = close_up ? "2.6" : "1.2";
+  const char* thick = close_up ? "3.4" : "1.8";
+  figure.script = block("w", marks) + block("m", decimate(t, measured, max_points)) +
+                  block("b", decimate(t, before, max_points, restarts)) +
+                  block("a", decimate(t, after, max_points, restarts)) +
+                  heading(velocity_label(a) + (close_up ? ", close-up" : ", whole run")) + below("time [s]") +
+                  range("x", t.front(), t.back()) + range("y", floor, ceiling) +
+                  "unset grid\nset grid ytics\nset ytics " + text(tick_step(1.2 * (ceiling - floor))) +
+                  "\nset xzeroaxis lt 1 lc rgb '#b8bec7' lw 1\nplot $w w l lc rgb '#d3d8de' lw 1, $m w l lc rgb '" +
+                  kMeasuredColour + "' lw " + thick + ", $b w l lc rgb '" + kBeforeColour + "' lw " + width +
+                  ", $a w l lc rgb '" + kAfterColour + "' lw " + width + "\n";
   return figure;
 }
 
@@ -241,8 +296,8 @@ Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::
   const Axis& a = kAxes[axis];
   const double left = quantile(quantity.values, 0.002);
   const double right = quantile(quantity.values, 0.998);
-  const double low = std::fmin(quantile(leftover.before, 0.02), quantile(leftover.after, 0.02));
-  const double high = std::fmax(quantile(leftover.before, 0.98), quantile(leftover.after, 0.98));
+  const double low = std::fmin(quantile(leftover.before, 0.04), quantile(leftover.after, 0.04));
+  const double high = std::fmax(quantile(leftover.before, 0.96), quantile(leftover.after, 0.96));
   const double span = high > low ? high - low : 1.0;
   const double floor = low - 0.1 * span;
   const double ceiling = high + 0.1 * span;
@@ -272,8 +327,9 @@ Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::
   Figure figure{"Leftover " + force_label(a) + " against " + quantity.label, 360, 190};
   figure.script = data + heading("leftover " + std::string(a.force) + " [" + a.force_unit + "]") +
                   below(quantity.label) + range("x", left - 0.03 * width, right + 0.03 * width) +
-                  range("y", floor, ceiling) + "set xzeroaxis lc rgb '#8a8f98' lw 1\nset xtics " +
-                  (quantity.name == "heading" && width > 180.0 ? "90" : text(tick_step(width))) + "\n";
+                  range("y", floor, ceiling) + "set xzeroaxis lt 1 lc rgb '#8a8f98' lw 1\nset xtics " +
+                  (quantity.name == "heading" && width > 180.0 ? "90" : text(tick_step(width))) + "\nset ytics " +
+                  text(tick_step(1.3 * (ceiling - floor))) + "\n";
   figure.script += std::string("plot $db w l lc rgb '#f0bd80' lw 2.4, $da w l lc rgb '#84aed3' lw 2.4, ") +
                    "$b w yerrorbars pt 5 ps 0.45 lw 1.6 lc rgb '" + kBeforeColour + "', $b w l lw 1.6 lc rgb '" +
                    kBeforeColour + "', $a w yerrorbars pt 7 ps 0.5 lw 1.6 lc rgb '" + kAfterColour +
@@ -288,12 +344,12 @@ Figure draw_memory(const Memory& memory, std::size_t axis) {
   for (const auto* series : {&memory.before, &memory.after}) low = std::fmin(low, 1.1 * quantile(*series, 0.0));
   const double end = memory.lag.empty() ? 1.0 : memory.lag.back();
   const Polyline band{{0.0, end}, {memory.band, memory.band}};
-  figure.script = block("band", band) + block("b", {memory.lag, memory.before}) +
-                  block("a", {memory.lag, memory.after}) + heading(force_label(a)) +
-                  below("time between two samples [s]") + range("x", 0.0, end) + range("y", low, 1.05) +
-                  "set xzeroaxis lc rgb '#8a8f98' lw 1\nset ytics 0.5\nplot $band u 1:(-$2):2 w filledcurves lc rgb "
-                  "'#cdd2d9', $b w l lw 2 lc rgb '" +
-                  kBeforeColour + "', $a w l lw 2 lc rgb '" + kAfterColour + "'\n";
+  figure.script =
+      block("band", band) + block("b", {memory.lag, memory.before}) + block("a", {memory.lag, memory.after}) +
+      heading(force_label(a)) + below("time between two samples [s]") + range("x", 0.0, end) + range("y", low, 1.05) +
+      "set xzeroaxis lt 1 lc rgb '#8a8f98' lw 1\nset ytics 0.5\nplot $band u 1:(-$2):2 w filledcurves lc rgb "
+      "'#cdd2d9', $b w l lw 2 lc rgb '" +
+      kBeforeColour + "', $a w l lw 2 lc rgb '" + kAfterColour + "'\n";
   return figure;
 }
 

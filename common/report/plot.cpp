@@ -55,7 +55,7 @@ std::string frame(const Figure& f, std::size_t index, const fs::path& svg) {
   std::ostringstream s;
   s << "reset session\nset encoding utf8\nset terminal svg size " << f.width << "," << f.height
     << " dynamic noenhanced rounded font 'sans-serif,12' name 'f" << index << "'\nset output " << quoted(svg.string())
-    << "\nunset key\nset border 3 lc rgb '#8a8f98'\nset tics nomirror out scale 0.5 textcolor rgb '#444b55'\n"
+    << "\nunset key\nset border 3 lc rgb '#8a8f98'\nset tics nomirror in scale 0.5 textcolor rgb '#444b55'\n"
     << "set grid lc rgb '#e4e7eb' lt 1 lw 1\nset format '%g'\nset style fill solid 1.0 noborder\nset errorbars 0\n"
     << "set lmargin at screen " << screen(f.left, f.width) << "\nset rmargin at screen "
     << screen(f.width - f.right, f.width) << "\nset bmargin at screen " << screen(f.bottom, f.height)

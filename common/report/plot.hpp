@@ -14,7 +14,7 @@ struct Figure {
   int left{52};
   int right{12};
   int top{26};
-  int bottom{38};
+  int bottom{47};
   std::string script{};
 };
 

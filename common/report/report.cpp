@@ -24,7 +24,7 @@ Written write(const DiagnosisReport& report, const std::string& folder) {
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(folder + ": cannot be made (" + failed.message() + "); choose another --out");
   const std::filesystem::path base(folder);
-  const Written paths{(base / "result.json").string(), (base / "report.html").string()};
+  Written paths{(base / "result.json").string(), (base / "report.html").string()};
   save(paths.json, to_json(report.result));
   save(paths.html, to_html(report));
   return paths;

@@ -108,12 +108,12 @@ std::vector<Bin> binned(std::span<const double> x, std::span<const double> y, st
   return result;
 }
 
-double dependence(std::span<const double> x, std::span<const double> y, std::size_t bins, double effective) {
+double dependence(std::span<const double> x, std::span<const double> y, std::size_t bins, double independent_share) {
   const auto order = by_x(x, y);
   const std::size_t count = usable_bins(order.size(), bins);
   if (count < 2 || x[order.front()] == x[order.back()]) return kNaN;
   const auto samples = static_cast<double>(order.size());
-  const double independent = std::min(effective, samples);
+  const double independent = std::min(independent_share, 1.0) * samples;
   if (!(independent > static_cast<double>(count) + 1.0)) return kNaN;
   const double mean =
       std::accumulate(order.begin(), order.end(), 0.0, [&](double s, std::size_t i) { return s + y[i]; }) / samples;

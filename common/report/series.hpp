@@ -30,9 +30,9 @@ struct Bin {
 [[nodiscard]] std::vector<Bin> binned(std::span<const double> x, std::span<const double> y, std::size_t bins);
 
 /// Share of y's variance that follows x (correlation ratio over `bins` bins), less what chance gives when only
-/// `effective` of the samples are independent. 0..1; NaN when x does not vary or there is too little data.
+/// this share (0..1) of the samples is independent. 0..1; NaN when x does not vary or there is too little data.
 [[nodiscard]] double dependence(std::span<const double> x, std::span<const double> y, std::size_t bins,
-                                double effective);
+                                double independent_share);
 
 /// Autocorrelation of several records of one process at lags 0, stride, 2 stride, ... (`count` of them); NaN skipped.
 [[nodiscard]] std::vector<double> autocorrelation(std::span<const std::vector<double>> records, std::size_t stride,

@@ -13,15 +13,17 @@ h1{font-size:25px;margin:0 0 2px}h2{font-size:20px;margin:0 0 4px}h3{font-size:1
 p{margin:6px 0;max-width:96ch}.soft{color:var(--soft)}.small{font-size:14px}
 .lead{font-size:18px;max-width:90ch}
 .badge{display:inline-block;color:#fff;font-weight:700;font-size:24px;padding:8px 18px;border-radius:8px;margin:12px 0 4px}
-.adequate{background:#00705a}.effect{background:#0a5ea8}.ambiguous{background:#8a5a00}.unexplained{background:#9c2f5c}
+.adequate{background:#00705a}.effect{background:#0a5ea8}.ambiguous{background:#8a5a00}.unexplained{background:#9c2f5c}.other{background:#5b6470}
 .tiles{display:grid;grid-template-columns:repeat(4,1fr);gap:12px;margin-top:14px}
 .tile{border:1px solid var(--line);border-radius:8px;padding:10px 14px;font-size:14px;color:var(--soft)}
 .tile b{display:block;font-size:23px;line-height:1.3;color:var(--ink);overflow-wrap:anywhere}
 .key{position:sticky;top:0;z-index:1;background:var(--paper);border:1px solid var(--line);border-radius:8px;
- padding:7px 26px;margin:0 0 18px;font-size:14px;display:flex;flex-wrap:wrap;gap:6px 28px}
+ padding:7px 26px;margin:0 0 18px;font-size:14px;display:flex;flex-wrap:wrap;gap:4px 24px}
 .key i{display:inline-block;width:26px;height:0;border-top:4px solid;vertical-align:middle;margin-right:7px}
 .grid{display:grid;grid-template-columns:repeat(3,1fr);gap:8px 18px}
-.grid.four{grid-template-columns:repeat(4,1fr)}
+.grid.pair{grid-template-columns:repeat(2,1fr)}
+table.errors td:nth-child(4n+2),table.errors th.group{border-left:2px solid var(--line)}
+th.group{text-align:center}.grid figure{margin:6px 0}
 svg{display:block;width:100%;height:auto}figure{margin:10px 0}figcaption{font-size:14px;color:var(--soft);max-width:110ch}
 table{border-collapse:collapse;width:100%;font-size:14px;margin:10px 0}
 th{text-align:left;font-weight:600;color:var(--soft);border-bottom:2px solid var(--line);padding:4px 8px;vertical-align:bottom}
@@ -29,6 +31,8 @@ td{border-bottom:1px solid var(--line);padding:5px 8px;vertical-align:top;overfl
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
 td.k{white-space:nowrap;font-weight:600}
 .b{color:#a85c00}.a{color:var(--after);font-weight:600}
+.bar+div{font-size:13px;font-variant-numeric:tabular-nums;margin-top:2px;white-space:nowrap}
+td.bars{width:21%}td.name{width:24%;font-weight:600}td.mid{vertical-align:middle;width:34%}sup{font-size:10px;line-height:0}
 tr.yes td{background:#eaf2fa}tr.sub td{background:#f4f6f8;font-weight:600}
 .mark{display:inline-block;background:var(--after);color:#fff;border-radius:4px;padding:0 7px;font-size:12px;font-weight:700;white-space:nowrap}
 .mark.no{background:#fff;color:var(--soft);border:1px solid #b8bec7}
@@ -40,7 +44,7 @@ details{margin:8px 0;border:1px solid var(--line);border-radius:8px;padding:6px 
 summary{cursor:pointer;font-weight:600}td details{border:0;padding:0;margin:0}td summary{font-weight:400;color:var(--after)}
 .note{border-left:4px solid var(--after);background:#f1f6fb;padding:8px 14px;border-radius:0 6px 6px 0}
 dt{font-weight:600}dd{margin:0 0 8px;color:var(--soft)}dl{font-size:14px;margin:4px 0;columns:2;column-gap:36px}dl div{break-inside:avoid}
-@media(max-width:800px){.grid,.grid.four,.tiles{grid-template-columns:1fr}dl{columns:1}section,header{padding:14px;overflow-x:auto}}
+@media(max-width:800px){.grid,.grid.pair,.tiles{grid-template-columns:1fr}dl{columns:1}section,header{padding:14px;overflow-x:auto}}
 @media print{.key{position:static}section{break-inside:auto}body{background:#fff}}
 )css";
 

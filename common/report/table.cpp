@@ -11,12 +11,15 @@ namespace {
 
 constexpr std::size_t kLabelWidth = 15;     // "surge u [m/s]", "pitch q [deg/s]"
 constexpr std::size_t kHorizonsPerRow = 3;  // three cells of 26 columns fill the line
-constexpr std::size_t kNameWidth = 30;      // of an effect with its variant
+constexpr std::size_t kNameWidth = 27;      // of an effect with its variant
 constexpr std::size_t kFindingsShown = 8;   // the report page has all of them
 
 class Text {
  public:
-  void line(std::string_view text) { text_ += std::string(text) + "\n"; }
+  void line(std::string_view text) {
+    text_ += text.substr(0, text.find_last_not_of(' ') + 1);
+    text_ += '\n';
+  }
 
   void title(const std::string& title) {
     const std::string head = "── " + title + " ";
@@ -34,7 +37,6 @@ class Text {
       line(start + part);
       start = std::string(indent, ' ');
     }
-    if (start == first && indent > 2) line(first);
   }
 
   [[nodiscard]] std::string take() { return std::move(text_); }
@@ -73,7 +75,7 @@ void errors(Text& out, const DiagnosisResult& result) {
     std::string ahead = std::string(kLabelWidth, ' ');
     std::string head = pad_right("axis", kLabelWidth);
     for (std::size_t h = first; h < last; ++h) {
-      ahead += "  " + pad_right("   " + number(horizons[h], 2) + " s ahead", 25);
+      ahead += "  " + pad_right("   " + plain(horizons[h]) + " s ahead", 25);
       head += "  " + pad_right("   rms error", 14) + pad_right("   R²", 11);
     }
     out.line(ahead);
@@ -94,18 +96,24 @@ void errors(Text& out, const DiagnosisResult& result) {
   }
 }
 
+constexpr const char* kScoreTitles = "log odds  removes  ";
+
+// "removes": share of the error that goes with the effect.
 std::string scores(double log_odds, double error_reduction) {
-  return "log odds " + pad_left(number(log_odds), 6) + "  error -" + pad_right(percent(error_reduction), 5) + " ";
+  return pad_left(number(log_odds), 8) + "  " + pad_left(percent(error_reduction), 7) + "  ";
 }
+
+std::string score_head(const char* last) { return "  " + pad_right("", kNameWidth) + " " + kScoreTitles + last; }
 
 void accepted(Text& out, const DiagnosisResult& result) {
   out.title("Effects accepted");
+  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(score_head("odds"));
   bool any = false;
   for (const auto& effect : result.effects) {
     if (!effect.accepted) continue;
     any = true;
     out.line("  " + pad_right(effect_title(effect.name, effect.variant), kNameWidth) + " " +
-             scores(effect.log_odds, effect.error_reduction) + "(" + odds(effect.log_odds) + ")");
+             scores(effect.log_odds, effect.error_reduction) + odds(effect.log_odds));
     for (const auto& value : effect.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");
     if (!effect.alternatives.empty()) {
       out.paragraph("cannot be told apart from: " + join(effect.alternatives, ", "), "      ");
@@ -119,6 +127,7 @@ void refused(Text& out, const DiagnosisResult& result) {
   bool any = false;
   for (const auto& candidate : result.candidates) {
     if (accepted_form(result, candidate) != nullptr) continue;
+    if (!any) out.line(score_head("why"));
     any = true;
     const std::string start = "  " + pad_right(effect_title(candidate.name, candidate.variant), kNameWidth) + " " +
                               scores(candidate.log_odds, candidate.error_reduction);

@@ -65,6 +65,8 @@ std::string number(double value, int digits) {
   return printed("%.*f", std::max(0, digits - 1 - whole), value);
 }
 
+std::string plain(double value) { return printed("%.*g", 4, value); }
+
 std::string r_squared(double value) {
   if (!std::isfinite(value)) return "-";
   if (value < -99.0) return "<-99";

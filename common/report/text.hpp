@@ -28,6 +28,8 @@ extern const std::array<Axis, 6> kAxes;
 
 /// `digits` significant digits, plain notation where that is short; "-" when not finite.
 [[nodiscard]] std::string number(double value, int digits = 3);
+/// "1 s ahead" from 1.0: no zeros that mean nothing.
+[[nodiscard]] std::string plain(double value);
 /// R2 with two decimals, at most five characters.
 [[nodiscard]] std::string r_squared(double value);
 /// 0.314 becomes "31 %".

@@ -68,9 +68,12 @@ TEST_CASE("Dependence is near one for a function, near zero for noise, absent fo
     curve[i] = std::pow(x[i] / 500.0 - 1.0, 2);
     noise[i] = normal(random);
   }
-  CHECK(dependence(x, curve, 10, kSamples) > 0.9);
-  CHECK(dependence(x, noise, 10, kSamples) < kChance);
-  CHECK(std::isnan(dependence(std::vector<double>(kSamples, 2.0), noise, 10, kSamples)));
+  CHECK(dependence(x, curve, 10, 1.0) > 0.9);
+  CHECK(dependence(x, noise, 10, 1.0) < kChance);
+  // With memory, the same curve rests on 50 independent samples, or on too few to say anything.
+  CHECK(dependence(x, curve, 10, 0.05) < dependence(x, curve, 10, 1.0));
+  CHECK(std::isnan(dependence(x, curve, 10, 0.005)));
+  CHECK(std::isnan(dependence(std::vector<double>(kSamples, 2.0), noise, 10, 1.0)));
 }
 
 TEST_CASE("The autocorrelation of an alternating series alternates; records are not joined") {
