@@ -1,5 +1,6 @@
 #include "common/base/config.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -69,6 +70,33 @@ std::optional<Number> number_at(std::string_view text) {
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\n\r");
   return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(" \t\n\r") - first + 1);
+}
+
+// Hears where a document starts and nothing else.
+class StartListener : public YAML::EventHandler {
+ public:
+  int line{};
+
+  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+// YAML::Load forgets what follows the first document, and YAML::LoadAll never returns on some broken text (yaml-cpp 0.7
+// finds the same empty document again and again), so a second one is looked for here and no further.
+void refuse_second_document(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  StartListener listener;
+  if (!parser.HandleNextDocument(listener) || !parser.HandleNextDocument(listener)) return;
+  throw InputError(name + ":" + std::to_string(listener.line) +
+                   ": text that does not belong to the document above ('---', or a bracket too many)");
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -180,9 +208,9 @@ Config Config::parse(const std::string& text, const std::string& name) {
     return node;
   };
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) fail(documents[1].Mark().line + 1, "one document per file; '---' begins a second one");
-    auto root = documents.empty() ? std::make_shared<Node>() : copy(copy, documents.front(), 1, "", 0);
+    refuse_second_document(text, name);
+    const YAML::Node document = YAML::Load(text);
+    auto root = document.IsDefined() ? copy(copy, document, 1, "", 0) : std::make_shared<Node>();
     root->file = file;
     root->line = 1;
     if (root->kind == Node::Kind::kEmpty) fail(1, "the file is empty");

@@ -80,6 +80,11 @@ TEST_CASE("config: complaints are one line that names file, line and remedy") {
   CHECK(message_of("mass: 3 kg\nb: 2\nmass: 4 kg\n", mass) ==
         "v.yaml:3: key 'mass' stands here twice (first in line 1)");
   CHECK(message_of("mass: [1, 2\n", mass).rfind("v.yaml:2: not valid YAML: ", 0) == 0);
+  CHECK(message_of("mass: 1 kg\n---\nmass: 2 kg\n", mass) ==
+        "v.yaml:2: text that does not belong to the document above ('---', or a bracket too many)");
+  CHECK(message_of("---\nmass: 1 kg\n...\n", mass) == "no complaint");
+  CHECK(message_of("mass: 1 kg\n]\n", mass).rfind("v.yaml:", 0) == 0);
+  CHECK(message_of("mass: [1, 2]]\nb: 3\n", mass).rfind("v.yaml:", 0) == 0);
   CHECK(message_of("", mass) == "v.yaml:1: the file is empty");
   CHECK(message_of("- 1\n", mass) == "v.yaml:1: expected 'key: value' lines");
   CHECK(message_of("a: &x [*x]\n", mass).rfind("v.yaml:", 0) == 0);
