@@ -17,6 +17,7 @@ namespace {
 // and collisions must not bend the model.
 constexpr double kWindowOutlier = 2.5;
 constexpr double kTrimmedShare = 0.05;  // worst windows left out when the residual's scale is measured
+constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
 constexpr double kSmallestSigma = 1e-5; // m/s, rad/s: below any sensor's noise; keeps perfect data finite
 
 /// Weighted residual of one window: parameter blocks theta (scaled) and nu0.
@@ -99,8 +100,10 @@ std::vector<NamedValue> FitResult::parameters() const {
 
 TrajectoryFit::TrajectoryFit(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings)
     : vehicle_{vehicle}, settings_{settings} {
-  for (const model::Window& window : cut_windows(trials, settings.window)) {
-    WindowResidual residual{window, vehicle};
+  const std::vector<model::Window> cut = cut_windows(trials, settings.window);
+  const std::size_t stride = std::max<std::size_t>(1, (cut.size() + settings.most_windows - 1) / settings.most_windows);
+  for (std::size_t w = 0; w < cut.size(); w += stride) {
+    WindowResidual residual{cut[w], vehicle};
     if (residual.rows() > 0) windows_.push_back(std::move(residual));
   }
   if (windows_.empty()) {
@@ -203,8 +206,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) c
   }
   for (const WindowResidual& window : windows_) fit.nu0.push_back(window.window().trial->nu[window.window().start]);
   score(fit);
-  constexpr int kWeightRounds = 3;  // the weights change by a few per cent after the second
-  for (int round = 0; round < kWeightRounds; ++round) {
+  for (int round = 0; round < settings_.weight_rounds; ++round) {
     fit.sigma = residual_scale(fit);
     solve(fit);
     score(fit);
@@ -276,6 +278,7 @@ FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> 
     stage.window = length;
     stage.iterations = 8;
     stage.tolerance = 1e-3;
+    stage.most_windows = kCoarseWindows;
     model = TrajectoryFit{vehicle, trials, stage}.fit(model).model;
   }
   return TrajectoryFit{vehicle, trials, settings}.fit(model);

@@ -17,7 +17,9 @@ struct FitSettings {
   double window{10.0};    ///< s
   int threads{2};
   int iterations{15};     ///< of the solver, at most
-  double tolerance{1e-5}; ///< relative decrease of the cost that ends the solver
+  double tolerance{1e-4}; ///< relative decrease of the cost that ends the solver
+  int weight_rounds{2};   ///< how often the residual's scale per axis is measured and the fit repeated
+  std::size_t most_windows{100000};  ///< evenly chosen when there are more
 };
 
 struct FitResult {
