@@ -82,8 +82,8 @@ ParameterVector project_on_signs(const ParameterVector& x_hat, const ParameterMa
   const Eigen::Index n = x_hat.size();
   ParameterVector scale(n);  // sign over sigma: one tolerance fits all
   for (Eigen::Index i = 0; i < n; ++i) {
-    const int sign = signs[static_cast<std::size_t>(i)];
-    scale(i) = sign == 0 ? 0.0 : sign / std::sqrt(P(i, i));
+    const double sign = signs[static_cast<std::size_t>(i)];
+    scale(i) = sign == 0.0 ? 0.0 : sign / std::sqrt(P(i, i));
   }
   Held held;
   held.l.resize(0);
