@@ -32,6 +32,6 @@ TEST_CASE("identifier settings: read with their units, nothing left over") {
 
 TEST_CASE("identifier settings: an unknown way to treat inputs is refused with file and line") {
   const Config config = Config::parse(section("cubic"), "pipeline.yaml");
-  CHECK_THROWS_WITH_AS(identification::IdentifierSettings::from(config), doctest::Contains("pipeline.yaml:7"),
+  CHECK_THROWS_WITH_AS((void)identification::IdentifierSettings::from(config), doctest::Contains("pipeline.yaml:7"),
                        InputError);
 }
