@@ -431,10 +431,11 @@ void Comparison::find_offsets() {
     for (std::size_t r = 0; r < runs_.size(); ++r) result_.faults[r].bias[a] = decision.applied[r];
   }
   const auto columns = [&](std::size_t r) { return static_cast<int>(fit(r).theta.size()); };
-  const auto offsets = [&](int column, double floor, double limit) {
+  const auto offsets = [&](int column, double floor, double limit, int lever_axis = -1) {
     std::vector<Estimate> estimates(runs_.size());
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (!fit(r).ok || fit(r).explained < kLeastExplained || column >= columns(r)) continue;
+      if (lever_axis >= 0 && !fit(r).lever_seen[lever_axis]) continue;
       estimates[r] = estimate(
           r, [&](const Eigen::VectorXd& theta) { return theta[column]; }, false);
       estimates[r].informative = estimates[r].sigma < limit;
@@ -444,7 +445,7 @@ void Comparison::find_offsets() {
   std::array<Decision, 3> levers;
   double largest_lever = 0.0;
   for (int a = 0; a < 3; ++a) {
-    levers[static_cast<std::size_t>(a)] = offsets(lever + a, kLeverFloor, 0.05);
+    levers[static_cast<std::size_t>(a)] = offsets(lever + a, kLeverFloor, 0.05, a);
     if (levers[static_cast<std::size_t>(a)].found)
       largest_lever = std::max(largest_lever, std::abs(levers[static_cast<std::size_t>(a)].pooled.value));
   }

@@ -88,6 +88,31 @@ TEST_CASE("clean recordings give no finding over thirty seeds") {
   }
 }
 
+TEST_CASE("clean recordings of few axes or little motion give no finding") {
+  std::mt19937 random(77);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (unsigned seed = 101; seed <= 130; ++seed) {
+    SyntheticOptions options{.seed = seed, .duration = 60.0 + 300.0 * any(random)};
+    options.pose_rate = options.gyro_rate = seed % 2 == 0 ? 10.0 : 25.0;
+    options.dvl_rate = options.pose_rate;
+    for (double& activity : options.activity) activity = any(random) < 0.5 ? 0.0 : 0.05 + any(random);
+    options.accelerometer = seed % 3 == 0;
+    std::vector<Recording> runs;
+    for (unsigned k = 0; k < 1 + seed % 3; ++k) {
+      options.seed = seed + 1000 * k;
+      runs.push_back(test::synthetic_recording(options, "run-" + std::to_string(k)));
+    }
+    const auto findings = estimation::check_consistency(runs).findings;
+    INFO("seed ", seed);
+    CHECK(findings.empty());
+    if (!findings.empty())
+      std::printf("seed %u: %zu runs of %.0f s, activity %.2f %.2f %.2f %.2f %.2f %.2f\n", seed, runs.size(),
+                  options.duration, options.activity[0], options.activity[1], options.activity[2], options.activity[3],
+                  options.activity[4], options.activity[5]);
+    print(findings);
+  }
+}
+
 TEST_CASE("delays are found within their interval") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
