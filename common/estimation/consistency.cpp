@@ -412,6 +412,10 @@ ConsistencyResult Check::run() {
            .action = "given no weight in the comparison"});
     }
   }
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const std::vector<ConsistencyFinding> depth = compare_depth(runs_[r], pose(r));
+    result_.findings.insert(result_.findings.end(), depth.begin(), depth.end());
+  }
   align_clocks();
   compare_noise();
   result_.pairs.emplace("gyro", std::move(gyro));

@@ -49,6 +49,9 @@ struct ConsistencyResult {
 /// Compares the logged wrench with the one that the vehicle file makes of the commands; adds to `result`.
 void check_thrusters(std::span<const Recording> recordings, const model::Vehicle& vehicle, ConsistencyResult& result);
 
+/// Sign, scale and delay of the depth sensor; the offset (the water line) is nobody's fault.
+[[nodiscard]] std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseSeries& pose);
+
 /// The pose after corrections of form, axes, heading and unit; on its own clock.
 void correct_pose(const Corrections& corrections, PoseSeries& pose);
 /// The attitude that rates are compared with: motion capture, else AHRS.

@@ -16,8 +16,8 @@ constexpr double kCoarseStep = 0.05;  // s: well under a quarter period of 2 Hz
 constexpr double kFineStep = 0.02;    // s: the cost is a parabola over this
 constexpr double kOutlier = 8.0;      // robust sigmas; 6 would flag a clean hour of data
 constexpr std::size_t kFewestWindows = 60;
-constexpr double kSharp = 0.8;              // least over median cost of all delays
-constexpr double kLeverSeen = 30.0;         // energy of a lever column over its noise: the bias stays under 5 mm
+constexpr double kSharp = 0.8;          // least over median cost of all delays
+constexpr double kLeverSeen = 30.0;     // energy of a lever column over its noise: the bias stays under 5 mm
 constexpr double kBlockSeconds = 30.0;  // longer than any closed loop remembers
 
 constexpr int kMostColumns = 24;

@@ -30,6 +30,7 @@ struct SyntheticOptions {
   Eigen::Vector3d gyro_bias{Eigen::Vector3d::Zero()}, dvl_bias{Eigen::Vector3d::Zero()};
   double gyro_delay{}, dvl_delay{};                    // s
   Eigen::Vector3d dvl_lever{Eigen::Vector3d::Zero()};  // m
+  double depth_scale{1.0}, depth_delay{};              // -, s
   std::function<void(PoseCapture&)> spoil_pose{};      // applied last
   std::function<void(Dvl&, double t)> spoil_dvl{};
   std::function<void(Ahrs&, double t)> spoil_gyro{};
@@ -126,6 +127,10 @@ inline Recording synthetic_recording(const SyntheticOptions& o, const std::strin
             .held = false};
     if (o.spoil_dvl) o.spoil_dvl(dvl, t);
     recording.dvl.push_back(dvl);
+  });
+  stamps(10.0, [&](double t, Utime utime) {
+    recording.depth.push_back(
+        {utime, o.depth_scale * motion.p_WB(t - o.depth_delay).z() + 0.4 + 0.01 * normal(random)});
   });
   stamps(20.0, [&](double, Utime utime) {
     Thrusters thrusters;
