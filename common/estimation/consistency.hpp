@@ -35,6 +35,7 @@ struct Corrections {
   double position_scale{1.0};
   SensorFault gyro, dvl, accelerometer;
   double pose_shift{}, dvl_shift{}, gyro_shift{};  ///< s, added to the stamps to reach the common clock
+  std::vector<double> doubtful_pose;  ///< s on the pose's clock: the gyro contradicts the pose around these
   ThrusterCorrection thrusters;
 };
 
