@@ -127,7 +127,7 @@ TEST_CASE("S4: gyroscopic terms do no work: energy stays without drag and never 
     const Vector6d nu0 = draw(random, 1.0);
     for (const bool drag : {false, true}) {
       model::Model model = body(vehicle);
-      if (drag) model.theta.segment<12>(6).setConstant(-0.5);
+      if (drag) model.theta.segment<12>(6).setConstant(-5.0);
       model::VelocityTrace nu;
       REQUIRE(model::rollout(model, {&trial, 0, trial.size()}, nu0, nu));
       const auto energy = [&](Eigen::Index k) {

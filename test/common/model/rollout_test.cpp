@@ -130,3 +130,17 @@ TEST_CASE("rollout: a diverging model says so and stays finite") {
   CHECK_FALSE(model::rollout(model, {&trial, 0, trial.size()}, Vector6d::Zero(), nu));
   CHECK(nu.allFinite());
 }
+
+TEST_CASE("rollout: drag that is stiff for ordinary steps is followed all the same") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");  // yaw settles in 15 ms
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 20.0, .seed = 7, .velocity_noise = 0.0, .rate_noise = 0.0});
+  model::VelocityTrace nu;
+  REQUIRE(model::rollout(dive.truth, {&dive.trial, 0, dive.trial.size()}, dive.trial.nu[0], nu));
+  double worst = 0.0;
+  for (Eigen::Index k = 0; k < nu.cols(); ++k) {
+    worst = std::max(worst, std::abs(nu(5, k) - dive.trial.nu[static_cast<std::size_t>(k)][5]));
+  }
+  constexpr double kStiff = 0.03;  // rad/s of 0.4: just after steps of thrust
+  CHECK(worst < kStiff);
+}
