@@ -1,16 +1,19 @@
 #include "common/diagnosis/held_out.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 namespace fathom::diagnosis {
 namespace {
 
-using identification::ProjectedWindow;
-
 constexpr int kFolds = 5;
 constexpr std::size_t kFoldBlock = 3;  // windows that stay together, so that held-out data is not a neighbour's echo
 constexpr std::size_t kFewestRuns = 3;
+
+/// Products of one window: residual without the effect (r) and the effect's direction (d).
+struct Products {
+  double rr{}, dr{}, dd{};
+};
 
 std::vector<int> folds_by_block(std::size_t windows) {
   std::vector<int> folds(windows);
@@ -29,66 +32,51 @@ std::vector<int> folds_by_run(std::span<const identification::WindowResidual> wi
   return runs.size() >= kFewestRuns ? folds : folds_by_block(windows.size());
 }
 
-double cost(const Linearisation& fit, const std::vector<int>& folds, double inflation) {
-  const identification::ParameterMap map{fit.fit().model};
-  const auto n = static_cast<Eigen::Index>(map.size());
-  const auto count = static_cast<std::size_t>(*std::max_element(folds.begin(), folds.end()) + 1);
-  std::vector<Eigen::MatrixXd> normal(count, Eigen::MatrixXd::Zero(n, n));
-  std::vector<Eigen::VectorXd> gradient(count, Eigen::VectorXd::Zero(n));
-  std::vector<double> square(count, 0.0);
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd target = Eigen::VectorXd::Zero(n);
-  for (std::size_t w = 0; w < folds.size(); ++w) {
-    const ProjectedWindow& window = fit.windows()[w];
-    const auto fold = static_cast<std::size_t>(folds[w]);
-    normal[fold] += window.jacobian.transpose() * window.jacobian;
-    gradient[fold] += window.jacobian.transpose() * window.residual;
-    square[fold] += window.residual.squaredNorm();
+double saved(const std::vector<Products>& windows, const std::vector<int>& folds, double prior) {
+  const int count = *std::max_element(folds.begin(), folds.end()) + 1;
+  double before = 0.0, after = 0.0;
+  for (int fold = 0; fold < count; ++fold) {
+    double dr = 0.0, dd = prior;
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      if (folds[w] == fold) continue;
+      dr += windows[w].dr;
+      dd += windows[w].dd;
+    }
+    const double amplitude = dd > 0.0 ? -dr / dd : 0.0;
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      if (folds[w] != fold) continue;
+      before += windows[w].rr;
+      after += windows[w].rr + 2.0 * amplitude * windows[w].dr + amplitude * amplitude * windows[w].dd;
+    }
   }
-  for (std::size_t f = 0; f < count; ++f) {
-    all += normal[f];
-    target += gradient[f];
-  }
-  // Where the other folds hardly see a number, its prior keeps it in place instead of letting noise set it. Correlated
-  // residuals overstate the data's weight, so the prior's is raised as much.
-  const Eigen::VectorXd x = map.pack(fit.fit().model);
-  Eigen::VectorXd prior(n), pull(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& free = map[static_cast<std::size_t>(i)];
-    prior[i] = inflation * (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
-    pull[i] = prior[i] * (x[i] - free.prior_mean / free.scale);
-  }
-  double total = 0.0;
-  for (std::size_t f = 0; f < count; ++f) {
-    Eigen::MatrixXd others = all - normal[f];
-    others.diagonal() += prior;
-    const Eigen::VectorXd step = -others.ldlt().solve(target - gradient[f] + pull);
-    total += 0.5 * (square[f] + 2.0 * step.dot(gradient[f]) + step.dot(normal[f] * step));
-  }
-  return total;
+  return before > 0.0 ? 1.0 - std::sqrt(std::max(after, 0.0) / before) : 0.0;
 }
 
 }  // namespace
 
-double inflation(const Linearisation& fit) {
-  const auto n = fit.windows()[0].jacobian.cols();
-  Eigen::VectorXd spread = Eigen::VectorXd::Zero(n), information = Eigen::VectorXd::Zero(n);
-  for (const ProjectedWindow& window : fit.windows()) {
-    spread += (window.jacobian.transpose() * window.residual).cwiseAbs2();
-    information += window.jacobian.colwise().squaredNorm().transpose();
+HeldOut held_out(const identification::TrajectoryFit& problem, const identification::FitResult& without,
+                 const identification::FitResult& with, std::span<const double> sizes) {
+  std::vector<Products> windows;
+  model::VelocityTrace trace;
+  double scatter = 0.0, information = 0.0;
+  for (std::size_t w = 0; w < problem.windows().size(); ++w) {
+    const auto& window = problem.windows()[w];
+    Eigen::VectorXd r(window.rows()), moved(window.rows());
+    window.evaluate(without.model, without.nu0[w], without.sigma, trace, r);
+    window.evaluate(with.model, with.nu0[w], without.sigma, trace, moved);
+    // A window of outliers (a glitch, a collision) counts as in the fit: no more than one at the outlier bound.
+    const double weight = std::min(1.0, 2.0 * without.window_cost[w] / std::max(r.squaredNorm(), 1e-300));
+    const Eigen::VectorXd d = moved - r;
+    windows.push_back({weight * r.squaredNorm(), weight * d.dot(r), weight * d.squaredNorm()});
+    scatter += windows.back().dr * windows.back().dr;
+    information += windows.back().dd;
   }
-  double sum = 0.0, count = 0.0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (information[i] <= 0.0) continue;  // held at a bound
-    sum += spread[i] / information[i];
-    count += 1.0;
-  }
-  return count > 0.0 ? std::max(1.0, sum / count) : 1.0;
-}
-
-HeldOut held_out(const Linearisation& fit, double inflation) {
-  return {cost(fit, folds_by_block(fit.windows().size()), inflation),
-          cost(fit, folds_by_run(fit.problem().windows()), inflation)};
+  // Correlated residuals overstate the information by this factor; against the prior it must not count.
+  const double inflation = information > 0.0 ? std::max(1.0, scatter / information) : 1.0;
+  double square = 0.0;
+  for (const double size : sizes) square += size * size;
+  return {saved(windows, folds_by_block(windows.size()), inflation * square),
+          saved(windows, folds_by_run(problem.windows()), inflation * square)};
 }
 
 }  // namespace fathom::diagnosis

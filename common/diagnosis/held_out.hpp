@@ -1,19 +1,22 @@
-// Does a model carry over to data that had no part in its estimate? By linear algebra on derivatives that are there.
+// Does an effect carry over to data that had no part in its size? The direction in which it moves the residuals is
+// known; its amplitude is set on some windows and judged on the others.
 #pragma once
 
-#include "common/diagnosis/screening.hpp"
+#include <span>
+
+#include "common/identification/trajectory_fit.hpp"
 
 namespace fathom::diagnosis {
 
-/// Cost on windows left out of the estimate, each fold predicted by the linear fit to all others.
+/// Share of the error (RMS) that the effect saves on windows left out when its amplitude was set.
 struct HeldOut {
-  double blocks{};  ///< folds of 30 s blocks, spread over all runs
-  double runs{};    ///< a run a fold; equal to `blocks` with fewer than three runs
+  double blocks{};  ///< left out: a fifth of the 30 s blocks, spread over all runs
+  double runs{};    ///< left out: a run at a time; equal to `blocks` with fewer than three runs
 };
 
-/// How much larger the scatter of window gradients is than independent samples would make it: the factor by which
-/// correlated residuals overstate their information against a prior. At least 1.
-[[nodiscard]] double inflation(const Linearisation& fit);
-[[nodiscard]] HeldOut held_out(const Linearisation& fit, double inflation);
+/// `sizes`: the effect's numbers in units of their prior sigma; where the other windows hardly see the effect, this prior
+/// keeps the amplitude at zero instead of letting noise set it.
+[[nodiscard]] HeldOut held_out(const identification::TrajectoryFit& problem, const identification::FitResult& without,
+                               const identification::FitResult& with, std::span<const double> sizes);
 
 }  // namespace fathom::diagnosis

@@ -17,7 +17,7 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 3;            // candidates per round that earn a full fit
+constexpr std::size_t kRefits = 6;            // candidates per round that earn a full fit
 constexpr double kAlternativeLogOdds = 3.0;   // 20 to 1 between two look-alikes settles which it is
 
 struct Candidate {
@@ -90,6 +90,16 @@ Judged judge(const Screened& screened, const Linearisation& base, int tried) {
   judged.log_odds = log_odds(base.window_cost(), screened.window_cost, parameters, tried);
   judged.error_reduction = reduction(sum(base.window_cost()), sum(screened.window_cost));
   return judged;
+}
+
+/// The effect's numbers in units of their prior sigma.
+std::vector<double> sizes(const model::Model& model, const Screened& screened) {
+  std::vector<double> sizes;
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != screened.effect || active.variant != screened.variant) continue;
+    for (std::size_t i = 0; i < active.theta.size(); ++i) sizes.push_back(active.theta[i] / active.effect->parameters()[i].sigma);
+  }
+  return sizes;
 }
 
 /// The best form of each effect, those that gain most first: screening is linear, so a full fit decides about them.
@@ -206,8 +216,6 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       judged.back().reason = refusal(judged.back(), settings);
     }
 
-    const double overstated = inflation(*base);
-    const HeldOut without = held_out(*base, overstated);
     const FitResult reference = result.after;
     std::size_t winner = judged.size();
     FitResult best;
@@ -215,13 +223,13 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       progress("fitting " + std::string(screened[i].effect->name()) + " " + screened[i].variant_name,
                0.2 + 0.6 * (round + 0.5) / settings.most_effects);
       FitResult fit = problem.fit(with_effect(reference, screened[i]), &reference);
-      const HeldOut with = held_out(Linearisation{problem, fit}, overstated);
+      const HeldOut carried = held_out(problem, reference, fit, sizes(fit.model, screened[i]));
       Judged& entry = judged[i];
       entry.log_odds = log_odds(reference.window_cost, fit.window_cost,
                                 static_cast<int>(screened[i].effect->parameters().size()), tried);
       entry.error_reduction = reduction(reference.cost, fit.cost);
-      entry.held_out_blocks = reduction(without.blocks, with.blocks);
-      entry.held_out_runs = reduction(without.runs, with.runs);
+      entry.held_out_blocks = carried.blocks;
+      entry.held_out_runs = carried.runs;
       entry.reason = refusal(entry, settings);
       if (std::getenv("FATHOM_DEBUG")) std::fprintf(stderr, "   FIT %-18s %-12s lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n", std::string(entry.effect->name()).c_str(), entry.variant_name.c_str(), entry.log_odds, entry.error_reduction, entry.held_out_blocks, entry.held_out_runs, fit.model.effects[0].theta[0], entry.reason.c_str());
       if (entry.reason.empty() && (winner == judged.size() || fit.cost < best.cost)) {
