@@ -12,6 +12,7 @@ using identification::ProjectedWindow;
 
 constexpr int kBestStarts = 2;
 constexpr int kNewtonSteps = 4;
+constexpr double kLinearEnough = 0.03;
 constexpr double kSmallStep = 1e-3;  // of the parameter's sigma or value, for differences
 
 /// Projected residuals of all windows with the candidate at theta, the base parameters unchanged.
@@ -158,9 +159,14 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
   Eigen::VectorXd best_residual = without.col(0);
   double best_cost = cost_without;
   for (const Start& start : ranked) {
-    std::vector<double> theta = clamped(effect, start.theta);
-    Eigen::MatrixXd residual = candidate.residual(theta);
-    remove_base(base, residual);
+    // With a single start the effect is near enough to linear for the search to begin at nothing, whose residual is known.
+    const bool from_zero = starts.size() == 1;
+    std::vector<double> theta = from_zero ? std::vector<double>(k, 0.0) : clamped(effect, start.theta);
+    Eigen::MatrixXd residual = without;
+    if (!from_zero) {
+      residual = candidate.residual(theta);
+      remove_base(base, residual);
+    }
     double cost = 0.5 * residual.squaredNorm();
     double damping = 0.0;
     Eigen::MatrixXd columns;
@@ -168,7 +174,7 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
       columns.resize(residual.rows(), static_cast<Eigen::Index>(k));
       std::vector<double> sizes(k);
       for (std::size_t i = 0; i < k; ++i) {
-        sizes[i] = kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
+        sizes[i] = theta[i] == 0.0 && from_zero ? start.theta[i] : kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
         if (theta[i] + sizes[i] > parameters[i].high) sizes[i] = -sizes[i];
         std::vector<double> moved = theta;
         moved[i] += sizes[i];
@@ -198,7 +204,10 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
         damping = damping == 0.0 ? 1.0 : 10.0 * damping;
         continue;
       }
-      const bool settled = cost - next_cost < 1e-3 * (cost_without - next_cost);
+      // Settled: hardly any progress, or as much as the linear picture foretold.
+      const double foretold = -0.5 * gradient.dot(move);
+      const bool settled = cost - next_cost < 1e-3 * (cost_without - next_cost) ||
+                           std::abs(cost - next_cost - foretold) < kLinearEnough * foretold;
       theta = next;
       residual = next_residual;
       cost = next_cost;

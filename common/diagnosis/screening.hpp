@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ struct Screened {
   std::string variant_name;
   std::vector<double> theta;            ///< best values found
   double gain{};                        ///< fall of the cost
+  std::optional<model::Model> start;    ///< where a full fit should begin, when not at `theta` beside the base model
   std::vector<double> window_cost;      ///< cost per window with the candidate
   Eigen::VectorXd signature;            ///< change of all residuals that only this candidate can make; unit norm
 };

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <cstdio>
 #include <cstdlib>
@@ -18,6 +19,8 @@ using identification::FitResult;
 using identification::TrajectoryFit;
 
 constexpr std::size_t kRefits = 6;            // candidates per round that earn a full fit
+constexpr double kAtLimit = 1e-3;             // of the number's prior sigma
+constexpr std::size_t kCoarseWindows = 80;    // enough to tell whether a far start leads anywhere
 constexpr double kAlternativeLogOdds = 3.0;   // 20 to 1 between two look-alikes settles which it is
 
 struct Candidate {
@@ -84,12 +87,54 @@ std::string refusal(const Judged& judged, const Settings& settings) {
   return "";
 }
 
+/// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none did.
+std::string limited_number(const model::Model& model, const Screened& screened) {
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != screened.effect || active.variant != screened.variant) continue;
+    const auto parameters = active.effect->parameters();
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      for (const double limit : {parameters[i].low, parameters[i].high}) {
+        if (limit != 0.0 && std::abs(active.theta[i] - limit) < kAtLimit * parameters[i].sigma) return std::string(parameters[i].name);
+      }
+    }
+  }
+  return "";
+}
+
 Judged judge(const Screened& screened, const Linearisation& base, int tried) {
   Judged judged{.effect = screened.effect, .variant = screened.variant, .variant_name = screened.variant_name};
   const auto parameters = static_cast<int>(screened.effect->parameters().size());
   judged.log_odds = log_odds(base.window_cost(), screened.window_cost, parameters, tried);
   judged.error_reduction = reduction(sum(base.window_cost()), sum(screened.window_cost));
   return judged;
+}
+
+/// Full fits on a spread of windows for effects whose small sizes tell nothing about their large ones.
+void look_afar(std::vector<Screened>& screened, const model::Vehicle& vehicle, std::span<const Trial> train,
+               const FitResult& reference, const model::Scene& scene, const Settings& settings, const Progress& progress,
+               double share) {
+  std::optional<TrajectoryFit> coarse;
+  FitResult like, base;
+  for (Screened& candidate : screened) {
+    for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
+      if (!coarse) {
+        identification::FitSettings few = settings.fit;
+        few.most_windows = kCoarseWindows;
+        coarse.emplace(vehicle, train, few);
+        like.sigma = reference.sigma;
+        for (const auto& window : coarse->windows()) like.nu0.push_back(window.window().trial->nu[window.window().start]);
+        base = coarse->fit(reference.model, &like);
+      }
+      progress("looking further at " + std::string(candidate.effect->name()), share);
+      model::Model model = reference.model;
+      model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
+      const FitResult far = coarse->fit(model, &like);
+      const double gain = (base.cost - far.cost) / base.cost * reference.cost;
+      if (gain <= candidate.gain) continue;
+      candidate.gain = gain;
+      candidate.start = far.model;
+    }
+  }
 }
 
 /// The effect's numbers in units of their prior sigma.
@@ -107,7 +152,7 @@ std::vector<std::size_t> worth_fitting(const std::vector<Screened>& screened, co
                                        const Settings& settings) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    if (judged[i].error_reduction < settings.smallest_reduction) continue;
+    if (judged[i].error_reduction < settings.smallest_reduction && !screened[i].start) continue;
     const auto same = std::find_if(order.begin(), order.end(), [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
     if (same == order.end()) {
       order.push_back(i);
@@ -121,6 +166,7 @@ std::vector<std::size_t> worth_fitting(const std::vector<Screened>& screened, co
 }
 
 model::Model with_effect(const FitResult& fit, const Screened& screened) {
+  if (screened.start) return *screened.start;
   model::Model model = fit.model;
   model.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
   return model;
@@ -209,7 +255,8 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     for (const Candidate& candidate : every) {
       if (!holds(result.after.model, candidate)) candidates.push_back(candidate);
     }
-    const std::vector<Screened> screened = screen_all(*base, candidates, scene, settings.threads);
+    std::vector<Screened> screened = screen_all(*base, candidates, scene, settings.threads);
+    look_afar(screened, vehicle, train, result.after, scene, settings, progress, 0.2 + 0.6 * (round + 0.2) / settings.most_effects);
     std::vector<Judged> judged;
     for (const Screened& candidate : screened) {
       judged.push_back(judge(candidate, *base, tried));
@@ -231,6 +278,8 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       entry.held_out_blocks = carried.blocks;
       entry.held_out_runs = carried.runs;
       entry.reason = refusal(entry, settings);
+      const std::string limited = limited_number(fit.model, screened[i]);
+      if (entry.reason.empty() && !limited.empty()) entry.reason = "fits only with " + limited + " at its physical limit";
       if (std::getenv("FATHOM_DEBUG")) std::fprintf(stderr, "   FIT %-18s %-12s lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n", std::string(entry.effect->name()).c_str(), entry.variant_name.c_str(), entry.log_odds, entry.error_reduction, entry.held_out_blocks, entry.held_out_runs, fit.model.effects[0].theta[0], entry.reason.c_str());
       if (entry.reason.empty() && (winner == judged.size() || fit.cost < best.cost)) {
         best = std::move(fit);

@@ -53,6 +53,9 @@ class Effect {
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
 
+  /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters fitted
+  /// anew (its small sizes may even look harmful). Tried by full fits; none by default.
+  [[nodiscard]] virtual std::vector<std::vector<double>> far_starts(const Scene&, int /*variant*/) const { return {}; }
   /// Alters what is felt (forces that reach the water, the water's motion). `z` is the effect's memory.
   virtual void feel(Motion&, EffectTheta, int /*variant*/, std::span<const double> /*z*/) const {}
   /// Adds wrench and inertia. Sees the motion after all feel().

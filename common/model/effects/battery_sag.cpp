@@ -1,5 +1,5 @@
 // Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an open
-// propeller on a DC motor; without a voltage log, f = f_c (1 - s t) with t the time in the run.
+// propeller on a DC motor (bounds a little wider); without a voltage log, f = f_c (1 - s t) with t the time in the run.
 // Ignores: load-dependent sag within the thruster's own cable. Revealed by the same manoeuvre early and late.
 // Confused with payload change and, in one short run, with drag.
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace fathom::model::effects {
 namespace {
 
 // One number with two meanings would hide its unit: the time form is scaled to "share lost per 1000 s".
-constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -4.0, 6.0}};
+constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 2.5}};
 constexpr double kTimeScale = 1000.0;  // s
 
 class BatterySag final : public Effect {

@@ -24,6 +24,7 @@ class ThrustOvershoot final : public Effect {
   std::vector<std::vector<double>> starts(const Scene&, int) const override {
     return {{0.1, 0.3}, {0.1, 1.0}, {0.1, 3.0}};
   }
+  std::vector<std::vector<double>> far_starts(const Scene&, int) const override { return {{0.6, 0.7}, {0.6, 2.5}}; }
   int state_size(const Vehicle&, int actuators) const override { return actuators; }
 
   void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
