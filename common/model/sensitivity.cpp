@@ -8,6 +8,7 @@
 namespace fathom::model {
 namespace {
 
+constexpr double kAbsurdDerivative = 1e6;  // (m/s) per kg and the like
 constexpr double kDifference = 1e-5;  // m, rad, m/s: truncation and rounding both below 1e-5 of an entry
 
 }  // namespace
@@ -78,6 +79,9 @@ void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, con
   B.block<6, kBaseParameterCount>(6, 0) = input(rollout, from, offset, p, q, nu, nu_dot);
   const State slope = A * state_ + B;
   state_ += h * (A * (state_ + 0.5 * h * slope) + B);
+
+  // A trajectory that diverges has no useful derivative; the solver will turn back from it.
+  if (!state_.allFinite() || state_.cwiseAbs().maxCoeff() > kAbsurdDerivative) state_.setZero();
 
   // Attitude that follows the measurement does not move with the parameters.
   const Eigen::Vector3d down_B = R_WB.row(2).transpose();
