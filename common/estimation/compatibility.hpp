@@ -1,0 +1,59 @@
+// The three kinematic identities as increment problems, and one estimate of a sensor's faults pooled over recordings.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/estimation/increments.hpp"
+#include "common/samples/diagnosis_result.hpp"
+
+namespace fathom::estimation {
+
+/// R(t + L) - R(t) against the integral of R [w]x: gyro against attitude. Fixed columns: bias (3).
+[[nodiscard]] IncrementProblem rate_problem(const PoseSeries& pose);
+/// p(t + L) - p(t) against the integral of R v. Fixed columns: bias (3), lever (3), heading (1); with `rates` also the
+/// six numbers of a symmetric coupling to the rates, which no lever arm can make.
+[[nodiscard]] IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates);
+/// Second difference of p against the triangle-weighted integral of R f + g. Fixed columns: lever (3). No bias: on a
+/// vehicle that stays level it cannot be told from a tilted mount.
+[[nodiscard]] IncrementProblem acceleration_problem(const PoseSeries& pose);
+
+/// What a pair of signals is called and from which size on a disagreement matters in practice.
+struct PairNames {
+  std::string signal;               ///< "gyro"
+  std::string reference;            ///< "pose_capture"
+  std::array<std::string, 3> axes;  ///< "p", "q", "r"
+  std::string unit;                 ///< of a bias
+  double bias_floor{};              ///< in that unit
+  bool has_bias{true};              ///< the problem's first three fixed columns
+};
+
+/// true = delta_rotation * base * diag(scale) * logged(t + delay) + bias - lever x rates + coupling * rates.
+struct SensorFault {
+  Eigen::Matrix3d base{Eigen::Matrix3d::Identity()};  ///< signed permutation
+  Eigen::Matrix3d rotation{Eigen::Matrix3d::Identity()};
+  Eigen::Vector3d scale{Eigen::Vector3d::Ones()};     ///< per logged axis: true over logged
+  Eigen::Vector3d bias{Eigen::Vector3d::Zero()};      ///< added to the corrected signal
+  Eigen::Vector3d lever{Eigen::Vector3d::Zero()};     ///< m, where the sensor truly measures
+  Eigen::Matrix3d coupling{Eigen::Matrix3d::Zero()};  ///< m, symmetric
+  double delay{};                                     ///< s, behind the reference
+  double heading{};                                   ///< rad, reference attitude turned against reference position
+  [[nodiscard]] Eigen::Matrix3d matrix() const { return rotation * base * scale.asDiagonal(); }
+};
+
+/// Finds the faults that are significant and large enough, pooled over recordings; a recording that differs has its
+/// own.
+struct PairResult {
+  bool checked{false};
+  std::vector<IncrementFit> fits;   ///< per recording
+  std::vector<SensorFault> faults;  ///< per recording; the neutral element where nothing was found
+  double explained{};               ///< median robust R^2 of the informative recordings
+  std::vector<ConsistencyFinding> findings;
+};
+[[nodiscard]] PairResult compare(const PairNames& names, std::span<const std::string> runs,
+                                 std::vector<IncrementFit> fits);
+
+}  // namespace fathom::estimation

@@ -1,0 +1,349 @@
+#include "common/estimation/reconstruct.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/base/spatial.hpp"
+#include "common/base/statistics.hpp"
+#include "common/estimation/smoothing_derivative.hpp"
+
+namespace fathom::estimation {
+namespace {
+
+constexpr double kHighestRate = 25.0;  // Hz
+constexpr double kBandwidth = 1.0;     // Hz: underwater vehicles of this size answer slower
+constexpr double kGainTolerance = 0.03;
+
+/// One of two sources of three components, with its white noise.
+struct Source {
+  Series series;
+  Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};
+  [[nodiscard]] bool exists() const { return series.size() > 3; }
+};
+
+void measure_noise(Source& source) {
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> part;
+    for (const Eigen::Vector3d& x : source.series.x) part.push_back(x[k]);
+    source.sigma[k] = white_noise_sigma(part);
+  }
+}
+
+/// Body velocity and body rates from the pose, where all samples under the window are valid.
+struct PoseDerivatives {
+  Source velocity, rates;
+};
+
+PoseDerivatives differentiate(const PoseSeries& pose) {
+  PoseDerivatives result;
+  const double step = typical_step(pose.t);
+  if (step <= 0.0) return result;
+  const SmoothingDerivative slope = smoothing_derivative(step, kBandwidth, kGainTolerance);
+  const int n = static_cast<int>(pose.size());
+  std::array<std::vector<double>, 3> position, angle;  // for the noise: body-fixed increments would hide it
+  for (int i = slope.half; i + slope.half < n; ++i) {
+    bool whole = true;
+    for (int k = i - slope.half; k <= i + slope.half && whole; ++k) {
+      const auto j = static_cast<std::size_t>(k);
+      whole = pose.valid[j] != 0 && (k == i - slope.half || pose.t[j] - pose.t[j - 1] < 1.8 * step);
+    }
+    if (!whole) continue;
+    const auto m = static_cast<std::size_t>(i);
+    Eigen::Vector3d v = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
+    for (int k = -slope.half; k <= slope.half; ++k) {
+      const auto j = static_cast<std::size_t>(i + k);
+      const double weight = slope.weight[static_cast<std::size_t>(k + slope.half)];
+      v += weight * pose.p_WB[j];
+      if (pose.has_attitude) w += weight * rotation_vector_from_quaternion(pose.q_WB[m].conjugate() * pose.q_WB[j]);
+    }
+    if (pose.has_position && pose.has_attitude) {
+      result.velocity.series.t.push_back(pose.t[m]);
+      result.velocity.series.x.push_back(pose.q_WB[m].conjugate() * v);
+    }
+    if (pose.has_attitude) {
+      result.rates.series.t.push_back(pose.t[m]);
+      result.rates.series.x.push_back(w);
+    }
+    const Eigen::Vector3d local =
+        i > 0 ? rotation_vector_from_quaternion(pose.q_WB[m - 1].conjugate() * pose.q_WB[m]) : Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      position[k].push_back(pose.p_WB[m][static_cast<int>(k)]);
+      angle[k].push_back(local[static_cast<int>(k)]);
+    }
+  }
+  Eigen::Vector3d sigma_p, sigma_a;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sigma_p[static_cast<int>(k)] = white_noise_sigma(position[k]);
+    // First differences of white noise: fourth differences have variance 70, the third difference's rule divides by 20.
+    sigma_a[static_cast<int>(k)] = white_noise_sigma(angle[k]) * std::sqrt(20.0 / 70.0);
+  }
+  // Horizontal axes mix with heading.
+  sigma_p.head<2>().setConstant(std::sqrt(0.5 * sigma_p.head<2>().squaredNorm()));
+  result.velocity.sigma = slope.noise * sigma_p;
+  result.rates.sigma = slope.noise * sigma_a;
+  return result;
+}
+
+/// Evaluates a source on the grid.
+void sample(const Source& source, const std::vector<double>& grid, std::vector<Eigen::Vector3d>& x,
+            std::vector<std::uint8_t>& ok) {
+  x.assign(grid.size(), Eigen::Vector3d::Zero());
+  ok.assign(grid.size(), 0);
+  if (!source.exists()) return;
+  const Spline spline(source.series);
+  // The first and last stamp may lie a rounding beside the grid.
+  constexpr double kEdge = 1e-5;  // s
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    double t = grid[i];
+    if (t < source.series.t.front() && t > source.series.t.front() - kEdge) t = source.series.t.front();
+    if (t > source.series.t.back() && t < source.series.t.back() + kEdge) t = source.series.t.back();
+    ok[i] = spline.at(t, x[i]) ? 1 : 0;
+  }
+}
+
+/// Straight lines across what is not valid, constant beyond the ends.
+void bridge(std::vector<Eigen::Vector3d>& x, const std::vector<std::uint8_t>& ok) {
+  const std::size_t n = x.size();
+  std::size_t before = n;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (ok[i] == 0) continue;
+    const std::size_t from = before == n ? 0 : before + 1;
+    for (std::size_t j = from; j < i; ++j) {
+      const double share = before == n ? 1.0 : static_cast<double>(j - before) / static_cast<double>(i - before);
+      x[j] = before == n ? x[i] : Eigen::Vector3d((1.0 - share) * x[before] + share * x[i]);
+    }
+    before = i;
+  }
+  for (std::size_t j = before == n ? n : before + 1; j < n; ++j) x[j] = x[before];
+}
+
+/// The better of two sources, or both weighted when their noise is alike; the other bridges gaps.
+struct Choice {
+  std::vector<Eigen::Vector3d> x;
+  std::vector<std::uint8_t> ok;
+  Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};
+};
+
+Choice choose(const Source& sensor, const Source& derivative, const std::vector<double>& grid) {
+  std::vector<Eigen::Vector3d> a, b;
+  std::vector<std::uint8_t> a_ok, b_ok;
+  sample(sensor, grid, a, a_ok);
+  sample(derivative, grid, b, b_ok);
+  Eigen::Vector3d sigma_a = sensor.sigma;
+  const Eigen::Vector3d sigma_b = derivative.sigma;
+  if (sensor.exists() && derivative.exists()) {
+    // What separates the two beyond the derivative's noise is charged to the sensor: wander, rounding, interpolation.
+    for (int k = 0; k < 3; ++k) {
+      std::vector<double> difference;
+      for (std::size_t i = 0; i < grid.size(); ++i) {
+        if (a_ok[i] && b_ok[i]) difference.push_back(a[i][k] - b[i][k]);
+      }
+      const double total = mad_sigma(std::move(difference));
+      const double rest = total * total - sigma_b[k] * sigma_b[k];
+      if (rest > 0.5 * total * total) sigma_a[k] = std::max(sigma_a[k], std::sqrt(rest));
+    }
+  }
+  Choice choice;
+  choice.x.resize(grid.size());
+  choice.ok.resize(grid.size());
+  Eigen::Vector3d share = Eigen::Vector3d::Ones();  // of the sensor
+  for (int k = 0; k < 3; ++k) {
+    if (!sensor.exists()) share[k] = 0.0;
+    if (!sensor.exists() || !derivative.exists()) continue;
+    const double va = sigma_a[k] * sigma_a[k], vb = sigma_b[k] * sigma_b[k];
+    if (va + vb <= 0.0) continue;
+    share[k] = vb / (va + vb);
+    if (share[k] > 0.8) share[k] = 1.0;
+    if (share[k] < 0.2) share[k] = 0.0;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const double sa = sensor.exists() ? sigma_a[k] : 0.0, sb = derivative.exists() ? sigma_b[k] : 0.0;
+    choice.sigma[k] = std::hypot(share[k] * sa, (1.0 - share[k]) * sb);
+  }
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    choice.ok[i] = a_ok[i] | b_ok[i];
+    for (int k = 0; k < 3; ++k) {
+      const double s = a_ok[i] && b_ok[i] ? share[k] : (a_ok[i] ? 1.0 : 0.0);
+      choice.x[i][k] = s * a[i][k] + (1.0 - s) * b[i][k];
+    }
+  }
+  bridge(choice.x, choice.ok);
+  return choice;
+}
+
+/// Input over time: thruster forces or the wrench, one row per sample of the stream.
+struct Input {
+  std::vector<double> t;
+  std::vector<Eigen::VectorXd> x;
+  bool is_wrench{false};
+};
+
+double linear(const std::vector<Battery>& battery, Utime utime) {
+  const auto after =
+      std::lower_bound(battery.begin(), battery.end(), utime, [](const Battery& b, Utime t) { return b.utime < t; });
+  if (after == battery.begin()) return after->voltage;
+  if (after == battery.end()) return battery.back().voltage;
+  const auto before = after - 1;
+  const double share = static_cast<double>(utime - before->utime) / static_cast<double>(after->utime - before->utime);
+  return before->voltage + share * (after->voltage - before->voltage);
+}
+
+Input read_input(const Recording& recording, Utime origin, const ThrusterCorrection& correction,
+                 const model::Vehicle& vehicle) {
+  Input input;
+  const double reference = vehicle.curve.voltage > 0.0 ? vehicle.curve.voltage : std::max(vehicle.nominal_voltage, 1.0);
+  for (const Thrusters& one : recording.thrusters) {
+    Eigen::VectorXd x;
+    bool wrench = false;
+    if (!one.force.empty()) {
+      x = Eigen::Map<const Eigen::VectorXd>(one.force.data(), static_cast<Eigen::Index>(one.force.size()));
+    } else if (correction.use_commands && one.pwm_us.size() == vehicle.thrusters.size()) {
+      const double battery = recording.battery.empty() ? reference : linear(recording.battery, one.utime);
+      const double factor = correction.scale * std::pow(battery / reference, correction.exponent);
+      x.resize(static_cast<Eigen::Index>(one.pwm_us.size()));
+      for (std::size_t k = 0; k < one.pwm_us.size(); ++k) {
+        x[static_cast<Eigen::Index>(k)] =
+            factor * vehicle.curve.force_at(one.pwm_us[k], vehicle.thrusters[k].pwm_sign, battery);
+      }
+    } else if (one.has_tau) {
+      x = Eigen::Map<const Eigen::VectorXd>(one.tau.data(), 6);
+      wrench = true;
+    } else {
+      continue;
+    }
+    const double t = seconds_between(origin, one.utime);
+    if (!x.allFinite() || (!input.t.empty() && (t <= input.t.back() || x.size() != input.x.back().size()))) continue;
+    input.is_wrench = wrench;
+    input.t.push_back(t);
+    input.x.push_back(std::move(x));
+  }
+  if (input.t.empty()) {
+    throw InputError(
+        recording.name +
+        ": no thruster forces, no wrench, and no commands that the vehicle's curve could turn into forces");
+  }
+  return input;
+}
+
+/// Mean over [t - dt/2, t + dt/2) when the stream is faster than the grid, else a straight line between neighbours.
+void sample_input(const Input& input, const std::vector<double>& grid, double dt, std::vector<Eigen::VectorXd>& out) {
+  const bool average = typical_step(input.t) < 0.75 * dt;
+  for (const double t : grid) {
+    const auto first = std::lower_bound(input.t.begin(), input.t.end(), average ? t - 0.5 * dt - 1e-6 : t);
+    const auto i = static_cast<std::size_t>(first - input.t.begin());
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
+    int count = 0;
+    for (std::size_t j = i; average && j < input.t.size() && input.t[j] < t + 0.5 * dt - 1e-6; ++j, ++count)
+      sum += input.x[j];
+    if (count > 0) {
+      out.emplace_back(sum / count);
+    } else if (i == 0) {
+      out.push_back(input.x.front());
+    } else if (i == input.t.size()) {
+      out.push_back(input.x.back());
+    } else {
+      const double share = (t - input.t[i - 1]) / (input.t[i] - input.t[i - 1]);
+      out.emplace_back((1.0 - share) * input.x[i - 1] + share * input.x[i]);
+    }
+  }
+}
+
+void shift(std::vector<double>& t, double by) {
+  for (double& one : t) one += by;
+}
+
+}  // namespace
+
+Trial reconstruct(const Recording& recording, const Corrections& corrections, const model::Vehicle& vehicle) {
+  std::vector<ConsistencyFinding> ignored;
+  const RunSignals run = read_signals(recording, ignored);
+
+  PoseSeries pose = block_average(reference_pose(run), kHighestRate);
+  correct_pose(corrections, pose);
+  shift(pose.t, corrections.pose_shift);
+  PoseDerivatives derived = differentiate(pose);
+
+  Source gyro{.series = block_average(run.gyro, kHighestRate)};
+  const Eigen::Matrix3d gyro_matrix = corrections.gyro.matrix();
+  for (Eigen::Vector3d& x : gyro.series.x) x = gyro_matrix * x + corrections.gyro.bias;
+  shift(gyro.series.t, corrections.gyro_shift);
+  measure_noise(gyro);
+
+  Source dvl{.series = block_average(run.dvl, kHighestRate)};
+  shift(dvl.series.t, corrections.dvl_shift);
+  const Spline rates(gyro.exists() ? gyro.series : derived.rates.series);
+  const Eigen::Matrix3d dvl_matrix = corrections.dvl.matrix();
+  const Eigen::Matrix3d from_rates = skew(corrections.dvl.lever) + corrections.dvl.coupling;
+  for (std::size_t i = 0; i < dvl.series.size(); ++i) {
+    Eigen::Vector3d omega = Eigen::Vector3d::Zero();
+    if (!from_rates.isZero() && !rates.at(dvl.series.t[i], omega)) omega.setZero();
+    dvl.series.x[i] = dvl_matrix * dvl.series.x[i] + corrections.dvl.bias + from_rates * omega;
+  }
+  measure_noise(dvl);
+
+  // The main stream gives the grid; blocks are centred, so a fast stream's means fall on the grid.
+  const std::vector<double>* main = nullptr;
+  double shifted = 0.0;
+  for (const auto& [times, by] : {std::pair{&run.gyro.t, corrections.gyro_shift},
+                                  {&reference_pose(run).t, corrections.pose_shift},
+                                  {&run.dvl.t, corrections.dvl_shift}}) {
+    if (main == nullptr && times->size() > 3) {
+      main = times;
+      shifted = by;
+    }
+  }
+  if (main == nullptr)
+    throw InputError(recording.name + ": no motion is recorded (neither pose, nor rates, nor velocity)");
+  const double step = typical_step(*main);
+  const double block = std::max(1.0, std::ceil(1.0 / (kHighestRate * step) - 0.05));
+  Trial trial;
+  trial.name = recording.name;
+  trial.dt = std::round(block * step * 1e6) * 1e-6;  // stamps are whole microseconds
+  const double begin = main->front() + shifted + 0.5 * (block - 1.0) * step;
+  const auto count = static_cast<std::size_t>((main->back() + shifted - begin) / trial.dt + 1e-3) + 1;
+  for (std::size_t i = 0; i < count; ++i) trial.t.push_back(begin + static_cast<double>(i) * trial.dt);
+
+  trial.observed = {.position = pose.has_position,
+                    .attitude = pose.has_attitude,
+                    .velocity = dvl.exists() || derived.velocity.exists(),
+                    .rates = gyro.exists() || derived.rates.exists()};
+  const Choice velocity = choose(dvl, derived.velocity, trial.t);
+  const Choice angular = choose(gyro, derived.rates, trial.t);
+  trial.velocity_valid = velocity.ok;
+  trial.rates_valid = angular.ok;
+  for (std::size_t i = 0; i < count; ++i) trial.nu.push_back((Vector6d() << velocity.x[i], angular.x[i]).finished());
+  trial.nu_sigma << velocity.sigma, angular.sigma;
+
+  Source position, vector, scalar;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    if (!pose.valid[i]) continue;
+    for (Source* one : {&position, &vector, &scalar}) one->series.t.push_back(pose.t[i]);
+    position.series.x.push_back(pose.p_WB[i]);
+    vector.series.x.push_back(pose.q_WB[i].vec());
+    scalar.series.x.emplace_back(pose.q_WB[i].w(), 0.0, 0.0);
+  }
+  std::vector<Eigen::Vector3d> x, y;
+  sample(position, trial.t, trial.p_WB, trial.pose_valid);
+  sample(vector, trial.t, x, trial.pose_valid);
+  sample(scalar, trial.t, y, trial.pose_valid);
+  bridge(trial.p_WB, trial.pose_valid);
+  bridge(x, trial.pose_valid);
+  bridge(y, trial.pose_valid);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Quaterniond q(y[i].x(), x[i].x(), x[i].y(), x[i].z());
+    trial.q_WB.push_back(trial.observed.attitude && q.norm() > 1e-6 ? q.normalized() : Eigen::Quaterniond::Identity());
+  }
+
+  const Input input = read_input(recording, run.origin, corrections.thrusters, vehicle);
+  trial.input_is_wrench = input.is_wrench;
+  sample_input(input, trial.t, trial.dt, trial.input);
+  for (std::size_t i = 0; i < count && !recording.battery.empty(); ++i) {
+    trial.voltage.push_back(linear(recording.battery, utime_after(run.origin, trial.t[i])));
+  }
+  const double start = trial.t.front();
+  for (double& t : trial.t) t -= start;
+  return trial;
+}
+
+}  // namespace fathom::estimation

@@ -1,0 +1,48 @@
+#include "common/base/statistics.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace fathom {
+
+TEST_CASE("median and mad ignore a wild sample") {
+  CHECK(median({3.0, 1.0, 2.0}) == 2.0);
+  CHECK(median({4.0, 1.0, 2.0, 3.0}) == 2.5);
+  CHECK(median({}) == 0.0);
+  CHECK(mad_sigma({1.0, 2.0, 3.0, 4.0, 1e9}) == doctest::Approx(1.4826));
+}
+
+TEST_CASE("Huber's weight falls beyond its limit only") {
+  CHECK(huber_weight(1.0) == 1.0);
+  CHECK(huber_weight(-3.0, 1.5) == doctest::Approx(0.5));
+}
+
+TEST_CASE("white noise is measured on top of smooth motion") {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  std::vector<double> series;
+  for (int i = 0; i < 5000; ++i) series.push_back(std::sin(0.05 * i) + normal(random));
+  CHECK(white_noise_sigma(series) == doctest::Approx(0.01).epsilon(0.05));  // scatter of 5000 samples: 2 %
+}
+
+TEST_CASE("the jackknife of a mean is the standard error") {
+  const std::array<double, 4> x{1.0, 2.0, 4.0, 7.0};
+  std::array<double, 4> replicates{};
+  for (std::size_t i = 0; i < 4; ++i) replicates[i] = (14.0 - x[i]) / 3.0;
+  CHECK(jackknife_sigma(replicates) == doctest::Approx(std::sqrt(7.0 / 4.0)));  // variance 7
+}
+
+TEST_CASE("pooling weighs by precision and admits scatter") {
+  const std::array<double, 2> alike{1.0, 1.2};
+  const std::array<double, 2> sigma{0.1, 0.2};
+  CHECK(pool(alike, sigma).value == doctest::Approx(1.04));
+  CHECK(pool(alike, sigma).sigma == doctest::Approx(std::sqrt(1.0 / 125.0)));
+  const std::array<double, 2> apart{1.0, 3.0};
+  const std::array<double, 2> small{0.1, 0.1};
+  CHECK(pool(apart, small).sigma == doctest::Approx(1.0));
+}
+
+}  // namespace fathom
