@@ -198,12 +198,12 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
                0.2 + 0.6 * (round + 0.5) / settings.most_effects);
       const FitResult fit = problem.fit(with_effect(reference, screened[i]), &reference);
       const auto parameters = static_cast<int>(screened[i].effect->parameters().size());
-      const double odds = log_odds(base.window_cost(), fit.window_cost, parameters, tried);
+      const double odds = log_odds(reference.window_cost, fit.window_cost, parameters, tried);
       if (fit.cost < best.cost && odds >= settings.accept_log_odds) {
         best = fit;
         winner = i;
         judged[i].log_odds = odds;
-        judged[i].error_reduction = reduction(sum(base.window_cost()), fit.cost);
+        judged[i].error_reduction = reduction(reference.cost, fit.cost);
       }
     }
     result.refused = best_of_each_effect(judged, result.accepted);

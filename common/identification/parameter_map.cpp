@@ -19,7 +19,8 @@ ParameterMap::ParameterMap(const model::Model& model) {
   for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
     const auto parameter = model::parameter_from_name(vehicle.parameters[i]);
     if (!parameter) continue;
-    FreeParameter free{.base = model::index(*parameter), .name = vehicle.parameters[i], .unit = std::string(model::unit(*parameter))};
+    FreeParameter free{
+        .base = model::index(*parameter), .name = vehicle.parameters[i], .unit = std::string(model::unit(*parameter))};
     free.prior_mean = vehicle.priors[i].mean;
     free.prior_sigma = vehicle.priors[i].sigma;
     free.scale = std::max(std::abs(model.theta[free.base]), kScaleFloorShare * free.prior_sigma);
@@ -48,9 +49,10 @@ Eigen::VectorXd ParameterMap::pack(const model::Model& model) const {
   Eigen::VectorXd x(static_cast<Eigen::Index>(free_.size()));
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const FreeParameter& free = free_[i];
-    const double value = free.base >= 0 ? model.theta[free.base]
-                                        : model.effects[static_cast<std::size_t>(free.effect)]
-                                              .theta[static_cast<std::size_t>(free.component)];
+    const double value =
+        free.base >= 0
+            ? model.theta[free.base]
+            : model.effects[static_cast<std::size_t>(free.effect)].theta[static_cast<std::size_t>(free.component)];
     x[static_cast<Eigen::Index>(i)] = value / free.scale;
   }
   return x;

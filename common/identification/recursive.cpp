@@ -11,8 +11,7 @@
 namespace fathom::identification {
 namespace {
 
-// Columns are walked in packets of four: entries of U below its diagonal are zero and stay so, and kMaxParameters is a
-// multiple of four, but a matrix of n rows is not. So U is kept with its row count rounded up.
+// Columns of U are walked in packets of four, so U is kept with its row count rounded up to packets.
 Eigen::Index padded(Eigen::Index n) { return (n + 3) / 4 * 4; }
 using Packet = Eigen::Array4d;
 using ConstPacketMap = Eigen::Map<const Packet>;
@@ -100,43 +99,53 @@ void RecursiveEstimator::forget() {
 // One scalar row: Bierman's update of U and D with the gain built alongside; then, for frozen parameters, Schmidt's
 // gain: they are not moved, and what the optimal update took from their variance is given back.
 void RecursiveEstimator::take(const Row& row) {
+  using Lane = std::array<double, kMaxParameters>;
   const Eigen::Index n = state_.estimate.size();
   const Eigen::Index stride = state_.U.rows();
-  alignas(32) std::array<double, kMaxParameters> h{};
-  alignas(32) std::array<double, kMaxParameters> gain{};
+  alignas(32) Lane h;
+  alignas(32) Lane f;
+  alignas(32) Lane g;
+  alignas(32) Lane lambda;
+  alignas(32) Lane gain;
   std::copy_n(row.h.data(), n, h.data());
+  std::fill(h.begin() + n, h.begin() + stride, 0.0);
   const double innovation = row.y - row.h.dot(state_.estimate);
 
-  double alpha = row.variance;
   for (Eigen::Index j = 0; j < n; ++j) {
-    double* column = state_.U.data() + j * stride;
+    const double* column = state_.U.data() + j * stride;
     Packet sum = Packet::Zero();
     for (Eigen::Index i = 0; i <= j; i += 4) sum += ConstPacketMap(column + i) * ConstPacketMap(h.data() + i);
-    const double f = sum.sum();
-    if (f == 0.0) continue;
-    const double g = state_.D(j) * f;
+    f[static_cast<std::size_t>(j)] = sum.sum();
+  }
+  double alpha = row.variance;
+  const double per_variance = 1.0 / row.variance;
+  double per_alpha = per_variance;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto k = static_cast<std::size_t>(j);
     const double before = alpha;
-    alpha += f * g;
-    const double per_before = 1.0 / before;
-    state_.D(j) *= before / alpha;
-    const double lambda = -f * per_before;
-    // The unit diagonal would be touched by the packet that holds it: take it out, put it back.
-    column[j] = 0.0;
-    for (Eigen::Index i = 0; i < j; i += 4) {
-      PacketMap U(column + i);
-      PacketMap K(gain.data() + i);
+    g[k] = state_.D(j) * f[k];
+    lambda[k] = -f[k] * per_alpha;
+    alpha += f[k] * g[k];
+    per_alpha = 1.0 / alpha;
+    state_.D(j) *= before * per_alpha;
+  }
+  // Bierman's inner loop with the two loops swapped, so that a packet of the gain stays in registers. Nothing special
+  // is needed at the diagonal: the gain of parameter i is zero until column i, whose unit entry starts it.
+  for (Eigen::Index i = 0; i < n; i += 4) {
+    Packet K = Packet::Zero();
+    double* entry = state_.U.data() + i * stride + i;
+    for (Eigen::Index j = i; j < n; ++j, entry += stride) {
+      PacketMap U(entry);
       const Packet beta = U;
-      U = beta + lambda * K;
-      K += g * beta;
+      U = beta + lambda[static_cast<std::size_t>(j)] * K;
+      K += g[static_cast<std::size_t>(j)] * beta;
     }
-    column[j] = 1.0;
-    gain[static_cast<std::size_t>(j)] += g;
+    PacketMap(gain.data() + i) = K;
   }
 
-  const double per_alpha = 1.0 / alpha;
   const double step = innovation * per_alpha;
   if (!any_frozen_) {
-    for (Eigen::Index i = 0; i < n; ++i) state_.estimate(i) += gain[static_cast<std::size_t>(i)] * step;
+    state_.estimate += step * Eigen::Map<const Eigen::VectorXd, Eigen::Aligned32>(gain.data(), n);
   } else {
     ParameterVector v = ParameterVector::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -151,24 +160,18 @@ void RecursiveEstimator::take(const Row& row) {
 
   // The innovation has variance alpha; scaled by sqrt(variance / alpha) it has the row's, from the first step on.
   const double residual = innovation * std::sqrt(row.variance * per_alpha);
-  const double weight = residual / row.variance;
-  const double information = 1.0 / row.variance;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double h_i = h[static_cast<std::size_t>(i)];
-    score_(i) += h_i * weight;
-    state_.information(i) += h_i * h_i * information;
-  }
+  const double weight = residual * per_variance;
+  score_ += weight * row.h;
+  state_.information.array() += per_variance * row.h.array().square();
 
   AxisStatistics& axis = state_.axes[static_cast<std::size_t>(row.axis)];
-  axis.weight = settings_.forgetting * axis.weight + 1.0;
-  const double share = 1.0 / axis.weight;
   const double off = residual - axis.mean;
   const double product = off * (axis.last - axis.mean);
-  const double covariance = axis.lag1 * axis.variance;
+  axis.weight = settings_.forgetting * axis.weight + 1.0;
+  const double share = 1.0 / axis.weight;
   axis.mean += share * off;
   axis.variance = (1.0 - share) * (axis.variance + share * off * off);
-  const double next = axis.weight > 1.0 ? covariance + share * (product - covariance) : 0.0;
-  axis.lag1 = axis.variance > 0.0 ? next / axis.variance : 0.0;
+  axis.covariance += axis.weight > 1.0 ? share * (product - axis.covariance) : 0.0;
   axis.last = residual;
   ++state_.updates;
 }
@@ -195,19 +198,21 @@ void RecursiveEstimator::step(std::span<const Row> rows) {
   state_.information *= keep;
   score_.setZero();
   for (const Row& row : rows) take(row);
-  const Eigen::Index n = state_.estimate.size();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double score = score_(i);
-    state_.score0(i) = keep * state_.score0(i) + score * score;
-    state_.score1(i) = keep * state_.score1(i) + score * state_.last_score(i);
-    state_.last_score(i) = score;
-  }
+  state_.score0 = keep * state_.score0 + score_.cwiseAbs2();
+  state_.score1 = keep * state_.score1 + score_.cwiseProduct(state_.last_score);
+  state_.last_score = score_;
 }
 
 ParameterMatrix RecursiveEstimator::covariance() const {
   const Eigen::Index n = state_.estimate.size();
-  const ParameterMatrix UD = state_.U.topRows(n) * state_.D.asDiagonal();
-  return UD * state_.U.topRows(n).transpose();
+  ParameterMatrix P = ParameterMatrix::Zero(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = j; k < n; ++k) {
+      P.col(j).head(j + 1) += (state_.D(k) * state_.U(j, k)) * state_.U.col(k).head(j + 1);
+    }
+    P.row(j).head(j) = P.col(j).head(j).transpose();
+  }
+  return P;
 }
 
 ParameterVector RecursiveEstimator::projected() const {

@@ -21,11 +21,13 @@ struct RecursiveSettings {
 
 /// What is left on one axis: the innovation, scaled so that its variance is the row's when the model is right.
 struct AxisStatistics {
-  double weight{};    ///< effective number of residuals
-  double mean{};      ///< N, N m
-  double variance{};  ///< about the mean
-  double lag1{};      ///< autocorrelation from one step to the next
+  double weight{};      ///< effective number of residuals
+  double mean{};        ///< N, N m
+  double variance{};    ///< about the mean
+  double covariance{};  ///< of one step with the next
   double last{};
+  /// Autocorrelation from one step to the next.
+  [[nodiscard]] double lag1() const { return variance > 0.0 ? covariance / variance : 0.0; }
 };
 
 struct RecursiveReport {

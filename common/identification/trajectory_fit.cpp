@@ -16,9 +16,16 @@ namespace {
 // A window whose residual is this many times its expected norm pulls no harder than one at that size: capture glitches
 // and collisions must not bend the model.
 constexpr double kWindowOutlier = 2.5;
-constexpr double kTrimmedShare = 0.05;  // worst windows left out when the residual's scale is measured
+constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
 constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
-constexpr double kSmallestSigma = 1e-5; // m/s, rad/s: below any sensor's noise; keeps perfect data finite
+constexpr double kSmallestSigma = 1e-5;     // m/s, rad/s: below any sensor's noise; keeps perfect data finite
+
+/// Half of Huber's loss of the squared norm: what the solver minimises.
+double window_cost(const Eigen::VectorXd& residual) {
+  const double bound = kWindowOutlier * std::sqrt(static_cast<double>(residual.size()));
+  const double norm = residual.norm();
+  return norm <= bound ? 0.5 * norm * norm : bound * norm - 0.5 * bound * bound;
+}
 
 /// Weighted residual of one window: parameter blocks theta (scaled) and nu0.
 class WindowCost final : public ceres::CostFunction {
@@ -107,8 +114,9 @@ TrajectoryFit::TrajectoryFit(const model::Vehicle& vehicle, std::span<const Tria
     if (residual.rows() > 0) windows_.push_back(std::move(residual));
   }
   if (windows_.empty()) {
-    throw InputError("no stretch of " + std::to_string(static_cast<int>(settings.window)) +
-                     " s with valid velocity or rates in the training runs; check the flags in the map or record longer");
+    throw InputError(
+        "no stretch of " + std::to_string(static_cast<int>(settings.window)) +
+        " s with valid velocity or rates in the training runs; check the flags in the map or record longer");
   }
 }
 
@@ -123,7 +131,8 @@ Vector6d TrajectoryFit::residual_scale(const FitResult& fit) const {
     }
     if (windows.empty()) continue;
     std::sort(windows.begin(), windows.end());
-    const auto kept = std::max<std::size_t>(1, windows.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(windows.size())));
+    const auto kept = std::max<std::size_t>(
+        1, windows.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(windows.size())));
     double square = 0.0, count = 0.0;
     for (std::size_t i = 0; i < kept; ++i) {
       square += windows[i].first * windows[i].second;
@@ -144,7 +153,7 @@ void TrajectoryFit::score(FitResult& fit) const {
     const WindowResidual& window = windows_[w];
     Eigen::VectorXd residual(window.rows());
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, residual);
-    fit.window_cost[w] = 0.5 * residual.squaredNorm();
+    fit.window_cost[w] = window_cost(residual);
     fit.cost += fit.window_cost[w];
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
       const int axis = window.axis(i);
@@ -168,8 +177,8 @@ void TrajectoryFit::solve(FitResult& fit) const {
   problem.AddResidualBlock(new PriorCost(map), nullptr, x.data());
   for (std::size_t w = 0; w < windows_.size(); ++w) {
     const double norm = std::sqrt(static_cast<double>(windows_[w].rows()));
-    problem.AddResidualBlock(new WindowCost(windows_[w], shape, map, fit.sigma), new ceres::HuberLoss(kWindowOutlier * norm),
-                             x.data(), fit.nu0[w].data());
+    problem.AddResidualBlock(new WindowCost(windows_[w], shape, map, fit.sigma),
+                             new ceres::HuberLoss(kWindowOutlier * norm), x.data(), fit.nu0[w].data());
     ordering->AddElementToGroup(fit.nu0[w].data(), 0);
     std::vector<int> fixed;
     for (int axis = 0; axis < 6; ++axis) {
@@ -178,8 +187,10 @@ void TrajectoryFit::solve(FitResult& fit) const {
     if (!fixed.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, fixed));
   }
   for (std::size_t i = 0; i < map.size(); ++i) {
-    if (std::isfinite(map[i].low)) problem.SetParameterLowerBound(x.data(), static_cast<int>(i), map[i].low / map[i].scale);
-    if (std::isfinite(map[i].high)) problem.SetParameterUpperBound(x.data(), static_cast<int>(i), map[i].high / map[i].scale);
+    if (std::isfinite(map[i].low))
+      problem.SetParameterLowerBound(x.data(), static_cast<int>(i), map[i].low / map[i].scale);
+    if (std::isfinite(map[i].high))
+      problem.SetParameterUpperBound(x.data(), static_cast<int>(i), map[i].high / map[i].scale);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -263,7 +274,8 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
     meat += gradient * gradient.transpose();
   }
   const auto clusters = static_cast<double>(windows_.size());
-  const double small_sample = clusters > static_cast<double>(n) + 1.0 ? clusters / (clusters - static_cast<double>(n)) : 2.0;
+  const double small_sample =
+      clusters > static_cast<double>(n) + 1.0 ? clusters / (clusters - static_cast<double>(n)) : 2.0;
   const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i) scale[i] = map[static_cast<std::size_t>(i)].scale;

@@ -12,7 +12,8 @@ constexpr double kSmallestShareValid = 0.5;
 
 bool all_valid(const Trial& trial, std::size_t k) {
   return (!trial.observed.position && !trial.observed.attitude ? true : trial.pose_valid[k] != 0) &&
-         (!trial.observed.velocity || trial.velocity_valid[k] != 0) && (!trial.observed.rates || trial.rates_valid[k] != 0);
+         (!trial.observed.velocity || trial.velocity_valid[k] != 0) &&
+         (!trial.observed.rates || trial.rates_valid[k] != 0);
 }
 
 }  // namespace

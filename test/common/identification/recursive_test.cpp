@@ -238,7 +238,7 @@ TEST_CASE("recursive: claimed sigmas hold under coloured residuals, where the no
       honest += error(i) * error(i) / report.covariance(i, i) / (2.0 * kTrials);
       nominal += error(i) * error(i) / P(i, i) / (2.0 * kTrials);
     }
-    lag += estimator.state().axes[2].lag1 / kTrials;
+    lag += estimator.state().axes[2].lag1() / kTrials;
   }
   CHECK(nominal > 8.0);
   CHECK(honest > 0.6);  // 400 squared normals: sigma of the mean 0.07 if independent, taken three times wider for both
@@ -263,7 +263,7 @@ TEST_CASE("recursive: white residuals of the stated size are not punished, large
   CHECK(wrong.report().inflation.minCoeff() > 3.5);
   CHECK(right.state().axes[0].variance == doctest::Approx(1.0).epsilon(0.1));
   CHECK(std::abs(right.state().axes[0].mean) < 0.06);
-  CHECK(std::abs(right.state().axes[0].lag1) < 0.06);
+  CHECK(std::abs(right.state().axes[0].lag1()) < 0.06);
 }
 
 TEST_CASE("recursive: a saved state resumes to the same bits, and a foreign one is refused") {

@@ -1,0 +1,96 @@
+// The on-line identifier: STATE and THRUSTERS in, MODEL and RESIDUAL out. States meet inputs by their time stamps,
+// never by the order of arrival, so that a replay over the network and a log read directly give the same numbers to the
+// last bit.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/identification/integral_regressor.hpp"
+#include "common/identification/recursive.hpp"
+#include "common/model/vehicle.hpp"
+#include "common/samples/estimates.hpp"
+#include "common/samples/sensors.hpp"
+
+namespace fathom {
+class Config;
+}
+
+namespace fathom::identification {
+
+struct IdentifierSettings {
+  double window{2.0};            ///< s, of the integral regressor
+  double stride{0.5};            ///< s between updates
+  double max_gap{0.35};          ///< s between states beyond which the window starts over
+  double memory{0.0};            ///< s that an update stays in memory; 0: for ever
+  double noise_force{0.5};       ///< N, sigma of a window's average
+  double noise_moment{0.1};      ///< N m
+  bool interpolate_input{true};  ///< false: a command holds until the next
+  double max_input_gap{0.5};     ///< s; a state between inputs further apart is not used
+  double max_skew{0.5};          ///< s by which one channel may lag the other without changing the result
+  bool buoyant{false};           ///< W-B is known to be negative
+
+  /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
+  /// buoyant.
+  [[nodiscard]] static IdentifierSettings from(const Config& config);
+};
+
+class Identifier {
+ public:
+  /// What one call released, in the order of message time; there is one residual and one model per update.
+  struct Output {
+    std::vector<ModelEstimate> models;
+    std::vector<Residual> residuals;
+    [[nodiscard]] bool empty() const { return models.empty(); }
+  };
+
+  /// InputError when the vehicle enables a parameter that nobody knows, none at all, or leaves a prior without sigma.
+  Identifier(const IdentifierSettings& settings, const model::Vehicle& vehicle);
+
+  /// The reference is good until the next call.
+  const Output& step(const StateEstimate& state);
+  /// `force` times the vehicle's allocation, else `tau`; a sample with neither is rejected.
+  const Output& step(const Thrusters& thrusters);
+  /// A log started over: back to the prior, nothing pending.
+  void reset();
+
+  /// The model as it stands.
+  [[nodiscard]] ModelEstimate model() const;
+  /// False when this vehicle has no such parameter. A frozen one is neither learnt nor forgotten.
+  bool freeze(std::string_view parameter);
+  bool resume(std::string_view parameter);
+  [[nodiscard]] const RecursiveEstimator& estimator() const { return estimator_; }
+  [[nodiscard]] const RecursiveEstimator::State& save() const { return estimator_.state(); }
+  void restore(const RecursiveEstimator::State& state) { estimator_.restore(state); }
+  /// Samples not used, by reason: "late", "state invalid", "no force", "not finite", "no input".
+  [[nodiscard]] const std::map<std::string, std::int64_t>& rejected() const { return rejected_; }
+
+ private:
+  struct Input {
+    Utime utime{};
+    Vector6d tau{Vector6d::Zero()};
+  };
+  void reject(const char* reason) { ++rejected_[reason]; }
+  void release();
+  /// Wrench at `utime` from the inputs around it; nothing when they are too far apart.
+  [[nodiscard]] std::optional<Vector6d> input_at(Utime utime) const;
+  void use(const MotionSample& sample);
+  [[nodiscard]] int column(std::string_view parameter) const;
+
+  IdentifierSettings settings_;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> allocation_;
+  std::vector<model::BaseParameter> parameters_;
+  IntegralRegressor regressor_;
+  RecursiveEstimator estimator_;
+  std::vector<MotionSample> pending_;  // states that wait for an input at or after them
+  std::vector<Input> inputs_;
+  std::optional<Utime> last_state_;
+  Utime model_utime_{};
+  Output output_;
+  std::map<std::string, std::int64_t> rejected_;
+};
+
+}  // namespace fathom::identification
