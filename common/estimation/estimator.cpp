@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kPatience = 5;            // refused in a row before the estimate is taken to be the one that is wrong
 constexpr double kSettling = 4.0;       // time constants of the position filter until its velocity counts
+constexpr double kStill = 0.01;         // m/s, rad/s
 constexpr double kFirstInterval = 0.1;  // s, of a measurement without predecessor
 
 AttitudeFilter attitude_filter(const EstimatorSettings& s) {
@@ -102,23 +103,28 @@ void Estimator::release(Utime until) {
   std::size_t done = 0;
   for (; done < waiting_.size() && waiting_[done].utime <= until; ++done) {
     const Event& event = waiting_[done];
-    if (!std::holds_alternative<Ahrs>(event.sample)) advance(event.utime);  // a gyro sample brings its own mean rate
-    std::visit(
-        [this, &event](const auto& sample) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(sample)>, Ahrs>) {
-            Ahrs corrected = sample;
-            corrected.utime = event.utime;
-            use(corrected);
-          } else {
-            use(sample);
-          }
-        },
-        event.sample);
-    now_ = event.utime;
+    next_gyro_.reset();
+    for (std::size_t i = done; i < waiting_.size() && !next_gyro_; ++i) {
+      const auto* ahrs = std::get_if<Ahrs>(&waiting_[i].sample);
+      if (ahrs != nullptr && ahrs->has_rates) next_gyro_ = Gyro{waiting_[i].utime, corrected_rates(*ahrs)};
+    }
+    advance(event.utime);
+    std::visit([this](const auto& sample) { use(sample); }, event.sample);
     const bool gyro = std::holds_alternative<Ahrs>(event.sample) && std::get<Ahrs>(event.sample).has_rates;
-    if (gyro || (std::holds_alternative<PoseCapture>(event.sample) && !fresh(gyro_))) say();
+    if (gyro || (std::holds_alternative<PoseCapture>(event.sample) && !fresh(gyro_track_))) say();
   }
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+Eigen::Vector3d Estimator::corrected_rates(const Ahrs& sample) const {
+  return corrections_.gyro.matrix() * sample.w_WB_B + corrections_.gyro.bias;
+}
+
+// Between two samples the rate goes in a straight line; without a next sample it stays.
+Eigen::Vector3d Estimator::gyro_at(double seconds_after_last) const {
+  const double gap = next_gyro_ ? seconds_between(last_gyro_.utime, next_gyro_->utime) : 0.0;
+  if (gap <= 0.0 || gap > settings_.max_gap) return last_gyro_.w;
+  return last_gyro_.w + (seconds_after_last / gap) * (next_gyro_->w - last_gyro_.w);
 }
 
 bool Estimator::fresh(const Track& track) const {
@@ -130,47 +136,43 @@ double Estimator::interval(const Track& track, double otherwise) const {
 }
 
 void Estimator::advance(Utime utime) {
-  if (!now_ || !rotation_.last) {
-    now_ = utime;
-    return;
-  }
-  const double dt = seconds_between(*now_, utime);
+  const double dt = now_ ? seconds_between(*now_, utime) : 0.0;
+  const double since_gyro = now_ ? seconds_between(last_gyro_.utime, *now_) : 0.0;
   now_ = utime;
-  if (!fresh(gyro_)) attitude_.drop_gyro();
+  if (!rotation_.last) return;
+  if (!fresh(position_) && !fresh(velocity_)) moving_since_.reset();
+  if (!fresh(gyro_track_)) attitude_.drop_gyro();
   if (dt <= 0.0) return;
   const Eigen::Matrix3d before = attitude_.attitude().toRotationMatrix();
-  attitude_.predict(dt);
-  const Eigen::Matrix3d after = attitude_.attitude().toRotationMatrix();
-  if (!fresh(position_) && !fresh(velocity_)) moving_since_.reset();
-  if (fresh(force_)) {
-    translation_.predict(dt, before, last_force_);
+  if (fresh(gyro_track_)) {
+    attitude_.predict(dt, gyro_at(since_gyro + 0.5 * dt));
+    attitude_.set_gyro(gyro_at(since_gyro + dt));
   } else {
-    translation_.predict(dt, after * before.transpose());
+    attitude_.predict(dt);
+  }
+  if (fresh(force_)) {
+    const Eigen::Matrix3d middle = before * quaternion_from_rotation_vector(0.5 * dt * attitude_.rates());
+    translation_.predict(dt, middle, last_force_);
+  } else {
+    translation_.predict(dt, attitude_.attitude().toRotationMatrix() * before.transpose());
   }
 }
 
 void Estimator::use(const Ahrs& sample) {
   if (sample.has_rates) {
-    const Eigen::Vector3d w = corrections_.gyro.matrix() * sample.w_WB_B + corrections_.gyro.bias;
-    const bool known = gyro_.last && now_ && seconds_between(*gyro_.last, sample.utime) <= settings_.max_gap;
-    const Eigen::Vector3d angular_acceleration =
-        known && sample.utime > *gyro_.last
-            ? Eigen::Vector3d((w - last_gyro_) / seconds_between(*gyro_.last, sample.utime))
-            : Eigen::Vector3d::Zero();
-    // The rate changes in straight lines between samples: the rest of the interval has the mean of both ends.
-    if (known) attitude_.set_gyro(0.5 * (last_gyro_ + w));
-    advance(sample.utime);
-    attitude_.set_gyro(w);
-    last_gyro_ = w;
-    gyro_.last = sample.utime;
+    const Eigen::Vector3d w = corrected_rates(sample);
+    const double dt = seconds_between(last_gyro_.utime, *now_);
+    const bool known = fresh(gyro_track_) && dt > 0.0;
     if (sample.has_specific_force) {
       const SensorFault& fault = corrections_.accelerometer;
-      last_force_ = fault.matrix() * sample.f_B + fault.bias - angular_acceleration.cross(fault.lever) -
-                    w.cross(w.cross(fault.lever));
-      force_.last = sample.utime;
+      const Eigen::Vector3d turning = known ? Eigen::Vector3d((w - last_gyro_.w) / dt) : Eigen::Vector3d::Zero();
+      last_force_ =
+          fault.matrix() * sample.f_B + fault.bias - turning.cross(fault.lever) - w.cross(w.cross(fault.lever));
+      force_.last = now_;
     }
-  } else {
-    advance(sample.utime);
+    attitude_.set_gyro(w);
+    last_gyro_ = {*now_, w};
+    gyro_track_.last = now_;
   }
   if (sample.has_attitude && !fresh(captured_)) use_attitude(sample.q_WB);
 }
@@ -178,6 +180,14 @@ void Estimator::use(const Ahrs& sample) {
 void Estimator::use(const PoseCapture& sample) {
   if (!sample.valid) {
     ++rejected_["pose invalid"];
+    return;
+  }
+  // A capture that repeats itself to the last bit while the vehicle moves is frozen, not precise.
+  const bool repeats =
+      last_pose_ && last_pose_->p_WB == sample.p_WB && last_pose_->q_WB.coeffs() == sample.q_WB.coeffs();
+  last_pose_ = sample;
+  if (repeats && (translation_.velocity().norm() > kStill || attitude_.rates().norm() > kStill)) {
+    ++rejected_["pose frozen"];
     return;
   }
   one_pose_.p_WB.front() = sample.p_WB;

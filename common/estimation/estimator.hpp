@@ -26,7 +26,7 @@ struct EstimatorSettings {
   double position_cutoff{8.0};  ///< rad/s, of position and, by it, velocity
   double velocity_cutoff{4.0};  ///< rad/s, of the velocity log
   double damping{0.8};          ///< 1, of the second-order filters
-  double latency{0.3};          ///< s behind the newest sample: more than any correction of a clock and any delay
+  double latency{0.3};          ///< s behind the newest: more than clock corrections and delays, plus one gyro interval
   double max_gap{1.0};          ///< s without a measurement after which a part is no longer valid
   double gate{6.0};             ///< sigma beyond which a measurement is refused
   double position_noise{};      ///< m, pose capture
@@ -65,8 +65,8 @@ class Estimator {
 
  private:
   struct Event {
-    Utime utime{};  // corrected
-    std::variant<PoseCapture, Ahrs, Dvl, Depth> sample;
+    Utime utime{};                                       // corrected
+    std::variant<Ahrs, PoseCapture, Dvl, Depth> sample;  // at equal times in this order
   };
   /// One kind of measurement: when it last counted, and how often in a row it was refused.
   struct Track {
@@ -74,9 +74,16 @@ class Estimator {
     int refused{};
   };
 
+  struct Gyro {
+    Utime utime{};
+    Eigen::Vector3d w{Eigen::Vector3d::Zero()};  // corrected
+  };
+
   const Output& take(Utime raw, double shift, Event event);
   void release(Utime until);
   void advance(Utime utime);
+  [[nodiscard]] Eigen::Vector3d corrected_rates(const Ahrs& sample) const;
+  [[nodiscard]] Eigen::Vector3d gyro_at(double seconds_after_last) const;
   void use(const PoseCapture& sample);
   void use(const Ahrs& sample);
   void use(const Dvl& sample);
@@ -93,12 +100,15 @@ class Estimator {
   Corrections corrections_;
   AttitudeFilter attitude_;
   TranslationFilter translation_;
-  PoseSeries one_pose_;         // for correct_pose, its memory kept
+  PoseSeries one_pose_;  // for correct_pose, its memory kept
+  std::optional<PoseCapture> last_pose_;
   std::vector<Event> waiting_;  // in the order of utime
   std::optional<Utime> newest_, now_;
-  Track rotation_, position_, depth_, velocity_, gyro_, force_, captured_;
+  Track rotation_, position_, depth_, velocity_, gyro_track_, force_, captured_;
   std::optional<Utime> moving_since_;  // since when velocity rests on measurements without a gap
-  Eigen::Vector3d last_gyro_{Eigen::Vector3d::Zero()}, last_force_{Eigen::Vector3d::Zero()};
+  Gyro last_gyro_;
+  std::optional<Gyro> next_gyro_;  // already here, since estimates are made `latency` behind
+  Eigen::Vector3d last_force_{Eigen::Vector3d::Zero()};
   Output output_;
   std::map<std::string, std::int64_t> rejected_;
 };

@@ -10,7 +10,7 @@
 namespace fathom::identification {
 namespace {
 
-constexpr double kInputHistory = 60.0;  // s kept before the newest input: a log replayed at 50 times its speed may lag a second
+constexpr double kInputHistory = 5.0;  // s kept before the newest input: far more than channels lag each other
 
 std::vector<model::BaseParameter> columns_of(const model::Vehicle& vehicle) {
   if (vehicle.parameters.empty()) {

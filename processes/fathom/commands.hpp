@@ -10,5 +10,6 @@ namespace fathom::tool {
 void add_import(CLI::App& app);
 void add_check(CLI::App& app);
 void add_diagnose(CLI::App& app);
+void add_compare(CLI::App& app);
 
 }  // namespace fathom::tool

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
+  fathom::tool::add_compare(app);
   try {
     app.parse(argc, argv);
     return 0;
