@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <thread>
+#include <cstdio>
+#include <cstdlib>
 
 #include "common/diagnosis/evidence.hpp"
 
@@ -13,7 +15,7 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 3;            // candidates per round that earn a full fit
+constexpr std::size_t kRefits = 3;            // candidates per round that may try a full fit; the first to hold wins
 constexpr double kAlternativeLogOdds = 3.0;   // 20 to 1 between two look-alikes settles which it is
 
 struct Candidate {
@@ -75,7 +77,8 @@ std::string refusal(const Judged& judged, const Settings& settings) {
     std::snprintf(text, sizeof text, "explains %.2f %% of the error: changes no prediction", 100.0 * judged.error_reduction);
     return text;
   }
-  if (judged.held_out_gain <= 0.0) return "does not help on blocks of data left out of its estimate";
+  if (judged.held_out_blocks <= 0.0) return "does not help on blocks of data left out of its estimate";
+  if (judged.held_out_runs <= 0.0) return "does not carry over from run to run";
   return "";
 }
 
@@ -84,7 +87,8 @@ Judged judge(const Screened& screened, const Linearisation& base, int tried) {
   const auto parameters = static_cast<int>(screened.effect->parameters().size());
   judged.log_odds = log_odds(base.window_cost(), screened.window_cost, parameters, tried);
   judged.error_reduction = reduction(sum(base.window_cost()), sum(screened.window_cost));
-  judged.held_out_gain = screened.held_out_gain;
+  judged.held_out_blocks = screened.held_out_blocks;
+  judged.held_out_runs = screened.held_out_runs;
   return judged;
 }
 
@@ -183,6 +187,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       judged.push_back(judge(candidate, base, tried));
       judged.back().reason = refusal(judged.back(), settings);
     }
+    if (std::getenv("FATHOM_DEBUG")) for (std::size_t i = 0; i < judged.size(); ++i) if (screened[i].gain>0) std::fprintf(stderr, "   %-18s %-12s gain %.0f lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n", std::string(judged[i].effect->name()).c_str(), judged[i].variant_name.c_str(), screened[i].gain, judged[i].log_odds, judged[i].error_reduction, judged[i].held_out_blocks, judged[i].held_out_runs, screened[i].theta[0], judged[i].reason.c_str());
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < judged.size(); ++i) {
       if (judged[i].reason.empty()) order.push_back(i);
@@ -204,6 +209,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
         winner = i;
         judged[i].log_odds = odds;
         judged[i].error_reduction = reduction(reference.cost, fit.cost);
+        break;
       }
     }
     result.refused = best_of_each_effect(judged, result.accepted);

@@ -17,7 +17,8 @@ struct Judged {
   std::string variant_name;
   double log_odds{};
   double error_reduction{};
-  double held_out_gain{};
+  double held_out_blocks{};
+  double held_out_runs{};
   std::vector<std::string> aliased_with{};   ///< other effects whose predictions look alike
   std::vector<std::string> alternatives{};   ///< of those, the ones that the odds cannot rule out
   std::string reason{};                      ///< why it was refused; empty when accepted

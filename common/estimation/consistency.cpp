@@ -389,7 +389,10 @@ ConsistencyResult Check::run() {
   for (int round = 0; round < 3 && find_heading(dvl); ++round) dvl = velocity(gyro);
   PairResult force = acceleration();
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    if (gyro.checked) result_.corrections[r].gyro = gyro.faults[r];
+    if (gyro.checked) {
+      result_.corrections[r].gyro = gyro.faults[r];
+      result_.corrections[r].doubtful_pose = gyro.fits[r].outlier_times;
+    }
     if (dvl.checked) result_.corrections[r].dvl = dvl.faults[r];
     if (force.checked) result_.corrections[r].accelerometer = force.faults[r];
   }
@@ -409,8 +412,12 @@ ConsistencyResult Check::run() {
            .evidence = std::to_string(count) +
                        " of the windows of about 1 s miss by more than 8 robust sigmas, the first at " +
                        text("%.1f s", pair->fits[r].outlier_times.front()),
-           .action = "given no weight in the comparison"});
+           .action = name == "gyro" ? "pose masked there, gyro trusted" : "given no weight in the comparison"});
     }
+  }
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const std::vector<ConsistencyFinding> depth = compare_depth(runs_[r], pose(r));
+    result_.findings.insert(result_.findings.end(), depth.begin(), depth.end());
   }
   align_clocks();
   compare_noise();

@@ -35,6 +35,7 @@ struct Corrections {
   double position_scale{1.0};
   SensorFault gyro, dvl, accelerometer;
   double pose_shift{}, dvl_shift{}, gyro_shift{};  ///< s, added to the stamps to reach the common clock
+  std::vector<double> doubtful_pose;  ///< s on the pose's clock: the gyro contradicts the pose around these
   ThrusterCorrection thrusters;
 };
 
@@ -48,6 +49,9 @@ struct ConsistencyResult {
 
 /// Compares the logged wrench with the one that the vehicle file makes of the commands; adds to `result`.
 void check_thrusters(std::span<const Recording> recordings, const model::Vehicle& vehicle, ConsistencyResult& result);
+
+/// Sign, scale and delay of the depth sensor; the offset (the water line) is nobody's fault.
+[[nodiscard]] std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseSeries& pose);
 
 /// The pose after corrections of form, axes, heading and unit; on its own clock.
 void correct_pose(const Corrections& corrections, PoseSeries& pose);

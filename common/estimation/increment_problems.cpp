@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/spatial.hpp"
+#include "common/base/statistics.hpp"
 #include "common/estimation/compatibility.hpp"
 
 namespace fathom::estimation {
@@ -12,6 +13,20 @@ namespace {
 constexpr double kWindow = 0.8;  // s: long enough to beat noise, short enough to keep a 0.5 Hz motion
 constexpr double kStride = 0.2;  // s
 constexpr double kGravity = 9.81;
+
+/// Mean variance of the attitude's white noise about one axis, rad^2.
+double attitude_variance(const PoseSeries& pose) {
+  double variance = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> step;
+    for (std::size_t i = 1; i < pose.size(); ++i) {
+      step.push_back(rotation_vector_from_quaternion(pose.q_WB[i - 1].conjugate() * pose.q_WB[i])[k]);
+    }
+    // Third differences of steps are fourth differences of the angle: variance 70 instead of 20.
+    variance += std::pow(white_noise_sigma(step), 2) * 20.0 / 70.0 / 3.0;
+  }
+  return variance;
+}
 
 struct Frame {
   IncrementProblem problem;
@@ -116,6 +131,8 @@ IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates) {
         frame.squared += squared;
         frame.add(first, count, y, fixed);
       });
+  frame.problem.lever = 3;
+  frame.problem.lever_noise = 4.0 * attitude_variance(pose);  // two attitudes, two axes across each column
   return std::move(frame.problem);
 }
 
@@ -149,6 +166,9 @@ IncrementProblem acceleration_problem(const PoseSeries& pose) {
                                           kGravity * Eigen::Vector3d::UnitZ());
         frame.add(first, count, y, fixed);
       });
+  frame.problem.lever = 0;
+  // Weights 1 -2 1, two axes, over the square of half the window.
+  frame.problem.lever_noise = 12.0 * attitude_variance(pose) / std::pow(kWindow, 4);
   return std::move(frame.problem);
 }
 

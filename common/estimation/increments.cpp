@@ -16,6 +16,8 @@ constexpr double kCoarseStep = 0.05;  // s: well under a quarter period of 2 Hz
 constexpr double kFineStep = 0.02;    // s: the cost is a parabola over this
 constexpr double kOutlier = 8.0;      // robust sigmas; 6 would flag a clean hour of data
 constexpr std::size_t kFewestWindows = 60;
+constexpr double kSharp = 0.8;          // least over median cost of all delays
+constexpr double kLeverSeen = 30.0;     // energy of a lever column over its noise: the bias stays under 5 mm
 constexpr double kBlockSeconds = 30.0;  // longer than any closed loop remembers
 
 constexpr int kMostColumns = 24;
@@ -222,10 +224,12 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
   const std::size_t stride = problem.windows.size() > 900 ? 3 : 1;
   double delay = 0.0;
   Coarse best;
+  std::vector<double> costs;
   const int reach = options.search_delay ? static_cast<int>(std::ceil(options.longest_delay / kCoarseStep)) : 0;
   for (int step = -reach; step <= reach; ++step) {
     coarse_design.shift(spline, step * kCoarseStep, stride);
     const Coarse trial = coarse_fit(problem, coarse_design, bias_columns, stride);
+    if (std::isfinite(trial.cost)) costs.push_back(trial.cost);
     if (trial.cost < best.cost) {
       best = trial;
       delay = step * kCoarseStep;
@@ -285,7 +289,9 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
     if (round == 4) break;
     delay += vertex.inside ? vertex.offset * kFineStep : (cost[0] < cost[2] ? -kFineStep : kFineStep);
   }
-  fit.delay_found = options.search_delay && vertex.inside && std::abs(delay) < options.longest_delay;
+  // A cost that hardly depends on the delay (no motion but noise) has a least value too.
+  const bool sharp = best.cost < kSharp * median(costs);
+  fit.delay_found = options.search_delay && vertex.inside && sharp && std::abs(delay) < options.longest_delay;
 
   const auto solve_all = [&](int without, double& offset, const Eigen::VectorXd* noise) {
     std::array<Eigen::VectorXd, 3> theta;
@@ -339,6 +345,11 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
   }
   fit.explained = total > 0.0 ? 1.0 - squares / total : 0.0;
   fit.seconds = span;
+  for (int a = 0; a < 3 && problem.lever >= 0; ++a) {
+    double energy = 0.0;
+    for (const auto& fixed : problem.fixed) energy += fixed.col(problem.lever + a).squaredNorm();
+    fit.lever_seen[a] = energy > kLeverSeen * problem.lever_noise * static_cast<double>(problem.fixed.size());
+  }
   return fit;
 }
 

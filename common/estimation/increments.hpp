@@ -25,6 +25,8 @@ struct IncrementProblem {
   std::vector<Eigen::Matrix3d> basis;                           ///< quadrature weight included
   std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> fixed;  ///< per window
   int fixed_columns{};
+  int lever{-1};            ///< first of the lever arm's three fixed columns
+  double lever_noise{};     ///< mean square of such a column if the attitude were still, from its noise
   double squared_weight{};  ///< mean of the windows' sums of squared quadrature weights over the step, s
   double step{};            ///< s, of the reference
 };
@@ -41,6 +43,7 @@ struct IncrementFit {
   std::vector<Eigen::VectorXd> theta_replicates;      ///< delete-block
   double explained{};                                 ///< robust R^2
   Eigen::Vector3d residual{Eigen::Vector3d::Zero()};  ///< robust sigma of the windows' misfit per axis, in units of y
+  bool lever_seen[3]{};                               ///< the vehicle turned far more than the attitude's noise
   std::vector<double> outlier_times;                  ///< s, windows that miss by more than the limit
   double seconds{};                                   ///< s of data used
 };

@@ -75,6 +75,7 @@ struct Estimate {
 struct Decision {
   Pooled pooled;
   bool found{false};
+  double limit{};                      ///< sigmas that count as significant with this much data
   std::vector<double> applied;         ///< per recording
   std::vector<std::size_t> different;  ///< recordings with a value of their own
 };
@@ -260,6 +261,7 @@ Decision Comparison::decide(const std::vector<Estimate>& estimates, double neutr
   if (used.empty()) return decision;
   // Student's tail: few blocks know their own scatter badly. This follows the 6e-5 quantile down to 7 blocks.
   const double limit = kSignificant * (1.0 + 5.0 / static_cast<double>(blocks));
+  decision.limit = limit;
   const double size = std::abs(decision.pooled.value);
   const int same = decision.pooled.value > 0.0 ? positive : negative;
   const bool repeated = used.size() < 3 ? same == static_cast<int>(used.size()) : same >= 3;
@@ -341,6 +343,7 @@ void Comparison::find_matrix() {
   // Turn: the part of M's columns across their own direction, by two columns per axis, each as good as it is sure.
   std::vector<Eigen::Vector3d> turn(runs_.size(), Eigen::Vector3d::Zero());
   static constexpr std::array<const char*, 3> kAbout{"x", "y", "z"};
+  std::array<double, 3> least{};  // of a turn that is significant and matters
   for (int a = 0; a < 3; ++a) {
     std::vector<Estimate> estimates(runs_.size());
     const int i = (a + 1) % 3, j = (a + 2) % 3;  // turn about a carries i to j and j to minus i
@@ -381,6 +384,7 @@ void Comparison::find_matrix() {
       turn[r][a] = estimates[r].value;
     }
     Decision decision = decide(estimates, 0.0, kAngleFloor);
+    least[static_cast<std::size_t>(a)] = std::max(kAngleFloor, decision.limit * decision.pooled.sigma);
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Eigen::Matrix3d large = turned_[r] * result_.faults[r].base.transpose();
       const bool is_large = !large.isIdentity(1e-9);
@@ -397,12 +401,17 @@ void Comparison::find_matrix() {
     const Eigen::Matrix3d large = turned_[r] * P.transpose();
     // turned = large * P; the small turn was measured in the logged frame carried to body axes, before the large turn.
     result_.faults[r].rotation = large * quaternion_from_rotation_vector(turn[r]).toRotationMatrix();
-    if (told || large.isIdentity(1e-9)) continue;
-    told = true;
+    if (large.isIdentity(1e-9)) continue;
     const Eigen::AngleAxisd whole(result_.faults[r].rotation);
     const Eigen::Vector3d vector = whole.angle() * whole.axis();
+    // Badly seen columns fake a large turn, which then is not significant.
+    bool significant = false;
+    for (int a = 0; a < 3; ++a) significant = significant || std::abs(vector[a]) > least[static_cast<std::size_t>(a)];
+    if (!significant) result_.faults[r].rotation.setIdentity();
+    if (told || !significant) continue;
+    told = true;
     for (int a = 0; a < 3; ++a) {
-      if (std::abs(vector[a]) < kAngleFloor) continue;
+      if (std::abs(vector[a]) < least[static_cast<std::size_t>(a)]) continue;
       result_.findings.push_back({.run = "all",
                                   .signal = names_.signal,
                                   .reference = names_.reference,
@@ -431,10 +440,11 @@ void Comparison::find_offsets() {
     for (std::size_t r = 0; r < runs_.size(); ++r) result_.faults[r].bias[a] = decision.applied[r];
   }
   const auto columns = [&](std::size_t r) { return static_cast<int>(fit(r).theta.size()); };
-  const auto offsets = [&](int column, double floor, double limit) {
+  const auto offsets = [&](int column, double floor, double limit, int lever_axis = -1) {
     std::vector<Estimate> estimates(runs_.size());
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (!fit(r).ok || fit(r).explained < kLeastExplained || column >= columns(r)) continue;
+      if (lever_axis >= 0 && !fit(r).lever_seen[lever_axis]) continue;
       estimates[r] = estimate(
           r, [&](const Eigen::VectorXd& theta) { return theta[column]; }, false);
       estimates[r].informative = estimates[r].sigma < limit;
@@ -444,7 +454,7 @@ void Comparison::find_offsets() {
   std::array<Decision, 3> levers;
   double largest_lever = 0.0;
   for (int a = 0; a < 3; ++a) {
-    levers[static_cast<std::size_t>(a)] = offsets(lever + a, kLeverFloor, 0.05);
+    levers[static_cast<std::size_t>(a)] = offsets(lever + a, kLeverFloor, 0.05, a);
     if (levers[static_cast<std::size_t>(a)].found)
       largest_lever = std::max(largest_lever, std::abs(levers[static_cast<std::size_t>(a)].pooled.value));
   }

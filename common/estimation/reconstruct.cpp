@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kHighestRate = 25.0;  // Hz
 constexpr double kBandwidth = 1.0;     // Hz: underwater vehicles of this size answer slower
+constexpr double kDoubt = 0.4;         // s: half the window in which gyro and pose were compared
 constexpr double kGainTolerance = 0.03;
 
 /// One of two sources of three components, with its white noise.
@@ -118,6 +119,11 @@ void bridge(std::vector<Eigen::Vector3d>& x, const std::vector<std::uint8_t>& ok
   for (std::size_t j = before == n ? n : before + 1; j < n; ++j) x[j] = x[before];
 }
 
+/// Whom to charge with what separates sensor and derivative beyond their white noise. A gyro's own errors are small and
+/// slow once bias and turn are out, a derivative of attitude carries the tracker's jitter; a DVL wanders with its beams
+/// and is interpolated between slow samples, position seldom does.
+enum class Doubt { kSensor, kDerivative };
+
 /// The better of two sources, or both weighted when their noise is alike; the other bridges gaps.
 struct Choice {
   std::vector<Eigen::Vector3d> x;
@@ -125,23 +131,24 @@ struct Choice {
   Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};
 };
 
-Choice choose(const Source& sensor, const Source& derivative, const std::vector<double>& grid) {
+Choice choose(const Source& sensor, const Source& derivative, const std::vector<double>& grid, Doubt doubt) {
   std::vector<Eigen::Vector3d> a, b;
   std::vector<std::uint8_t> a_ok, b_ok;
   sample(sensor, grid, a, a_ok);
   sample(derivative, grid, b, b_ok);
   Eigen::Vector3d sigma_a = sensor.sigma;
-  const Eigen::Vector3d sigma_b = derivative.sigma;
+  Eigen::Vector3d sigma_b = derivative.sigma;
   if (sensor.exists() && derivative.exists()) {
-    // What separates the two beyond the derivative's noise is charged to the sensor: wander, rounding, interpolation.
     for (int k = 0; k < 3; ++k) {
       std::vector<double> difference;
       for (std::size_t i = 0; i < grid.size(); ++i) {
         if (a_ok[i] && b_ok[i]) difference.push_back(a[i][k] - b[i][k]);
       }
       const double total = mad_sigma(std::move(difference));
-      const double rest = total * total - sigma_b[k] * sigma_b[k];
-      if (rest > 0.5 * total * total) sigma_a[k] = std::max(sigma_a[k], std::sqrt(rest));
+      Eigen::Vector3d& charged = doubt == Doubt::kSensor ? sigma_a : sigma_b;
+      const double other = doubt == Doubt::kSensor ? sigma_b[k] : sigma_a[k];
+      const double rest = total * total - other * other;
+      if (rest > 0.5 * total * total) charged[k] = std::max(charged[k], std::sqrt(rest));
     }
   }
   Choice choice;
@@ -261,6 +268,11 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
 
   PoseSeries pose = block_average(reference_pose(run), kHighestRate);
   correct_pose(corrections, pose);
+  for (const double doubtful : corrections.doubtful_pose) {
+    const auto from = std::lower_bound(pose.t.begin(), pose.t.end(), doubtful - kDoubt) - pose.t.begin();
+    const auto to = std::upper_bound(pose.t.begin(), pose.t.end(), doubtful + kDoubt) - pose.t.begin();
+    std::fill(pose.valid.begin() + from, pose.valid.begin() + to, std::uint8_t{0});
+  }
   shift(pose.t, corrections.pose_shift);
   PoseDerivatives derived = differentiate(pose);
 
@@ -308,8 +320,8 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
                     .attitude = pose.has_attitude,
                     .velocity = dvl.exists() || derived.velocity.exists(),
                     .rates = gyro.exists() || derived.rates.exists()};
-  const Choice velocity = choose(dvl, derived.velocity, trial.t);
-  const Choice angular = choose(gyro, derived.rates, trial.t);
+  const Choice velocity = choose(dvl, derived.velocity, trial.t, Doubt::kSensor);
+  const Choice angular = choose(gyro, derived.rates, trial.t, Doubt::kDerivative);
   trial.velocity_valid = velocity.ok;
   trial.rates_valid = angular.ok;
   for (std::size_t i = 0; i < count; ++i) trial.nu.push_back((Vector6d() << velocity.x[i], angular.x[i]).finished());

@@ -16,6 +16,8 @@ namespace {
 // A window whose residual is this many times its expected norm pulls no harder than one at that size: capture glitches
 // and collisions must not bend the model.
 constexpr double kWindowOutlier = 2.5;
+constexpr double kBoundMargin = 1e-9;       // of a parameter's scale
+constexpr double kReleaseStep = 0.02;       // of a parameter's scale, away from its bound
 constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
 constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
 constexpr double kSmallestSigma = 1e-5;     // m/s, rad/s: below any sensor's noise; keeps perfect data finite
@@ -91,6 +93,36 @@ class PriorCost final : public ceres::CostFunction {
   const ParameterMap& map_;
 };
 
+std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd& x) {
+  std::vector<int> held;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double value = x[static_cast<Eigen::Index>(i)] * map[i].scale;
+    const double margin = kBoundMargin * map[i].scale;
+    if (value <= map[i].low + margin || value >= map[i].high - margin) held.push_back(static_cast<int>(i));
+  }
+  return held;
+}
+
+/// Moves held numbers inside where that lowers the cost; false when none wants to.
+bool let_go(ceres::Problem& problem, const ParameterMap& map, const std::vector<int>& held, Eigen::VectorXd& x) {
+  if (held.empty()) return false;
+  problem.SetManifold(x.data(), nullptr);
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = {x.data()};
+  std::vector<double> gradient;
+  problem.Evaluate(options, nullptr, nullptr, &gradient, nullptr);
+  bool any = false;
+  for (const int i : held) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool at_low = x[i] * map[k].scale <= map[k].low + kBoundMargin * map[k].scale;
+    if (at_low ? gradient[k] < 0.0 : gradient[k] > 0.0) {
+      x[i] += (at_low ? 1.0 : -1.0) * kReleaseStep;
+      any = true;
+    }
+  }
+  return any;
+}
+
 }  // namespace
 
 std::vector<NamedValue> FitResult::parameters() const {
@@ -164,33 +196,30 @@ void TrajectoryFit::score(FitResult& fit) const {
   }
 }
 
-void TrajectoryFit::solve(FitResult& fit) const {
+void TrajectoryFit::solve(FitResult& fit, bool release) const {
   const ParameterMap map{fit.model};
   const model::Model shape = fit.model;
   Eigen::VectorXd x = map.pack(fit.model);
-  ceres::Problem::Options ownership;
-  ownership.loss_function_ownership = ceres::TAKE_OWNERSHIP;
-  ceres::Problem problem{ownership};
+  ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
   ordering->AddElementToGroup(x.data(), 1);
   problem.AddResidualBlock(new PriorCost(map), nullptr, x.data());
+  std::vector<int> unsimulated;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!vehicle_.dof[static_cast<std::size_t>(axis)]) unsimulated.push_back(axis);
+  }
   for (std::size_t w = 0; w < windows_.size(); ++w) {
     const double norm = std::sqrt(static_cast<double>(windows_[w].rows()));
     problem.AddResidualBlock(new WindowCost(windows_[w], shape, map, fit.sigma),
                              new ceres::HuberLoss(kWindowOutlier * norm), x.data(), fit.nu0[w].data());
     ordering->AddElementToGroup(fit.nu0[w].data(), 0);
-    std::vector<int> fixed;
-    for (int axis = 0; axis < 6; ++axis) {
-      if (!vehicle_.dof[static_cast<std::size_t>(axis)]) fixed.push_back(axis);
-    }
-    if (!fixed.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, fixed));
+    if (!unsimulated.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, unsimulated));
   }
   for (std::size_t i = 0; i < map.size(); ++i) {
-    if (std::isfinite(map[i].low))
-      problem.SetParameterLowerBound(x.data(), static_cast<int>(i), map[i].low / map[i].scale);
-    if (std::isfinite(map[i].high))
-      problem.SetParameterUpperBound(x.data(), static_cast<int>(i), map[i].high / map[i].scale);
+    const int k = static_cast<int>(i);
+    if (std::isfinite(map[i].low)) problem.SetParameterLowerBound(x.data(), k, map[i].low / map[i].scale);
+    if (std::isfinite(map[i].high)) problem.SetParameterUpperBound(x.data(), k, map[i].high / map[i].scale);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -199,9 +228,25 @@ void TrajectoryFit::solve(FitResult& fit) const {
   options.max_num_iterations = settings_.iterations;
   options.function_tolerance = settings_.tolerance;
   options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+
+  // Ceres projects each step on the bounds, and a step that would cross one then hardly moves. So numbers that lie on a
+  // bound are held there while the others move, and let go again when the cost wants them inside.
+  constexpr int kPasses = 4;
+  std::vector<int> held;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const std::vector<int> at_bound = numbers_at_bound(map, x);
+    if (pass > 0 && at_bound == held) {
+      if (!release || !let_go(problem, map, held, x)) break;
+      held = numbers_at_bound(map, x);
+      release = false;
+    } else {
+      held = at_bound;
+    }
+    problem.SetManifold(x.data(), held.empty() ? nullptr : new ceres::SubsetManifold(static_cast<int>(x.size()), held));
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  }
   map.unpack(x, fit.model);
 }
 
@@ -211,7 +256,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) c
   if (like != nullptr) {
     fit.sigma = like->sigma;
     fit.nu0 = like->nu0;
-    solve(fit);
+    solve(fit, false);
     score(fit);
     return fit;
   }
@@ -219,7 +264,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) c
   score(fit);
   for (int round = 0; round < settings_.weight_rounds; ++round) {
     fit.sigma = residual_scale(fit);
-    solve(fit);
+    solve(fit, true);
     score(fit);
   }
   fit.sigma = residual_scale(fit);
@@ -238,6 +283,7 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit) cons
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, out.residual);
     out.jacobian.resize(window.rows(), static_cast<Eigen::Index>(map.size()));
     window.parameter_jacobian(fit.model, map, fit.nu0[w], fit.sigma, out.residual, out.jacobian);
+    for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
     Eigen::MatrixXd initial(window.rows(), 6);
     window.initial_jacobian(fit.model, fit.nu0[w], fit.sigma, out.residual, initial);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};

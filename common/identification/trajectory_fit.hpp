@@ -50,7 +50,7 @@ class TrajectoryFit {
   /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs can
   /// be compared); without, sigma is found by iteration.
   [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr) const;
-  /// Residuals and derivatives at a fit, per window.
+  /// Residuals and derivatives at a fit, per window. Numbers on a physical bound have no derivative: they stay there.
   [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit) const;
   /// Fills fit.covariance: sandwich with windows as clusters, so that correlation inside a window is counted.
   void add_covariance(FitResult& fit) const;
@@ -60,7 +60,7 @@ class TrajectoryFit {
   [[nodiscard]] const FitSettings& settings() const { return settings_; }
 
  private:
-  void solve(FitResult& fit) const;
+  void solve(FitResult& fit, bool release) const;
   void score(FitResult& fit) const;
   [[nodiscard]] Vector6d residual_scale(const FitResult& fit) const;
 

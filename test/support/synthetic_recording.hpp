@@ -22,6 +22,7 @@ struct SyntheticOptions {
   double position_noise{0.005}, angle_noise{0.0035};        // m, rad (0.2 deg)
   double velocity_noise{0.005}, rate_noise{0.0035};         // m/s, rad/s
   double force_noise{0.05};                                 // m/s^2
+  std::array<double, 6> activity{1, 1, 1, 1, 1, 1};         // share of the usual amplitude: x y z roll pitch yaw
   bool accelerometer{false};
   // Faults: logged = matrix * true(t - delay) + bias.
   Eigen::Matrix3d gyro_matrix{Eigen::Matrix3d::Identity()}, dvl_matrix{Eigen::Matrix3d::Identity()},
@@ -29,6 +30,7 @@ struct SyntheticOptions {
   Eigen::Vector3d gyro_bias{Eigen::Vector3d::Zero()}, dvl_bias{Eigen::Vector3d::Zero()};
   double gyro_delay{}, dvl_delay{};                    // s
   Eigen::Vector3d dvl_lever{Eigen::Vector3d::Zero()};  // m
+  double depth_scale{1.0}, depth_delay{};              // -, s
   std::function<void(PoseCapture&)> spoil_pose{};      // applied last
   std::function<void(Dvl&, double t)> spoil_dvl{};
   std::function<void(Ahrs&, double t)> spoil_gyro{};
@@ -37,7 +39,7 @@ struct SyntheticOptions {
 /// Sums of incommensurate sines: position, roll, pitch, yaw with exact derivatives.
 class SyntheticMotion {
  public:
-  explicit SyntheticMotion(unsigned seed) {
+  explicit SyntheticMotion(unsigned seed, const std::array<double, 6>& activity = {1, 1, 1, 1, 1, 1}) {
     std::mt19937 random(seed * 7919u + 13u);
     std::uniform_real_distribution<double> phase(0.0, 2.0 * std::numbers::pi), detune(0.85, 1.15);
     constexpr std::array<double, 6> kAmplitude{0.8, 0.6, 0.3, 0.12, 0.12, 1.5};  // m, rad
@@ -45,8 +47,8 @@ class SyntheticMotion {
     constexpr std::array<double, 4> kShare{1.0, 0.5, 0.25, 0.1};
     for (std::size_t a = 0; a < 6; ++a) {
       for (std::size_t k = 0; k < 4; ++k) {
-        terms_[a][k] = {kAmplitude[a] * kShare[k], 2.0 * std::numbers::pi * kFrequency[k] * detune(random),
-                        phase(random)};
+        terms_[a][k] = {activity[a] * kAmplitude[a] * kShare[k],
+                        2.0 * std::numbers::pi * kFrequency[k] * detune(random), phase(random)};
       }
     }
   }
@@ -82,7 +84,7 @@ class SyntheticMotion {
 };
 
 inline Recording synthetic_recording(const SyntheticOptions& o, const std::string& name = "synthetic") {
-  const SyntheticMotion motion(o.seed);
+  const SyntheticMotion motion(o.seed, o.activity);
   std::mt19937 random(o.seed);
   std::normal_distribution<double> normal;
   const auto noise = [&](double sigma) {
@@ -125,6 +127,10 @@ inline Recording synthetic_recording(const SyntheticOptions& o, const std::strin
             .held = false};
     if (o.spoil_dvl) o.spoil_dvl(dvl, t);
     recording.dvl.push_back(dvl);
+  });
+  stamps(10.0, [&](double t, Utime utime) {
+    recording.depth.push_back(
+        {utime, o.depth_scale * motion.p_WB(t - o.depth_delay).z() + 0.4 + 0.01 * normal(random)});
   });
   stamps(20.0, [&](double, Utime utime) {
     Thrusters thrusters;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "common/base/statistics.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/synthetic_recording.hpp"
 
@@ -88,6 +89,34 @@ TEST_CASE("clean recordings give no finding over thirty seeds") {
   }
 }
 
+TEST_CASE("clean recordings of few axes or little motion give no finding") {
+  std::mt19937 random(77);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (unsigned seed = 101; seed <= 130; ++seed) {
+    SyntheticOptions options{.seed = seed, .duration = 60.0 + 300.0 * any(random)};
+    options.pose_rate = options.gyro_rate = seed % 2 == 0 ? 10.0 : 25.0;
+    options.dvl_rate = options.pose_rate;
+    for (double& activity : options.activity) activity = any(random) < 0.5 ? 0.0 : 0.05 + any(random);
+    options.accelerometer = seed % 3 == 0;
+    if (seed % 5 == 0)
+      options.position_noise = options.angle_noise = options.velocity_noise = options.rate_noise = options.force_noise =
+          0.0;
+    std::vector<Recording> runs;
+    for (unsigned k = 0; k < 1 + seed % 3; ++k) {
+      options.seed = seed + 1000 * k;
+      runs.push_back(test::synthetic_recording(options, "run-" + std::to_string(k)));
+    }
+    const auto findings = estimation::check_consistency(runs).findings;
+    INFO("seed ", seed);
+    CHECK(findings.empty());
+    if (!findings.empty())
+      std::printf("seed %u: %zu runs of %.0f s, activity %.2f %.2f %.2f %.2f %.2f %.2f\n", seed, runs.size(),
+                  options.duration, options.activity[0], options.activity[1], options.activity[2], options.activity[3],
+                  options.activity[4], options.activity[5]);
+    print(findings);
+  }
+}
+
 TEST_CASE("delays are found within their interval") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -106,6 +135,30 @@ TEST_CASE("delays are found within their interval") {
     if (findings.size() != 3) print(findings);
     check_motion({.seed = seed, .gyro_delay = gyro, .dvl_delay = dvl});
   }
+}
+
+TEST_CASE("stated errors cover the truth") {
+  int delays = 0, biases = 0;
+  double ratios = 0.0;
+  constexpr unsigned kSeeds = 24;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    const double delay = 0.01 * seed - 0.1;
+    const Recording recording =
+        test::synthetic_recording({.seed = seed, .gyro_bias = {0.01, 0.0, 0.0}, .gyro_delay = delay});
+    const auto result = estimation::check_consistency(std::span(&recording, 1));
+    const estimation::IncrementFit& fit = result.pairs.at("gyro").fits[0];
+    const double off = std::abs(fit.delay - delay) / jackknife_sigma(fit.delay_replicates);
+    ratios += off * off / kSeeds;
+    delays += off < 2.2;  // 95 % of Student's law with 7 degrees of freedom is 2.4
+    std::vector<double> bias;
+    for (const Eigen::VectorXd& theta : fit.theta_replicates) bias.push_back(theta[9]);
+    biases += std::abs(fit.theta[9] + 0.01) < 2.2 * jackknife_sigma(bias);
+  }
+  std::printf("coverage of 2.2 sigma: delay %d, bias %d of %u; mean square ratio %.2f\n", delays, biases, kSeeds,
+              ratios);
+  constexpr int kFewest = 19;  // of 24: chance of fewer is under 1 % when 95 % are covered
+  CHECK(delays >= kFewest);
+  CHECK(biases >= kFewest);
 }
 
 TEST_CASE("signs and swapped axes are found and undone") {
@@ -247,6 +300,15 @@ TEST_CASE("attitude that was misread is recognised") {
       check_motion(options);
     }
   }
+}
+
+TEST_CASE("depth is compared with the position") {
+  const auto findings = check({.seed = 25, .depth_scale = -1.0, .depth_delay = 0.4});
+  print(findings);
+  REQUIRE(find(findings, "depth", "sign") != nullptr);
+  REQUIRE(find(findings, "depth", "delay") != nullptr);
+  CHECK(find(findings, "depth", "delay")->size == doctest::Approx(0.4).epsilon(0.15));
+  CHECK(findings.size() == 2);
 }
 
 TEST_CASE("glitches, freezes, gaps and a noisy axis are reported") {

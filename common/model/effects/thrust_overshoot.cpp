@@ -1,0 +1,47 @@
+// Physics: a propeller in water at rest pushes harder than one whose own inflow has built up: after a step of command the
+// thrust peaks, then sinks to its steady value (Healey et al. 1995; Whitcomb and Yoerger 1999). First order in the inflow:
+// f = f_c - k g, T g_dot = f_c - g. The steady thrust is (1 - k) f_c, the first instant's f_c.
+// Ignores: that T shrinks with the jet's speed, and jets that meet the hull, walls or each other.
+// Revealed by steps held for several T. Confused with mass and linear drag together, and with fluid_memory.
+#include <array>
+#include <cmath>
+
+#include "common/model/effect.hpp"
+
+namespace fathom::model::effects {
+namespace {
+
+constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.3, 0.0, 0.98},
+                                 EffectParameter{"time_constant", "s", 1.0, 0.05, 10.0}};
+
+class ThrustOvershoot final : public Effect {
+ public:
+  std::string_view name() const override { return "thrust_overshoot"; }
+  std::string_view sentence() const override { return "Thrust peaks after each change of command and then fades."; }
+  std::string_view revealed_by() const override { return "steps of thrust held for five seconds and more"; }
+  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::vector<std::vector<double>> starts(const Scene&, int) const override {
+    return {{0.1, 0.3}, {0.1, 1.0}, {0.1, 3.0}};
+  }
+  int state_size(const Vehicle&, int actuators) const override { return actuators; }
+
+  void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] = motion.force[static_cast<Eigen::Index>(i)];
+  }
+  void advance(const Motion& motion, EffectTheta theta, double dt, std::span<double> z) const override {
+    const double share = theta[1] > 0.0 ? -std::expm1(-dt / theta[1]) : 1.0;
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += share * (motion.force[static_cast<Eigen::Index>(i)] - z[i]);
+  }
+  void feel(Motion& motion, EffectTheta theta, int, std::span<const double> z) const override {
+    for (std::size_t i = 0; i < z.size(); ++i) motion.force[static_cast<Eigen::Index>(i)] -= theta[0] * z[i];
+  }
+};
+
+}  // namespace
+
+const Effect& thrust_overshoot() {
+  static const ThrustOvershoot kEffect;
+  return kEffect;
+}
+
+}  // namespace fathom::model::effects
