@@ -168,10 +168,11 @@ std::vector<double> autocorrelation(std::span<const double> series, std::size_t 
 double ljung_box_p(std::span<const double> rho, double count) {
   double statistic = 0.0, lags = 0.0;
   for (std::size_t lag = 1; lag < rho.size() && static_cast<double>(lag) < count; ++lag) {
-    statistic += rho[lag] * rho[lag] / (count - static_cast<double>(lag));
+    // autocorrelation() divides by the pairs at each lag, the test's original by all samples: hence a factor, not a divisor.
+    statistic += rho[lag] * rho[lag] * (count - static_cast<double>(lag));
     lags += 1.0;
   }
-  return lags > 0.0 ? chi_square_tail(count * (count + 2.0) * statistic, lags) : 1.0;
+  return lags > 0.0 ? chi_square_tail((count + 2.0) / count * statistic, lags) : 1.0;
 }
 
 std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,

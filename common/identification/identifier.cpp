@@ -1,4 +1,4 @@
-// Alignment of the two streams by message time; the mathematics is in the regressor and the estimator.
+// From aligned streams to rows; the mathematics is in the regressor and the estimator.
 #include "common/identification/identifier.hpp"
 
 #include <algorithm>
@@ -9,8 +9,6 @@
 
 namespace fathom::identification {
 namespace {
-
-constexpr double kInputHistory = 5.0;  // s kept before the newest input: far more than channels lag each other
 
 std::vector<model::BaseParameter> columns_of(const model::Vehicle& vehicle) {
   if (vehicle.parameters.empty()) {
@@ -68,29 +66,18 @@ Identifier::Identifier(const IdentifierSettings& settings, const model::Vehicle&
       allocation_{vehicle.allocation},
       parameters_{columns_of(vehicle)},
       regressor_{integral_settings(settings, vehicle)},
-      estimator_{recursive_settings(settings, vehicle)} {}
+      estimator_{recursive_settings(settings, vehicle)},
+      aligner_{{.interpolate = settings.interpolate_input,
+                .max_input_gap = settings.max_input_gap,
+                .max_skew = settings.max_skew}} {}
 
 const Identifier::Output& Identifier::step(const StateEstimate& state) {
   output_.models.clear();
   output_.residuals.clear();
-  if (last_state_ && state.utime <= *last_state_) {
+  if (!aligner_.push(state)) {
     reject("late");
     return output_;
   }
-  last_state_ = state.utime;
-  MotionSample sample;
-  sample.utime = state.utime;
-  sample.valid = state.valid;
-  if (!state.valid) reject("state invalid");
-  if (sample.valid && !(state.nu.allFinite() && state.q_WB.coeffs().allFinite())) {
-    reject("not finite");
-    sample.valid = false;
-  }
-  if (sample.valid) {
-    sample.nu = state.nu;
-    sample.down_B = state.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
-  }
-  pending_.push_back(sample);
   release();
   return output_;
 }
@@ -98,73 +85,45 @@ const Identifier::Output& Identifier::step(const StateEstimate& state) {
 const Identifier::Output& Identifier::step(const Thrusters& thrusters) {
   output_.models.clear();
   output_.residuals.clear();
-  Input input;
-  input.utime = thrusters.utime;
+  Vector6d tau;
   const auto actuators = static_cast<Eigen::Index>(thrusters.force.size());
   if (actuators > 0 && actuators == allocation_.cols()) {
-    input.tau = allocation_ * Eigen::Map<const Eigen::VectorXd>(thrusters.force.data(), actuators);
+    tau = allocation_ * Eigen::Map<const Eigen::VectorXd>(thrusters.force.data(), actuators);
   } else if (thrusters.has_tau) {
-    input.tau = Eigen::Map<const Vector6d>(thrusters.tau.data());
+    tau = Eigen::Map<const Vector6d>(thrusters.tau.data());
   } else {
     reject("no force");
     return output_;
   }
-  if (!input.tau.allFinite()) {
+  if (!tau.allFinite()) {
     reject("not finite");
-  } else if (!inputs_.empty() && input.utime <= inputs_.back().utime) {
+  } else if (!aligner_.push_input(thrusters.utime, tau)) {
     reject("late");
   } else {
-    inputs_.push_back(input);
     release();
   }
   return output_;
 }
 
-// A state's fate depends on message times alone: it is used when it lies between two inputs no further apart than
-// max_input_gap. While no input at or after it is here, it waits, until the newest state says that one can only come
-// too late: with channels lagging each other by max_skew at most, every input up to max_skew before that state has
-// arrived.
 void Identifier::release() {
-  std::size_t done = 0;
-  for (; done < pending_.size(); ++done) {
-    MotionSample& sample = pending_[done];
-    const bool covered = !inputs_.empty() && inputs_.back().utime >= sample.utime;
-    if (!covered) {
-      const bool settled = seconds_between(sample.utime, *last_state_) > settings_.max_skew;
-      const bool too_far = inputs_.empty() || seconds_between(inputs_.back().utime, *last_state_) >
-                                                  settings_.max_input_gap + settings_.max_skew;
-      if (!settled || !too_far) break;
-    }
-    if (sample.valid) {
-      const std::optional<Vector6d> tau = covered ? input_at(sample.utime) : std::nullopt;
-      if (tau) sample.tau = *tau;
-      if (!tau) reject("no input");
-      sample.valid = tau.has_value();
+  while (const auto aligned = aligner_.next()) {
+    const StateEstimate& state = aligned->state;
+    MotionSample sample;
+    sample.utime = state.utime;
+    if (!state.valid) {
+      reject("state invalid");
+    } else if (!(state.nu.allFinite() && state.q_WB.coeffs().allFinite())) {
+      reject("not finite");
+    } else if (!aligned->input) {
+      reject("no input");
+    } else {
+      sample.nu = state.nu;
+      sample.down_B = state.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
+      sample.tau = *aligned->input;
+      sample.valid = true;
     }
     use(sample);
   }
-  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(done));
-  if (inputs_.size() < 2) return;
-  std::size_t old = 0;
-  while (old + 2 < inputs_.size() && seconds_between(inputs_[old + 1].utime, inputs_.back().utime) > kInputHistory &&
-         (pending_.empty() || inputs_[old + 1].utime < pending_.front().utime)) {
-    ++old;
-  }
-  // Seldom and many at once, since this moves what is kept.
-  if (2 * old > inputs_.size()) inputs_.erase(inputs_.begin(), inputs_.begin() + static_cast<std::ptrdiff_t>(old));
-}
-
-std::optional<Vector6d> Identifier::input_at(Utime utime) const {
-  const auto after = std::lower_bound(inputs_.begin(), inputs_.end(), utime,
-                                      [](const Input& input, Utime time) { return input.utime < time; });
-  if (after == inputs_.end()) return std::nullopt;
-  if (after->utime == utime) return after->tau;
-  if (after == inputs_.begin()) return std::nullopt;
-  const auto before = std::prev(after);
-  const double gap = seconds_between(before->utime, after->utime);
-  if (gap > settings_.max_input_gap) return std::nullopt;
-  if (!settings_.interpolate_input) return before->tau;
-  return Vector6d{before->tau + (seconds_between(before->utime, utime) / gap) * (after->tau - before->tau)};
 }
 
 void Identifier::use(const MotionSample& sample) {
@@ -200,9 +159,7 @@ ModelEstimate Identifier::model() const {
 void Identifier::reset() {
   regressor_.reset();
   estimator_.reset();
-  pending_.clear();
-  inputs_.clear();
-  last_state_.reset();
+  aligner_.reset();
   model_utime_ = 0;
   output_ = Output{};
 }

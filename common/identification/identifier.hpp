@@ -11,6 +11,7 @@
 
 #include "common/identification/integral_regressor.hpp"
 #include "common/identification/recursive.hpp"
+#include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/sensors.hpp"
@@ -69,14 +70,8 @@ class Identifier {
   [[nodiscard]] const std::map<std::string, std::int64_t>& rejected() const { return rejected_; }
 
  private:
-  struct Input {
-    Utime utime{};
-    Vector6d tau{Vector6d::Zero()};
-  };
   void reject(const char* reason) { ++rejected_[reason]; }
   void release();
-  /// Wrench at `utime` from the inputs around it; nothing when they are too far apart.
-  [[nodiscard]] std::optional<Vector6d> input_at(Utime utime) const;
   void use(const MotionSample& sample);
   [[nodiscard]] int column(std::string_view parameter) const;
 
@@ -85,9 +80,7 @@ class Identifier {
   std::vector<model::BaseParameter> parameters_;
   IntegralRegressor regressor_;
   RecursiveEstimator estimator_;
-  std::vector<MotionSample> pending_;  // states that wait for an input at or after them
-  std::vector<Input> inputs_;
-  std::optional<Utime> last_state_;
+  StreamAligner aligner_;
   Utime model_utime_{};
   Output output_;
   std::map<std::string, std::int64_t> rejected_;

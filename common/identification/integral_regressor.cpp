@@ -37,10 +37,13 @@ IntegralRegressor::IntegralRegressor(IntegralSettings settings) : settings_{std:
 void IntegralRegressor::reset() {
   first_ = 0;
   size_ = 0;
+  weighed_ = 0;
+  took_ = false;
   last_rows_.reset();
 }
 
 std::optional<RowBlock> IntegralRegressor::step(const MotionSample& next) {
+  took_ = false;
   if (!next.valid) {
     reset();
     return std::nullopt;
@@ -59,6 +62,7 @@ std::optional<RowBlock> IntegralRegressor::step(const MotionSample& next) {
   }
   ring_[(first_ + size_) % ring_.size()] = next;
   ++size_;
+  took_ = true;
   // Samples that no window will need again.
   while (seconds_between(sample(0).utime, next.utime) > settings_.window + kRoundingOfTime) {
     first_ = (first_ + 1) % ring_.size();
@@ -112,6 +116,7 @@ void IntegralRegressor::weigh(std::size_t count) {
 
 RowBlock IntegralRegressor::rows(std::size_t count) {
   weigh(count);
+  weighed_ = count;
   model::BaseRegressor Y = model::BaseRegressor::Zero();
   Vector6d tau = Vector6d::Zero();
   for (std::size_t k = 0; k < count; ++k) {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/base/spatial.hpp"
@@ -44,6 +45,15 @@ class IntegralRegressor {
   [[nodiscard]] std::optional<RowBlock> step(const MotionSample& sample);
   void reset();
 
+  /// Whether the last step() kept its sample (it does not when samples come too fast or are not valid).
+  [[nodiscard]] bool took() const { return took_; }
+  /// Most samples that a window can hold.
+  [[nodiscard]] std::size_t capacity() const { return ring_.size(); }
+  /// Weights with which the last rows average over the last average().size() kept samples, oldest first...
+  [[nodiscard]] std::span<const double> average() const { return {average_.data(), weighed_}; }
+  /// ...and those that turn samples of a quantity into the average of its derivative.
+  [[nodiscard]] std::span<const double> derivative() const { return {derivative_.data(), weighed_}; }
+
  private:
   [[nodiscard]] RowBlock rows(std::size_t count);
   void weigh(std::size_t count);
@@ -53,6 +63,8 @@ class IntegralRegressor {
   std::vector<MotionSample> ring_;
   std::size_t first_{};
   std::size_t size_{};
+  std::size_t weighed_{};
+  bool took_{false};
   std::optional<Utime> last_rows_;
   std::vector<double> average_;     // phi times the sample's share of time; sums to 1
   std::vector<double> derivative_;  // likewise for -phi'

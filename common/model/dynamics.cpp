@@ -87,17 +87,17 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
     force.head<3>() -= w.cross(momentum);
     force.tail<3>() -= w.cross(angular) + v.cross(momentum);
   } else {
-    const double mass = model.vehicle->mass;
-    Eigen::Vector3d rigid = kUnknownRigidShare * inertia.head<3>();
-    if (mass > 0.0) rigid.setConstant(mass);
-    const Eigen::Vector3d added = inertia.head<3>() - rigid;
+    // The rigid share weighs the same along every axis, so that v x m v = 0: still water is not needed for rest.
+    const double stated = model.vehicle->mass;
+    const double mass = stated > 0.0 ? stated : kUnknownRigidShare * inertia.head<3>().mean();
+    const Eigen::Vector3d added = inertia.head<3>() - Eigen::Vector3d::Constant(mass);
     const Eigen::Vector3d v_r = nu_r.head<3>();
     const Eigen::Vector3d momentum_r = added.cwiseProduct(v_r);
-    const Eigen::Vector3d momentum = rigid.cwiseProduct(v);
+    const Eigen::Vector3d momentum = mass * v;
     const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
     // Steady water in W: its velocity seen in B turns with the body, nu_c_dot = -w x v_c.
     force.head<3>() -= w.cross(momentum + momentum_r) + added.cwiseProduct(w.cross(motion.v_WF_B));
-    force.tail<3>() -= w.cross(angular) + v_r.cross(momentum_r) + v.cross(momentum);
+    force.tail<3>() -= w.cross(angular) + v_r.cross(momentum_r);
   }
 
   force += theta.segment<6>(index(BaseParameter::X_u)).cwiseProduct(nu_r);

@@ -8,9 +8,24 @@ namespace fathom::model {
 namespace {
 
 constexpr double kLargestStep = 0.05;  // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
+constexpr double kStableShare = 1.5;   // of the fastest time constant: explicit midpoint turns unstable at 2
+constexpr double kTypicalSpeed = 0.5;  // m/s, rad/s, where quadratic drag is taken for that time constant
 constexpr double kRunIn = 3.0;         // s: twenty time constants of an ordinary thruster lag
 constexpr double kAbsurd = 50.0;       // m/s or rad/s: no vehicle of ours moves like that
 constexpr int kMaxMemory = 128;
+
+/// Longest stable step, from the priors: the same for every theta, so that derivatives see no change of steps.
+double largest_step(const Vehicle& vehicle) {
+  const BaseTheta theta = nominal_model(vehicle, true).theta;
+  double step = kLargestStep;
+  for (int i = 0; i < 6; ++i) {
+    const double damping = -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
+    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kStableShare * theta[i] && theta[i] > 0.0) {
+      step = kStableShare * theta[i] / damping;
+    }
+  }
+  return step;
+}
 
 /// Rotation about the world's down axis by psi, then the tilt of q.
 Eigen::Quaterniond with_heading(const Eigen::Quaterniond& tilt, double psi) {
@@ -36,7 +51,7 @@ class Rollout {
   }
 
   bool run(const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
-    const int substeps = std::max(1, static_cast<int>(std::ceil(trial_.dt / kLargestStep - 1e-9)));
+    const int substeps = std::max(1, static_cast<int>(std::ceil(trial_.dt / largest_step(*model_.vehicle) - 1e-9)));
     const double h = trial_.dt / substeps;
     run_in(window.start, h);
     nu_ = measured_where_fixed(window.start, 0.0, nu0);

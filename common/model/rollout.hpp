@@ -20,7 +20,8 @@ struct Window {
 using VelocityTrace = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Simulates the window from the measured pose at its start and `nu0`, with the trial's inputs only. Degrees of freedom
-/// that the vehicle file leaves out follow the measurement. Second-order midpoint steps of at most 50 ms; effects with
+/// that the vehicle file leaves out follow the measurement. Second-order midpoint steps of at most 50 ms, shorter where the
+/// priors' drag is stiff; effects with
 /// memory are run in over the 3 s before the window. Returns false when the motion diverged (the rest is held).
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
 

@@ -1,0 +1,102 @@
+#include "common/diagnosis/live_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::diagnosis {
+namespace {
+
+constexpr double kStep = 1e-3;  // of the number or a tenth of its sigma, for differences: rounding and curvature small
+
+bool adds_inertia(const model::Effect& effect, int variant, const std::vector<double>& theta,
+                  const model::Model& base) {
+  model::Motion motion;
+  motion.vehicle = base.vehicle;
+  motion.force = model::ActuatorForces::Zero(base.allocation.cols());
+  model::Load load;
+  effect.load(motion, theta, variant, load);
+  return load.has_inertia;
+}
+
+}  // namespace
+
+LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& scene) : base_{base} {
+  base_.effects.clear();
+  for (const model::Effect* effect : model::all_effects()) {
+    const std::vector<std::string> names = effect->variants(scene);
+    for (std::size_t v = 0; v < names.size(); ++v) {
+      if (names[v] == "-") continue;
+      const auto variant = static_cast<int>(v);
+      forms_.push_back({effect, variant, names[v]});
+      for (const auto& theta : effect->starts(scene, variant)) add(static_cast<int>(forms_.size()) - 1, theta);
+    }
+  }
+}
+
+void LiveCandidates::add(int form, const std::vector<double>& theta) {
+  const LiveForm& f = forms_[static_cast<std::size_t>(form)];
+  const auto parameters = f.effect->parameters();
+  const auto memory =
+      static_cast<std::size_t>(f.effect->state_size(*base_.vehicle, static_cast<int>(base_.allocation.cols())));
+  const LiveStart start{.form = form, .theta = theta, .column = columns_};
+  Probe probe{.effect = f.effect,
+              .variant = f.variant,
+              .column = columns_,
+              .per_step = 0.0,
+              .theta = theta,
+              .memory = std::vector<double>(memory, 0.0)};
+  probes_.push_back(probe);
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    double step = kStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
+    if (theta[i] + step > parameters[i].high) step = -step;
+    probe.theta = theta;
+    probe.theta[i] += step;
+    probe.per_step = parameters[i].sigma / step;
+    probe.column = columns_ + 1 + static_cast<Eigen::Index>(i);
+    probes_.push_back(probe);
+  }
+  const bool inertia = adds_inertia(*f.effect, f.variant, theta, base_);
+  for (Eigen::Index c = 0; c < start.columns(); ++c) {
+    momentum_of_.push_back(inertia ? static_cast<Eigen::Index>(inertial_.size()) : -1);
+    if (inertia) inertial_.push_back(columns_ + c);
+  }
+  columns_ += start.columns();
+  starts_.push_back(start);
+}
+
+void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForces& middle, double dt,
+                          Eigen::Ref<WrenchColumns> wrench, Eigen::Ref<WrenchColumns> momentum) {
+  model::Load load;
+  const Vector6d absent = model::generalised_force(base_, motion, load);
+  model::Motion halfway = motion;
+  halfway.t -= 0.5 * dt;
+  halfway.force = middle;
+  model::Motion felt;
+  Vector6d at_start = Vector6d::Zero();
+  Vector6d momentum_at_start = Vector6d::Zero();
+  for (Probe& probe : probes_) {
+    if (!probe.memory.empty()) {
+      if (settled_) {
+        probe.effect->advance(halfway, probe.theta, dt, probe.memory);
+      } else {
+        probe.effect->settle(motion, probe.theta, probe.memory);
+      }
+    }
+    felt = motion;
+    probe.effect->feel(felt, probe.theta, probe.variant, probe.memory);
+    const Vector6d force = model::generalised_force(base_, felt, load);
+    probe.effect->load(felt, probe.theta, probe.variant, load);
+    const Vector6d total = force + load.wrench;
+    const bool is_start = probe.per_step == 0.0;
+    if (is_start) at_start = total;
+    wrench.col(probe.column) = is_start ? Vector6d{total - absent} : Vector6d{(total - at_start) * probe.per_step};
+    const Eigen::Index entry = momentum_of_[static_cast<std::size_t>(probe.column)];
+    if (entry < 0) continue;
+    const Vector6d added = load.inertia * motion.nu;
+    if (is_start) momentum_at_start = added;
+    momentum.col(entry) = is_start ? added : Vector6d{(added - momentum_at_start) * probe.per_step};
+  }
+  settled_ = true;
+}
+
+}  // namespace fathom::diagnosis

@@ -1,0 +1,236 @@
+// r = y - Y b + c(theta), c linear around each start: c0 + J delta. With b eliminated (Schur complement of the normal
+// equations) each candidate is a small ridge regression on what the base cannot imitate.
+#include "common/diagnosis/live_evidence.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "common/diagnosis/evidence.hpp"
+
+namespace fathom::diagnosis {
+namespace {
+
+constexpr double kMemory = 0.3;        // correlation over two instants: far from white
+constexpr double kSignificance = 4.0;  // standard errors of that correlation
+constexpr double kNegligible = 0.01;   // of the applied wrench's variance
+
+}  // namespace
+
+LiveEvidence::LiveEvidence(const LiveCandidates& candidates, const Eigen::VectorXd& prior_information,
+                           std::size_t most_blocks)
+    : candidates_{candidates},
+      prior_information_{prior_information},
+      most_blocks_{most_blocks},
+      base_{prior_information.size()},
+      size_{base_ + 1 + candidates.columns()} {
+  Eigen::Index at = 0;
+  for (const LiveStart& start : candidates.starts()) {
+    within_at_.push_back(at);
+    at += start.columns() * start.columns();
+  }
+  within_at_.push_back(at);
+  total_.setZero(size_, size_);
+  open_ = empty_block();
+  for (AxisMemory& memory : memory_) {
+    memory.now.setZero(base_ + 1, base_ + 1);
+    memory.lagged.setZero(base_ + 1, base_ + 1);
+  }
+  blocks_.reserve(most_blocks_ + 1);
+}
+
+LiveEvidence::Block LiveEvidence::empty_block() const {
+  return {
+      .head = Eigen::MatrixXd::Zero(base_ + 1, size_), .within = Eigen::VectorXd::Zero(within_at_.back()), .rows = 0};
+}
+
+void LiveEvidence::add(int axis, const Eigen::Ref<const Eigen::VectorXd>& row, double applied) {
+  total_.selfadjointView<Eigen::Upper>().rankUpdate(row);
+  open_.head.noalias() += row.head(base_ + 1) * row.transpose();
+  for (std::size_t s = 0; s < candidates_.starts().size(); ++s) {
+    const LiveStart& start = candidates_.starts()[s];
+    const Eigen::Index n = start.columns();
+    const auto own = row.segment(base_ + 1 + start.column, n);
+    Eigen::Map<Eigen::MatrixXd>{open_.within.data() + within_at_[s], n, n}.noalias() += own * own.transpose();
+  }
+  ++open_.rows;
+  ++rows_;
+  AxisMemory& memory = memory_[static_cast<std::size_t>(axis)];
+  const auto head = row.head(base_ + 1);
+  memory.now.noalias() += head * head.transpose();
+  memory.applied += applied * applied;
+  if (memory.last[2].size() > 0) {
+    memory.lagged.noalias() += memory.last[2] * head.transpose();
+    ++memory.pairs;
+  }
+  memory.last[0] = head;
+}
+
+void LiveEvidence::next_instant() {
+  for (AxisMemory& memory : memory_) {
+    std::swap(memory.last[2], memory.last[1]);
+    std::swap(memory.last[1], memory.last[0]);
+    memory.last[0].resize(0);
+  }
+}
+
+void LiveEvidence::close_block() {
+  if (open_.rows == 0) return;
+  // Blocks must stay of one length, since the odds count them alike: after a merge twice as much goes into each.
+  if (++open_parts_ >= parts_per_block_) {
+    if (blocks_.size() >= most_blocks_) {
+      for (std::size_t i = 0; i + 1 < blocks_.size(); i += 2) {
+        Block& merged = blocks_[i / 2];
+        if (i > 0) std::swap(merged, blocks_[i]);
+        merged.head += blocks_[i + 1].head;
+        merged.within += blocks_[i + 1].within;
+      }
+      blocks_.resize(blocks_.size() / 2);  // an odd one out is dropped from the blocks, not from the sums
+      parts_per_block_ *= 2;
+    } else {
+      blocks_.push_back(open_);
+      open_.head.setZero();
+      open_.within.setZero();
+      open_.rows = 0;
+      open_parts_ = 0;
+    }
+  }
+  project();
+}
+
+void LiveEvidence::project() {
+  const Eigen::Index rest = size_ - base_;
+  Eigen::MatrixXd normal = total_.topLeftCorner(base_, base_).selfadjointView<Eigen::Upper>();
+  normal.diagonal() += prior_information_;
+  const auto cross = total_.topRightCorner(base_, rest);
+  imitation_ = normal.ldlt().solve(Eigen::MatrixXd{cross});
+  projected_ = total_.bottomRightCorner(rest, rest).selfadjointView<Eigen::Upper>();
+  projected_.noalias() -= cross.transpose() * imitation_;
+  const double variance = std::max(projected_(0, 0) / std::max<double>(1.0, rows_ - static_cast<double>(base_)), 1e-12);
+  scale_ = 1.0 / variance;
+  projected_ *= scale_;
+}
+
+double LiveEvidence::block_cost(const Block& block, const LiveStart* start, const Eigen::VectorXd& base,
+                                const Eigen::VectorXd& own) const {
+  const Eigen::VectorXd against_base = block.head.leftCols(base_ + 1) * base;
+  double square = base.dot(against_base);
+  if (start != nullptr) {
+    const Eigen::Index n = start->columns();
+    const auto s = static_cast<std::size_t>(start - candidates_.starts().data());
+    square += 2.0 * base.dot(block.head.middleCols(base_ + 1 + start->column, n) * own);
+    square += own.dot(Eigen::Map<const Eigen::MatrixXd>{block.within.data() + within_at_[s], n, n} * own);
+  }
+  return 0.5 * scale_ * square;
+}
+
+// Ridge regression inside bounds: a number that would leave its bounds is put there, and the others are found anew.
+LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
+  const LiveForm& form = candidates_.forms()[static_cast<std::size_t>(start.form)];
+  const auto parameters = form.effect->parameters();
+  const Eigen::Index k = start.columns() - 1;
+  const Eigen::Index at = 1 + start.column;
+  const Eigen::MatrixXd J = projected_.block(at + 1, at + 1, k, k);
+  const Eigen::VectorXd slope = projected_.block(at + 1, 0, k, 1) + projected_.block(at + 1, at, k, 1);
+  Eigen::VectorXd theta(k);  // at the start, in sigmas
+  for (Eigen::Index i = 0; i < k; ++i)
+    theta[i] = start.theta[static_cast<std::size_t>(i)] / parameters[static_cast<std::size_t>(i)].sigma;
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(k);
+  std::vector<bool> fixed(static_cast<std::size_t>(k), false);
+  for (Eigen::Index round = 0; round <= k; ++round) {
+    Eigen::MatrixXd normal = J + Eigen::MatrixXd::Identity(k, k);
+    Eigen::VectorXd right = -(slope + theta);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      if (!fixed[static_cast<std::size_t>(i)]) continue;
+      right -= normal.col(i) * delta[i];
+      normal.row(i).setZero();
+      normal.col(i).setZero();
+      normal(i, i) = 1.0;
+      right[i] = delta[i];
+    }
+    for (Eigen::Index i = 0; i < k; ++i) {
+      if (fixed[static_cast<std::size_t>(i)]) right[i] = delta[i];
+    }
+    delta = normal.ldlt().solve(right);
+    bool inside = true;
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      const double low = parameters[j].low / parameters[j].sigma - theta[i];
+      const double high = parameters[j].high / parameters[j].sigma - theta[i];
+      if (fixed[j] || (delta[i] >= low && delta[i] <= high)) continue;
+      delta[i] = std::clamp(delta[i], low, high);
+      fixed[j] = true;
+      inside = false;
+    }
+    if (inside) break;
+  }
+  LiveSuspicion found{.form = start.form, .theta = start.theta, .coefficients = Eigen::VectorXd::Zero(size_ - base_)};
+  for (Eigen::Index i = 0; i < k; ++i) {
+    found.theta[static_cast<std::size_t>(i)] += delta[i] * parameters[static_cast<std::size_t>(i)].sigma;
+  }
+  found.coefficients[at] = 1.0;
+  found.coefficients.segment(at + 1, k) = delta;
+  const Eigen::VectorXd own = found.coefficients.segment(at, k + 1);
+  cost = 0.5 * projected_(0, 0) + projected_.row(0).segment(at, k + 1).dot(own) +
+         0.5 * own.dot(projected_.block(at, at, k + 1, k + 1) * own);
+  return found;
+}
+
+std::vector<LiveSuspicion> LiveEvidence::judge() const {
+  std::vector<LiveSuspicion> judged;
+  if (blocks_.empty()) return judged;
+  const auto& starts = candidates_.starts();
+  const auto tried = static_cast<int>(candidates_.forms().size());
+  Eigen::VectorXd base(base_ + 1);
+  base << -imitation_.col(0), 1.0;
+  std::vector<double> without(blocks_.size());
+  std::vector<double> with(blocks_.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) without[b] = block_cost(blocks_[b], nullptr, base, {});
+  const double cost_without = 0.5 * projected_(0, 0);
+  for (std::size_t s = 0; s < starts.size();) {
+    double best_cost = 0.0;
+    const LiveStart* best_start = nullptr;
+    LiveSuspicion best;
+    const int form = starts[s].form;
+    for (; s < starts.size() && starts[s].form == form; ++s) {
+      double cost = 0.0;
+      LiveSuspicion found = fit(starts[s], cost);
+      if (best_start != nullptr && cost >= best_cost) continue;
+      best_cost = cost;
+      best_start = &starts[s];
+      best = std::move(found);
+    }
+    Eigen::VectorXd weights = best.coefficients;
+    weights[0] = 1.0;
+    base << -(imitation_ * weights), 1.0;
+    const Eigen::VectorXd own = best.coefficients.segment(1 + best_start->column, best_start->columns());
+    for (std::size_t b = 0; b < blocks_.size(); ++b) with[b] = block_cost(blocks_[b], best_start, base, own);
+    const auto parameters = static_cast<int>(best.theta.size());
+    best.log_odds = log_odds(without, with, parameters, tried);
+    best.error_reduction = 1.0 - std::sqrt(std::clamp(best_cost / cost_without, 0.0, 1.0));
+    judged.push_back(std::move(best));
+  }
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const LiveSuspicion& a, const LiveSuspicion& b) { return a.log_odds > b.log_odds; });
+  return judged;
+}
+
+double LiveEvidence::likeness(const LiveSuspicion& a, const LiveSuspicion& b) const {
+  const double aa = a.coefficients.dot(projected_ * a.coefficients);
+  const double bb = b.coefficients.dot(projected_ * b.coefficients);
+  return aa > 0.0 && bb > 0.0 ? a.coefficients.dot(projected_ * b.coefficients) / std::sqrt(aa * bb) : 0.0;
+}
+
+bool LiveEvidence::structured() const {
+  if (blocks_.empty()) return false;
+  Eigen::VectorXd base(base_ + 1);
+  base << -imitation_.col(0), 1.0;
+  return std::any_of(memory_.begin(), memory_.end(), [&](const AxisMemory& memory) {
+    const double square = base.dot(memory.now * base);
+    if (square <= kNegligible * memory.applied || square <= 0.0) return false;
+    const double correlation = base.dot(memory.lagged * base) / square;
+    return correlation > kMemory && correlation * std::sqrt(static_cast<double>(memory.pairs)) > kSignificance;
+  });
+}
+
+}  // namespace fathom::diagnosis

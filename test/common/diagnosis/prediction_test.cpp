@@ -1,0 +1,95 @@
+// Prediction errors: by hand on constant offsets, and on a simulated dive whose truth is known.
+#include "common/diagnosis/prediction.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::diagnosis;
+
+TEST_CASE("prediction: windows of 10 s every 5 s, each beginning at a valid sample") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  test::VirtualDive dive = test::make_dive(vehicle, {.duration = 30.0});
+  auto windows = prediction_windows({&dive.trial, 1});
+  REQUIRE(windows.size() == 5);
+  CHECK(windows[0].start == 0);
+  CHECK(windows[1].start == 50);
+  CHECK(windows[4].start == 200);
+  CHECK(windows[0].count == 101);
+  dive.trial.velocity_valid[50] = 0;
+  windows = prediction_windows({&dive.trial, 1});
+  CHECK(windows[1].start == 51);
+}
+
+TEST_CASE("prediction: a vehicle without forces and drag keeps its speed, so the error is the measurement's change") {
+  model::Vehicle vehicle;
+  vehicle.dof = {true, false, false, false, false, false};
+  vehicle.mass = 1.0;
+  model::Model model = model::nominal_model(vehicle, true);
+  model.theta.head<6>().setOnes();
+  Trial trial;
+  trial.dt = 0.1;
+  trial.input_is_wrench = true;
+  trial.observed = {true, true, true, true};
+  for (std::size_t k = 0; k <= 100; ++k) {
+    trial.t.push_back(0.1 * static_cast<double>(k));
+    trial.p_WB.emplace_back(0, 0, 0);
+    trial.q_WB.push_back(Eigen::Quaterniond::Identity());
+    trial.nu.emplace_back(Vector6d::Unit(0) * 0.1 * trial.t.back());  // 0.1 m/s^2 that the model does not know
+    trial.input.emplace_back(Eigen::VectorXd::Zero(6));
+  }
+  trial.pose_valid.assign(101, 1);
+  trial.velocity_valid.assign(101, 1);
+  trial.rates_valid.assign(101, 1);
+  const auto windows = prediction_windows({&trial, 1});
+  REQUIRE(windows.size() == 1);
+  const auto rows = predict(model, windows).summary(vehicle);
+  // RMS of 0.01 k, k = 1..n: 0.01 sqrt((n+1)(2n+1)/6).
+  const std::array<double, 3> samples{10, 50, 100};
+  for (std::size_t h = 0; h < 3; ++h) {
+    const double n = samples[h];
+    CHECK(rows[h].rmse[0] == doctest::Approx(0.01 * std::sqrt((n + 1) * (2 * n + 1) / 6)));
+    // Variance of k = 1..n is (n^2 - 1)/12.
+    CHECK(rows[h].r2[0] == doctest::Approx(1.0 - (n + 1) * (2 * n + 1) / 6 / ((n * n - 1) / 12)));
+    CHECK(std::isnan(rows[h].rmse[1]));  // left out
+  }
+}
+
+TEST_CASE("prediction: the truth beats a model without the hidden lag, and says so with certainty") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 200.0, .seed = 2, .effects = {test::active("thruster_lag", {0.5})}});
+  model::Model ignorant = dive.truth;
+  ignorant.effects.clear();
+  const auto windows = prediction_windows({&dive.trial, 1});
+  const Predictions before = predict(ignorant, windows);
+  const Predictions after = predict(dive.truth, windows);
+  const Interval gain = improvement(before, after, vehicle);
+  CHECK(gain.low > 0.2);
+  CHECK(gain.low <= gain.value);
+  CHECK(gain.value <= gain.high);
+  const Interval none = improvement(before, before, vehicle);
+  CHECK(none.value == 0.0);
+  CHECK(none.high - none.low < 1e-12);
+  CHECK(after.summary(vehicle)[0].r2[0] > 0.95);
+}
+
+TEST_CASE("prediction: the wrench residual of the truth is noise, and finds a force the model lacks") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 60.0, .seed = 4, .velocity_noise = 0.0, .rate_noise = 0.0});
+  model::Model light = dive.truth;
+  light.theta[model::index(model::BaseParameter::W_B)] -= 3.0;
+  const auto exact = wrench_residuals(dive.truth, dive.trial);
+  const auto lacking = wrench_residuals(light, dive.trial);
+  double worst = 0.0;
+  for (std::size_t k = 20; k + 20 < exact.size(); ++k) {
+    // 3 N of weight along the world's down: yaw alone is free, so almost all of it in heave.
+    CHECK(lacking[k][2] - exact[k][2] == doctest::Approx(3.0 * dive.trial.q_WB[k].toRotationMatrix()(2, 2)));
+    worst += exact[k].head<3>().squaredNorm() / static_cast<double>(exact.size());
+  }
+  CHECK(std::sqrt(worst) < 3.0);  // N: smoothing over 0.5 s across the corners of thrust
+}

@@ -1,0 +1,119 @@
+// The output-error fit on simulated dives: the vehicle's numbers come back, and the stated standard deviations are
+// true.
+#include "common/identification/trajectory_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::identification;
+
+namespace {
+
+FitSettings quick() {
+  FitSettings settings;
+  settings.window = 5.0;
+  settings.threads = 1;
+  settings.iterations = 6;
+  return settings;
+}
+
+/// Four axes; ballast on a long frame keeps yaw from being so quick that steps must be short.
+model::Vehicle four_axes() {
+  model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
+    if (vehicle.parameters[i] == "I_Z") vehicle.priors[i] = {.mean = 2.0, .sigma = 2.0};
+  }
+  return vehicle;
+}
+
+/// Errors over stated standard deviations, of the base parameters that the file enables.
+std::vector<double> normalised_errors(const FitResult& fit, const model::Model& truth) {
+  std::vector<double> errors;
+  for (const NamedValue& value : fit.parameters()) {
+    const auto parameter = model::parameter_from_name(value.name);
+    if (parameter) errors.push_back((value.value - truth.theta[model::index(*parameter)]) / value.std);
+  }
+  return errors;
+}
+
+}  // namespace
+
+TEST_CASE("trajectory fit: four axes, ten noisy dives: numbers within 3 sigma, and sigma honest") {
+  const model::Vehicle vehicle = four_axes();
+  double square = 0.0, count = 0.0, beyond = 0.0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0, .seed = seed});
+    const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
+    FitResult fit = problem.fit(model::nominal_model(vehicle, false));
+    problem.add_covariance(fit);
+    for (const double error : normalised_errors(fit, dive.truth)) {
+      square += error * error;
+      count += 1.0;
+      beyond += std::abs(error) > 3.0 ? 1.0 : 0.0;
+    }
+  }
+  REQUIRE(count == 130.0);
+  // 130 normalised errors, correlated within a dive: 0.6..1.6 is about four standard deviations of their mean square,
+  // and the sandwich of some twenty windows is itself uncertain by a fifth.
+  const double spread = std::sqrt(square / count);
+  MESSAGE("rms of error over stated sigma: " << spread << ", beyond 3 sigma: " << beyond << " of " << count);
+  CHECK(spread > 0.6);
+  CHECK(spread < 1.6);
+  CHECK(beyond <= 4.0);  // expected 0.4 when normal, some more with so few windows
+}
+
+TEST_CASE("trajectory fit: six axes") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("beluga");
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 160.0, .seed = 3, .spread = 0.05});
+  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
+  FitResult fit = problem.fit(model::nominal_model(vehicle, false));
+  problem.add_covariance(fit);
+  double beyond = 0.0;
+  for (const double error : normalised_errors(fit, dive.truth)) beyond += std::abs(error) > 3.0 ? 1.0 : 0.0;
+  CHECK(beyond <= 1.0);  // of 22
+  // What is left is the noise that was put in.
+  CHECK(fit.sigma[0] == doctest::Approx(0.005).epsilon(0.1));
+  CHECK(fit.sigma[5] == doctest::Approx(0.005).epsilon(0.1));
+}
+
+TEST_CASE("trajectory fit: the derivatives are those of the residual, and costs add up") {
+  const model::Vehicle vehicle = four_axes();
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 30.0, .seed = 5});
+  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
+  FitResult fit = problem.fit(dive.truth);
+  double sum = 0.0;
+  for (const double cost : fit.window_cost) sum += cost;
+  CHECK(fit.cost == doctest::Approx(sum));
+
+  const ParameterMap map{fit.model};
+  const WindowResidual& window = problem.windows().front();
+  model::VelocityTrace trace;
+  Eigen::VectorXd at(window.rows()), plus(window.rows()), minus(window.rows());
+  window.evaluate(fit.model, fit.nu0[0], fit.sigma, trace, at);
+  Eigen::MatrixXd jacobian(window.rows(), static_cast<Eigen::Index>(map.size()));
+  window.parameter_jacobian(fit.model, map, fit.nu0[0], fit.sigma, at, jacobian);
+  constexpr double kStep = 1e-3;
+  constexpr double kAgreement = 2e-3;  // of a column: forward differences of 1e-4 against central ones of 1e-3
+  const Eigen::VectorXd x = map.pack(fit.model);
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    model::Model moved = fit.model;
+    map.unpack(x + kStep * Eigen::VectorXd::Unit(x.size(), j), moved);
+    window.evaluate(moved, fit.nu0[0], fit.sigma, trace, plus);
+    map.unpack(x - kStep * Eigen::VectorXd::Unit(x.size(), j), moved);
+    window.evaluate(moved, fit.nu0[0], fit.sigma, trace, minus);
+    const Eigen::VectorXd central = (plus - minus) / (2.0 * kStep);
+    CAPTURE(map[static_cast<std::size_t>(j)].name);
+    CHECK((jacobian.col(j) - central).norm() <= kAgreement * central.norm() + 1e-6);
+  }
+}
+
+TEST_CASE("trajectory fit: no usable stretch is an error that says what to do") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  test::VirtualDive dive = test::make_dive(vehicle, {.duration = 3.0});
+  CHECK_THROWS_AS((TrajectoryFit{vehicle, {&dive.trial, 1}, quick()}), InputError);
+}

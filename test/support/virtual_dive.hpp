@@ -1,0 +1,36 @@
+// A simulated dive in virtual time: seeded excitation of a vehicle of config/vehicles, hidden effects if wished, and a
+// trial as the estimator would hand it over, noise included.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/model/dynamics.hpp"
+#include "common/samples/trial.hpp"
+
+namespace fathom::test {
+
+struct DiveSettings {
+  double duration{120.0};  ///< s
+  double dt{0.1};          ///< s between samples
+  unsigned seed{1};
+  double velocity_noise{0.005};  ///< m/s, std
+  double rate_noise{0.005};      ///< rad/s
+  double spread{0.1};            ///< of the true base parameters around the vehicle file's means
+  bool wrench{false};            ///< inputs are the wrench, not single thrusters
+  std::vector<model::ActiveEffect> effects{};
+};
+
+struct VirtualDive {
+  Trial trial;
+  model::Model truth;
+};
+
+/// The vehicle must outlive the dive.
+[[nodiscard]] VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& settings);
+/// config/vehicles/NAME.yaml
+[[nodiscard]] model::Vehicle vehicle_from_repository(const std::string& name);
+/// An effect with numbers, by name.
+[[nodiscard]] model::ActiveEffect active(const std::string& name, std::vector<double> theta, int variant = 0);
+
+}  // namespace fathom::test
