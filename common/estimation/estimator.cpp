@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kPatience = 5;            // refused in a row before the estimate is taken to be the one that is wrong
 constexpr double kSettling = 4.0;       // time constants of the position filter until its velocity counts
+constexpr double kOffsetGain = 0.02;    // per sample: a datum does not move
 constexpr double kStill = 0.01;         // m/s, rad/s
 constexpr double kFirstInterval = 0.1;  // s, of a measurement without predecessor
 
@@ -203,8 +204,15 @@ void Estimator::use(const PoseCapture& sample) {
   }
 }
 
+// The capture's world need not begin at the surface: while both are there the difference is learnt, not the depth.
 void Estimator::use(const Depth& sample) {
-  use_position({0.0, 0.0, sample.z}, Eigen::Vector3d::UnitZ(), settings_.depth_noise, depth_, "depth gated");
+  if (fresh(position_)) {
+    const double seen = sample.z - translation_.position().z();
+    depth_offset_ = depth_offset_ ? *depth_offset_ + kOffsetGain * (seen - *depth_offset_) : seen;
+    return;
+  }
+  use_position({0.0, 0.0, sample.z - depth_offset_.value_or(0.0)}, Eigen::Vector3d::UnitZ(), settings_.depth_noise,
+               depth_, "depth gated");
 }
 
 void Estimator::use(const Dvl& sample) {

@@ -105,7 +105,8 @@ class Estimator {
   std::vector<Event> waiting_;  // in the order of utime
   std::optional<Utime> newest_, now_;
   Track rotation_, position_, depth_, velocity_, gyro_track_, force_, captured_;
-  std::optional<Utime> moving_since_;  // since when velocity rests on measurements without a gap
+  std::optional<double> depth_offset_;  // m, depth over the capture's z
+  std::optional<Utime> moving_since_;   // since when velocity rests on measurements without a gap
   Gyro last_gyro_;
   std::optional<Gyro> next_gyro_;  // already here, since estimates are made `latency` behind
   Eigen::Vector3d last_force_{Eigen::Vector3d::Zero()};
