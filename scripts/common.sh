@@ -1,6 +1,6 @@
 # Shared by ./trial and ./check: say, install, build. To be sourced from the top folder with `set -eu -o pipefail`.
 
-say() { printf '\033[1m==>\033[0m %s\n' "$*" >&2; }
+say() { if [ -t 2 ]; then printf '\033[1m==> %s\033[0m\n' "$*" >&2; else printf '==> %s\n' "$*" >&2; fi; }
 fail() {
   printf '%s: %s\n' "${0##*/}" "$*" >&2
   exit 1
@@ -56,5 +56,5 @@ build() {
   fi
 }
 
-# free_link: nothing when LCM's multicast has a route; else tries to have one. False when it cannot be had.
+# True when LCM's multicast address has a route.
 multicast_route() { ip route get 239.255.76.67 >/dev/null 2>&1; }
