@@ -265,8 +265,13 @@ void LiveDiagnoser::prepare() {
   for (Eigen::Index i = 0; i < information.size(); ++i) {
     information[i] = std::pow(vehicle_->priors[static_cast<std::size_t>(i)].sigma, -2);
   }
-  candidates_ =
-      std::make_unique<Candidates>(base, scene(), information, static_cast<std::size_t>(settings_.most_blocks));
+  std::vector<LiveEvidence::Mass> masses;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    if (model::sign_constraint(parameters_[i]) > 0) masses.push_back({column, prior_mean_[column]});
+  }
+  candidates_ = std::make_unique<Candidates>(base, scene(), information, std::move(masses),
+                                             static_cast<std::size_t>(settings_.most_blocks));
   Candidates& c = *candidates_;
   c.wrench.assign(regressor_.capacity(), WrenchColumns::Zero(6, c.columns.columns()));
   c.momentum.assign(regressor_.capacity(),

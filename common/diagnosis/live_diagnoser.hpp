@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/diagnosis/live_evidence.hpp"
@@ -31,7 +32,7 @@ struct LiveSettings {
   int fewest_blocks{6};              ///< before any verdict
   int most_blocks{200};              ///< then pairs are merged
   double accept_log_odds{3.0};       ///< 20 to 1, after paying for parameters and candidates
-  double smallest_reduction{0.005};  ///< of the residual (RMS)
+  double smallest_reduction{0.005};  ///< of the residual (RMS): less changes no prediction
   double alias_correlation{0.9};     ///< of two effects' signatures
   double alternative_log_odds{3.0};  ///< closer than this, two look-alikes are not told apart
   bool interpolate_input{true};      ///< false: a command holds until the next
@@ -75,8 +76,8 @@ class LiveDiagnoser {
   };
   struct Candidates {  // what exists after the warm-up
     Candidates(const model::Model& base, const model::Scene& scene, const Eigen::VectorXd& information,
-               std::size_t most_blocks)
-        : columns{base, scene}, evidence{columns, information, most_blocks} {}
+               std::vector<LiveEvidence::Mass> masses, std::size_t most_blocks)
+        : columns{base, scene}, evidence{columns, information, std::move(masses), most_blocks} {}
     LiveCandidates columns;
     LiveEvidence evidence;
     std::vector<WrenchColumns> wrench, momentum;  // ring, beside the regressor's

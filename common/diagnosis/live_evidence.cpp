@@ -13,14 +13,16 @@ namespace {
 
 constexpr double kMemory = 0.3;        // correlation over two instants: far from white
 constexpr double kSignificance = 4.0;  // standard errors of that correlation
-constexpr double kNegligible = 0.01;   // of the applied wrench's variance
+constexpr double kSmallestMassRatio = 0.1;
+constexpr double kNegligible = 0.01;  // of the applied wrench's variance
 
 }  // namespace
 
 LiveEvidence::LiveEvidence(const LiveCandidates& candidates, const Eigen::VectorXd& prior_information,
-                           std::size_t most_blocks)
+                           std::vector<Mass> masses, std::size_t most_blocks)
     : candidates_{candidates},
       prior_information_{prior_information},
+      masses_{std::move(masses)},
       most_blocks_{most_blocks},
       base_{prior_information.size()},
       size_{base_ + 1 + candidates.columns()} {
@@ -176,6 +178,18 @@ LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
   return found;
 }
 
+// The noise is in the motion, so in wrench it grows with the masses: a candidate that takes thrust away, and masses
+// with it, shrinks every residual and explains nothing. Its cost is therefore judged at the masses without it, by the
+// axis that shrinks most (cautious for the other axes).
+double LiveEvidence::shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const {
+  double smallest = 1.0;
+  for (const Mass& mass : masses_) {
+    const double before = mass.prior_mean + without[mass.column];
+    if (before > 0.0) smallest = std::min(smallest, (mass.prior_mean + with[mass.column]) / before);
+  }
+  return 1.0 / std::pow(std::max(smallest, kSmallestMassRatio), 2);
+}
+
 std::vector<LiveSuspicion> LiveEvidence::judge() const {
   std::vector<LiveSuspicion> judged;
   if (blocks_.empty()) return judged;
@@ -204,10 +218,12 @@ std::vector<LiveSuspicion> LiveEvidence::judge() const {
     weights[0] = 1.0;
     base << -(imitation_ * weights), 1.0;
     const Eigen::VectorXd own = best.coefficients.segment(1 + best_start->column, best_start->columns());
-    for (std::size_t b = 0; b < blocks_.size(); ++b) with[b] = block_cost(blocks_[b], best_start, base, own);
+    const double penalty = shrinkage(imitation_.col(0), -base.head(base_));
+    for (std::size_t b = 0; b < blocks_.size(); ++b) with[b] = penalty * block_cost(blocks_[b], best_start, base, own);
     const auto parameters = static_cast<int>(best.theta.size());
     best.log_odds = log_odds(without, with, parameters, tried);
-    best.error_reduction = 1.0 - std::sqrt(std::clamp(best_cost / cost_without, 0.0, 1.0));
+    best.error_reduction = 1.0 - std::sqrt(std::clamp(penalty * best_cost / cost_without, 0.0, 1.0));
+    best.block_cost = with;
     judged.push_back(std::move(best));
   }
   std::stable_sort(judged.begin(), judged.end(),

@@ -18,13 +18,20 @@ struct LiveSuspicion {
   std::vector<double> theta;
   double log_odds{};
   double error_reduction{};
+  std::vector<double> block_cost;
   Eigen::VectorXd coefficients;  ///< over [y | candidates' columns]: the part of y that it explains, y itself excluded
 };
 
 class LiveEvidence {
  public:
+  /// A mass among the base parameters.
+  struct Mass {
+    Eigen::Index column{};
+    double prior_mean{};
+  };
   /// `prior_information`: inverse variances of the base parameters, which are counted from their prior means.
-  LiveEvidence(const LiveCandidates& candidates, const Eigen::VectorXd& prior_information, std::size_t most_blocks);
+  LiveEvidence(const LiveCandidates& candidates, const Eigen::VectorXd& prior_information, std::vector<Mass> masses,
+               std::size_t most_blocks);
 
   /// Row = [base | y | candidates], already divided by its standard deviation; `applied` likewise.
   void add(int axis, const Eigen::Ref<const Eigen::VectorXd>& row, double applied);
@@ -34,7 +41,7 @@ class LiveEvidence {
   void close_block();
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
 
-  /// Best numbers and odds per form, best first.
+  /// Best numbers and odds per form, highest odds first.
   [[nodiscard]] std::vector<LiveSuspicion> judge() const;
   /// Cosine between what two candidates explain, the base parameters' share taken out.
   [[nodiscard]] double likeness(const LiveSuspicion& a, const LiveSuspicion& b) const;
@@ -54,6 +61,7 @@ class LiveEvidence {
     double applied{};
   };
   void project();
+  [[nodiscard]] double shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const;
   [[nodiscard]] double block_cost(const Block& block, const LiveStart* start, const Eigen::VectorXd& base,
                                   const Eigen::VectorXd& own) const;
   [[nodiscard]] LiveSuspicion fit(const LiveStart& start, double& cost) const;
@@ -61,6 +69,7 @@ class LiveEvidence {
 
   const LiveCandidates& candidates_;
   Eigen::VectorXd prior_information_;
+  std::vector<Mass> masses_;
   std::size_t most_blocks_;
   Eigen::Index base_;
   Eigen::Index size_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/live_diagnoser.hpp"
 
 namespace fathom::diagnosis {
@@ -106,6 +107,14 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
   const LiveEvidence& evidence = candidates_->evidence;
   if (evidence.blocks() < static_cast<std::size_t>(settings_.fewest_blocks)) return ranking;
   suspicions_ = evidence.judge();
+  const auto convinces = [&](const LiveSuspicion& s) {
+    return s.log_odds >= settings_.accept_log_odds && s.error_reduction >= settings_.smallest_reduction;
+  };
+  // Odds say whether; among those that convince, the one that explains most comes first.
+  const auto doubtful = std::stable_partition(suspicions_.begin(), suspicions_.end(), convinces);
+  std::stable_sort(suspicions_.begin(), doubtful, [](const LiveSuspicion& a, const LiveSuspicion& b) {
+    return a.error_reduction > b.error_reduction;
+  });
   const auto effect_of = [&](const LiveSuspicion& s) { return forms()[static_cast<std::size_t>(s.form)].effect; };
   std::vector<const LiveSuspicion*> best;  // of each effect, in order
   for (const LiveSuspicion& suspicion : suspicions_) {
@@ -117,17 +126,14 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
                                   .log_odds = suspicion.log_odds,
                                   .error_reduction = suspicion.error_reduction});
   }
-  const auto convinces = [&](const LiveSuspicion& s) {
-    return s.log_odds >= settings_.accept_log_odds && s.error_reduction >= settings_.smallest_reduction;
-  };
-  const auto winner = std::find_if(best.begin(), best.end(), [&](const LiveSuspicion* b) { return convinces(*b); });
-  if (winner == best.end()) {
+  if (best.empty() || !convinces(*best.front())) {
     ranking.verdict = evidence.structured() ? "unexplained" : "adequate";
     return ranking;
   }
-  const bool rivalled = std::any_of(winner + 1, best.end(), [&](const LiveSuspicion* other) {
-    return convinces(*other) && (*winner)->log_odds - other->log_odds < settings_.alternative_log_odds &&
-           evidence.likeness(**winner, *other) > settings_.alias_correlation;
+  const LiveSuspicion& winner = *best.front();
+  const bool rivalled = std::any_of(best.begin() + 1, best.end(), [&](const LiveSuspicion* other) {
+    return convinces(*other) && evidence.likeness(winner, *other) > settings_.alias_correlation &&
+           robust_log_likelihood_ratio(other->block_cost, winner.block_cost) < settings_.alternative_log_odds;
   });
   ranking.verdict = rivalled ? "ambiguous" : "effect";
   return ranking;

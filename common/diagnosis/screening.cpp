@@ -13,10 +13,6 @@ using identification::ProjectedWindow;
 constexpr int kBestStarts = 2;
 constexpr int kNewtonSteps = 4;
 constexpr double kSmallStep = 1e-3;  // of the parameter's sigma or value, for differences
-constexpr double kWorthValidating = 1e-3;  // share of the cost: less is refused whatever held-out data says
-constexpr int kFolds = 5;
-constexpr std::size_t kFewestRuns = 3;
-constexpr std::size_t kFoldBlock = 3;  // windows that stay together, so that held-out data is not a neighbour's echo
 
 /// Projected residuals of all windows with the candidate at theta, the base parameters unchanged.
 class CandidateModel {
@@ -97,92 +93,19 @@ std::vector<double> window_costs(const Linearisation& base, const Eigen::VectorX
   return costs;
 }
 
-/// Cost on windows that had no part in the estimate, summed over folds: each fold is predicted by the linear fit to all
-/// others. `columns` (may have none) stand beside the base parameters; `offset` is where they are from zero, in sigmas.
-double held_out_cost(const Linearisation& base, std::span<const int> folds, const Eigen::VectorXd& residual,
-                     const Eigen::MatrixXd& columns, const Eigen::VectorXd& offset) {
-  const Eigen::Index n = base.windows()[0].jacobian.cols();
-  const Eigen::Index k = columns.cols();
-  const auto count = static_cast<std::size_t>(*std::max_element(folds.begin(), folds.end()) + 1);
-  std::vector<Eigen::MatrixXd> normal(count, Eigen::MatrixXd::Zero(n + k, n + k));
-  std::vector<Eigen::VectorXd> gradient(count, Eigen::VectorXd::Zero(n + k));
-  std::vector<double> square(count, 0.0);
-  Eigen::Index row = 0;
-  for (std::size_t w = 0; w < base.windows().size(); ++w) {
-    const Eigen::MatrixXd& J = base.windows()[w].jacobian;
-    const auto fold = static_cast<std::size_t>(folds[w]);
-    const auto r = residual.segment(row, J.rows());
-    const auto E = columns.middleRows(row, J.rows());
-    normal[fold].topLeftCorner(n, n) += J.transpose() * J;
-    normal[fold].topRightCorner(n, k) += J.transpose() * E;
-    normal[fold].bottomRightCorner(k, k) += E.transpose() * E;
-    gradient[fold].head(n) += J.transpose() * r;
-    gradient[fold].tail(k) += E.transpose() * r;
-    square[fold] += r.squaredNorm();
-    row += J.rows();
-  }
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + k, n + k);
-  Eigen::VectorXd target = Eigen::VectorXd::Zero(n + k);
-  for (std::size_t f = 0; f < count; ++f) {
-    normal[f].bottomLeftCorner(k, n) = normal[f].topRightCorner(n, k).transpose();
-    all += normal[f];
-    target += gradient[f];
-  }
-  // Correlated residuals overstate the data's weight against the prior: where the other folds hardly see the effect,
-  // the prior keeps its estimate at zero instead of letting noise set it.
-  Eigen::VectorXd prior(n + k);
-  prior << base.inflation() * base.prior_information(), Eigen::VectorXd::Constant(k, base.inflation());
-  Eigen::VectorXd pull = Eigen::VectorXd::Zero(n + k);
-  pull.tail(k) = base.inflation() * offset;
-  double cost = 0.0;
-  for (std::size_t f = 0; f < count; ++f) {
-    Eigen::MatrixXd others = all - normal[f];
-    others.diagonal() += prior;
-    const Eigen::VectorXd step = -others.ldlt().solve(target - gradient[f] + pull);
-    cost += 0.5 * (square[f] + 2.0 * step.dot(gradient[f]) + step.dot(normal[f] * step));
-  }
-  return cost;
-}
-
-/// Fold numbers: `block` windows in a row stay together; or one fold per run.
-std::vector<int> folds_by_block(std::size_t windows) {
-  std::vector<int> folds(windows);
-  for (std::size_t w = 0; w < windows; ++w) folds[w] = static_cast<int>((w / kFoldBlock) % kFolds);
-  return folds;
-}
-
-std::vector<int> folds_by_run(std::span<const identification::WindowResidual> windows) {
-  std::vector<int> folds;
-  std::vector<const Trial*> runs;
-  for (const auto& window : windows) {
-    const auto place = std::find(runs.begin(), runs.end(), window.window().trial);
-    folds.push_back(static_cast<int>(place - runs.begin()));
-    if (place == runs.end()) runs.push_back(window.window().trial);
-  }
-  return runs.size() >= kFewestRuns ? folds : folds_by_block(windows.size());
-}
-
 }  // namespace
 
 Linearisation::Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit)
     : problem_{problem}, fit_{fit}, windows_{problem.linearise(fit)} {
   const identification::ParameterMap map{fit.model};
   const auto n = static_cast<Eigen::Index>(map.size());
-  prior_.resize(n);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& free = map[static_cast<std::size_t>(i)];
-    prior_[i] = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
+    information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
   }
-  Eigen::MatrixXd information = prior_.asDiagonal();
-  Eigen::VectorXd spread = Eigen::VectorXd::Zero(n);
-  for (const ProjectedWindow& window : windows_) {
-    information += window.jacobian.transpose() * window.jacobian;
-    spread += (window.jacobian.transpose() * window.residual).cwiseAbs2();
-  }
+  for (const ProjectedWindow& window : windows_) information += window.jacobian.transpose() * window.jacobian;
   information_.compute(information);
-  inflation_ = std::max(1.0, (spread.array() / information.diagonal().array()).mean());
-  block_folds_ = folds_by_block(windows_.size());
-  run_folds_ = folds_by_run(problem.windows());
   unexplained_ = stacked_residual();
   remove_base(*this, unexplained_);
   window_cost_ = window_costs(*this, unexplained_.col(0));
@@ -233,7 +156,6 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
 
   Screened best{.effect = &effect, .variant = variant, .variant_name = variant_name, .theta = std::vector<double>(k, 0.0), .window_cost = {}, .signature = {}};
   Eigen::VectorXd best_residual = without.col(0);
-  Eigen::MatrixXd best_columns;
   double best_cost = cost_without;
   for (const Start& start : ranked) {
     std::vector<double> theta = clamped(effect, start.theta);
@@ -287,23 +209,11 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
       best_cost = cost;
       best.theta = theta;
       best_residual = residual.col(0);
-      best_columns = columns;
     }
   }
   best.gain = cost_without - best_cost;
   best.window_cost = window_costs(base, best_residual);
   best.signature = best_residual - without.col(0);
-  if (best.gain > kWorthValidating * cost_without) {
-    Eigen::VectorXd offset(static_cast<Eigen::Index>(k));
-    for (std::size_t i = 0; i < k; ++i) offset[static_cast<Eigen::Index>(i)] = best.theta[i] / parameters[i].sigma;
-    const Eigen::MatrixXd none(without.rows(), 0);
-    const auto saved = [&](std::span<const int> folds) {
-      const double alone = held_out_cost(base, folds, without.col(0), none, Eigen::VectorXd{});
-      return (alone - held_out_cost(base, folds, best_residual, best_columns, offset)) / alone;
-    };
-    best.held_out_blocks = saved(base.block_folds());
-    best.held_out_runs = saved(base.run_folds());
-  }
   const double norm = best.signature.norm();
   if (norm > 0.0) best.signature /= norm;
   return best;

@@ -26,13 +26,6 @@ class Linearisation {
   [[nodiscard]] const Eigen::MatrixXd& unexplained() const { return unexplained_; }
   /// All residuals before it.
   [[nodiscard]] Eigen::VectorXd stacked_residual() const;
-  /// How much larger the scatter of window gradients is than independent samples would make it: the factor by which
-  /// correlated residuals overstate their information.
-  [[nodiscard]] double inflation() const { return inflation_; }
-  /// Fold of each window when blocks, or whole runs, are left out together.
-  [[nodiscard]] std::span<const int> block_folds() const { return block_folds_; }
-  [[nodiscard]] std::span<const int> run_folds() const { return run_folds_; }
-  [[nodiscard]] const Eigen::VectorXd& prior_information() const { return prior_; }
   /// Solves (J'J + prior) x = b for the parameters of the fit.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return information_.solve(b); }
 
@@ -43,10 +36,6 @@ class Linearisation {
   std::vector<double> window_cost_;
   Eigen::LDLT<Eigen::MatrixXd> information_;
   Eigen::MatrixXd unexplained_;
-  Eigen::VectorXd prior_;
-  double inflation_{1.0};
-  std::vector<int> block_folds_;
-  std::vector<int> run_folds_;
 };
 
 /// What a candidate would do, to first order around its best values.
@@ -58,8 +47,6 @@ struct Screened {
   double gain{};                        ///< fall of the cost
   std::vector<double> window_cost;      ///< cost per window with the candidate
   Eigen::VectorXd signature;            ///< change of all residuals that only this candidate can make; unit norm
-  double held_out_blocks{};             ///< fall of the cost on blocks of windows that set nothing, share of the cost
-  double held_out_runs{};               ///< the same with whole runs left out; equal to the above with fewer than three runs
 };
 
 /// Searches the candidate's numbers from all its starts.

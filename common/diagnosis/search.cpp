@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <thread>
 #include <cstdio>
 #include <cstdlib>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/held_out.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 3;            // candidates per round that may try a full fit; the first to hold wins
+constexpr std::size_t kRefits = 6;            // candidates per round that earn a full fit
 constexpr double kAlternativeLogOdds = 3.0;   // 20 to 1 between two look-alikes settles which it is
 
 struct Candidate {
@@ -69,16 +71,16 @@ double sum(std::span<const double> values) {
 
 std::string refusal(const Judged& judged, const Settings& settings) {
   char text[160];
-  if (judged.log_odds < settings.accept_log_odds) {
-    std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
-    return text;
-  }
   if (judged.error_reduction < settings.smallest_reduction) {
     std::snprintf(text, sizeof text, "explains %.2f %% of the error: changes no prediction", 100.0 * judged.error_reduction);
     return text;
   }
-  if (judged.held_out_blocks <= 0.0) return "does not help on blocks of data left out of its estimate";
-  if (judged.held_out_runs <= 0.0) return "does not carry over from run to run";
+  if (judged.log_odds < settings.accept_log_odds) {
+    std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
+    return text;
+  }
+  if (judged.held_out_blocks < 0.0) return "does not help on blocks of data left out of its estimate";
+  if (judged.held_out_runs < 0.0) return "does not carry over from run to run";
   return "";
 }
 
@@ -87,9 +89,35 @@ Judged judge(const Screened& screened, const Linearisation& base, int tried) {
   const auto parameters = static_cast<int>(screened.effect->parameters().size());
   judged.log_odds = log_odds(base.window_cost(), screened.window_cost, parameters, tried);
   judged.error_reduction = reduction(sum(base.window_cost()), sum(screened.window_cost));
-  judged.held_out_blocks = screened.held_out_blocks;
-  judged.held_out_runs = screened.held_out_runs;
   return judged;
+}
+
+/// The effect's numbers in units of their prior sigma.
+std::vector<double> sizes(const model::Model& model, const Screened& screened) {
+  std::vector<double> sizes;
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != screened.effect || active.variant != screened.variant) continue;
+    for (std::size_t i = 0; i < active.theta.size(); ++i) sizes.push_back(active.theta[i] / active.effect->parameters()[i].sigma);
+  }
+  return sizes;
+}
+
+/// The best form of each effect, those that gain most first: screening is linear, so a full fit decides about them.
+std::vector<std::size_t> worth_fitting(const std::vector<Screened>& screened, const std::vector<Judged>& judged,
+                                       const Settings& settings) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    if (judged[i].error_reduction < settings.smallest_reduction) continue;
+    const auto same = std::find_if(order.begin(), order.end(), [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
+    if (same == order.end()) {
+      order.push_back(i);
+    } else if (screened[i].gain > screened[*same].gain) {
+      *same = i;
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
+  if (order.size() > kRefits) order.resize(kRefits);
+  return order;
 }
 
 model::Model with_effect(const FitResult& fit, const Screened& screened) {
@@ -173,6 +201,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   const int tried = static_cast<int>(every.size());
   result.after = result.before;
 
+  auto base = std::make_unique<Linearisation>(problem, result.after);
   for (int round = 0; round < settings.most_effects; ++round) {
     progress("round " + std::to_string(round + 1) + ": asking " + std::to_string(tried) + " candidates",
              0.2 + 0.6 * round / settings.most_effects);
@@ -180,36 +209,32 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     for (const Candidate& candidate : every) {
       if (!holds(result.after.model, candidate)) candidates.push_back(candidate);
     }
-    const Linearisation base{problem, result.after};
-    const std::vector<Screened> screened = screen_all(base, candidates, scene, settings.threads);
+    const std::vector<Screened> screened = screen_all(*base, candidates, scene, settings.threads);
     std::vector<Judged> judged;
     for (const Screened& candidate : screened) {
-      judged.push_back(judge(candidate, base, tried));
+      judged.push_back(judge(candidate, *base, tried));
       judged.back().reason = refusal(judged.back(), settings);
     }
-    if (std::getenv("FATHOM_DEBUG")) for (std::size_t i = 0; i < judged.size(); ++i) if (screened[i].gain>0) std::fprintf(stderr, "   %-18s %-12s gain %.0f lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n", std::string(judged[i].effect->name()).c_str(), judged[i].variant_name.c_str(), screened[i].gain, judged[i].log_odds, judged[i].error_reduction, judged[i].held_out_blocks, judged[i].held_out_runs, screened[i].theta[0], judged[i].reason.c_str());
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < judged.size(); ++i) {
-      if (judged[i].reason.empty()) order.push_back(i);
-    }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
-    if (order.size() > kRefits) order.resize(kRefits);
 
-    std::size_t winner = judged.size();
-    FitResult best = result.after;
     const FitResult reference = result.after;
-    for (const std::size_t i : order) {
+    std::size_t winner = judged.size();
+    FitResult best;
+    for (const std::size_t i : worth_fitting(screened, judged, settings)) {
       progress("fitting " + std::string(screened[i].effect->name()) + " " + screened[i].variant_name,
                0.2 + 0.6 * (round + 0.5) / settings.most_effects);
-      const FitResult fit = problem.fit(with_effect(reference, screened[i]), &reference);
-      const auto parameters = static_cast<int>(screened[i].effect->parameters().size());
-      const double odds = log_odds(reference.window_cost, fit.window_cost, parameters, tried);
-      if (fit.cost < best.cost && odds >= settings.accept_log_odds) {
-        best = fit;
+      FitResult fit = problem.fit(with_effect(reference, screened[i]), &reference);
+      const HeldOut carried = held_out(problem, reference, fit, sizes(fit.model, screened[i]));
+      Judged& entry = judged[i];
+      entry.log_odds = log_odds(reference.window_cost, fit.window_cost,
+                                static_cast<int>(screened[i].effect->parameters().size()), tried);
+      entry.error_reduction = reduction(reference.cost, fit.cost);
+      entry.held_out_blocks = carried.blocks;
+      entry.held_out_runs = carried.runs;
+      entry.reason = refusal(entry, settings);
+      if (std::getenv("FATHOM_DEBUG")) std::fprintf(stderr, "   FIT %-18s %-12s lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n", std::string(entry.effect->name()).c_str(), entry.variant_name.c_str(), entry.log_odds, entry.error_reduction, entry.held_out_blocks, entry.held_out_runs, fit.model.effects[0].theta[0], entry.reason.c_str());
+      if (entry.reason.empty() && (winner == judged.size() || fit.cost < best.cost)) {
+        best = std::move(fit);
         winner = i;
-        judged[i].log_odds = odds;
-        judged[i].error_reduction = reduction(reference.cost, fit.cost);
-        break;
       }
     }
     result.refused = best_of_each_effect(judged, result.accepted);
@@ -217,8 +242,9 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     Judged accepted = judged[winner];
     find_aliases(accepted, screened[winner], screened, judged, settings);
     result.accepted.push_back(accepted);
-    result.after = best;
+    result.after = std::move(best);
     result.refused = best_of_each_effect(judged, result.accepted);
+    base = std::make_unique<Linearisation>(problem, result.after);
   }
   prune(result, problem, settings, tried, progress);
   progress("final fits", 0.95);

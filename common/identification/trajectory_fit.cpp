@@ -49,16 +49,12 @@ class WindowCost final : public ceres::CostFunction {
     window_.evaluate(model, nu0, sigma_, trace, residual);
     Eigen::Map<Eigen::VectorXd>(residuals, window_.rows()) = residual;
     if (jacobians == nullptr) return residual.allFinite();
+    Eigen::MatrixXd by_parameter, by_initial;
+    window_.jacobians(model, map_, nu0, sigma_, residual, by_parameter, by_initial);
     if (jacobians[0] != nullptr) {
-      Eigen::MatrixXd jacobian(window_.rows(), static_cast<Eigen::Index>(map_.size()));
-      window_.parameter_jacobian(model, map_, nu0, sigma_, residual, jacobian);
-      Eigen::Map<RowMajor>(jacobians[0], jacobian.rows(), jacobian.cols()) = jacobian;
+      Eigen::Map<RowMajor>(jacobians[0], by_parameter.rows(), by_parameter.cols()) = by_parameter;
     }
-    if (jacobians[1] != nullptr) {
-      Eigen::MatrixXd jacobian(window_.rows(), 6);
-      window_.initial_jacobian(model, nu0, sigma_, residual, jacobian);
-      Eigen::Map<RowMajor>(jacobians[1], jacobian.rows(), 6) = jacobian;
-    }
+    if (jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], by_initial.rows(), 6) = by_initial;
     return residual.allFinite();
   }
 
@@ -281,11 +277,9 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit) cons
     ProjectedWindow& out = projected[w];
     out.residual.resize(window.rows());
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, out.residual);
-    out.jacobian.resize(window.rows(), static_cast<Eigen::Index>(map.size()));
-    window.parameter_jacobian(fit.model, map, fit.nu0[w], fit.sigma, out.residual, out.jacobian);
+    Eigen::MatrixXd initial;
+    window.jacobians(fit.model, map, fit.nu0[w], fit.sigma, out.residual, out.jacobian, initial);
     for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
-    Eigen::MatrixXd initial(window.rows(), 6);
-    window.initial_jacobian(fit.model, fit.nu0[w], fit.sigma, out.residual, initial);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};
     out.initial_basis = Eigen::MatrixXd::Identity(window.rows(), qr.rank());
     out.initial_basis.applyOnTheLeft(qr.householderQ());

@@ -7,7 +7,6 @@ namespace {
 
 // Relative to the parameter's scale: truncation and rounding of the rollout (1e-12) are both below 1e-4 of a column.
 constexpr double kParameterStep = 1e-4;
-constexpr double kInitialStep = 1e-4;  // m/s, rad/s
 constexpr double kSmallestShareValid = 0.5;
 
 bool all_valid(const Trial& trial, std::size_t k) {
@@ -64,38 +63,35 @@ bool WindowResidual::evaluate(const model::Model& model, const Vector6d& nu0, co
   return finished;
 }
 
-void WindowResidual::parameter_jacobian(const model::Model& model, const ParameterMap& map, const Vector6d& nu0,
-                                        const Vector6d& sigma, const Eigen::VectorXd& residual,
-                                        Eigen::Ref<Eigen::MatrixXd> jacobian) const {
-  model::Model shifted = model;
+void WindowResidual::jacobians(const model::Model& model, const ParameterMap& map, const Vector6d& nu0,
+                               const Vector6d& sigma, const Eigen::VectorXd& residual, Eigen::MatrixXd& by_parameter,
+                               Eigen::MatrixXd& by_initial) const {
   model::VelocityTrace trace;
+  model::VelocityDerivatives derivatives;
+  model::rollout_with_derivatives(model, window_, nu0, trace, derivatives);
+  by_parameter.resize(rows(), static_cast<Eigen::Index>(map.size()));
+  by_initial.resize(rows(), 6);
+  for (Eigen::Index i = 0; i < rows(); ++i) {
+    const Row row = rows_[static_cast<std::size_t>(i)];
+    const auto all = derivatives.row(6 * row.sample + row.axis);
+    by_initial.row(i) = all.tail<6>() / sigma[row.axis];
+    for (std::size_t j = 0; j < map.size() && map[j].base >= 0; ++j) {
+      by_parameter(i, static_cast<Eigen::Index>(j)) = all[map[j].base] * map[j].scale / sigma[row.axis];
+    }
+  }
+  model::Model shifted = model;
   Eigen::VectorXd moved(rows());
   const Eigen::VectorXd x = map.pack(model);
-  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(map.size()); ++j) {
-    const FreeParameter& free = map[static_cast<std::size_t>(j)];
+  for (std::size_t j = 0; j < map.size(); ++j) {
+    if (map[j].base >= 0) continue;
+    const auto k = static_cast<Eigen::Index>(j);
     // Step away from a bound.
-    const double step = (x[j] + kParameterStep) * free.scale > free.high ? -kParameterStep : kParameterStep;
+    const double step = (x[k] + kParameterStep) * map[j].scale > map[j].high ? -kParameterStep : kParameterStep;
     Eigen::VectorXd x_shifted = x;
-    x_shifted[j] += step;
+    x_shifted[k] += step;
     map.unpack(x_shifted, shifted);
     evaluate(shifted, nu0, sigma, trace, moved);
-    jacobian.col(j) = (moved - residual) / step;
-  }
-}
-
-void WindowResidual::initial_jacobian(const model::Model& model, const Vector6d& nu0, const Vector6d& sigma,
-                                      const Eigen::VectorXd& residual, Eigen::Ref<Eigen::MatrixXd> jacobian) const {
-  model::VelocityTrace trace;
-  Eigen::VectorXd moved(rows());
-  for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    if (!model.vehicle->dof[static_cast<std::size_t>(axis)]) {
-      jacobian.col(axis).setZero();
-      continue;
-    }
-    Vector6d shifted = nu0;
-    shifted[axis] += kInitialStep;
-    evaluate(model, shifted, sigma, trace, moved);
-    jacobian.col(axis) = (moved - residual) / kInitialStep;
+    by_parameter.col(k) = (moved - residual) / step;
   }
 }
 

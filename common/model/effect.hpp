@@ -57,6 +57,8 @@ class Effect {
   virtual void feel(Motion&, EffectTheta, int /*variant*/, std::span<const double> /*z*/) const {}
   /// Adds wrench and inertia. Sees the motion after all feel().
   virtual void load(const Motion&, EffectTheta, int /*variant*/, Load&) const {}
+  /// True when the wrench depends on where the vehicle is (not only on how it moves).
+  [[nodiscard]] virtual bool feels_place() const { return false; }
   /// Size of the memory z.
   [[nodiscard]] virtual int state_size(const Vehicle&, int /*actuators*/) const { return 0; }
   /// Memory at rest in this motion (steady state).

@@ -25,6 +25,16 @@ using VelocityTrace = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /// memory are run in over the 3 s before the window. Returns false when the motion diverged (the rest is held).
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
 
+/// Derivatives of a rollout's velocities: row 6 k + axis is sample k's. Columns: the base parameters in their order
+/// [velocity per unit], then the initial velocity.
+using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameterCount + 6, Eigen::RowMajor>;
+
+/// A rollout together with its derivatives, by the variational equation along the trajectory (Jategaonkar 2015, sec. 4.6).
+/// Far cheaper than a rollout per parameter; within 1 % of differences of rollouts, see the test. Effects' own numbers are
+/// not among the columns.
+bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
+                              VelocityDerivatives& derivatives);
+
 /// Scene of a set of trials, for effects that choose starts and variants by it.
 [[nodiscard]] Scene scene_of(const Vehicle& vehicle, std::span<const Trial> trials);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/model/effect.hpp"
+#include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
 namespace {

@@ -122,11 +122,14 @@ TEST_CASE("every effect: names, words, units and priors are stated") {
     CHECK(effect->sentence().ends_with("."));
     CHECK_FALSE(effect->revealed_by().empty());
     REQUIRE_FALSE(effect->parameters().empty());
+    // Some number must be able to say "absent".
+    CHECK(std::any_of(effect->parameters().begin(), effect->parameters().end(),
+                      [](const auto& parameter) { return parameter.low <= 0.0; }));
     for (const auto& parameter : effect->parameters()) {
       CHECK_FALSE(parameter.name.empty());
       CHECK(parameter.sigma > 0.0);
       CHECK(std::isfinite(parameter.sigma));
-      CHECK(parameter.low <= 0.0);
+      CHECK(parameter.low < parameter.high);
       CHECK(parameter.high > 0.0);
     }
   }

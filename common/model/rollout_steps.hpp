@@ -1,0 +1,184 @@
+// The inside of a rollout: state, midpoint steps, run-in of memories. Only rollout.cpp and sensitivity.cpp include it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/model/rollout.hpp"
+#include "common/model/sensitivity.hpp"
+
+namespace fathom::model {
+
+constexpr double kLargestStep = 0.05;  // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
+constexpr double kStableShare = 1.5;   // of the fastest time constant: explicit midpoint turns unstable at 2
+constexpr double kTypicalSpeed = 0.5;  // m/s, rad/s, where quadratic drag is taken for that time constant
+constexpr double kRunIn = 3.0;         // s: twenty time constants of an ordinary thruster lag
+constexpr double kAbsurd = 50.0;       // m/s or rad/s: no vehicle of ours moves like that
+constexpr int kMaxMemory = 128;
+
+/// Longest stable step, from the priors: the same for every theta, so that derivatives see no change of steps.
+inline double largest_step(const Vehicle& vehicle) {
+  const BaseTheta theta = nominal_model(vehicle, true).theta;
+  double step = kLargestStep;
+  for (int i = 0; i < 6; ++i) {
+    const double damping = -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
+    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kStableShare * theta[i] && theta[i] > 0.0) {
+      step = kStableShare * theta[i] / damping;
+    }
+  }
+  return step;
+}
+
+/// Rotation about the world's down axis by psi, then the tilt of q.
+inline Eigen::Quaterniond with_heading(const Eigen::Quaterniond& tilt, double psi) {
+  const Eigen::Vector3d euler = euler_from_rotation(tilt.toRotationMatrix());
+  return Eigen::Quaterniond(rotation_from_euler({euler.x(), euler.y(), psi}));
+}
+
+inline double heading(const Eigen::Quaterniond& q) {
+  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+}
+
+/// State of one rollout and the step that advances it.
+class Rollout {
+ public:
+  Rollout(const Model& model, const Trial& trial, Sensitivity* sensitivity = nullptr)
+      : model_{model}, trial_{trial}, input_{trial.t.front(), trial.dt, trial.input}, memory_size_{model.memory_size()},
+        sensitivity_{sensitivity} {
+    const auto& dof = model.vehicle->dof;
+    tilt_measured_ = !(dof[3] && dof[4]);
+    heading_measured_ = !dof[5];
+    all_simulated_ = std::all_of(dof.begin(), dof.end(), [](bool free) { return free; });
+    motion_.input = &input_;
+    motion_.vehicle = model.vehicle;
+    memory_.fill(0.0);
+  }
+
+  bool run(const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
+    const int substeps = std::max(1, static_cast<int>(std::ceil(trial_.dt / largest_step(*model_.vehicle) - 1e-9)));
+    const double h = trial_.dt / substeps;
+    run_in(window.start, h);
+    nu_ = measured_where_fixed(window.start, 0.0, nu0);
+    p_ = trial_.p_WB[window.start];
+    q_ = trial_.q_WB[window.start];
+    nu.resize(6, static_cast<Eigen::Index>(window.count));
+    nu.col(0) = nu_;
+    if (sensitivity_ != nullptr) sensitivity_->begin(*model_.vehicle, window.count);
+    for (std::size_t k = 1; k < window.count; ++k) {
+      const std::size_t from = window.start + k - 1;
+      for (int s = 0; s < substeps; ++s) step(from, s * h, h);
+      if (!nu_.allFinite() || nu_.cwiseAbs().maxCoeff() > kAbsurd) {
+        for (std::size_t rest = k; rest < window.count; ++rest) {
+          nu.col(static_cast<Eigen::Index>(rest)) = nu.col(static_cast<Eigen::Index>(k - 1));
+          if (sensitivity_ != nullptr) sensitivity_->record(rest);
+        }
+        return false;
+      }
+      nu.col(static_cast<Eigen::Index>(k)) = nu_;
+      if (sensitivity_ != nullptr) sensitivity_->record(k);
+    }
+    return true;
+  }
+
+  // Acceleration at an instant; effects' memory first advances by dt with the command of the middle of that time.
+  Vector6d felt_acceleration(std::size_t from, double offset, const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
+                             const Vector6d& nu, double dt) {
+    set_motion(from, offset, p, q, nu);
+    if (memory_size_ > 0 && dt > 0.0) {
+      Motion middle = motion_;
+      middle.t -= 0.5 * dt;
+      input_.at(middle.t, middle.force);
+      feel(model_, middle, memory(), dt);
+    }
+    feel(model_, motion_, memory(), 0.0);
+    return acceleration(model_, motion_);
+  }
+
+  /// The motion of the last call of felt_acceleration, as felt.
+  [[nodiscard]] const Motion& motion() const { return motion_; }
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] bool tilt_measured() const { return tilt_measured_; }
+  [[nodiscard]] bool heading_measured() const { return heading_measured_; }
+
+ private:
+  std::span<double> memory() { return {memory_.data(), static_cast<std::size_t>(memory_size_)}; }
+
+  // Velocity with the left-out degrees of freedom taken from the measurement, `offset` seconds after sample `from`.
+  Vector6d measured_where_fixed(std::size_t from, double offset, const Vector6d& simulated) const {
+    if (all_simulated_) return simulated;
+    const std::size_t next = std::min(from + 1, trial_.size() - 1);
+    const double share = offset / trial_.dt;
+    Vector6d nu = simulated;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) {
+        nu[i] = (1.0 - share) * trial_.nu[from][i] + share * trial_.nu[next][i];
+      }
+    }
+    return nu;
+  }
+
+  void set_motion(std::size_t from, double offset, const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
+                  const Vector6d& nu) {
+    motion_.t = trial_.t[from] + offset;
+    motion_.p_WB = p;
+    motion_.R_WB = q.toRotationMatrix();
+    motion_.nu = nu;
+    motion_.v_WF_B.setZero();
+    input_.at(motion_.t, motion_.force);
+    motion_.voltage = trial_.voltage.empty() ? 0.0 : trial_.voltage[from];
+  }
+
+  void step(std::size_t from, double offset, double h) {
+    const double half = 0.5 * h;
+    const Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
+    const Vector6d nu_half = measured_where_fixed(from, offset + half, nu_ + half * k1);
+    const Eigen::Vector3d p_half = p_ + half * (q_ * nu_.head<3>());
+    const Eigen::Quaterniond q_half = q_ * quaternion_from_rotation_vector(half * nu_.tail<3>());
+    const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);
+    if (sensitivity_ != nullptr) sensitivity_->advance(*this, from, offset + half, p_half, q_half, nu_half, k2, h);
+    p_ += h * (q_half * nu_half.head<3>());
+    q_ = (q_ * quaternion_from_rotation_vector(h * nu_half.tail<3>())).normalized();
+    nu_ = measured_where_fixed(from, offset + h, nu_ + h * k2);
+    follow_measured_attitude(from, offset + h);
+  }
+
+  void follow_measured_attitude(std::size_t from, double offset) {
+    if (!tilt_measured_ && !heading_measured_) return;
+    const std::size_t next = std::min(from + 1, trial_.size() - 1);
+    const Eigen::Quaterniond measured = trial_.q_WB[from].slerp(std::min(offset / trial_.dt, 1.0), trial_.q_WB[next]);
+    const Eigen::Quaterniond& tilt = tilt_measured_ ? measured : q_;
+    q_ = with_heading(tilt, heading(heading_measured_ ? measured : q_));
+  }
+
+  void run_in(std::size_t start, double h) {
+    if (memory_size_ == 0) return;
+    const auto back = static_cast<std::size_t>(kRunIn / trial_.dt);
+    const std::size_t first = start > back ? start - back : 0;
+    set_motion(first, 0.0, trial_.p_WB[first], trial_.q_WB[first], trial_.nu[first]);
+    settle(model_, motion_, memory());
+    const int substeps = static_cast<int>(std::lround(trial_.dt / h));
+    for (std::size_t k = first; k < start; ++k) {
+      for (int s = 0; s < substeps; ++s) {
+        set_motion(k, (s + 0.5) * h, trial_.p_WB[k], trial_.q_WB[k], trial_.nu[k]);
+        feel(model_, motion_, memory(), h);
+      }
+    }
+  }
+
+  const Model& model_;
+  const Trial& trial_;
+  InputSignal input_;
+  int memory_size_;
+  Sensitivity* sensitivity_;
+  bool tilt_measured_{};
+  bool heading_measured_{};
+  bool all_simulated_{};
+  std::array<double, kMaxMemory> memory_{};
+  Motion motion_;
+  Eigen::Vector3d p_{Eigen::Vector3d::Zero()};
+  Eigen::Quaterniond q_{Eigen::Quaterniond::Identity()};
+  Vector6d nu_{Vector6d::Zero()};
+};
+
+}  // namespace fathom::model

@@ -1,0 +1,51 @@
+// What a set of trials offers: signals, ranges, sizes.
+#include <algorithm>
+
+#include "common/model/rollout.hpp"
+
+namespace fathom::model {
+
+Scene scene_of(const Vehicle& vehicle, std::span<const Trial> trials) {
+  Scene scene{.vehicle = &vehicle};
+  double count = 0.0;
+  double voltage_sum = 0.0, voltage_count = 0.0, voltage_low = 1e9, voltage_high = -1e9;
+  bool first = true;
+  const Model nominal = nominal_model(vehicle, !trials.empty() && trials[0].input_is_wrench);
+  scene.force_rms = ActuatorForces::Zero(nominal.allocation.cols());
+  for (const Trial& trial : trials) {
+    scene.position = scene.position || trial.observed.position;
+    scene.attitude = scene.attitude || trial.observed.attitude;
+    scene.velocity = scene.velocity || trial.observed.velocity;
+    scene.rates = scene.rates || trial.observed.rates;
+    scene.input_is_wrench = scene.input_is_wrench || trial.input_is_wrench;
+    if (trial.size() > 0) scene.duration = std::max(scene.duration, trial.t.back() - trial.t.front());
+    for (std::size_t k = 0; k < trial.size(); ++k) {
+      scene.p_low = first ? trial.p_WB[k] : scene.p_low.cwiseMin(trial.p_WB[k]).eval();
+      scene.p_high = first ? trial.p_WB[k] : scene.p_high.cwiseMax(trial.p_WB[k]).eval();
+      first = false;
+      scene.nu_rms += trial.nu[k].cwiseAbs2();
+      scene.tau_rms += (nominal.allocation * trial.input[k]).cwiseAbs2();
+      scene.force_rms += trial.input[k].cwiseAbs2();
+      count += 1.0;
+    }
+    for (const double voltage : trial.voltage) {
+      voltage_sum += voltage;
+      voltage_count += 1.0;
+      voltage_low = std::min(voltage_low, voltage);
+      voltage_high = std::max(voltage_high, voltage);
+    }
+  }
+  if (count > 0.0) {
+    scene.nu_rms = (scene.nu_rms / count).cwiseSqrt().eval();
+    scene.tau_rms = (scene.tau_rms / count).cwiseSqrt().eval();
+    scene.force_rms = (scene.force_rms / count).cwiseSqrt().eval();
+  }
+  scene.voltage = voltage_count > 0.0;
+  if (scene.voltage) {
+    scene.mean_voltage = voltage_sum / voltage_count;
+    scene.voltage_range = voltage_high - voltage_low;
+  }
+  return scene;
+}
+
+}  // namespace fathom::model
