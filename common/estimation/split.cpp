@@ -1,0 +1,45 @@
+#include "common/estimation/split.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "common/base/error.hpp"
+
+namespace fathom::estimation {
+namespace {
+
+Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::string& name) {
+  const auto cut = [&](const auto& all) {
+    using Vector = std::decay_t<decltype(all)>;
+    if (all.empty()) return Vector{};
+    return Vector(all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  Trial result = trial;
+  result.name = name;
+  result.t = cut(trial.t);
+  for (double& t : result.t) t -= trial.t[from];
+  result.p_WB = cut(trial.p_WB);
+  result.q_WB = cut(trial.q_WB);
+  result.nu = cut(trial.nu);
+  result.pose_valid = cut(trial.pose_valid);
+  result.velocity_valid = cut(trial.velocity_valid);
+  result.rates_valid = cut(trial.rates_valid);
+  result.input = cut(trial.input);
+  result.voltage = cut(trial.voltage);
+  return result;
+}
+
+}  // namespace
+
+std::pair<Trial, Trial> split(const Trial& trial, double held_out) {
+  const auto n = static_cast<double>(trial.size());
+  const auto at = static_cast<std::size_t>(std::lround((1.0 - held_out) * n));
+  if (at < 1 || at >= trial.size()) {
+    throw InputError(trial.name + ": too short to hold a part out; give a validation run with --validate");
+  }
+  const std::string percent = std::to_string(std::lround(100.0 * held_out));
+  return {part(trial, 0, at, trial.name + " (first " + std::to_string(std::lround(100.0 * (1.0 - held_out))) + " %)"),
+          part(trial, at, trial.size(), trial.name + " (last " + percent + " %)")};
+}
+
+}  // namespace fathom::estimation

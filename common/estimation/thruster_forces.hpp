@@ -1,0 +1,28 @@
+// From commands to forces on line, the way the offline fit does it: curve, battery voltage, and the correction that the
+// consistency check found.
+#pragma once
+
+#include <optional>
+
+#include "common/estimation/consistency.hpp"
+#include "common/model/vehicle.hpp"
+#include "common/samples/sensors.hpp"
+
+namespace fathom::estimation {
+
+class ThrusterForces {
+ public:
+  ThrusterForces(const ThrusterCorrection& correction, model::Vehicle vehicle);
+  void step(const Battery& battery);
+  /// The sample with `force` filled in where the correction says that commands are to be trusted; else as it came.
+  [[nodiscard]] Thrusters step(const Thrusters& thrusters) const;
+  void reset() { battery_.reset(); }
+
+ private:
+  ThrusterCorrection correction_;
+  model::Vehicle vehicle_;
+  double reference_{};  ///< V
+  std::optional<Battery> battery_;
+};
+
+}  // namespace fathom::estimation

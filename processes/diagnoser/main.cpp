@@ -1,0 +1,56 @@
+// diagnoser: states, thruster commands and battery voltage in, the ranking of candidate causes out.
+#include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/effects_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/thrusters_t.hpp>
+
+#include "common/diagnosis/live_diagnoser.hpp"
+#include "common/estimation/corrections_file.hpp"
+#include "common/estimation/thruster_forces.hpp"
+#include "common/runtime/process.hpp"
+#include "common/wire/channels.hpp"
+#include "common/wire/minds.hpp"
+#include "common/wire/sensors.hpp"
+
+using namespace fathom;
+
+int main(int argc, char** argv) {
+  return runtime::main("diagnoser", argc, argv, [](runtime::Process& process) {
+    const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
+    const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
+    diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle};
+    estimation::ThrusterForces forces{corrections.thrusters, vehicle};
+    const auto say = [&](const std::optional<EffectRanking>& ranking) {
+      if (ranking) process.publish(wire::kEffects, wire::encode(*ranking));
+    };
+
+    process.publishes<fathom_lcm::effects_t>(wire::kEffects);
+    process.on<fathom_lcm::state_t>(wire::kState, [&](const auto& message) {
+      const auto state = wire::decode(message);
+      if (!state) return process.reject(wire::kState);
+      say(diagnoser.step(*state));
+    });
+    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, [&](const auto& message) {
+      const auto thrusters = wire::decode(message);
+      if (!thrusters) return process.reject(wire::kThrusters);
+      say(diagnoser.step(forces.step(*thrusters)));
+    });
+    process.on<fathom_lcm::battery_t>(wire::kBattery, [&](const auto& message) {
+      const auto battery = wire::decode(message);
+      if (!battery) return process.reject(wire::kBattery);
+      forces.step(*battery);
+      say(diagnoser.step(*battery));
+    });
+    process.on_restart([&] {
+      diagnoser.reset();
+      forces.reset();
+    });
+    process.on_end([&] {
+      say(diagnoser.finish());
+      for (const auto& [reason, count] : diagnoser.rejected()) {
+        process.log_info(std::to_string(count) + " samples not used: " + reason);
+      }
+    });
+    process.run();
+  });
+}

@@ -1,0 +1,64 @@
+// fathom check: do the sensors of these recordings agree with each other? Nothing is fitted.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/estimation/consistency.hpp"
+#include "common/estimation/corrections_file.hpp"
+#include "common/tables/writer.hpp"
+#include "processes/fathom/commands.hpp"
+#include "processes/fathom/recordings.hpp"
+
+namespace fathom::tool {
+namespace {
+
+struct Options {
+  std::string vehicle, map, write;
+  std::vector<std::string> runs;
+};
+
+void print(const std::vector<ConsistencyFinding>& findings) {
+  std::printf("%-12s %-14s %-14s %-12s %12s  %s\n", "run", "signal", "against", "finding", "size", "what is done");
+  for (const ConsistencyFinding& one : findings) {
+    char size[32];
+    std::snprintf(size, sizeof size, "%.4g %s", one.size, one.unit.c_str());
+    std::printf("%-12s %-14s %-14s %-12s %12s  %s\n", one.run.c_str(), one.signal.c_str(), one.reference.c_str(),
+                one.finding.c_str(), size, one.action.c_str());
+    std::printf("%-12s   %s\n", "", one.evidence.c_str());
+  }
+}
+
+void run(const Options& options) {
+  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  std::vector<std::string> notes;
+  const std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes);
+  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  estimation::ConsistencyResult result = estimation::check_consistency(recordings);
+  estimation::check_thrusters(recordings, vehicle, result);
+  if (result.findings.empty()) {
+    std::printf("the sensors agree with each other\n");
+  } else {
+    print(result.findings);
+  }
+  if (options.write.empty()) return;
+  const estimation::Shared shared = estimation::most_shared(result.corrections);
+  tables::write_file(options.write, estimation::to_yaml(shared.corrections));
+  std::printf("%s: corrections of %zu of %zu recordings\n", options.write.c_str(), shared.count, recordings.size());
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
+  command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
+  command->add_option("runs", options->runs, ".lcmlog or .csv files")->required();
+  command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
+  command->add_option("--write", options->write, "write the corrections for live processes to this file");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,107 @@
+// fathom diagnose: closes the loop on recordings. Sensors are checked, the base model fitted, its residual traced to
+// effects that it lacks, and the error before and after reported on runs that no fit has seen.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/diagnosis/diagnoser.hpp"
+#include "common/estimation/reconstruct.hpp"
+#include "common/estimation/split.hpp"
+#include "common/report/report.hpp"
+#include "common/report/table.hpp"
+#include "processes/fathom/commands.hpp"
+#include "processes/fathom/progress.hpp"
+#include "processes/fathom/recordings.hpp"
+
+namespace fathom::tool {
+namespace {
+
+constexpr double kHeldOut = 0.3;  // of every run, when no validation run is given
+constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
+
+struct Options {
+  std::string vehicle, map, out;
+  std::vector<std::string> train, validate;
+  int threads{2};
+};
+
+void make_folder(const std::string& path) {  // before the long work, so that a bad path costs nothing
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw InputError(path + ": cannot make this folder: " + error.message() + "; give another --out");
+}
+
+DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
+  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  make_folder(options.out);
+  std::vector<std::string> paths = options.train;
+  paths.insert(paths.end(), options.validate.begin(), options.validate.end());
+  progress.show("reading recordings", 0.0);
+  const std::vector<Recording> recordings = read_recordings(paths, options.map, notes);
+
+  progress.show("comparing the sensors with each other", kReadShare);
+  estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);
+  estimation::check_thrusters(recordings, vehicle, consistency);
+
+  std::vector<Trial> train, validate;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    progress.show("reconstructing " + recordings[i].name, kCheckShare);
+    Trial trial = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
+    if (options.validate.empty()) {
+      auto [first, last] = estimation::split(trial, kHeldOut);
+      train.push_back(std::move(first));
+      validate.push_back(std::move(last));
+    } else {
+      (i < options.train.size() ? train : validate).push_back(std::move(trial));
+    }
+  }
+  if (options.validate.empty()) {
+    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
+  }
+
+  diagnosis::Settings settings;
+  settings.threads = options.threads;
+  DiagnosisReport report =
+      diagnosis::diagnose(vehicle, train, validate, settings, [&](const std::string& what, double share) {
+        progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
+      });
+  report.result.consistency = std::move(consistency.findings);
+  return report;
+}
+
+void run(const Options& options) {
+  std::vector<std::string> notes;
+  DiagnosisReport report;
+  report::Written written;
+  double elapsed = 0.0;
+  {
+    ProgressLine progress;
+    report = diagnose(options, notes, progress);
+    progress.show("drawing the report", kFitShare);
+    written = report::write(report, options.out);
+    elapsed = progress.elapsed();
+  }
+  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  std::printf("%s\nresult %s\nreport %s\ntook   %.1f s\n", report::to_table(report.result).c_str(),
+              written.json.c_str(), written.html.c_str(), elapsed);
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
+  command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
+  command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
+  command->add_option("--validate", options->validate, "files to judge by; without: the last 30 % of every run");
+  command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
+  command->add_option("--out", options->out, "folder for result.json and report.html")->required();
+  command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,39 @@
+// fathom import: a table of numbers to an LCM log, each stream on the channel that a driver would use.
+#include "common/tables/import.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/wire/log_writer.hpp"
+#include "processes/fathom/commands.hpp"
+#include "processes/fathom/recordings.hpp"
+
+namespace fathom::tool {
+namespace {
+
+struct Options {
+  std::string data, map, out;
+};
+
+void run(const Options& options) {
+  const tables::Imported imported = tables::import_csv(options.data, options.map);
+  for (const std::string& note : imported.notes) std::printf("%s: %s\n", options.data.c_str(), note.c_str());
+  const std::uint64_t events = wire::write_log(imported.recording, options.out);
+  std::printf("%s: %llu messages (%s)\n", options.out.c_str(), static_cast<unsigned long long>(events),
+              counts(imported.recording).c_str());
+}
+
+}  // namespace
+
+void add_import(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("import", "CSV to an LCM log");
+  command->add_option("data", options->data, "CSV file")->required();
+  command->add_option("--map", options->map, "YAML file that says what each column is; without: canonical columns");
+  command->add_option("--out", options->out, "log to write, RUN.lcmlog")->required();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool

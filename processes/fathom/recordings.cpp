@@ -1,0 +1,51 @@
+#include "processes/fathom/recordings.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "common/base/error.hpp"
+#include "common/tables/import.hpp"
+#include "common/wire/log_reader.hpp"
+#include "common/wire/streams.hpp"
+
+namespace fathom::tool {
+
+std::vector<Recording> read_recordings(const std::vector<std::string>& paths, const std::string& map,
+                                       std::vector<std::string>& notes) {
+  std::vector<Recording> recordings;
+  std::set<std::string> names;
+  for (const std::string& path : paths) {
+    const std::string extension = std::filesystem::path{path}.extension().string();
+    if (extension == ".csv") {
+      tables::Imported imported = tables::import_csv(path, map);
+      for (const std::string& note : imported.notes) notes.push_back(path + ": " + note);
+      recordings.push_back(std::move(imported.recording));
+    } else if (extension == ".lcmlog" || extension == ".lcm") {
+      wire::LogContents contents = wire::read_log(path);
+      std::istringstream lines{wire::complaints(path, contents.report)};
+      for (std::string line; std::getline(lines, line);) notes.push_back(line);
+      recordings.push_back(std::move(contents.recording));
+    } else {
+      throw InputError(path + ": neither .lcmlog nor .csv; import other tables with fathom import --map");
+    }
+    Recording& last = recordings.back();
+    last.name = std::filesystem::path{path}.stem().string();
+    if (!names.insert(last.name).second) {
+      throw InputError(path + ": a second recording named " + last.name + "; give each run once, under its own name");
+    }
+  }
+  return recordings;
+}
+
+std::string counts(const Recording& recording) {
+  std::string text;
+  wire::visit_streams(recording, [&](const char* channel, const auto& stream) {
+    if (!stream.empty())
+      text += (text.empty() ? "" : ", ") + std::string{channel} + " " + std::to_string(stream.size());
+  });
+  return text;
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,148 @@
+// The offline tool: what bad input prints, and a whole diagnosis of a small made-up vehicle.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/tables/writer.hpp"
+#include "test/support/scratch.hpp"
+#include "test/support/shell.hpp"
+#include "test/support/virtual_dive.hpp"
+
+namespace fathom {
+namespace {
+
+using test::program;
+using test::Ran;
+using test::Scratch;
+using test::shell;
+
+const std::string kTool = program("fathom");
+
+const char kVehicle[] =
+    "name: Sled\ndof: [surge, yaw]\nwater_density: 1000 kg/m^3\nmass: 20 kg\ninertia: 0.5 0.8 1 kg m^2\n";
+
+/// Canonical columns, written out by hand: 30 s of a slow turn.
+std::string table(const std::string& header, const std::string& bad_cell = "0.1") {
+  std::string text = header + "\n";
+  for (int i = 0; i < 300; ++i) {
+    text += std::to_string(0.1 * i);
+    for (int k = 1; k < 13; ++k) text += "," + (i == 7 && k == 4 ? bad_cell : std::to_string(0.01 * (i % 17) + k));
+    text += "\n";
+  }
+  return text;
+}
+
+void one_line(const Ran& ran, int code, const std::string& words) {
+  CAPTURE(ran.text);
+  CHECK(ran.code == code);
+  CHECK(ran.lines() == 1);
+  CHECK(ran.text.starts_with("fathom: "));
+  CHECK(ran.says(words));
+}
+
+}  // namespace
+
+TEST_CASE("fathom: a bad command line is one line and exit code 2") {
+  one_line(shell(kTool + " diagnose --trian x"), 2, "--help");
+  one_line(shell(kTool), 2, "subcommand");
+  CHECK(shell(kTool + " --help").code == 0);
+  CHECK(shell(kTool + " diagnose --help").says("--validate"));
+}
+
+TEST_CASE("fathom: a wrong unit in the vehicle file names the line and both units") {
+  const Scratch scratch;
+  std::string text = kVehicle;
+  text.replace(text.find("20 kg"), 5, "20 N");
+  test::write_bytes(scratch.path("v.yaml"), text);
+  test::write_bytes(scratch.path("a.csv"), "");
+  one_line(shell(kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + scratch.path("a.csv") +
+                 " --out " + scratch.path("out")),
+           1, "v.yaml:4");
+}
+
+TEST_CASE("fathom: a missing column, a word among numbers, a missing file") {
+  const Scratch scratch;
+  const std::string header = "t,x,y,z,u,v,w,X,Y,Z,K,M,N";
+  test::write_bytes(scratch.path("a.csv"), table("t,x,y,q,u,v,w,X,Y,Z,K,M,N"));
+  one_line(shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")), 1, "a.csv");
+  CHECK_FALSE(std::filesystem::exists(scratch.path("a.lcmlog")));
+  test::write_bytes(scratch.path("b.csv"), table(header, "fast"));
+  one_line(shell(kTool + " import " + scratch.path("b.csv") + " --out " + scratch.path("b.lcmlog")), 1, "b.csv:9");
+  one_line(shell(kTool + " import " + scratch.path("c.csv") + " --out " + scratch.path("c.lcmlog")), 1, "c.csv");
+  one_line(shell(kTool + " import " + test::file("test/data/beluga/yaw-1.csv") + " --map " + scratch.path("no.yaml") +
+                 " --out " + scratch.path("d.lcmlog")),
+           1, "no.yaml");
+}
+
+TEST_CASE("fathom: a NaN cell costs its sample, and is counted") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N", "nan"));
+  const Ran ran = shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog"));
+  CAPTURE(ran.text);
+  CHECK(ran.code == 0);
+  CHECK(ran.says("DVL 299"));
+  CHECK(ran.says("POSE_CAPTURE 300"));
+  CHECK(ran.says("dvl: 1 "));
+}
+
+TEST_CASE("fathom: a log cut in its last message is read with a warning, one damaged inside is refused") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N"));
+  REQUIRE(shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")).code == 0);
+  std::string bytes = test::read_bytes(scratch.path("a.lcmlog"));
+  test::write_bytes(scratch.path("cut.lcmlog"), bytes.substr(0, bytes.size() - 20));
+  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
+  const Ran cut = shell(check + scratch.path("cut.lcmlog"));
+  CAPTURE(cut.text);
+  CHECK(cut.code == 0);
+  CHECK(cut.says("cut.lcmlog: byte"));
+  bytes[bytes.size() / 2] = 'x';
+  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 200; ++i) bytes[i] = 'x';
+  test::write_bytes(scratch.path("bad.lcmlog"), bytes);
+  one_line(shell(check + scratch.path("bad.lcmlog")), 1, "bad.lcmlog: byte");
+}
+
+TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a page") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const std::string name = "run" + std::to_string(seed);
+    const auto dive = test::make_dive(vehicle, {.duration = 40.0, .seed = seed, .wrench = true});
+    tables::write_file(scratch.path(name + ".csv"), tables::to_csv(dive.trial));
+    const Ran ran =
+        shell(kTool + " import " + scratch.path(name + ".csv") + " --out " + scratch.path(name + ".lcmlog"));
+    REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  }
+  const std::string common = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train ";
+  const Ran ran = shell(common + scratch.path("run1.lcmlog") + " --validate " + scratch.path("run2.csv") + " --out " +
+                        scratch.path("out"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  CHECK(ran.says("Verdict"));
+  CHECK(ran.says("report.html"));
+  const auto result = nlohmann::json::parse(test::read_bytes(scratch.path("out/result.json")));
+  CHECK(result.at("schema") == 1);
+  CHECK(result.at("vehicle") == "Sled");
+  CHECK(result.at("train").at(0) == "run1");
+  CHECK(result.at("validate").at(0) == "run2");
+  for (const char* key : {"consistency", "verdict", "effects", "candidates"}) CHECK(result.contains(key));
+  for (const char* when : {"before", "after"}) {
+    CHECK(result.at("error").at(when).at("force_rmse").contains("X"));
+    CHECK(result.at("error").at(when).at("prediction").size() == 3);
+    CHECK(result.at("parameters").at(when).at("m_X").contains("std"));
+    CHECK(result.at("residual").at(when).contains("N"));
+  }
+  CHECK(result.at("error").at("improvement").contains("ci95"));
+  CHECK(test::read_bytes(scratch.path("out/report.html")).size() > 10'000);
+
+  const Ran held = shell(common + scratch.path("run1.lcmlog") + " --out " + scratch.path("held"));
+  REQUIRE_MESSAGE(held.code == 0, held.text);
+  CHECK(held.says("last 30 %"));
+  const auto other = nlohmann::json::parse(test::read_bytes(scratch.path("held/result.json")));
+  CHECK(other.at("validate").at(0) == "run1 (last 30 %)");
+}
+
+}  // namespace fathom
