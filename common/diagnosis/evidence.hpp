@@ -9,7 +9,8 @@ namespace fathom::diagnosis {
 /// Log-likelihood ratio that counts windows, not samples. With d_w the fall of window w's cost,
 /// W = 4 (sum d)^2 / sum (d - mean d)^2 is the square of a t-statistic (for one parameter and small d), and
 /// n/2 ln(1 + W/n) its likelihood ratio with unknown variance (exact for the normal regression). 0 when the sum falls.
-[[nodiscard]] double robust_log_likelihood_ratio(std::span<const double> cost_without, std::span<const double> cost_with);
+[[nodiscard]] double robust_log_likelihood_ratio(std::span<const double> cost_without,
+                                                 std::span<const double> cost_with);
 
 /// Natural log odds for the larger model: the ratio above, less the price of `parameters` (BIC with the number of
 /// windows) and of having tried `tried` candidates (Bonferroni prior).

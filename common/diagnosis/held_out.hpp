@@ -14,8 +14,8 @@ struct HeldOut {
   double runs{};    ///< left out: a run at a time; equal to `blocks` with fewer than three runs
 };
 
-/// `sizes`: the effect's numbers in units of their prior sigma; where the other windows hardly see the effect, this prior
-/// keeps the amplitude at zero instead of letting noise set it.
+/// `sizes`: the effect's numbers in units of their prior sigma; where the other windows hardly see the effect, this
+/// prior keeps the amplitude at zero instead of letting noise set it.
 [[nodiscard]] HeldOut held_out(const identification::TrajectoryFit& problem, const identification::FitResult& without,
                                const identification::FitResult& with, std::span<const double> sizes);
 

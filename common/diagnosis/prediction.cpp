@@ -8,8 +8,8 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kStride = 5.0;          // s
-constexpr std::size_t kBlock = 6;        // windows per bootstrap block: 30 s, longer than the residual's memory
+constexpr double kStride = 5.0;    // s
+constexpr std::size_t kBlock = 6;  // windows per bootstrap block: 30 s, longer than the residual's memory
 constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 20240607;
 constexpr double kDerivativeSpan = 0.5;  // s, of the local fit that gives nu_dot
@@ -155,7 +155,8 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
   const model::InputSignal input{trial.t.empty() ? 0.0 : trial.t.front(), trial.dt, trial.input};
   std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
   for (std::size_t k = 0; k < trial.size(); ++k) {
-    model::Motion motion{.t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = trial.nu[k]};
+    model::Motion motion{
+        .t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = trial.nu[k]};
     input.at(motion.t, motion.force);
     motion.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
     motion.input = &input;

@@ -155,11 +155,17 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
   std::stable_sort(ranked.begin(), ranked.end(), [](const Start& a, const Start& b) { return a.gain > b.gain; });
   if (ranked.size() > kBestStarts) ranked.resize(kBestStarts);
 
-  Screened best{.effect = &effect, .variant = variant, .variant_name = variant_name, .theta = std::vector<double>(k, 0.0), .window_cost = {}, .signature = {}};
+  Screened best{.effect = &effect,
+                .variant = variant,
+                .variant_name = variant_name,
+                .theta = std::vector<double>(k, 0.0),
+                .window_cost = {},
+                .signature = {}};
   Eigen::VectorXd best_residual = without.col(0);
   double best_cost = cost_without;
   for (const Start& start : ranked) {
-    // With a single start the effect is near enough to linear for the search to begin at nothing, whose residual is known.
+    // With a single start the effect is near enough to linear for the search to begin at nothing, whose residual is
+    // known.
     const bool from_zero = starts.size() == 1;
     std::vector<double> theta = from_zero ? std::vector<double>(k, 0.0) : clamped(effect, start.theta);
     Eigen::MatrixXd residual = without;
@@ -174,7 +180,8 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
       columns.resize(residual.rows(), static_cast<Eigen::Index>(k));
       std::vector<double> sizes(k);
       for (std::size_t i = 0; i < k; ++i) {
-        sizes[i] = theta[i] == 0.0 && from_zero ? start.theta[i] : kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
+        sizes[i] = theta[i] == 0.0 && from_zero ? start.theta[i]
+                                                : kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
         if (theta[i] + sizes[i] > parameters[i].high) sizes[i] = -sizes[i];
         std::vector<double> moved = theta;
         moved[i] += sizes[i];

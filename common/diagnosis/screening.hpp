@@ -44,11 +44,11 @@ struct Screened {
   const model::Effect* effect{};
   int variant{};
   std::string variant_name;
-  std::vector<double> theta;            ///< best values found
-  double gain{};                        ///< fall of the cost
-  std::optional<model::Model> start;    ///< where a full fit should begin, when not at `theta` beside the base model
-  std::vector<double> window_cost;      ///< cost per window with the candidate
-  Eigen::VectorXd signature;            ///< change of all residuals that only this candidate can make; unit norm
+  std::vector<double> theta;          ///< best values found
+  double gain{};                      ///< fall of the cost
+  std::optional<model::Model> start;  ///< where a full fit should begin, when not at `theta` beside the base model
+  std::vector<double> window_cost;    ///< cost per window with the candidate
+  Eigen::VectorXd signature;          ///< change of all residuals that only this candidate can make; unit norm
 };
 
 /// Searches the candidate's numbers from all its starts.

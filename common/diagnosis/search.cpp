@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <thread>
-#include <cstdio>
-#include <cstdlib>
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/held_out.hpp"
@@ -18,10 +18,10 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 6;            // candidates per round that earn a full fit
-constexpr double kAtLimit = 1e-3;             // of the number's prior sigma
-constexpr std::size_t kCoarseWindows = 80;    // enough to tell whether a far start leads anywhere
-constexpr double kAlternativeLogOdds = 3.0;   // 20 to 1 between two look-alikes settles which it is
+constexpr std::size_t kRefits = 6;           // candidates per round that earn a full fit
+constexpr double kAtLimit = 1e-3;            // of the number's prior sigma
+constexpr std::size_t kCoarseWindows = 80;   // enough to tell whether a far start leads anywhere
+constexpr double kAlternativeLogOdds = 3.0;  // 20 to 1 between two look-alikes settles which it is
 
 struct Candidate {
   const model::Effect* effect;
@@ -75,7 +75,8 @@ double sum(std::span<const double> values) {
 std::string refusal(const Judged& judged, const Settings& settings) {
   char text[160];
   if (judged.error_reduction < settings.smallest_reduction) {
-    std::snprintf(text, sizeof text, "explains %.2f %% of the error: changes no prediction", 100.0 * judged.error_reduction);
+    std::snprintf(text, sizeof text, "explains %.2f %% of the error: changes no prediction",
+                  100.0 * judged.error_reduction);
     return text;
   }
   if (judged.log_odds < settings.accept_log_odds) {
@@ -87,14 +88,16 @@ std::string refusal(const Judged& judged, const Settings& settings) {
   return "";
 }
 
-/// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none did.
+/// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none
+/// did.
 std::string limited_number(const model::Model& model, const Screened& screened) {
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != screened.effect || active.variant != screened.variant) continue;
     const auto parameters = active.effect->parameters();
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       for (const double limit : {parameters[i].low, parameters[i].high}) {
-        if (limit != 0.0 && std::abs(active.theta[i] - limit) < kAtLimit * parameters[i].sigma) return std::string(parameters[i].name);
+        if (limit != 0.0 && std::abs(active.theta[i] - limit) < kAtLimit * parameters[i].sigma)
+          return std::string(parameters[i].name);
       }
     }
   }
@@ -111,8 +114,8 @@ Judged judge(const Screened& screened, const Linearisation& base, int tried) {
 
 /// Full fits on a spread of windows for effects whose small sizes tell nothing about their large ones.
 void look_afar(std::vector<Screened>& screened, const model::Vehicle& vehicle, std::span<const Trial> train,
-               const FitResult& reference, const model::Scene& scene, const Settings& settings, const Progress& progress,
-               double share) {
+               const FitResult& reference, const model::Scene& scene, const Settings& settings,
+               const Progress& progress, double share) {
   std::optional<TrajectoryFit> coarse;
   FitResult like, base;
   for (Screened& candidate : screened) {
@@ -122,7 +125,8 @@ void look_afar(std::vector<Screened>& screened, const model::Vehicle& vehicle, s
         few.most_windows = kCoarseWindows;
         coarse.emplace(vehicle, train, few);
         like.sigma = reference.sigma;
-        for (const auto& window : coarse->windows()) like.nu0.push_back(window.window().trial->nu[window.window().start]);
+        for (const auto& window : coarse->windows())
+          like.nu0.push_back(window.window().trial->nu[window.window().start]);
         base = coarse->fit(reference.model, &like);
       }
       progress("looking further at " + std::string(candidate.effect->name()), share);
@@ -142,7 +146,8 @@ std::vector<double> sizes(const model::Model& model, const Screened& screened) {
   std::vector<double> sizes;
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != screened.effect || active.variant != screened.variant) continue;
-    for (std::size_t i = 0; i < active.theta.size(); ++i) sizes.push_back(active.theta[i] / active.effect->parameters()[i].sigma);
+    for (std::size_t i = 0; i < active.theta.size(); ++i)
+      sizes.push_back(active.theta[i] / active.effect->parameters()[i].sigma);
   }
   return sizes;
 }
@@ -153,14 +158,16 @@ std::vector<std::size_t> worth_fitting(const std::vector<Screened>& screened, co
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < screened.size(); ++i) {
     if (judged[i].error_reduction < settings.smallest_reduction && !screened[i].start) continue;
-    const auto same = std::find_if(order.begin(), order.end(), [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
+    const auto same = std::find_if(order.begin(), order.end(),
+                                   [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
     if (same == order.end()) {
       order.push_back(i);
     } else if (screened[i].gain > screened[*same].gain) {
       *same = i;
     }
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
   if (order.size() > kRefits) order.resize(kRefits);
   return order;
 }
@@ -194,9 +201,11 @@ void find_aliases(Judged& winner, const Screened& best, const std::vector<Screen
 std::vector<Judged> best_of_each_effect(const std::vector<Judged>& judged, const std::vector<Judged>& accepted) {
   std::vector<Judged> best;
   for (const Judged& candidate : judged) {
-    const bool taken = std::any_of(accepted.begin(), accepted.end(), [&](const Judged& a) { return a.effect == candidate.effect; });
+    const bool taken =
+        std::any_of(accepted.begin(), accepted.end(), [&](const Judged& a) { return a.effect == candidate.effect; });
     if (taken) continue;
-    const auto same = std::find_if(best.begin(), best.end(), [&](const Judged& b) { return b.effect == candidate.effect; });
+    const auto same =
+        std::find_if(best.begin(), best.end(), [&](const Judged& b) { return b.effect == candidate.effect; });
     if (same == best.end()) {
       best.push_back(candidate);
     } else if (candidate.log_odds > same->log_odds) {
@@ -208,14 +217,17 @@ std::vector<Judged> best_of_each_effect(const std::vector<Judged>& judged, const
 }
 
 /// Drops every accepted effect that the others have made superfluous; fills in the final odds of those that stay.
-void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried, const Progress& progress) {
+void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried,
+           const Progress& progress) {
   for (std::size_t i = 0; result.accepted.size() > 1 && i < result.accepted.size();) {
     const Judged& candidate = result.accepted[i];
     progress("testing " + std::string(candidate.effect->name()) + " in the company of the others", 0.85);
     model::Model without = result.after.model;
-    std::erase_if(without.effects, [&](const auto& a) { return a.effect == candidate.effect && a.variant == candidate.variant; });
+    std::erase_if(without.effects,
+                  [&](const auto& a) { return a.effect == candidate.effect && a.variant == candidate.variant; });
     const FitResult fit = problem.fit(without, &result.after);
-    const double odds = log_odds(fit.window_cost, result.after.window_cost, static_cast<int>(candidate.effect->parameters().size()), tried);
+    const double odds = log_odds(fit.window_cost, result.after.window_cost,
+                                 static_cast<int>(candidate.effect->parameters().size()), tried);
     const double share = reduction(fit.cost, result.after.cost);
     if (odds >= settings.accept_log_odds && share >= settings.smallest_reduction) {
       result.accepted[i].log_odds = odds;
@@ -256,7 +268,8 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       if (!holds(result.after.model, candidate)) candidates.push_back(candidate);
     }
     std::vector<Screened> screened = screen_all(*base, candidates, scene, settings.threads);
-    look_afar(screened, vehicle, train, result.after, scene, settings, progress, 0.2 + 0.6 * (round + 0.2) / settings.most_effects);
+    look_afar(screened, vehicle, train, result.after, scene, settings, progress,
+              0.2 + 0.6 * (round + 0.2) / settings.most_effects);
     std::vector<Judged> judged;
     for (const Screened& candidate : screened) {
       judged.push_back(judge(candidate, *base, tried));
@@ -279,8 +292,13 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       entry.held_out_runs = carried.runs;
       entry.reason = refusal(entry, settings);
       const std::string limited = limited_number(fit.model, screened[i]);
-      if (entry.reason.empty() && !limited.empty()) entry.reason = "fits only with " + limited + " at its physical limit";
-      if (std::getenv("FATHOM_DEBUG")) std::fprintf(stderr, "   FIT %-18s %-12s lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n", std::string(entry.effect->name()).c_str(), entry.variant_name.c_str(), entry.log_odds, entry.error_reduction, entry.held_out_blocks, entry.held_out_runs, fit.model.effects[0].theta[0], entry.reason.c_str());
+      if (entry.reason.empty() && !limited.empty())
+        entry.reason = "fits only with " + limited + " at its physical limit";
+      if (std::getenv("FATHOM_DEBUG"))
+        std::fprintf(stderr, "   FIT %-18s %-12s lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n",
+                     std::string(entry.effect->name()).c_str(), entry.variant_name.c_str(), entry.log_odds,
+                     entry.error_reduction, entry.held_out_blocks, entry.held_out_runs, fit.model.effects[0].theta[0],
+                     entry.reason.c_str());
       if (entry.reason.empty() && (winner == judged.size() || fit.cost < best.cost)) {
         best = std::move(fit);
         winner = i;

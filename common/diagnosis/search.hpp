@@ -19,16 +19,16 @@ struct Judged {
   double error_reduction{};
   double held_out_blocks{};
   double held_out_runs{};
-  std::vector<std::string> aliased_with{};   ///< other effects whose predictions look alike
-  std::vector<std::string> alternatives{};   ///< of those, the ones that the odds cannot rule out
-  std::string reason{};                      ///< why it was refused; empty when accepted
+  std::vector<std::string> aliased_with{};  ///< other effects whose predictions look alike
+  std::vector<std::string> alternatives{};  ///< of those, the ones that the odds cannot rule out
+  std::string reason{};                     ///< why it was refused; empty when accepted
 };
 
 struct SearchResult {
   identification::FitResult before;
   identification::FitResult after;
-  std::vector<Judged> accepted;              ///< in the order of acceptance
-  std::vector<Judged> refused;               ///< best form of every other effect, from the last round
+  std::vector<Judged> accepted;  ///< in the order of acceptance
+  std::vector<Judged> refused;   ///< best form of every other effect, from the last round
 };
 
 [[nodiscard]] SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,

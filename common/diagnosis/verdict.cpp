@@ -43,9 +43,11 @@ std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& fou
 void list_effects(const SearchResult& found, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
-    const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(), [&](const Judged& j) { return j.effect == judged.effect; });
+    const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
+                                     [&](const Judged& j) { return j.effect == judged.effect; });
     const std::vector<NamedValue> numbers = numbers_of(judged, found, judged.effect->variants_matter() || forms > 1);
-    const auto known = std::find_if(result.effects.begin(), result.effects.end(), [&](const EffectFound& e) { return e.name == name; });
+    const auto known = std::find_if(result.effects.begin(), result.effects.end(),
+                                    [&](const EffectFound& e) { return e.name == name; });
     if (known != result.effects.end()) {
       known->variant += ", " + judged.variant_name;
       known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
@@ -58,9 +60,14 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
       }
       continue;
     }
-    result.effects.push_back({.name = name, .variant = judged.variant_name, .accepted = true, .parameters = numbers,
-                              .log_odds = judged.log_odds, .error_reduction = judged.error_reduction,
-                              .alternatives = judged.alternatives, .sentence = std::string(judged.effect->sentence())});
+    result.effects.push_back({.name = name,
+                              .variant = judged.variant_name,
+                              .accepted = true,
+                              .parameters = numbers,
+                              .log_odds = judged.log_odds,
+                              .error_reduction = judged.error_reduction,
+                              .alternatives = judged.alternatives,
+                              .sentence = std::string(judged.effect->sentence())});
   }
 }
 
@@ -70,7 +77,8 @@ void list_candidates(const SearchResult& found, DiagnosisResult& result) {
     const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                     [&](const CandidateTried& c) { return c.name == name; });
     if (listed) continue;
-    result.candidates.push_back({name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, "accepted"});
+    result.candidates.push_back(
+        {name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, "accepted"});
   }
   for (const Judged& judged : found.refused) {
     const std::string name{judged.effect->name()};
@@ -79,13 +87,15 @@ void list_candidates(const SearchResult& found, DiagnosisResult& result) {
     if (listed) continue;
     std::string reason = judged.reason;
     if (reason.empty()) reason = "weaker than the accepted effects";
-    result.candidates.push_back({name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, reason});
+    result.candidates.push_back(
+        {name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, reason});
   }
   for (const model::Effect* effect : model::all_effects()) {
     const std::string name{effect->name()};
     const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                     [&](const CandidateTried& c) { return c.name == name; });
-    if (!listed) result.candidates.push_back({name, "", 0.0, 0.0, {}, "not applicable: the data lacks the signals that it needs"});
+    if (!listed)
+      result.candidates.push_back({name, "", 0.0, 0.0, {}, "not applicable: the data lacks the signals that it needs"});
   }
 }
 
@@ -141,7 +151,8 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
   if (structure) {
     std::vector<std::string> words;
     for (const Association& association : left.first(std::min<std::size_t>(left.size(), 3))) {
-      words.push_back(association.axis + " with " + association.with + " (" + percent(association.share) + " of its variance)");
+      words.push_back(association.axis + " with " + association.with + " (" + percent(association.share) +
+                      " of its variance)");
     }
     text += "What is still left in the residual goes with: " + joined(words) + ".";
   }

@@ -9,9 +9,9 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kLongestLag = 2.0;      // s, of the whiteness test
-constexpr double kMemorySearch = 30.0;   // s
-constexpr double kBlock = 20.0;          // s, of data held out together
+constexpr double kLongestLag = 2.0;     // s, of the whiteness test
+constexpr double kMemorySearch = 30.0;  // s
+constexpr double kBlock = 20.0;         // s, of data held out together
 constexpr int kFolds = 5;
 
 /// Upper tail of chi-square by Wilson and Hilferty's cube root (1931): within 1e-3 for 3 and more degrees of freedom.
@@ -90,7 +90,8 @@ std::vector<Suspect> suspects(const model::Model& model) {
          const double tau = (allocation * t.input[k])[axis];
          return Eigen::Vector4d(t.voltage[k], t.voltage[k] * tau, 0.0, 0.0);
        }},
-      {"time", always, [](const Trial& t, std::size_t k, int) { return Eigen::Vector4d(t.t[k], t.t[k] * t.t[k], 0.0, 0.0); }},
+      {"time", always,
+       [](const Trial& t, std::size_t k, int) { return Eigen::Vector4d(t.t[k], t.t[k] * t.t[k], 0.0, 0.0); }},
   };
 }
 
@@ -168,7 +169,8 @@ std::vector<double> autocorrelation(std::span<const double> series, std::size_t 
 double ljung_box_p(std::span<const double> rho, double count) {
   double statistic = 0.0, lags = 0.0;
   for (std::size_t lag = 1; lag < rho.size() && static_cast<double>(lag) < count; ++lag) {
-    // autocorrelation() divides by the pairs at each lag, the test's original by all samples: hence a factor, not a divisor.
+    // autocorrelation() divides by the pairs at each lag, the test's original by all samples: hence a factor, not a
+    // divisor.
     statistic += rho[lag] * rho[lag] * (count - static_cast<double>(lag));
     lags += 1.0;
   }
@@ -218,7 +220,8 @@ std::vector<Association> associations(const model::Model& model, std::span<const
       if (share > smallest) found.push_back({model::kAxisNames[static_cast<std::size_t>(axis)], suspect.name, share});
     }
   }
-  std::stable_sort(found.begin(), found.end(), [](const Association& a, const Association& b) { return a.share > b.share; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Association& a, const Association& b) { return a.share > b.share; });
   return found;
 }
 

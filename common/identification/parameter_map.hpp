@@ -10,15 +10,15 @@ namespace fathom::identification {
 
 /// One free number of a model.
 struct FreeParameter {
-  int base{-1};         ///< index into BaseTheta, or -1 for an effect's number
-  int effect{-1};       ///< index into Model::effects, or -1
-  int component{};      ///< index into that effect's theta
-  std::string name{};   ///< "X_u", or "thruster_lag.time_constant"
+  int base{-1};        ///< index into BaseTheta, or -1 for an effect's number
+  int effect{-1};      ///< index into Model::effects, or -1
+  int component{};     ///< index into that effect's theta
+  std::string name{};  ///< "X_u", or "thruster_lag.time_constant"
   std::string unit{};
-  double scale{1.0};    ///< x = value / scale
+  double scale{1.0};  ///< x = value / scale
   double prior_mean{};
   double prior_sigma{};
-  double low{};         ///< physical bounds
+  double low{};  ///< physical bounds
   double high{};
 };
 
@@ -29,7 +29,7 @@ class ParameterMap {
 
   [[nodiscard]] std::size_t size() const { return free_.size(); }
   [[nodiscard]] const FreeParameter& operator[](std::size_t i) const { return free_[i]; }
-  [[nodiscard]] Eigen::VectorXd pack(const model::Model& model) const;           ///< scaled, n
+  [[nodiscard]] Eigen::VectorXd pack(const model::Model& model) const;  ///< scaled, n
   void unpack(const Eigen::Ref<const Eigen::VectorXd>& x, model::Model& model) const;
 
  private:

@@ -14,23 +14,23 @@
 namespace fathom::identification {
 
 struct FitSettings {
-  double window{10.0};    ///< s
+  double window{10.0};  ///< s
   int threads{2};
-  int iterations{15};     ///< of the solver, at most
-  double tolerance{1e-4}; ///< relative decrease of the cost that ends the solver
-  int weight_rounds{2};   ///< how often the residual's scale per axis is measured and the fit repeated
+  int iterations{15};                ///< of the solver, at most
+  double tolerance{1e-4};            ///< relative decrease of the cost that ends the solver
+  int weight_rounds{2};              ///< how often the residual's scale per axis is measured and the fit repeated
   std::size_t most_windows{100000};  ///< evenly chosen when there are more
 };
 
 struct FitResult {
   model::Model model;
-  Vector6d sigma{Vector6d::Ones()};        ///< residual scale per axis used as weight, m/s and rad/s
-  std::vector<Vector6d> nu0;               ///< per window, m/s and rad/s
-  std::vector<double> window_cost;         ///< half the sum of squared, weighted residuals per window
+  Vector6d sigma{Vector6d::Ones()};                  ///< residual scale per axis used as weight, m/s and rad/s
+  std::vector<Vector6d> nu0;                         ///< per window, m/s and rad/s
+  std::vector<double> window_cost;                   ///< half the sum of squared, weighted residuals per window
   std::vector<std::array<double, 6>> window_square;  ///< sum of squared residuals per window and axis, unweighted
   std::vector<std::array<double, 6>> window_count;   ///< rows per window and axis
-  double cost{};                           ///< sum of window_cost
-  Eigen::MatrixXd covariance;              ///< of the free parameters in physical units, order of ParameterMap
+  double cost{};                                     ///< sum of window_cost
+  Eigen::MatrixXd covariance;  ///< of the free parameters in physical units, order of ParameterMap
   bool converged{false};
 
   [[nodiscard]] std::vector<NamedValue> parameters() const;  ///< with standard deviations when covariance is there
@@ -47,8 +47,8 @@ class TrajectoryFit {
  public:
   TrajectoryFit(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings);
 
-  /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs can
-  /// be compared); without, sigma is found by iteration.
+  /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs
+  /// can be compared); without, sigma is found by iteration.
   [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr) const;
   /// Residuals and derivatives at a fit, per window. Numbers on a physical bound have no derivative: they stay there.
   [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit) const;

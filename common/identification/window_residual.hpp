@@ -27,8 +27,8 @@ class WindowResidual {
   bool evaluate(const model::Model& model, const Vector6d& nu0, const Vector6d& sigma, model::VelocityTrace& trace,
                 Eigen::Ref<Eigen::VectorXd> residual) const;
   /// Derivatives with respect to the free parameters (scaled; rows x map.size()) and to the initial velocity of the
-  /// simulated axes (per m/s, rad/s; rows x 6, zero columns where not simulated). Base parameters and initial velocity by
-  /// the variational equation, effects' numbers by forward differences.
+  /// simulated axes (per m/s, rad/s; rows x 6, zero columns where not simulated). Base parameters and initial velocity
+  /// by the variational equation, effects' numbers by forward differences.
   void jacobians(const model::Model& model, const ParameterMap& map, const Vector6d& nu0, const Vector6d& sigma,
                  const Eigen::VectorXd& residual, Eigen::MatrixXd& by_parameter, Eigen::MatrixXd& by_initial) const;
 

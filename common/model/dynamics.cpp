@@ -7,7 +7,8 @@
 namespace fathom::model {
 namespace {
 
-constexpr double kUnknownRigidShare = 0.5;  // of the lumped mass, when the vehicle file does not say: added mass of a blunt hull
+constexpr double kUnknownRigidShare =
+    0.5;  // of the lumped mass, when the vehicle file does not say: added mass of a blunt hull
 
 std::ptrdiff_t registry_rank(const Effect* effect) {
   const auto all = all_effects();

@@ -31,7 +31,8 @@ struct Model {
   [[nodiscard]] int memory_size() const;
 };
 
-/// Model of `vehicle` with no effects and theta at the priors' means; `input_is_wrench` chooses the identity allocation.
+/// Model of `vehicle` with no effects and theta at the priors' means; `input_is_wrench` chooses the identity
+/// allocation.
 [[nodiscard]] Model nominal_model(const Vehicle& vehicle, bool input_is_wrench);
 
 /// All effects alter `motion` in turn. With `dt` > 0 their memory first advances by dt.

@@ -16,15 +16,15 @@ namespace fathom::model {
 struct Scene {
   const Vehicle* vehicle{};
   bool position{false}, attitude{false}, velocity{false}, rates{false};  ///< which groups were measured
-  bool input_is_wrench{false};                   ///< inputs are the six axes of the wrench, not single thrusters
+  bool input_is_wrench{false};  ///< inputs are the six axes of the wrench, not single thrusters
   bool voltage{false};
-  double duration{};                             ///< s, longest run
-  double mean_voltage{};                         ///< V
-  double voltage_range{};                        ///< V
+  double duration{};                                                                ///< s, longest run
+  double mean_voltage{};                                                            ///< V
+  double voltage_range{};                                                           ///< V
   Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
   Vector6d nu_rms{Vector6d::Zero()};
   Vector6d tau_rms{Vector6d::Zero()};
-  ActuatorForces force_rms{};                    ///< N per actuator
+  ActuatorForces force_rms{};  ///< N per actuator
 };
 
 /// One number of an effect. Zero means: the effect is absent.
@@ -41,8 +41,8 @@ using EffectTheta = std::span<const double>;
 class Effect {
  public:
   virtual ~Effect() = default;
-  [[nodiscard]] virtual std::string_view name() const = 0;      ///< = file name = registry line
-  [[nodiscard]] virtual std::string_view sentence() const = 0;  ///< for people
+  [[nodiscard]] virtual std::string_view name() const = 0;         ///< = file name = registry line
+  [[nodiscard]] virtual std::string_view sentence() const = 0;     ///< for people
   [[nodiscard]] virtual std::string_view revealed_by() const = 0;  ///< the motion that shows it best
   [[nodiscard]] virtual std::span<const EffectParameter> parameters() const = 0;
 
@@ -53,8 +53,8 @@ class Effect {
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
 
-  /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters fitted
-  /// anew (its small sizes may even look harmful). Tried by full fits; none by default.
+  /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
+  /// fitted anew (its small sizes may even look harmful). Tried by full fits; none by default.
   [[nodiscard]] virtual std::vector<std::vector<double>> far_starts(const Scene&, int /*variant*/) const { return {}; }
   /// Alters what is felt (forces that reach the water, the water's motion). `z` is the effect's memory.
   virtual void feel(Motion&, EffectTheta, int /*variant*/, std::span<const double> /*z*/) const {}

@@ -11,7 +11,7 @@
 namespace fathom::model {
 
 constexpr int kMaxActuators = 16;
-using ActuatorForces = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxActuators, 1>;                 ///< N each
+using ActuatorForces = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxActuators, 1>;            ///< N each
 using Allocation = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxActuators>;  ///< tau = B f
 
 struct Vehicle;
@@ -32,14 +32,14 @@ class InputSignal {
 
 /// State, environment and forces at time `t`, as felt.
 struct Motion {
-  double t{};                                                ///< s from the run's start
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};             ///< m, NED
+  double t{};                                     ///< s from the run's start
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};  ///< m, NED
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
-  Vector6d nu{Vector6d::Zero()};                             ///< B in W, in B: m/s, rad/s
-  Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};           ///< m/s, water velocity seen in B; effects add to it
-  ActuatorForces force{};                                    ///< N, as they reach the water; effects alter it
-  double voltage{};                                          ///< V; 0 when not logged
-  const InputSignal* input{};                                ///< commanded forces at other times (delay)
+  Vector6d nu{Vector6d::Zero()};                    ///< B in W, in B: m/s, rad/s
+  Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};  ///< m/s, water velocity seen in B; effects add to it
+  ActuatorForces force{};                           ///< N, as they reach the water; effects alter it
+  double voltage{};                                 ///< V; 0 when not logged
+  const InputSignal* input{};                       ///< commanded forces at other times (delay)
   const Vehicle* vehicle{};
 
   /// Velocity relative to the water.

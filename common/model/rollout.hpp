@@ -20,18 +20,18 @@ struct Window {
 using VelocityTrace = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Simulates the window from the measured pose at its start and `nu0`, with the trial's inputs only. Degrees of freedom
-/// that the vehicle file leaves out follow the measurement. Second-order midpoint steps of at most 50 ms, shorter where the
-/// priors' drag is stiff; effects with
-/// memory are run in over the 3 s before the window. Returns false when the motion diverged (the rest is held).
+/// that the vehicle file leaves out follow the measurement. Second-order steps of at most 50 ms, shorter where the
+/// priors' drag is stiff; effects with memory are run in over the 3 s before the window. Returns false when the motion
+/// diverged (the rest is held).
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
 
 /// Derivatives of a rollout's velocities: row 6 k + axis is sample k's. Columns: the base parameters in their order
 /// [velocity per unit], then the initial velocity.
 using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameterCount + 6, Eigen::RowMajor>;
 
-/// A rollout together with its derivatives, by the variational equation along the trajectory (Jategaonkar 2015, sec. 4.6).
-/// Far cheaper than a rollout per parameter; within 1 % of differences of rollouts, see the test. Effects' own numbers are
-/// not among the columns.
+/// A rollout together with its derivatives, by the variational equation along the trajectory (Jategaonkar 2015,
+/// sec. 4.6). Far cheaper than a rollout per parameter; within 1 % of differences of rollouts, see the test. Effects'
+/// own numbers are not among the columns.
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives);
 

@@ -10,24 +10,32 @@
 
 namespace fathom::model {
 
-constexpr double kLargestStep = 0.05;  // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
-constexpr double kStableShare = 1.5;   // of the fastest time constant: explicit midpoint turns unstable at 2
-constexpr double kTypicalSpeed = 0.5;  // m/s, rad/s, where quadratic drag is taken for that time constant
-constexpr double kRunIn = 3.0;         // s: twenty time constants of an ordinary thruster lag
-constexpr double kAbsurd = 50.0;       // m/s or rad/s: no vehicle of ours moves like that
+constexpr double kLargestStep = 0.05;    // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
+constexpr double kExplicitShare = 1.5;   // damping times step that the plain rule may keep: it turns unstable at 2
+constexpr double kShortestStep = 0.005;  // s
+constexpr double kTypicalSpeed = 0.5;    // m/s, rad/s, where quadratic drag is taken to choose the step
+constexpr double kRunIn = 3.0;           // s: twenty time constants of an ordinary thruster lag
+constexpr double kAbsurd = 50.0;         // m/s or rad/s: no vehicle of ours moves like that
 constexpr int kMaxMemory = 128;
 
-/// Longest stable step, from the priors: the same for every theta, so that derivatives see no change of steps.
+/// Step that follows the fastest motion of the priors: the same for every theta, so that derivatives see no change of
+/// it.
 inline double largest_step(const Vehicle& vehicle) {
   const BaseTheta theta = nominal_model(vehicle, true).theta;
   double step = kLargestStep;
   for (int i = 0; i < 6; ++i) {
-    const double damping = -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
-    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kStableShare * theta[i] && theta[i] > 0.0) {
-      step = kStableShare * theta[i] / damping;
+    const double damping =
+        -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
+    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kExplicitShare * theta[i] && theta[i] > 0.0) {
+      step = kExplicitShare * theta[i] / damping;
     }
   }
-  return step;
+  return std::max(step, kShortestStep);
+}
+
+/// (1 - exp(-z)) / z, elementwise, for z >= 0: what a step of length 1 with decay z makes of a constant slope.
+inline Vector6d decay_share(const Vector6d& z) {
+  return z.unaryExpr([](double x) { return x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x; });
 }
 
 /// Rotation about the world's down axis by psi, then the tilt of q.
@@ -44,7 +52,10 @@ inline double heading(const Eigen::Quaterniond& q) {
 class Rollout {
  public:
   Rollout(const Model& model, const Trial& trial, Sensitivity* sensitivity = nullptr)
-      : model_{model}, trial_{trial}, input_{trial.t.front(), trial.dt, trial.input}, memory_size_{model.memory_size()},
+      : model_{model},
+        trial_{trial},
+        input_{trial.t.front(), trial.dt, trial.input},
+        memory_size_{model.memory_size()},
         sensitivity_{sensitivity} {
     const auto& dof = model.vehicle->dof;
     tilt_measured_ = !(dof[3] && dof[4]);
@@ -104,6 +115,16 @@ class Rollout {
  private:
   std::span<double> memory() { return {memory_.data(), static_cast<std::size_t>(memory_size_)}; }
 
+  // Rates at which the base model's drag slows each axis [1/s].
+  Vector6d damping(const Vector6d& nu) const {
+    const auto& theta = model_.theta;
+    const Vector6d slope = theta.segment<6>(index(BaseParameter::X_u)) +
+                           2.0 * theta.segment<6>(index(BaseParameter::X_uu)).cwiseProduct(nu.cwiseAbs());
+    return (-slope.cwiseQuotient(theta.head<6>())).cwiseMax(0.0).unaryExpr([](double x) {
+      return std::isfinite(x) ? x : 0.0;
+    });
+  }
+
   // Velocity with the left-out degrees of freedom taken from the measurement, `offset` seconds after sample `from`.
   Vector6d measured_where_fixed(std::size_t from, double offset, const Vector6d& simulated) const {
     if (all_simulated_) return simulated;
@@ -130,16 +151,22 @@ class Rollout {
   }
 
   void step(std::size_t from, double offset, double h) {
+    // Midpoint rule. Damping too fast for it is taken out and decays exactly (exponential midpoint, Hochbruck and
+    // Ostermann 2010, sec. 2.3), so that no time constant is too short for the step; second order throughout.
     const double half = 0.5 * h;
+    const Vector6d decay = (damping(nu_).array() - kExplicitShare / h).cwiseMax(0.0);
     const Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
-    const Vector6d nu_half = measured_where_fixed(from, offset + half, nu_ + half * k1);
+    const Vector6d nu_half =
+        measured_where_fixed(from, offset + half, nu_ + half * decay_share(half * decay).cwiseProduct(k1));
     const Eigen::Vector3d p_half = p_ + half * (q_ * nu_.head<3>());
     const Eigen::Quaterniond q_half = q_ * quaternion_from_rotation_vector(half * nu_.tail<3>());
     const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);
-    if (sensitivity_ != nullptr) sensitivity_->advance(*this, from, offset + half, p_half, q_half, nu_half, k2, h);
+    if (sensitivity_ != nullptr)
+      sensitivity_->advance(*this, from, offset + half, p_half, q_half, nu_half, k2, decay, h);
     p_ += h * (q_half * nu_half.head<3>());
     q_ = (q_ * quaternion_from_rotation_vector(h * nu_half.tail<3>())).normalized();
-    nu_ = measured_where_fixed(from, offset + h, nu_ + h * k2);
+    const Vector6d slope = k2 + decay.cwiseProduct(nu_half - nu_);
+    nu_ = measured_where_fixed(from, offset + h, nu_ + h * decay_share(h * decay).cwiseProduct(slope));
     follow_measured_attitude(from, offset + h);
   }
 

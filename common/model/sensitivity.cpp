@@ -9,7 +9,7 @@ namespace fathom::model {
 namespace {
 
 constexpr double kAbsurdDerivative = 1e6;  // (m/s) per kg and the like
-constexpr double kDifference = 1e-5;  // m, rad, m/s: truncation and rounding both below 1e-5 of an entry
+constexpr double kDifference = 1e-5;       // m, rad, m/s: truncation and rounding both below 1e-5 of an entry
 
 }  // namespace
 
@@ -22,7 +22,9 @@ void Sensitivity::begin(const Vehicle& vehicle, std::size_t samples) {
   record(0);
 }
 
-void Sensitivity::record(std::size_t k) { out_.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = state_.bottomRows<6>(); }
+void Sensitivity::record(std::size_t k) {
+  out_.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = state_.bottomRows<6>();
+}
 
 Eigen::Matrix<double, 6, kBaseParameterCount> Sensitivity::input(Rollout& rollout, std::size_t from, double offset,
                                                                  const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
@@ -49,7 +51,8 @@ Eigen::Matrix<double, 6, kBaseParameterCount> Sensitivity::input(Rollout& rollou
 }
 
 void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, const Eigen::Vector3d& p,
-                          const Eigen::Quaterniond& q, const Vector6d& nu, const Vector6d& nu_dot, double h) {
+                          const Eigen::Quaterniond& q, const Vector6d& nu, const Vector6d& nu_dot,
+                          const Vector6d& decay, double h) {
   const Model& model = rollout.model();
   const auto& dof = model.vehicle->dof;
   const Eigen::Matrix3d R_WB = q.toRotationMatrix();
@@ -65,7 +68,8 @@ void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, con
   for (const ActiveEffect& active : model.effects) place_matters = place_matters || active.effect->feels_place();
   const auto column = [&](Eigen::Index j, const Eigen::Vector3d& p_moved, const Eigen::Quaterniond& q_moved,
                           const Vector6d& nu_moved) {
-    A.block<6, 1>(6, j) = (rollout.felt_acceleration(from, offset, p_moved, q_moved, nu_moved, 0.0) - nu_dot) / kDifference;
+    A.block<6, 1>(6, j) =
+        (rollout.felt_acceleration(from, offset, p_moved, q_moved, nu_moved, 0.0) - nu_dot) / kDifference;
   };
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (place_matters) column(i, p + kDifference * Eigen::Vector3d::Unit(i), q, nu);
@@ -77,8 +81,13 @@ void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, con
 
   State B = State::Zero();
   B.block<6, kBaseParameterCount>(6, 0) = input(rollout, from, offset, p, q, nu, nu_dot);
-  const State slope = A * state_ + B;
-  state_ += h * (A * (state_ + 0.5 * h * slope) + B);
+  // The rollout's own rule: velocity rows decay exactly, the others take the plain midpoint.
+  Eigen::Matrix<double, 12, 1> rate = Eigen::Matrix<double, 12, 1>::Zero(), whole, half;
+  rate.tail<6>() = decay;
+  whole << Vector6d::Ones(), decay_share(h * decay);
+  half << Vector6d::Ones(), decay_share(0.5 * h * decay);
+  const State middle = 0.5 * h * (half.asDiagonal() * (A * state_ + B));
+  state_ += h * (whole.asDiagonal() * (A * (state_ + middle) + B + rate.asDiagonal() * middle));
 
   // A trajectory that diverges has no useful derivative; the solver will turn back from it.
   if (!state_.allFinite() || state_.cwiseAbs().maxCoeff() > kAbsurdDerivative) state_.setZero();

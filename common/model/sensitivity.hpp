@@ -15,9 +15,10 @@ class Sensitivity {
   explicit Sensitivity(VelocityDerivatives& out) : out_{out} {}
 
   void begin(const Vehicle& vehicle, std::size_t samples);
-  /// One midpoint step of `h` seconds; the arguments are the state at its middle and the acceleration there.
+  /// One midpoint step of `h` seconds; the arguments are the state at its middle, the acceleration there,
+  /// and the rates of decay that the step itself uses.
   void advance(Rollout& rollout, std::size_t from, double offset, const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
-               const Vector6d& nu, const Vector6d& nu_dot, double h);
+               const Vector6d& nu, const Vector6d& nu_dot, const Vector6d& decay, double h);
   /// Writes the velocity's derivatives of sample k.
   void record(std::size_t k);
 
@@ -27,8 +28,9 @@ class Sensitivity {
   using Dynamics = Eigen::Matrix<double, 12, 12>;
 
   [[nodiscard]] Eigen::Matrix<double, 6, kBaseParameterCount> input(Rollout& rollout, std::size_t from, double offset,
-                                                                   const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
-                                                                   const Vector6d& nu, const Vector6d& nu_dot) const;
+                                                                    const Eigen::Vector3d& p,
+                                                                    const Eigen::Quaterniond& q, const Vector6d& nu,
+                                                                    const Vector6d& nu_dot) const;
 
   VelocityDerivatives& out_;
   State state_{State::Zero()};

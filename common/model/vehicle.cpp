@@ -195,8 +195,7 @@ void read_parameters(const Config& config, Vehicle& vehicle) {
     const Config priors = config.section("priors");
     for (const std::string& name : priors.keys()) {
       const std::optional<BaseParameter> parameter = parameter_from_name(name);
-      if (!parameter)
-        priors.fail(name, "'" + name + "' is no base parameter (docs/configuration.md lists them)");
+      if (!parameter) priors.fail(name, "'" + name + "' is no base parameter (docs/configuration.md lists them)");
       if (std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
         priors.fail(name, "'" + name + "' has a prior but is not enabled; add it to 'parameters' or free its motion");
       }
