@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -294,11 +293,6 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       const std::string limited = limited_number(fit.model, screened[i]);
       if (entry.reason.empty() && !limited.empty())
         entry.reason = "fits only with " + limited + " at its physical limit";
-      if (std::getenv("FATHOM_DEBUG"))
-        std::fprintf(stderr, "   FIT %-18s %-12s lo %.1f red %.4f blocks %.4f runs %.4f th %.3g %s\n",
-                     std::string(entry.effect->name()).c_str(), entry.variant_name.c_str(), entry.log_odds,
-                     entry.error_reduction, entry.held_out_blocks, entry.held_out_runs, fit.model.effects[0].theta[0],
-                     entry.reason.c_str());
       if (entry.reason.empty() && (winner == judged.size() || fit.cost < best.cost)) {
         best = std::move(fit);
         winner = i;

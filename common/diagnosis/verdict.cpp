@@ -72,13 +72,14 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
 }
 
 void list_candidates(const SearchResult& found, DiagnosisResult& result) {
-  for (const Judged& judged : found.accepted) {
-    const std::string name{judged.effect->name()};
-    const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
-                                    [&](const CandidateTried& c) { return c.name == name; });
-    if (listed) continue;
+  for (const EffectFound& effect : result.effects) {
+    std::vector<std::string> aliases;
+    for (const Judged& judged : found.accepted) {
+      if (judged.effect->name() == effect.name)
+        aliases.insert(aliases.end(), judged.aliased_with.begin(), judged.aliased_with.end());
+    }
     result.candidates.push_back(
-        {name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, "accepted"});
+        {effect.name, effect.variant, effect.log_odds, effect.error_reduction, aliases, "accepted"});
   }
   for (const Judged& judged : found.refused) {
     const std::string name{judged.effect->name()};

@@ -268,7 +268,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) c
   return fit;
 }
 
-std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit) const {
+std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool hold_bounds) const {
   const ParameterMap map{fit.model};
   std::vector<ProjectedWindow> projected(windows_.size());
   model::VelocityTrace trace;
@@ -279,7 +279,9 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit) cons
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, out.residual);
     Eigen::MatrixXd initial;
     window.jacobians(fit.model, map, fit.nu0[w], fit.sigma, out.residual, out.jacobian, initial);
-    for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
+    if (hold_bounds) {
+      for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
+    }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};
     out.initial_basis = Eigen::MatrixXd::Identity(window.rows(), qr.rank());
     out.initial_basis.applyOnTheLeft(qr.householderQ());
@@ -308,7 +310,7 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
     information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
     meat(i, i) = information(i, i);
   }
-  for (const ProjectedWindow& window : linearise(fit)) {
+  for (const ProjectedWindow& window : linearise(fit, false)) {
     information += window.jacobian.transpose() * window.jacobian;
     const Eigen::VectorXd gradient = window.jacobian.transpose() * window.residual;
     meat += gradient * gradient.transpose();

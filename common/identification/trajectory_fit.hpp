@@ -50,8 +50,9 @@ class TrajectoryFit {
   /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs
   /// can be compared); without, sigma is found by iteration.
   [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr) const;
-  /// Residuals and derivatives at a fit, per window. Numbers on a physical bound have no derivative: they stay there.
-  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit) const;
+  /// Residuals and derivatives at a fit, per window. With `hold_bounds`, numbers on a physical bound have no
+  /// derivative: they stay there.
+  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit, bool hold_bounds = true) const;
   /// Fills fit.covariance: sandwich with windows as clusters, so that correlation inside a window is counted.
   void add_covariance(FitResult& fit) const;
 

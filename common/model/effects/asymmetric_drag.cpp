@@ -16,7 +16,9 @@ constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^2", 10.
 class AsymmetricDrag final : public Effect {
  public:
   std::string_view name() const override { return "asymmetric_drag"; }
-  std::string_view sentence() const override { return "The hull drags differently in one direction than in the other."; }
+  std::string_view sentence() const override {
+    return "The hull drags differently in one direction than in the other.";
+  }
   std::string_view revealed_by() const override { return "equal speeds in both directions along the axis"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool variants_matter() const override { return true; }

@@ -1,6 +1,6 @@
-// Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an open
-// propeller on a DC motor (bounds a little wider); without a voltage log, f = f_c (1 - s t) with t the time in the run.
-// Ignores: load-dependent sag within the thruster's own cable. Revealed by the same manoeuvre early and late.
+// Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an
+// open propeller on a DC motor (bounds a little wider); without a voltage log, f = f_c (1 - s t) with t the time in the
+// run. Ignores: load-dependent sag within the thruster's own cable. Revealed by the same manoeuvre early and late.
 // Confused with payload change and, in one short run, with drag.
 #include <algorithm>
 #include <array>
@@ -29,7 +29,8 @@ class BatterySag final : public Effect {
   void feel(Motion& motion, EffectTheta theta, int, std::span<const double>) const override {
     double factor = 0.0;
     if (motion.voltage > 0.0) {
-      const double reference = motion.vehicle->nominal_voltage > 0.0 ? motion.vehicle->nominal_voltage : kFallbackVoltage;
+      const double reference =
+          motion.vehicle->nominal_voltage > 0.0 ? motion.vehicle->nominal_voltage : kFallbackVoltage;
       factor = std::pow(motion.voltage / reference, theta[0]);
     } else {
       factor = std::max(1.0 - theta[0] * motion.t / kTimeScale, 0.05);

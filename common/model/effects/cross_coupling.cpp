@@ -1,7 +1,7 @@
 // Physics: motion along one axis loads another. Off-diagonal drag w_i = D_ij nu_r,j or D_ij |nu_r,j| nu_r,j, and
-// off-diagonal added mass (symmetric; its Coriolis part is ignored). Only pairs that a hull symmetric about its x-z plane
-// allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4).
-// Revealed by single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment.
+// off-diagonal added mass (symmetric; its Coriolis part is ignored). Only pairs that a hull symmetric about its x-z
+// plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4). Revealed by single-axis
+// motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment.
 #include <algorithm>
 #include <array>
 #include <cmath>

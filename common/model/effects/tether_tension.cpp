@@ -9,9 +9,10 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{
-    EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1000.0}, EffectParameter{"slack_length", "m", 3.0, 0.0, 500.0},
-    EffectParameter{"anchor_N", "m", 5.0}, EffectParameter{"anchor_E", "m", 5.0}, EffectParameter{"anchor_D", "m", 3.0}};
+constexpr std::array kParameters{EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1000.0},
+                                 EffectParameter{"slack_length", "m", 3.0, 0.0, 500.0},
+                                 EffectParameter{"anchor_N", "m", 5.0}, EffectParameter{"anchor_E", "m", 5.0},
+                                 EffectParameter{"anchor_D", "m", 3.0}};
 
 class TetherTension final : public Effect {
  public:

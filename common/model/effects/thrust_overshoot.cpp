@@ -1,8 +1,9 @@
-// Physics: a propeller in water at rest pushes harder than one whose own inflow has built up: after a step of command the
-// thrust peaks, then sinks to its steady value (Healey et al. 1995; Whitcomb and Yoerger 1999). First order in the inflow:
-// f = f_c - k g, T g_dot = f_c - g. The steady thrust is (1 - k) f_c, the first instant's f_c.
-// Ignores: that T shrinks with the jet's speed, and jets that meet the hull, walls or each other.
-// Revealed by steps held for several T. Confused with mass and linear drag together, and with fluid_memory.
+// Physics: a propeller in water at rest pushes harder than one whose own inflow has built up: after a step of command
+// the thrust peaks, then sinks to its steady value (Healey et al. 1995; Whitcomb and Yoerger 1999). First order in the
+// inflow: f = f_c - k g, T g_dot = f_c - g. The steady thrust is (1 - k) f_c, the first instant's f_c. Forms: all
+// thrusters alike, or only those that push sideways (horizontal) or only those that push up (vertical), since a jet's
+// fate depends on what it meets. Ignores: that T shrinks with the jet's speed. Revealed by steps held for several T.
+// Confused with mass and linear drag together, and with fluid_memory.
 #include <array>
 #include <cmath>
 
@@ -15,16 +16,34 @@ namespace {
 constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.3, 0.0, 0.98},
                                  EffectParameter{"time_constant", "s", 1.0, 0.05, 10.0}};
 
+enum Form { kAll, kHorizontal, kVertical };
+
+/// Force straight up or down, or a pure roll or pitch moment: the jet leaves vertically.
+bool is_vertical(const Vehicle& vehicle, Eigen::Index actuator, Eigen::Index actuators) {
+  const bool wrench = vehicle.allocation.cols() != actuators;
+  if (wrench) return actuator == 2 || actuator == 3 || actuator == 4;
+  const auto column = vehicle.allocation.col(actuator);
+  return std::abs(column[2]) > column.head<2>().norm();
+}
+
 class ThrustOvershoot final : public Effect {
  public:
   std::string_view name() const override { return "thrust_overshoot"; }
   std::string_view sentence() const override { return "Thrust peaks after each change of command and then fades."; }
   std::string_view revealed_by() const override { return "steps of thrust held for five seconds and more"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::vector<std::string> variants(const Scene& scene) const override {
+    int vertical = 0;
+    const auto actuators = scene.force_rms.size();
+    for (Eigen::Index i = 0; i < actuators; ++i) vertical += is_vertical(*scene.vehicle, i, actuators) ? 1 : 0;
+    const bool both = vertical > 0 && vertical < actuators;
+    return {"all", both ? "horizontal" : "-", both ? "vertical" : "-"};
+  }
+  bool variants_matter() const override { return true; }
   std::vector<std::vector<double>> starts(const Scene&, int) const override {
     return {{0.1, 0.3}, {0.1, 1.0}, {0.1, 3.0}};
   }
-  std::vector<std::vector<double>> far_starts(const Scene&, int) const override { return {{0.6, 0.7}, {0.6, 2.5}}; }
+  std::vector<std::vector<double>> far_starts(const Scene&, int) const override { return {{0.6, 0.8}}; }
   int state_size(const Vehicle&, int actuators) const override { return actuators; }
 
   void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
@@ -34,8 +53,12 @@ class ThrustOvershoot final : public Effect {
     const double share = theta[1] > 0.0 ? -std::expm1(-dt / theta[1]) : 1.0;
     for (std::size_t i = 0; i < z.size(); ++i) z[i] += share * (motion.force[static_cast<Eigen::Index>(i)] - z[i]);
   }
-  void feel(Motion& motion, EffectTheta theta, int, std::span<const double> z) const override {
-    for (std::size_t i = 0; i < z.size(); ++i) motion.force[static_cast<Eigen::Index>(i)] -= theta[0] * z[i];
+  void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double> z) const override {
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (variant != kAll && is_vertical(*motion.vehicle, k, motion.force.size()) != (variant == kVertical)) continue;
+      motion.force[k] -= theta[0] * z[i];
+    }
   }
 };
 

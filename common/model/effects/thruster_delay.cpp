@@ -1,7 +1,7 @@
-// Physics: the command reaches the propellers late by a fixed time (bus, ESC, on-board computer), or the log's clocks of
-// command and motion differ by as much. f(t) = f_c(t - T). Ignores: jitter; a delay of its own per thruster.
-// Revealed by steps and fast reversals. Confused with thruster_lag (a delay shifts, a lag also rounds) and, over a narrow
-// band, with added mass.
+// Physics: the command reaches the propellers late by a fixed time (bus, ESC, on-board computer), or the log's clocks
+// of command and motion differ by as much. f(t) = f_c(t - T). Ignores: jitter; a delay of its own per thruster.
+// Revealed by steps and fast reversals. Confused with thruster_lag (a delay shifts, a lag also rounds) and, over a
+// narrow band, with added mass.
 #include <array>
 
 #include "common/model/effect.hpp"
@@ -15,7 +15,9 @@ class ThrusterDelay final : public Effect {
  public:
   std::string_view name() const override { return "thruster_delay"; }
   std::string_view sentence() const override { return "Thrust follows the logged command late by a fixed time."; }
-  std::string_view revealed_by() const override { return "steps and reversals of thrust, each held for several seconds"; }
+  std::string_view revealed_by() const override {
+    return "steps and reversals of thrust, each held for several seconds";
+  }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}, {0.2}, {0.5}}; }
 

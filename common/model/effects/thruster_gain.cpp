@@ -1,6 +1,6 @@
-// Physics: one thruster gives more or less than its curve says (damage, weed, a swapped propeller): f_i = (1 + g) f_c,i.
-// Ignores: change over time (thruster_failure). Revealed by motions that load the thrusters unequally: its axes couple.
-// Confused with a common gain error, which the masses and drag absorb whole, and with cross_coupling.
+// Physics: one thruster gives more or less than its curve says (damage, weed, a swapped propeller): f_i = (1 + g)
+// f_c,i. Ignores: change over time (thruster_failure). Revealed by motions that load the thrusters unequally: its axes
+// couple. Confused with a common gain error, which the masses and drag absorb whole, and with cross_coupling.
 #include <array>
 
 #include "common/model/effect.hpp"
@@ -15,7 +15,9 @@ class ThrusterGain final : public Effect {
  public:
   std::string_view name() const override { return "thruster_gain"; }
   std::string_view sentence() const override { return "One thruster gives more or less force than it should."; }
-  std::string_view revealed_by() const override { return "sway, surge and yaw at constant thrust: the odd one turns the vehicle"; }
+  std::string_view revealed_by() const override {
+    return "sway, surge and yaw at constant thrust: the odd one turns the vehicle";
+  }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

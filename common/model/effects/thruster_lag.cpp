@@ -1,6 +1,6 @@
-// Physics: propeller and water need time to reach the new thrust: first order, T f_dot = f_c - f (Fossen 2011, sec. 12.3).
-// Ignores: that the time constant shrinks with shaft speed (Yoerger 1990). Revealed by reversals at frequencies near 1/T.
-// Confused with thruster_delay and, over a narrow band, with added mass.
+// Physics: propeller and water need time to reach the new thrust: first order, T f_dot = f_c - f (Fossen 2011,
+// sec. 12.3). Ignores: that the time constant shrinks with shaft speed (Yoerger 1990). Revealed by reversals at
+// frequencies near 1/T. Confused with thruster_delay and, over a narrow band, with added mass.
 #include <array>
 #include <cmath>
 
