@@ -1,6 +1,7 @@
 #include "common/diagnosis/held_out.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace fathom::diagnosis {
@@ -59,6 +60,7 @@ HeldOut held_out(const identification::TrajectoryFit& problem, const identificat
   std::vector<Products> windows;
   model::VelocityTrace trace;
   double scatter = 0.0, information = 0.0;
+  std::array<double, 6> moved_square{}, measured_square{};
   for (std::size_t w = 0; w < problem.windows().size(); ++w) {
     const auto& window = problem.windows()[w];
     Eigen::VectorXd r(window.rows()), moved(window.rows());
@@ -67,6 +69,12 @@ HeldOut held_out(const identification::TrajectoryFit& problem, const identificat
     // A window of outliers (a glitch, a collision) counts as in the fit: no more than one at the outlier bound.
     const double weight = std::min(1.0, 2.0 * without.window_cost[w] / std::max(r.squaredNorm(), 1e-300));
     const Eigen::VectorXd d = moved - r;
+    for (Eigen::Index i = 0; i < d.size(); ++i) {
+      const auto axis = static_cast<std::size_t>(window.axis(i));
+      const double sigma = without.sigma[window.axis(i)];
+      moved_square[axis] += sigma * sigma * d[i] * d[i];
+      measured_square[axis] += window.measured(i) * window.measured(i);
+    }
     windows.push_back({weight * r.squaredNorm(), weight * d.dot(r), weight * d.squaredNorm()});
     scatter += windows.back().dr * windows.back().dr;
     information += windows.back().dd;
@@ -75,8 +83,12 @@ HeldOut held_out(const identification::TrajectoryFit& problem, const identificat
   const double inflation = information > 0.0 ? std::max(1.0, scatter / information) : 1.0;
   double square = 0.0;
   for (const double size : sizes) square += size * size;
+  double change = 0.0;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (measured_square[axis] > 0.0) change = std::max(change, std::sqrt(moved_square[axis] / measured_square[axis]));
+  }
   return {saved(windows, folds_by_block(windows.size()), inflation * square),
-          saved(windows, folds_by_run(problem.windows()), inflation * square)};
+          saved(windows, folds_by_run(problem.windows()), inflation * square), change};
 }
 
 }  // namespace fathom::diagnosis

@@ -12,6 +12,8 @@ namespace fathom::diagnosis {
 struct HeldOut {
   double blocks{};  ///< left out: a fifth of the 30 s blocks, spread over all runs
   double runs{};    ///< left out: a run at a time; equal to `blocks` with fewer than three runs
+  double
+      change{};  ///< of the predicted velocity (RMS), share of the measured velocity's, on the axis where it is largest
 };
 
 /// `sizes`: the effect's numbers in units of their prior sigma; where the other windows hardly see the effect, this

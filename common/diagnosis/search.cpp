@@ -78,6 +78,11 @@ std::string refusal(const Judged& judged, const Settings& settings) {
                   100.0 * judged.error_reduction);
     return text;
   }
+  if (judged.change < settings.smallest_change) {
+    std::snprintf(text, sizeof text, "moves predictions by %.2f %% of the motion: too little to matter",
+                  100.0 * judged.change);
+    return text;
+  }
   if (judged.log_odds < settings.accept_log_odds) {
     std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
     return text;
@@ -289,6 +294,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       entry.error_reduction = reduction(reference.cost, fit.cost);
       entry.held_out_blocks = carried.blocks;
       entry.held_out_runs = carried.runs;
+      entry.change = carried.change;
       entry.reason = refusal(entry, settings);
       const std::string limited = limited_number(fit.model, screened[i]);
       if (entry.reason.empty() && !limited.empty())

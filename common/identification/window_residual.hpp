@@ -22,6 +22,11 @@ class WindowResidual {
   [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
   /// Axis (0..5) of a row.
   [[nodiscard]] int axis(Eigen::Index row) const { return rows_[static_cast<std::size_t>(row)].axis; }
+  /// Measured velocity of a row, m/s or rad/s.
+  [[nodiscard]] double measured(Eigen::Index row) const {
+    const Row& at = rows_[static_cast<std::size_t>(row)];
+    return window_.trial->nu[window_.start + static_cast<std::size_t>(at.sample)][at.axis];
+  }
 
   /// Simulated minus measured over sigma; `trace` is workspace. False when the simulation diverged.
   bool evaluate(const model::Model& model, const Vector6d& nu0, const Vector6d& sigma, model::VelocityTrace& trace,
