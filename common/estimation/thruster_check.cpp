@@ -1,5 +1,6 @@
 // The wrench that was computed on board against the one that the vehicle file makes of the same commands and voltage.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -11,6 +12,10 @@ namespace {
 constexpr double kAgrees = 0.95;         // R^2: below, the vehicle's curve is not the one that was used on board
 constexpr double kExponentFloor = 0.15;  // of the voltage; less moves the thrust by under 2 % over 12 to 13.5 V
 constexpr double kScaleFloor = 0.02;
+constexpr double kSignificant = 4.0;    // standard errors
+constexpr double kVoltageMoves = 1.05;  // a voltage that moves less shows no exponent
+constexpr double kLargestExponent = 2.5;
+constexpr std::size_t kBlocks = 10;
 
 double voltage_at(const std::vector<Battery>& battery, Utime utime) {
   if (battery.empty()) return 0.0;
@@ -23,10 +28,49 @@ double voltage_at(const std::vector<Battery>& battery, Utime utime) {
   return before->voltage + share * (after->voltage - before->voltage);
 }
 
+/// Weighted regression of log ratio on log voltage.
 struct Sums {
-  double one{}, x{}, y{}, xx{}, xy{};  // weighted regression of log ratio on log voltage
-  double low{1e9}, high{0.0};          // V
+  double one{}, x{}, y{}, xx{}, xy{};
+
+  Sums& operator+=(const Sums& other) {
+    one += other.one;
+    x += other.x;
+    y += other.y;
+    xx += other.xx;
+    xy += other.xy;
+    return *this;
+  }
+  [[nodiscard]] double slope() const {
+    const double spread = xx - x * x / one;
+    return spread > 0.0 ? (xy - x * y / one) / spread : 0.0;
+  }
+  [[nodiscard]] double level(double slope) const { return (y - slope * x) / one; }
 };
+
+/// A value and its standard error by leaving out one block at a time.
+struct Estimated {
+  double value{}, error{};
+  [[nodiscard]] bool exceeds(double floor) const { return std::abs(value) > std::max(floor, kSignificant * error); }
+};
+
+template <class Statistic>
+Estimated jackknifed(const std::array<Sums, kBlocks>& blocks, Statistic statistic) {
+  Sums all;
+  for (const Sums& block : blocks) all += block;
+  Estimated result{.value = statistic(all)};
+  double mean = 0.0, square = 0.0;
+  for (std::size_t out = 0; out < kBlocks; ++out) {
+    Sums rest;
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      if (b != out) rest += blocks[b];
+    }
+    const double value = rest.one > 0.0 ? statistic(rest) : result.value;
+    mean += value / kBlocks;
+    square += value * value;
+  }
+  result.error = std::sqrt(std::max(0.0, (square - kBlocks * mean * mean) * (kBlocks - 1.0) / kBlocks));
+  return result;
+}
 
 }  // namespace
 
@@ -54,7 +98,7 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
     double log_voltage;
   };
   std::vector<Pair> pairs;
-  Sums sums;
+  double low = 1e9, high = 0.0;  // V
   Vector6d size = Vector6d::Zero();
   for (const Recording& recording : recordings) {
     for (const Thrusters& sample : recording.thrusters) {
@@ -69,31 +113,34 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
                        battery > 0.0 ? std::log(battery / reference) : 0.0});
       size += pairs.back().tau.cwiseAbs2();
       if (battery > 0.0) {
-        sums.low = std::min(sums.low, battery);
-        sums.high = std::max(sums.high, battery);
+        low = std::min(low, battery);
+        high = std::max(high, battery);
       }
     }
   }
   if (pairs.empty()) return;
   const Vector6d weight = (size / static_cast<double>(pairs.size())).cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  for (const Pair& pair : pairs) {
-    const Vector6d a = weight.cwiseProduct(pair.computed), b = weight.cwiseProduct(pair.tau);
+  std::array<Sums, kBlocks> blocks;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Vector6d a = weight.cwiseProduct(pairs[i].computed), b = weight.cwiseProduct(pairs[i].tau);
     const double energy = a.squaredNorm();
     if (energy < 1.0 || a.dot(b) <= 0.05 * energy) continue;  // near the dead band the ratio is noise
-    const double y = std::log(a.dot(b) / energy), x = pair.log_voltage;
-    sums.one += energy;
-    sums.x += energy * x;
-    sums.y += energy * y;
-    sums.xx += energy * x * x;
-    sums.xy += energy * x * y;
+    const double y = std::log(a.dot(b) / energy), x = pairs[i].log_voltage;
+    blocks[i * kBlocks / pairs.size()] += {energy, energy * x, energy * y, energy * x * x, energy * x * y};
   }
   ThrusterCorrection correction;
+  Sums sums;
+  for (const Sums& block : blocks) sums += block;
+  Estimated exponent_change, scale_change;
   if (sums.one > 0.0) {
-    const double spread = sums.xx - sums.x * sums.x / sums.one;
-    // A voltage that hardly moves (3 %) shows no exponent.
-    if (sums.high > 1.03 * sums.low && spread > 0.0)
-      correction.exponent = (sums.xy - sums.x * sums.y / sums.one) / spread;
-    correction.scale = std::exp((sums.y - correction.exponent * sums.x) / sums.one);
+    if (high > kVoltageMoves * low) exponent_change = jackknifed(blocks, [](const Sums& part) { return part.slope(); });
+    // Thrust falls with the voltage at most as its square; another exponent is an error of the curve in disguise.
+    const double whole = vehicle.curve.voltage_exponent + exponent_change.value;
+    if (exponent_change.exceeds(kExponentFloor) && whole > 0.0 && whole < kLargestExponent) {
+      correction.exponent = exponent_change.value;
+    }
+    scale_change = jackknifed(blocks, [&](const Sums& part) { return std::expm1(part.level(correction.exponent)); });
+    if (scale_change.exceeds(kScaleFloor)) correction.scale = 1.0 + scale_change.value;
   }
   double misfit = 0.0, total = 0.0;
   for (const Pair& pair : pairs) {
@@ -125,22 +172,19 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
     report("disagreement", explained, evidence, action);
   } else {
     const double exponent = correction.exponent + vehicle.curve.voltage_exponent;
-    if (std::abs(exponent) > kExponentFloor) {
+    if (std::abs(exponent) > kExponentFloor && high > kVoltageMoves * low) {
       std::snprintf(
           evidence, sizeof evidence,
           "grows as (V/%.3g V)^%.2f between %.1f and %.1f V: the logged wrench contains the voltage already (R^2 %.3f)",
-          reference, exponent, sums.low, sums.high, explained);
+          reference, exponent, low, high, explained);
       report("voltage", exponent, evidence, action);
     }
-    if (std::abs(correction.scale - 1.0) > kScaleFloor) {
-      std::snprintf(evidence, sizeof evidence, "the logged wrench is %.3f times the computed one (R^2 %.3f)",
-                    correction.scale, explained);
+    if (correction.scale != 1.0) {
+      std::snprintf(evidence, sizeof evidence, "the logged wrench is %.3f +- %.3f times the computed one (R^2 %.3f)",
+                    correction.scale, scale_change.error, explained);
       report("scale", correction.scale, evidence, action);
-    } else {
-      correction.scale = 1.0;
     }
   }
-  if (std::abs(correction.exponent) < kExponentFloor) correction.exponent = 0.0;
   decide(correction);
 }
 
