@@ -12,7 +12,8 @@ install_missing() {
   wanted=$(sed 's/#.*//' "$@")
   command -v dpkg-query >/dev/null || fail "not a Debian system; install by hand: $(echo $wanted)"
   local present
-  present=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' $wanted 2>/dev/null | sed -n 's/ installed$//p')
+  # dpkg-query fails when it has never heard of one of them; what it prints of the others is still right.
+  present=$({ dpkg-query -W -f='${Package} ${db:Status-Status}\n' $wanted 2>/dev/null || true; } | sed -n 's/ installed$//p')
   for package in $wanted; do
     grep -qx "$package" <<<"$present" || missing+=("$package")
   done
