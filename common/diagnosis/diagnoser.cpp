@@ -40,14 +40,23 @@ std::map<std::string, double> force_rmse(const model::Vehicle& vehicle, const Re
   return rmse;
 }
 
-/// Velocities of `model` over the whole trial, restarted at the measured velocity every 10 s.
-void overlay(const model::Model& model, const Trial& trial, std::vector<std::array<double, 6>>& out) {
-  const auto length = static_cast<std::size_t>(kHorizons.back() / trial.dt + 0.5);
+/// Where the overlaid predictions begin anew: every 10 s, as long as the longest horizon.
+std::vector<std::size_t> restarts_of(const Trial& trial) {
+  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(kHorizons.back() / trial.dt + 0.5));
+  std::vector<std::size_t> restarts;
+  for (std::size_t start = 0; start < trial.size(); start += length) restarts.push_back(start);
+  return restarts;
+}
+
+/// Velocities of `model` over the whole trial, restarted at the measured velocity.
+void overlay(const model::Model& model, const Trial& trial, std::span<const std::size_t> restarts,
+             std::vector<std::array<double, 6>>& out) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   out.assign(trial.size(), {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
   model::VelocityTrace trace;
-  for (std::size_t start = 0; start < trial.size(); start += length) {
-    const std::size_t count = std::min(length, trial.size() - start);
+  for (std::size_t r = 0; r < restarts.size(); ++r) {
+    const std::size_t start = restarts[r];
+    const std::size_t count = (r + 1 < restarts.size() ? restarts[r + 1] : trial.size()) - start;
     model::rollout(model, {&trial, start, count}, trial.nu[start], trace);
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -62,8 +71,9 @@ void overlay(const model::Model& model, const Trial& trial, std::vector<std::arr
 PredictionTrace trace_of(const Trial& trial, const SearchResult& found, const std::vector<Vector6d>& residual_before,
                          const std::vector<Vector6d>& residual_after) {
   PredictionTrace trace{.run = trial.name, .t = trial.t};
-  overlay(found.before.model, trial, trace.before);
-  overlay(found.after.model, trial, trace.after);
+  trace.restarts = restarts_of(trial);
+  overlay(found.before.model, trial, trace.restarts, trace.before);
+  overlay(found.after.model, trial, trace.restarts, trace.after);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = 0; k < trial.size(); ++k) {
     std::array<double, 6> measured = as_array(trial.nu[k]);

@@ -112,6 +112,50 @@ std::string improvement_sentence(const DiagnosisResult& result) {
   return text + ". ";
 }
 
+/// The accepted number that is known worst, relative to its size.
+struct WeakestNumber {
+  const EffectFound* effect{};
+  std::string name;
+  double share{};  // standard deviation over size
+};
+
+WeakestNumber weakest_number(const DiagnosisResult& result) {
+  WeakestNumber weakest;
+  for (const EffectFound& effect : result.effects) {
+    for (const NamedValue& number : effect.parameters) {
+      const double share = number.value != 0.0 ? number.std / std::abs(number.value) : 0.0;
+      if (!std::isfinite(share) || (weakest.effect != nullptr && share <= weakest.share)) continue;
+      weakest = {&effect, number.name, share};
+    }
+  }
+  return weakest;
+}
+
+std::string motion_for(const std::string& name) { return std::string(model::find_effect(name)->revealed_by()); }
+
+/// What to drive next: what tells look-alikes apart, else what sharpens the weakest number, else what would confirm
+/// or rule out the nearest candidate. Empty when nothing is open.
+std::string next_manoeuvre(const DiagnosisResult& result) {
+  for (const EffectFound& effect : result.effects) {
+    if (effect.alternatives.empty()) continue;
+    std::vector<std::string> motions{motion_for(effect.name)};
+    for (const std::string& other : effect.alternatives) {
+      const std::string motion = motion_for(other);
+      if (std::find(motions.begin(), motions.end(), motion) == motions.end()) motions.push_back(motion);
+    }
+    return "To tell " + effect.name + " from " + joined(effect.alternatives) + ": " + joined(motions, "; and ") + ".";
+  }
+  const WeakestNumber weakest = weakest_number(result);
+  if (weakest.effect != nullptr) {
+    return "To know " + weakest.effect->name + " better (its " + weakest.name + " is known to " +
+           percent(weakest.share) + "): " + motion_for(weakest.effect->name) + ".";
+  }
+  if (result.verdict != "unexplained" || result.candidates.empty()) return "";
+  const CandidateTried& nearest = result.candidates.front();
+  if (nearest.error_reduction <= 0.0) return "";
+  return "To confirm or rule out the nearest candidate, " + nearest.name + ": " + motion_for(nearest.name) + ".";
+}
+
 }  // namespace
 
 void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result) {
@@ -157,6 +201,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     }
     text += "What is still left in the residual goes with: " + joined(words) + ".";
   }
+  result.manoeuvre = next_manoeuvre(result);
 }
 
 }  // namespace fathom::diagnosis
