@@ -1,0 +1,153 @@
+// The four verdicts, each from a made-up search: no fits here, only what is concluded from them.
+#include "common/diagnosis/verdict.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::diagnosis;
+
+namespace {
+
+struct MadeUp {
+  model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  SearchResult found;
+  std::vector<Association> left;
+
+  MadeUp() {
+    found.before.model = model::nominal_model(vehicle, false);
+    found.after.model = found.before.model;
+  }
+  Judged& accept(const std::string& name, std::vector<double> theta, int variant = 0,
+                 const std::string& variant_name = "") {
+    model::ActiveEffect effect = test::active(name, std::move(theta), variant);
+    effect.variant_name = variant_name;
+    found.after.model.add(effect);
+    found.accepted.push_back({.effect = model::find_effect(name),
+                              .variant = variant,
+                              .variant_name = variant_name,
+                              .log_odds = 20.0,
+                              .error_reduction = 0.3});
+    return found.accepted.back();
+  }
+  void refuse(const std::string& name, double log_odds, const std::string& reason) {
+    found.refused.push_back(
+        {.effect = model::find_effect(name), .log_odds = log_odds, .error_reduction = 0.004, .reason = reason});
+  }
+  /// Standard deviations as shares of the numbers, in the order of the fit's parameters.
+  void known_to(double base, const std::vector<double>& effects) {
+    const std::vector<NamedValue> values = found.after.parameters();
+    const auto n = static_cast<Eigen::Index>(values.size());
+    const auto first = n - static_cast<Eigen::Index>(effects.size());
+    found.after.covariance = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double share = i < first ? base : effects[static_cast<std::size_t>(i - first)];
+      const double std = share * values[static_cast<std::size_t>(i)].value;
+      found.after.covariance(i, i) = std * std;
+    }
+  }
+  [[nodiscard]] DiagnosisResult concluded() const {
+    DiagnosisResult result;
+    result.improvement = {0.4, 0.3, 0.5};
+    conclude(found, left, result);
+    return result;
+  }
+};
+
+bool says(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
+
+/// Every effect of the registry exactly once.
+void check_all_listed(const DiagnosisResult& result) {
+  std::multiset<std::string> listed, registered;
+  for (const CandidateTried& candidate : result.candidates) {
+    listed.insert(candidate.name);
+    CHECK_FALSE(candidate.reason.empty());
+  }
+  for (const model::Effect* effect : model::all_effects()) registered.insert(std::string{effect->name()});
+  CHECK(listed == registered);
+}
+
+}  // namespace
+
+TEST_CASE("verdict: nothing found and nothing left is adequate, and there is nothing to drive") {
+  MadeUp made;
+  made.refuse("current", 1.0, "log odds 1.0, 3.0 needed");
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "adequate");
+  CHECK(result.effects.empty());
+  CHECK(result.manoeuvre.empty());
+  CHECK(result.candidates.front().name == "current");
+  CHECK(says(result.candidates.back().reason, "not applicable"));
+  check_all_listed(result);
+}
+
+TEST_CASE("verdict: nothing found but structure left is unexplained, says where, and asks for the nearest candidate") {
+  MadeUp made;
+  made.refuse("tether_tension", 2.5, "log odds 2.5, 3.0 needed");
+  made.refuse("current", 1.0, "log odds 1.0, 3.0 needed");
+  made.left = {{"X", "position", 0.42}};
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "unexplained");
+  CHECK(says(result.paragraph, "no known effect explains"));
+  CHECK(says(result.paragraph, "X with position (42 %"));
+  CHECK(says(result.manoeuvre, "tether_tension"));
+  CHECK(says(result.manoeuvre, std::string{model::find_effect("tether_tension")->revealed_by()}));
+  check_all_listed(result);
+}
+
+TEST_CASE("verdict: a found effect comes with numbers, sentence and the motion that would sharpen the weakest number") {
+  MadeUp made;
+  made.accept("thruster_lag", {0.3});
+  made.accept("current", {0.1, -0.05});
+  made.refuse("tether_tension", -2.0, "log odds -2.0, 3.0 needed");
+  made.known_to(0.01, {0.02, 0.05, 0.25});
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "effect");
+  REQUIRE(result.effects.size() == 2);
+  CHECK(result.effects[0].name == "thruster_lag");
+  REQUIRE(result.effects[0].parameters.size() == 1);
+  CHECK(result.effects[0].parameters[0].value == 0.3);
+  CHECK(result.effects[0].parameters[0].std == doctest::Approx(0.006));
+  REQUIRE(result.effects[1].parameters.size() == 2);
+  CHECK(result.effects[1].parameters[1].value == -0.05);
+  CHECK(says(result.paragraph, result.effects[0].sentence));
+  CHECK(says(result.paragraph, "falls by 40 % (95 % interval 30 % to 50 %)"));
+  CHECK(says(result.manoeuvre, "v_E is known to 25 %"));
+  CHECK(says(result.manoeuvre, std::string{model::find_effect("current")->revealed_by()}));
+  check_all_listed(result);
+}
+
+TEST_CASE("verdict: look-alikes that the odds cannot rule out are ambiguous, and the manoeuvre tells them apart") {
+  MadeUp made;
+  made.accept("thruster_lag", {0.3});
+  Judged& open = made.accept("asymmetric_drag", {-8.0}, 0, "X_uu");
+  open.aliased_with = {"thrust_asymmetry"};
+  open.alternatives = {"thrust_asymmetry"};
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "ambiguous");
+  CHECK(says(result.paragraph, "asymmetric_drag (or thrust_asymmetry) cannot be told apart"));
+  CHECK(says(result.manoeuvre, std::string{model::find_effect("asymmetric_drag")->revealed_by()}));
+  CHECK(says(result.manoeuvre, std::string{model::find_effect("thrust_asymmetry")->revealed_by()}));
+  CHECK_FALSE(says(result.manoeuvre, "thruster_lag"));
+  check_all_listed(result);
+}
+
+TEST_CASE("verdict: several forms of one effect are one entry whose numbers say which form they belong to") {
+  MadeUp made;
+  made.accept("thruster_gain", {-0.2}, 0, "port");
+  made.accept("thruster_gain", {-0.3}, 2, "vertical");
+  const DiagnosisResult result = made.concluded();
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].variant == "port, vertical");
+  REQUIRE(result.effects[0].parameters.size() == 2);
+  CHECK(says(result.effects[0].parameters[0].name, "port."));
+  CHECK(result.effects[0].parameters[0].value == -0.2);
+  CHECK(says(result.effects[0].parameters[1].name, "vertical."));
+  CHECK(result.effects[0].parameters[1].value == -0.3);
+  CHECK(result.effects[0].error_reduction == doctest::Approx(1.0 - 0.7 * 0.7));
+  check_all_listed(result);
+}

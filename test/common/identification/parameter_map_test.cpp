@@ -1,0 +1,97 @@
+// A model's free numbers as one scaled vector: nothing is lost on the way there and back, and physics sets the bounds.
+#include "common/identification/parameter_map.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::identification;
+
+namespace {
+
+constexpr double kRounding = 1e-14;  // relative: one division and one multiplication
+
+struct Fixture {
+  model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Model model = model::nominal_model(vehicle, false);
+  Fixture() {
+    model.add(test::active("tether_tension", {1.5, 1.0, -2.0, 0.5, 0.0}));
+    model.add(test::active("thruster_lag", {0.25}));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("parameter map: pack and unpack are inverses, and touch nothing else") {
+  const Fixture fixture;
+  const ParameterMap map{fixture.model};
+  const Eigen::VectorXd x = map.pack(fixture.model);
+  CHECK(static_cast<std::size_t>(x.size()) == map.size());
+  model::Model other = fixture.model;
+  other.theta.array() *= 1.7;
+  for (auto& effect : other.effects) {
+    for (double& value : effect.theta) value += 3.0;
+  }
+  // A base parameter that the vehicle does not enable.
+  const int fixed = model::index(model::BaseParameter::G_x);
+  other.theta[fixed] = 42.0;
+  map.unpack(x, other);
+  CHECK(other.theta[fixed] == 42.0);
+  other.theta[fixed] = fixture.model.theta[fixed];
+  CHECK((other.theta - fixture.model.theta).norm() < kRounding * fixture.model.theta.norm());
+  for (std::size_t e = 0; e < other.effects.size(); ++e) {
+    for (std::size_t i = 0; i < other.effects[e].theta.size(); ++i) {
+      CHECK(other.effects[e].theta[i] == doctest::Approx(fixture.model.effects[e].theta[i]).epsilon(kRounding));
+    }
+  }
+  CHECK((map.pack(other) - x).norm() < kRounding * x.norm());
+}
+
+TEST_CASE("parameter map: base parameters come first, then the effects' numbers, each under its name and unit") {
+  const Fixture fixture;
+  const ParameterMap map{fixture.model};
+  REQUIRE(map.size() == fixture.vehicle.parameters.size() + 6);
+  for (std::size_t i = 0; i < fixture.vehicle.parameters.size(); ++i) {
+    CHECK(map[i].name == fixture.vehicle.parameters[i]);
+    CHECK(map[i].base >= 0);
+    CHECK(map[i].prior_mean == fixture.vehicle.priors[i].mean);
+    CHECK(map[i].prior_sigma == fixture.vehicle.priors[i].sigma);
+  }
+  // The registry's order: the lag acts before the tether, though it was added after it.
+  const std::size_t first = fixture.vehicle.parameters.size();
+  CHECK(map[first].name == "thruster_lag.time_constant");
+  CHECK(map[first].unit == "s");
+  CHECK(map[first + 1].name == "tether_tension.stiffness");
+  CHECK(map[first + 5].name == "tether_tension.anchor_D");
+  for (std::size_t i = first; i < map.size(); ++i) {
+    CHECK(map[i].base == -1);
+    CHECK(map[i].prior_mean == 0.0);  // absent, until the data says otherwise
+  }
+}
+
+TEST_CASE("parameter map: scales are of the number's own size, and never nothing") {
+  const Fixture fixture;
+  const ParameterMap map{fixture.model};
+  const Eigen::VectorXd x = map.pack(fixture.model);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    CAPTURE(map[i].name);
+    CHECK(map[i].scale > 0.0);
+    CHECK(std::abs(x[static_cast<Eigen::Index>(i)]) <= 1.0 + kRounding);
+  }
+  CHECK(x[x.size() - 1] == 0.0);  // anchor_D
+}
+
+TEST_CASE("parameter map: masses stay positive and drag takes power") {
+  const Fixture fixture;
+  const ParameterMap map{fixture.model};
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    CAPTURE(map[i].name);
+    if (map[i].name.starts_with("m_") || map[i].name.starts_with("I_")) CHECK(map[i].low > 0.0);
+    if (map[i].name == "X_u" || map[i].name == "N_r|r|") CHECK(map[i].high == 0.0);
+    if (map[i].name == "W-B") CHECK((std::isinf(map[i].low) && std::isinf(map[i].high)));
+    if (map[i].name == "thruster_lag.time_constant") CHECK(map[i].low == 0.0);
+  }
+}

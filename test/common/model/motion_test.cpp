@@ -1,0 +1,54 @@
+// The command as a signal of time, and the velocity that the hull feels.
+#include "common/model/motion.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace fathom;
+
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+std::vector<Eigen::VectorXd> ramp() {
+  std::vector<Eigen::VectorXd> samples;
+  for (int k = 0; k < 4; ++k) samples.emplace_back(Eigen::Vector2d(k, 10.0 - k * k));
+  return samples;
+}
+
+}  // namespace
+
+TEST_CASE("input signal: samples at their times, straight lines between, held outside") {
+  const auto samples = ramp();
+  const model::InputSignal input{100.0, 0.5, samples};
+  model::ActuatorForces force;
+  const auto at = [&](double t) {
+    input.at(t, force);
+    return Eigen::Vector2d(force);
+  };
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    CHECK((at(100.0 + 0.5 * static_cast<double>(k)) - samples[k]).norm() < kRounding);
+  CHECK((at(100.75) - Eigen::Vector2d(1.5, 7.5)).norm() < kRounding);
+  CHECK(at(-5.0) == samples.front());
+  CHECK(at(99.99) == samples.front());
+  CHECK(at(101.51) == samples.back());
+  CHECK(at(1e9) == samples.back());
+}
+
+TEST_CASE("input signal: a single sample holds for ever") {
+  const std::vector<Eigen::VectorXd> one{Eigen::Vector3d(1.0, 2.0, 3.0)};
+  const model::InputSignal input{0.0, 0.1, one};
+  model::ActuatorForces force;
+  for (const double t : {-1.0, 0.0, 0.05, 7.0}) {
+    input.at(t, force);
+    CHECK(Eigen::Vector3d(force) == one[0]);
+  }
+}
+
+TEST_CASE("motion: the water's velocity is taken from the linear part alone") {
+  model::Motion motion;
+  motion.nu << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
+  motion.v_WF_B << 0.5, -0.5, 0.25;
+  Vector6d expected;
+  expected << 0.5, 2.5, 2.75, 4.0, 5.0, 6.0;
+  CHECK(motion.nu_r() == expected);
+}
