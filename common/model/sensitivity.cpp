@@ -1,6 +1,7 @@
 #include "common/model/sensitivity.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "common/model/regressor.hpp"
 #include "common/model/rollout_steps.hpp"
@@ -10,6 +11,8 @@ namespace {
 
 constexpr double kAbsurdDerivative = 1e6;  // (m/s) per kg and the like
 constexpr double kDifference = 1e-5;       // m, rad, m/s: truncation and rounding both below 1e-5 of an entry
+
+constexpr double kSteepest = 1e-3;  // cos^2 of the pitch beyond which the heading means nothing
 
 }  // namespace
 
@@ -29,12 +32,15 @@ void Sensitivity::record(std::size_t k) {
 Eigen::Matrix<double, 6, kBaseParameterCount> Sensitivity::input(Rollout& rollout, std::size_t from, double offset,
                                                                  const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
                                                                  const Vector6d& nu, const Vector6d& nu_dot) const {
-  // Y(nu_dot, nu, R) theta = wrench, so d(nu_dot)/d(theta) = -M^-1 Y. Drag feels the relative velocity.
+  // Y(nu_dot, nu, R) theta = wrench, so d(nu_dot)/d(theta) = -M^-1 Y. Drag and added mass feel the relative velocity;
+  // the added mass also its change, since steady water turns in B: nu_c_dot = -w x v_c.
   const Model& model = rollout.model();
   rollout.felt_acceleration(from, offset, p, q, nu, 0.0);
   const Motion& motion = rollout.motion();
   const Vector6d nu_r = motion.nu_r();
-  Eigen::Matrix<double, 6, kBaseParameterCount> Y = base_regressor(nu_dot, nu_r, motion.R_WB);
+  Vector6d nu_r_dot = nu_dot;
+  nu_r_dot.head<3>() += nu.tail<3>().cross(motion.v_WF_B);
+  Eigen::Matrix<double, 6, kBaseParameterCount> Y = base_regressor(nu_r_dot, nu_r, motion.R_WB);
   Load load;
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   Matrix6d M = load.inertia;
@@ -92,15 +98,18 @@ void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, con
   // A trajectory that diverges has no useful derivative; the solver will turn back from it.
   if (!state_.allFinite() || state_.cwiseAbs().maxCoeff() > kAbsurdDerivative) state_.setZero();
 
-  // Attitude that follows the measurement does not move with the parameters.
+  // Attitude that follows the measurement does not move with the parameters. A small rotation e in B turns the heading
+  // (Euler's psi) by (down_y e_y + down_z e_z) / cos^2 theta; the rest of it is tilt.
   const Eigen::Vector3d down_B = R_WB.row(2).transpose();
+  const Eigen::Vector3d across{0.0, down_B.y(), down_B.z()};
+  const Eigen::RowVector3d turn = across.transpose() / std::max(across.squaredNorm(), kSteepest);
   auto rotation = state_.middleRows<3>(3);
   if (rollout.tilt_measured() && rollout.heading_measured()) {
     rotation.setZero();
   } else if (rollout.tilt_measured()) {
-    rotation = (down_B * (down_B.transpose() * rotation)).eval();
+    rotation = (down_B * (turn * rotation)).eval();
   } else if (rollout.heading_measured()) {
-    rotation -= (down_B * (down_B.transpose() * rotation)).eval();
+    rotation -= (down_B * (turn * rotation)).eval();
   }
 }
 
