@@ -30,7 +30,8 @@ bool rollout(const Model& model, const Window& window, const Vector6d& nu0, Velo
 using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameterCount + 6, Eigen::RowMajor>;
 
 /// A rollout together with its derivatives, by the variational equation along the trajectory (Jategaonkar 2015,
-/// sec. 4.6). Far cheaper than a rollout per parameter; within 1 % of differences of rollouts, see the test. Effects'
+/// sec. 4.6). Far cheaper than a rollout per parameter; within 1 % of differences of rollouts, see the
+/// test (a few per cent more where an axis settles within a few steps). Effects'
 /// own numbers are not among the columns.
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives);

@@ -22,6 +22,9 @@ constexpr double kRelative = 0.05;        // a number this close is as good as t
 constexpr double kNothing = 1e-9;         // true numbers below this are "absent": judged by deviations only
 constexpr double kConfidentShare = 0.02;  // of the error (RMS): what a wrong name may explain before it misleads
 
+constexpr double kShort = 120.0;  // s: enough for the plain ones
+constexpr double kLong = 200.0;   // s, for the survey
+
 /// An effect whose numbers the test draws from an ordinary range.
 struct Hidden {
   const char* name;
@@ -177,7 +180,7 @@ class Squeeze final : public Outsider {
 
 void check_outsider(const Outsider& outsider, double size, unsigned seed) {
   const model::Vehicle& vehicle = vehicle_named("seabotix_lbv150");
-  const Outcome outcome = search_dive(vehicle, {{&outsider, 0, "", {size}}}, 150.0, seed);
+  const Outcome outcome = search_dive(vehicle, {{&outsider, 0, "", {size}}}, kShort, seed);
   MESSAGE(outsider.name() << " outside the registry: " << (outcome.said.empty() ? "no name; " : outcome.said)
                           << outcome.seconds << " s, residual scale " << outcome.found.before.sigma.transpose());
   // It was strong enough to be seen at all: the noise put in is 5 mm/s.
@@ -196,16 +199,16 @@ TEST_CASE("search: every effect of the registry has a range to be drawn from") {
 }
 
 TEST_CASE("search: hidden effects are named first, with their numbers") {
-  check_finds("seabotix_lbv150", "thruster_lag", 150.0, 1);
-  check_finds("seabotix_lbv150", "thruster_gain", 150.0, 2);
-  check_finds("seabotix_lbv150", "current", 150.0, 3);
-  check_finds("seabotix_lbv150", "cross_coupling", 150.0, 4);
-  check_finds("bluerov2", "thrust_asymmetry", 150.0, 5);
+  check_finds("bluerov2", "thruster_lag", kShort, 1);
+  check_finds("bluerov2", "thruster_gain", kShort, 2);
+  check_finds("bluerov2", "current", kShort, 3);
+  check_finds("bluerov2", "thrust_asymmetry", kShort, 4);
+  check_finds("seabotix_lbv150", "cross_coupling", kShort, 5);
 }
 
 TEST_CASE("search: a clean dive gets no name") {
-  check_clean("seabotix_lbv150", 150.0, 1);
-  check_clean("bluerov2", 150.0, 2);
+  check_clean("seabotix_lbv150", kShort, 1);
+  check_clean("bluerov2", kShort, 2);
 }
 
 TEST_CASE("search: what the registry does not hold gets no confident name") { check_outsider(Waves{}, 3.0, 11); }
@@ -214,7 +217,7 @@ TEST_CASE("search survey: every effect on two vehicles" * doctest::skip() * doct
   for (const char* vehicle : {"seabotix_lbv150", "bluerov2"}) {
     for (const model::Effect* effect : model::all_effects()) {
       for (const unsigned seed : {1U, 2U}) {
-        check_finds(vehicle, std::string{effect->name()}, 200.0, seed);
+        check_finds(vehicle, std::string{effect->name()}, kLong, seed);
       }
     }
   }
@@ -222,7 +225,7 @@ TEST_CASE("search survey: every effect on two vehicles" * doctest::skip() * doct
 
 TEST_CASE("search survey: clean dives" * doctest::skip() * doctest::description("slow: --no-skip")) {
   for (const char* vehicle : {"seabotix_lbv150", "bluerov2"}) {
-    for (unsigned seed = 1; seed <= 6; ++seed) check_clean(vehicle, 150.0, seed);
+    for (unsigned seed = 1; seed <= 6; ++seed) check_clean(vehicle, kLong, seed);
   }
 }
 

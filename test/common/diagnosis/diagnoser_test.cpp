@@ -1,0 +1,140 @@
+// A whole diagnosis of a dive: the report is complete, the same twice, and too little data is one clear line.
+#include "common/diagnosis/diagnoser.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/diagnosis/prediction.hpp"
+#include "test/support/cut_trial.hpp"
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::diagnosis;
+
+namespace {
+
+constexpr double kSurelyBetter = 0.1;  // of the 5 s error: a lag of 0.3 s costs far more
+
+struct Laggard {
+  model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  std::vector<Trial> train, validate;
+
+  Laggard() {
+    const test::VirtualDive dive =
+        test::make_dive(vehicle, {.duration = 165.0, .seed = 41, .effects = {test::active("thruster_lag", {0.3})}});
+    train = {test::cut_trial(dive.trial, 0, 1000)};
+    validate = {test::cut_trial(dive.trial, 1000, dive.trial.size())};
+    train[0].name = "first part";
+    validate[0].name = "second part";
+  }
+  [[nodiscard]] DiagnosisReport report(const Progress& progress = [](const std::string&, double) {}) const {
+    // The solver's own threads add in any order; with one, the last bit is the same.
+    Settings settings;
+    settings.fit.threads = 1;
+    return diagnose(vehicle, train, validate, settings, progress);
+  }
+};
+
+void check_same(const std::vector<NamedValue>& a, const std::vector<NamedValue>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CAPTURE(a[i].name);
+    CHECK(a[i].name == b[i].name);
+    CHECK(a[i].value == b[i].value);
+    CHECK(a[i].std == b[i].std);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("diagnoser: the report is complete, and a second run gives the same numbers to the last bit") {
+  const Laggard laggard;
+  double done = 0.0;
+  const DiagnosisReport report = laggard.report([&](const std::string& what, double share) {
+    CHECK_FALSE(what.empty());
+    CHECK(share >= done);
+    CHECK(share <= 1.0);
+    done = share;
+  });
+  const DiagnosisResult& result = report.result;
+  CHECK(result.vehicle == laggard.vehicle.name);
+  CHECK(result.train == std::vector<std::string>{"first part"});
+  CHECK(result.validate == std::vector<std::string>{"second part"});
+  REQUIRE_FALSE(result.effects.empty());
+  CHECK(result.effects[0].name == "thruster_lag");
+  CHECK((result.verdict == "effect" || result.verdict == "ambiguous"));
+  CHECK_FALSE(result.paragraph.empty());
+  CHECK_FALSE(result.manoeuvre.empty());
+  CHECK(result.candidates.size() == model::all_effects().size());
+  CHECK(result.improvement.value > kSurelyBetter);
+  CHECK(result.improvement.low <= result.improvement.value);
+  CHECK(result.improvement.high >= result.improvement.value);
+  CHECK(result.parameters_before.size() == laggard.vehicle.parameters.size());
+  CHECK(result.parameters_after.size() > result.parameters_before.size());
+  for (const NamedValue& value : result.parameters_after) CHECK(value.std > 0.0);
+  CHECK(result.error_after.force_rmse.size() == 5);  // X Y Z K N
+  REQUIRE(result.error_after.prediction.size() == kHorizons.size());
+  CHECK(std::isfinite(result.error_after.prediction[1].rmse[0]));
+  CHECK(std::isnan(result.error_after.prediction[1].rmse[4]));  // pitch is not simulated
+  CHECK(result.residual_after.size() == 5);
+
+  // Traces are as long as the run, and restart at the measured velocity where they say so.
+  {
+    REQUIRE(report.traces.size() == 1);
+    const PredictionTrace& trace = report.traces[0];
+    const std::size_t size = laggard.validate[0].size();
+    CHECK(trace.run == "second part");
+    CHECK(trace.t.size() == size);
+    CHECK(trace.measured.size() == size);
+    CHECK(trace.before.size() == size);
+    CHECK(trace.after.size() == size);
+    CHECK(trace.residual_before.size() == size);
+    CHECK(trace.residual_after.size() == size);
+    CHECK(trace.position.size() == size);
+    CHECK(trace.heading.size() == size);
+    CHECK(trace.tau.size() == size);
+    CHECK(trace.voltage.size() == size);
+    REQUIRE(trace.restarts.size() == 7);  // 65 s, every 10 s
+    CHECK(trace.restarts.front() == 0);
+    for (std::size_t r = 0; r < trace.restarts.size(); ++r) {
+      const std::size_t k = trace.restarts[r];
+      if (r > 0) CHECK(k > trace.restarts[r - 1]);
+      REQUIRE(k < size);
+      for (const std::size_t axis : {0U, 1U, 2U, 3U, 5U}) {
+        CHECK(trace.before[k][axis] == trace.measured[k][axis]);
+        CHECK(trace.after[k][axis] == trace.measured[k][axis]);
+      }
+      CHECK(std::isnan(trace.after[k][4]));  // pitch is not simulated
+    }
+  }
+  {
+    const DiagnosisReport again = laggard.report();
+    check_same(result.parameters_before, again.result.parameters_before);
+    check_same(result.parameters_after, again.result.parameters_after);
+    CHECK(result.improvement.value == again.result.improvement.value);
+    CHECK(result.improvement.low == again.result.improvement.low);
+    CHECK(result.paragraph == again.result.paragraph);
+    CHECK(result.manoeuvre == again.result.manoeuvre);
+    REQUIRE(result.candidates.size() == again.result.candidates.size());
+    for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+      CHECK(result.candidates[i].name == again.result.candidates[i].name);
+      CHECK(result.candidates[i].log_odds == again.result.candidates[i].log_odds);
+    }
+  }
+}
+
+TEST_CASE("diagnoser: too little data is one line that says what to do") {
+  Laggard laggard;
+  laggard.train[0] = test::cut_trial(laggard.train[0], 0, 40);
+  try {
+    (void)laggard.report();
+    FAIL("4 s of data were taken for a run");
+  } catch (const InputError& error) {
+    const std::string line = error.what();
+    CHECK(line.find('\n') == std::string::npos);
+    CHECK(line.find("record longer") != std::string::npos);
+  }
+}
