@@ -5,8 +5,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
+#include <thread>
 
 #include "common/base/error.hpp"
 
@@ -29,40 +31,89 @@ double window_cost(const Eigen::VectorXd& residual) {
   return norm <= bound ? 0.5 * norm * norm : bound * norm - 0.5 * bound * bound;
 }
 
+/// Residuals and derivatives of all windows at the solver's current point. They are worked out side by side before the
+/// solver asks, and the solver itself adds them up in one thread: so a fit gives the same bits however many threads
+/// help.
+class Evaluations final : public ceres::EvaluationCallback {
+ public:
+  Evaluations(std::span<const WindowResidual> windows, const model::Model& model, const ParameterMap& map,
+              const Vector6d& sigma, const Eigen::VectorXd& x, const std::vector<Vector6d>& nu0, int threads)
+      : windows_{windows},
+        model_{model},
+        map_{map},
+        sigma_{sigma},
+        x_{x},
+        nu0_{nu0},
+        threads_{threads},
+        at_(windows.size()) {}
+
+  struct One {
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd by_parameter, by_initial;
+  };
+
+  void PrepareForEvaluation(bool jacobians, bool new_point) override {
+    if (!new_point && !(jacobians && !with_jacobians_)) return;
+    with_jacobians_ = jacobians;
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      model::Model model = model_;
+      map_.unpack(x_, model);
+      model::VelocityTrace trace;
+      for (std::size_t w = next++; w < windows_.size(); w = next++) {
+        One& one = at_[w];
+        one.residual.resize(windows_[w].rows());
+        windows_[w].evaluate(model, nu0_[w], sigma_, trace, one.residual);
+        if (jacobians) {
+          windows_[w].jacobians(model, map_, nu0_[w], sigma_, one.residual, one.by_parameter, one.by_initial);
+        }
+      }
+    };
+    std::vector<std::thread> pool;
+    for (int i = 1; i < threads_; ++i) pool.emplace_back(work);
+    work();
+    for (std::thread& thread : pool) thread.join();
+  }
+
+  [[nodiscard]] const One& at(std::size_t window) const { return at_[window]; }
+
+ private:
+  std::span<const WindowResidual> windows_;
+  const model::Model& model_;
+  const ParameterMap& map_;
+  const Vector6d& sigma_;
+  const Eigen::VectorXd& x_;
+  const std::vector<Vector6d>& nu0_;
+  int threads_;
+  bool with_jacobians_{false};
+  std::vector<One> at_;
+};
+
 /// Weighted residual of one window: parameter blocks theta (scaled) and nu0.
 class WindowCost final : public ceres::CostFunction {
  public:
-  WindowCost(const WindowResidual& window, const model::Model& model, const ParameterMap& map, const Vector6d& sigma)
-      : window_{window}, model_{model}, map_{map}, sigma_{sigma} {
-    set_num_residuals(static_cast<int>(window.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(map.size()));
+  WindowCost(const Evaluations& evaluations, std::size_t window, Eigen::Index rows, std::size_t parameters)
+      : evaluations_{evaluations}, window_{window} {
+    set_num_residuals(static_cast<int>(rows));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
     mutable_parameter_block_sizes()->push_back(6);
   }
 
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+  bool Evaluate(double const* const* /*blocks*/, double* residuals, double** jacobians) const override {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    model::Model model = model_;
-    map_.unpack(Eigen::Map<const Eigen::VectorXd>(blocks[0], static_cast<Eigen::Index>(map_.size())), model);
-    const Vector6d nu0 = Eigen::Map<const Vector6d>(blocks[1]);
-    model::VelocityTrace trace;
-    Eigen::VectorXd residual(window_.rows());
-    window_.evaluate(model, nu0, sigma_, trace, residual);
-    Eigen::Map<Eigen::VectorXd>(residuals, window_.rows()) = residual;
-    if (jacobians == nullptr) return residual.allFinite();
-    Eigen::MatrixXd by_parameter, by_initial;
-    window_.jacobians(model, map_, nu0, sigma_, residual, by_parameter, by_initial);
+    const Evaluations::One& one = evaluations_.at(window_);
+    Eigen::Map<Eigen::VectorXd>(residuals, one.residual.size()) = one.residual;
+    if (jacobians == nullptr) return one.residual.allFinite();
     if (jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], by_parameter.rows(), by_parameter.cols()) = by_parameter;
+      Eigen::Map<RowMajor>(jacobians[0], one.by_parameter.rows(), one.by_parameter.cols()) = one.by_parameter;
     }
-    if (jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], by_initial.rows(), 6) = by_initial;
-    return residual.allFinite();
+    if (jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], one.by_initial.rows(), 6) = one.by_initial;
+    return one.residual.allFinite();
   }
 
  private:
-  const WindowResidual& window_;
-  const model::Model& model_;
-  const ParameterMap& map_;
-  Vector6d sigma_;
+  const Evaluations& evaluations_;
+  std::size_t window_;
 };
 
 /// Priors on the parameters, and on nothing else.
@@ -196,7 +247,10 @@ void TrajectoryFit::solve(FitResult& fit, bool release) const {
   const ParameterMap map{fit.model};
   const model::Model shape = fit.model;
   Eigen::VectorXd x = map.pack(fit.model);
-  ceres::Problem problem;
+  Evaluations evaluations{windows_, shape, map, fit.sigma, x, fit.nu0, settings_.threads};
+  ceres::Problem::Options shared;
+  shared.evaluation_callback = &evaluations;
+  ceres::Problem problem{shared};
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
   ordering->AddElementToGroup(x.data(), 1);
@@ -207,7 +261,7 @@ void TrajectoryFit::solve(FitResult& fit, bool release) const {
   }
   for (std::size_t w = 0; w < windows_.size(); ++w) {
     const double norm = std::sqrt(static_cast<double>(windows_[w].rows()));
-    problem.AddResidualBlock(new WindowCost(windows_[w], shape, map, fit.sigma),
+    problem.AddResidualBlock(new WindowCost(evaluations, w, windows_[w].rows(), map.size()),
                              new ceres::HuberLoss(kWindowOutlier * norm), x.data(), fit.nu0[w].data());
     ordering->AddElementToGroup(fit.nu0[w].data(), 0);
     if (!unsimulated.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, unsimulated));
@@ -220,7 +274,7 @@ void TrajectoryFit::solve(FitResult& fit, bool release) const {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
-  options.num_threads = settings_.threads;
+  options.num_threads = 1;
   options.max_num_iterations = settings_.iterations;
   options.function_tolerance = settings_.tolerance;
   options.logging_type = ceres::SILENT;
