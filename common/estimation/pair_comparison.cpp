@@ -294,8 +294,8 @@ void Comparison::report(const Decision& decision, const std::string& signal, con
                                 .size = decision.applied[r],
                                 .unit = unit,
                                 .evidence = text("%.5g here, %.5g in the other recordings ", decision.applied[r],
-                                                 decision.found ? decision.pooled.value : neutral)
-                                                .append(unit + more),
+                                                 decision.found ? decision.pooled.value : neutral) +
+                                            unit + more,
                                 .action = action + ", in this recording only"});
   }
 }
