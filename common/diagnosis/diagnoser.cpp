@@ -42,7 +42,7 @@ std::map<std::string, double> force_rmse(const model::Vehicle& vehicle, const Re
 
 /// Where the overlaid predictions begin anew: every 10 s, as long as the longest horizon.
 std::vector<std::size_t> restarts_of(const Trial& trial) {
-  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(kHorizons.back() / trial.dt + 0.5));
+  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kHorizons.back() / trial.dt)));
   std::vector<std::size_t> restarts;
   for (std::size_t start = 0; start < trial.size(); start += length) restarts.push_back(start);
   return restarts;

@@ -42,8 +42,8 @@ double normalised(const Predictions& predictions, std::span<const std::size_t> c
 std::vector<model::Window> prediction_windows(std::span<const Trial> trials) {
   std::vector<model::Window> windows;
   for (const Trial& trial : trials) {
-    const auto count = static_cast<std::size_t>(kHorizons.back() / trial.dt + 0.5) + 1;
-    const auto stride = static_cast<std::size_t>(kStride / trial.dt + 0.5);
+    const auto count = static_cast<std::size_t>(std::lround(kHorizons.back() / trial.dt)) + 1;
+    const auto stride = static_cast<std::size_t>(std::lround(kStride / trial.dt));
     for (std::size_t start = 0; start + count <= trial.size(); start += stride) {
       // The start may slip to the next sample at which everything observed is valid.
       std::size_t begin = start;
@@ -148,7 +148,7 @@ Interval improvement(const Predictions& before, const Predictions& after, const 
 }
 
 std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
-  const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * kDerivativeSpan / trial.dt + 0.5));
+  const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kDerivativeSpan / trial.dt)));
   double weight = 0.0;  // sum of squared offsets [s^2]: slope of the local straight line through symmetric samples
   for (std::size_t i = 1; i <= half; ++i) weight += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
   std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));

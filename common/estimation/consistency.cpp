@@ -38,7 +38,7 @@ const char* words(QuaternionForm form) {
 
 Eigen::Quaterniond as_meant(QuaternionForm form, const Eigen::Quaterniond& q) {
   // Read as (w x y z) = (x y z w): what stands in z is w.
-  const Eigen::Quaterniond last(q.z(), q.w(), q.x(), q.y());
+  Eigen::Quaterniond last(q.z(), q.w(), q.x(), q.y());
   switch (form) {
     case QuaternionForm::kInverse:
       return q.conjugate();

@@ -38,6 +38,7 @@ Line fit_line(const std::vector<std::pair<double, double>>& pairs, int without) 
     line.scale = (wxy - wx * wy / w0) / spread;
     line.offset = (wy - line.scale * wx) / w0;
     std::vector<double> misfit;
+    misfit.reserve(pairs.size());
     for (const auto& [x, y] : pairs) misfit.push_back(y - line.scale * x - line.offset);
     sigma = mad_sigma(std::move(misfit));
   }
@@ -71,9 +72,11 @@ std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseS
   }
   const auto pairs = pairs_at(delay);
   std::vector<double> z;
+  z.reserve(pairs.size());
   for (const auto& pair : pairs) z.push_back(pair.second);
   if (z.size() < 100 || mad_sigma(z) < kLeastMotion * best.misfit || mad_sigma(z) < 0.02) return findings;
   std::vector<double> scales;
+  scales.reserve(static_cast<std::size_t>(kBlocks));
   for (int block = 0; block < static_cast<int>(kBlocks); ++block) scales.push_back(fit_line(pairs, block).scale);
   const double sigma = jackknife_sigma(scales);
   char evidence[160];

@@ -18,8 +18,8 @@ struct ConsistencyFinding {
   std::string finding;    ///< "delay", "scale", "bias", "sign", "axes", "lever_arm", "noise", "gap", ...
   double size{};
   std::string unit;
-  std::string evidence;   ///< one sentence with the numbers
-  std::string action;     ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
+  std::string evidence;  ///< one sentence with the numbers
+  std::string action;    ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
 };
 
 /// Open-loop prediction error at one horizon. Axis order u v w p q r; NaN where the axis is not simulated.
@@ -37,10 +37,10 @@ struct ModelError {
 
 /// Residual of one degree of freedom.
 struct AxisWhiteness {
-  std::string axis;                ///< "X" .. "N"
-  double p_value{};                ///< of the whiteness test (Ljung-Box on the one-step residual)
+  std::string axis;  ///< "X" .. "N"
+  double p_value{};  ///< of the whiteness test (Ljung-Box on the one-step residual)
   double autocorrelation_time_s{};
-  double explained{};              ///< share of variance explained, of the applied wrench's axis
+  double explained{};  ///< share of variance explained, of the applied wrench's axis
 };
 
 struct EffectFound {
@@ -65,7 +65,7 @@ struct CandidateTried {
 
 struct Interval {
   double value{};
-  double low{};   ///< 95 %
+  double low{};  ///< 95 %
   double high{};
 };
 
@@ -74,7 +74,7 @@ struct DiagnosisResult {
   std::vector<std::string> train;
   std::vector<std::string> validate;
   std::vector<ConsistencyFinding> consistency;
-  std::string verdict;  ///< "adequate", "effect", "ambiguous", "unexplained"
+  std::string verdict;    ///< "adequate", "effect", "ambiguous", "unexplained"
   std::string paragraph;  ///< verdict in plain words: how sure, and which manoeuvre would settle what is open
   std::string manoeuvre;  ///< the motion that would settle what is open; empty when nothing is (report only)
   std::vector<EffectFound> effects;
@@ -91,17 +91,17 @@ struct DiagnosisResult {
 /// One stretch of validation data with the open-loop predictions laid over it, for the plots.
 struct PredictionTrace {
   std::string run;
-  std::vector<double> t;                           ///< s
-  std::vector<std::array<double, 6>> measured;     ///< u v w p q r
-  std::vector<std::array<double, 6>> before;       ///< restarted at each window; NaN where not simulated
+  std::vector<double> t;                        ///< s
+  std::vector<std::array<double, 6>> measured;  ///< u v w p q r
+  std::vector<std::array<double, 6>> before;    ///< restarted at each window; NaN where not simulated
   std::vector<std::array<double, 6>> after;
   std::vector<std::array<double, 6>> residual_before;  ///< wrench residual X..N [N, N m]
   std::vector<std::array<double, 6>> residual_after;
-  std::vector<std::array<double, 3>> position;     ///< m, NED
-  std::vector<double> heading;                     ///< rad
-  std::vector<std::array<double, 6>> tau;          ///< applied wrench, N, N m
-  std::vector<double> voltage;                     ///< V; empty when not logged
-  std::vector<std::size_t> restarts;               ///< indices into t where the predictions start anew, rising
+  std::vector<std::array<double, 3>> position;  ///< m, NED
+  std::vector<double> heading;                  ///< rad
+  std::vector<std::array<double, 6>> tau;       ///< applied wrench, N, N m
+  std::vector<double> voltage;                  ///< V; empty when not logged
+  std::vector<std::size_t> restarts;            ///< indices into t where the predictions start anew, rising
 };
 
 /// Everything that the report draws.

@@ -14,11 +14,11 @@ namespace fathom {
 /// Estimate of the vehicle's motion.
 struct StateEstimate {
   Utime utime{};
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};            ///< m, NED
-  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};  ///< unit
-  Vector6d nu{Vector6d::Zero()};                            ///< m/s, rad/s: u v w p q r
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};                             ///< m, NED
+  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};                   ///< unit
+  Vector6d nu{Vector6d::Zero()};                                             ///< m/s, rad/s: u v w p q r
   Eigen::Matrix<double, 12, 1> sigma{Eigen::Matrix<double, 12, 1>::Zero()};  ///< std of p_WB, rotation, nu
-  bool valid{false};                                        ///< false until every part rests on a measurement
+  bool valid{false};  ///< false until every part rests on a measurement
 };
 
 /// One named number with its standard deviation.

@@ -14,11 +14,11 @@ namespace fathom {
 /// Motion capture: pose of the body in the world.
 struct PoseCapture {
   Utime utime{};
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};             ///< m, NED
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};            ///< m, NED
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};  ///< unit
-  bool valid{true};                                          ///< false where capture was lost, frozen or jumped
-  bool has_position{true};                                   ///< false: attitude only
-  bool has_attitude{true};                                   ///< false: position only
+  bool valid{true};                                         ///< false where capture was lost, frozen or jumped
+  bool has_position{true};                                  ///< false: attitude only
+  bool has_attitude{true};                                  ///< false: position only
 };
 
 /// Rate gyro and, where `has_*` says so, specific force and attitude (AHRS).
@@ -50,9 +50,9 @@ struct Depth {
 /// What the thrusters were told and, as far as known, what they gave. Order: as in the vehicle file.
 struct Thrusters {
   Utime utime{};
-  std::vector<double> pwm_us;  ///< us, as commanded; empty when not logged
-  std::vector<double> force;   ///< N, along each thruster's axis; empty when not known
-  std::array<double, 6> tau{}; ///< N, N m: wrench at the body origin, body axes
+  std::vector<double> pwm_us;   ///< us, as commanded; empty when not logged
+  std::vector<double> force;    ///< N, along each thruster's axis; empty when not known
+  std::array<double, 6> tau{};  ///< N, N m: wrench at the body origin, body axes
   bool has_tau{false};
 };
 

@@ -24,17 +24,17 @@ struct Trial {
   std::string name;
   double dt{};  ///< s
   Observed observed;
-  std::vector<double> t;                  ///< s from the run's start
-  std::vector<Eigen::Vector3d> p_WB;      ///< m; zero when not observed
-  std::vector<Eigen::Quaterniond> q_WB;   ///< unit; identity when not observed
-  std::vector<Vector6d> nu;               ///< u v w [m/s] p q r [rad/s], reference for fit and score
-  std::vector<std::uint8_t> pose_valid;   ///< 0 where pose is a guess across a gap
+  std::vector<double> t;                 ///< s from the run's start
+  std::vector<Eigen::Vector3d> p_WB;     ///< m; zero when not observed
+  std::vector<Eigen::Quaterniond> q_WB;  ///< unit; identity when not observed
+  std::vector<Vector6d> nu;              ///< u v w [m/s] p q r [rad/s], reference for fit and score
+  std::vector<std::uint8_t> pose_valid;  ///< 0 where pose is a guess across a gap
   std::vector<std::uint8_t> velocity_valid;
   std::vector<std::uint8_t> rates_valid;
-  std::vector<Eigen::VectorXd> input;     ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
-  bool input_is_wrench{false};            ///< true: input has 6 entries, the wrench at the body origin in body axes
-  std::vector<double> voltage;            ///< V; empty when not logged
-  Vector6d nu_sigma{Vector6d::Zero()};    ///< noise of nu, m/s and rad/s, as estimated from the data
+  std::vector<Eigen::VectorXd> input;   ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
+  bool input_is_wrench{false};          ///< true: input has 6 entries, the wrench at the body origin in body axes
+  std::vector<double> voltage;          ///< V; empty when not logged
+  Vector6d nu_sigma{Vector6d::Zero()};  ///< noise of nu, m/s and rad/s, as estimated from the data
 
   [[nodiscard]] std::size_t size() const { return t.size(); }
 };

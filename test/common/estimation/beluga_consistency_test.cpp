@@ -6,6 +6,7 @@
 
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/beluga_csv.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom {
 namespace {
@@ -55,7 +56,7 @@ TEST_CASE("the sensors of the Beluga recordings disagree as independent analysis
   std::printf("six Beluga runs checked in %.2f s of CPU time\n", elapsed);
 
   constexpr double kTimeLimit = 15.0;  // s: three times the goal, for slow machines
-  CHECK(elapsed < kTimeLimit);
+  if (test::kTimed) CHECK(elapsed < kTimeLimit);
   REQUIRE(find(result.findings, "gyro.p", "sign") != nullptr);
   REQUIRE(find(result.findings, "gyro.q", "sign") != nullptr);
   CHECK(find(result.findings, "gyro.r", "sign") == nullptr);
