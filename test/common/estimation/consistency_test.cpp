@@ -71,7 +71,7 @@ void check_motion(const SyntheticOptions& options) {
 
 }  // namespace
 
-TEST_CASE("clean recordings give no finding over thirty seeds") {
+TEST_CASE("clean recordings give no finding over many seeds") {
   for (unsigned seed = 1; seed <= test::seeds(30); ++seed) {
     const std::array<double, 5> rates{10.0, 20.0, 50.0, 100.0, 200.0};
     const double rate = rates[seed % 5];
