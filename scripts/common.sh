@@ -36,9 +36,9 @@ install_missing() {
   rm -f "$log"
 }
 
-# build PRESET: configures where needed and compiles; ninja shows how far it is.
+# build PRESET [TARGET]: configures where needed and compiles all or one target; ninja shows how far it is.
 build() {
-  local log launcher=()
+  local log launcher=() target=(${2:+--target "$2"})
   log=$(mktemp)
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   say "building (preset $1)"
@@ -49,9 +49,9 @@ build() {
   fi
   rm -f "$log"
   if [ -t 2 ]; then
-    cmake --build --preset "$1" >&2 || fail "the build failed"
+    cmake --build --preset "$1" "${target[@]}" >&2 || fail "the build failed"
   else  # one line for every tenth step, everything of a failure
-    cmake --build --preset "$1" 2>&1 | awk '
+    cmake --build --preset "$1" "${target[@]}" 2>&1 | awk '
       /^\[[0-9]+\/[0-9]+\]/ { split(substr($1, 2), n, /[\/\]]/); if (int(n[1] * 10 / n[2]) > tenth) { tenth = int(n[1] * 10 / n[2]); print; fflush() } if (!bad) next }
       /FAILED|error:/ { bad = 1 } bad { print }' >&2 || fail "the build failed"
   fi

@@ -1,4 +1,4 @@
-// Limits on time are for the ordinary build: the sanitizers make code several times slower.
+// What the sanitizers change: code is several times slower, so limits on time do not hold, and few seeds must do.
 #pragma once
 
 namespace fathom::test {
@@ -8,5 +8,8 @@ inline constexpr bool kTimed = false;
 #else
 inline constexpr bool kTimed = true;
 #endif
+
+/// How many seeds a statement that must hold for each of them is tried on: the full number in the ordinary build.
+constexpr unsigned seeds(unsigned full) { return kTimed || full < 6 ? full : full / 6; }
 
 }  // namespace fathom::test

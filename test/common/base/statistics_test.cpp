@@ -24,6 +24,7 @@ TEST_CASE("white noise is measured on top of smooth motion") {
   std::mt19937 random(1);
   std::normal_distribution<double> normal(0.0, 0.01);
   std::vector<double> series;
+  series.reserve(5000);
   for (int i = 0; i < 5000; ++i) series.push_back(std::sin(0.05 * i) + normal(random));
   CHECK(white_noise_sigma(series) == doctest::Approx(0.01).epsilon(0.05));  // scatter of 5000 samples: 2 %
 }

@@ -26,6 +26,7 @@ constexpr double kDt = 0.05;
 
 std::vector<model::BaseParameter> table_parameters() {
   std::vector<model::BaseParameter> list;
+  list.reserve(std::size(test::kTableNames));
   for (const std::string& name : test::kTableNames) list.push_back(model::parameter_from_name(name).value());
   return list;
 }
