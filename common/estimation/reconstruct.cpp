@@ -7,6 +7,7 @@
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
 #include "common/estimation/smoothing_derivative.hpp"
+#include "common/estimation/thruster_forces.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -186,16 +187,6 @@ struct Input {
   bool is_wrench{false};
 };
 
-double linear(const std::vector<Battery>& battery, Utime utime) {
-  const auto after =
-      std::lower_bound(battery.begin(), battery.end(), utime, [](const Battery& b, Utime t) { return b.utime < t; });
-  if (after == battery.begin()) return after->voltage;
-  if (after == battery.end()) return battery.back().voltage;
-  const auto before = after - 1;
-  const double share = static_cast<double>(utime - before->utime) / static_cast<double>(after->utime - before->utime);
-  return before->voltage + share * (after->voltage - before->voltage);
-}
-
 Input read_input(const Recording& recording, Utime origin, const ThrusterCorrection& correction,
                  const model::Vehicle& vehicle) {
   Input input;
@@ -206,7 +197,7 @@ Input read_input(const Recording& recording, Utime origin, const ThrusterCorrect
     if (!one.force.empty()) {
       x = Eigen::Map<const Eigen::VectorXd>(one.force.data(), static_cast<Eigen::Index>(one.force.size()));
     } else if (correction.use_commands && one.pwm_us.size() == vehicle.thrusters.size()) {
-      const double battery = recording.battery.empty() ? reference : linear(recording.battery, one.utime);
+      const double battery = recording.battery.empty() ? reference : voltage_at(recording.battery, one.utime);
       const double factor = correction.scale * std::pow(battery / reference, correction.exponent);
       x.resize(static_cast<Eigen::Index>(one.pwm_us.size()));
       for (std::size_t k = 0; k < one.pwm_us.size(); ++k) {
@@ -351,7 +342,7 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
   trial.input_is_wrench = input.is_wrench;
   sample_input(input, trial.t, trial.dt, trial.input);
   for (std::size_t i = 0; i < count && !recording.battery.empty(); ++i) {
-    trial.voltage.push_back(linear(recording.battery, utime_after(run.origin, trial.t[i])));
+    trial.voltage.push_back(voltage_at(recording.battery, utime_after(run.origin, trial.t[i])));
   }
   const double start = trial.t.front();
   for (double& t : trial.t) t -= start;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/estimation/consistency.hpp"
+#include "common/estimation/thruster_forces.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -16,17 +17,6 @@ constexpr double kSignificant = 4.0;    // standard errors
 constexpr double kVoltageMoves = 1.05;  // a voltage that moves less shows no exponent
 constexpr double kLargestExponent = 2.5;
 constexpr std::size_t kBlocks = 10;
-
-double voltage_at(const std::vector<Battery>& battery, Utime utime) {
-  if (battery.empty()) return 0.0;
-  const auto after =
-      std::lower_bound(battery.begin(), battery.end(), utime, [](const Battery& b, Utime t) { return b.utime < t; });
-  if (after == battery.begin()) return after->voltage;
-  if (after == battery.end()) return battery.back().voltage;
-  const auto before = after - 1;
-  const double share = static_cast<double>(utime - before->utime) / static_cast<double>(after->utime - before->utime);
-  return before->voltage + share * (after->voltage - before->voltage);
-}
 
 /// Weighted regression of log ratio on log voltage.
 struct Sums {

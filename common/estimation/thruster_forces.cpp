@@ -5,6 +5,17 @@
 
 namespace fathom::estimation {
 
+double voltage_at(const std::vector<Battery>& battery, Utime utime) {
+  if (battery.empty()) return 0.0;
+  const auto after =
+      std::lower_bound(battery.begin(), battery.end(), utime, [](const Battery& b, Utime t) { return b.utime < t; });
+  if (after == battery.begin()) return after->voltage;
+  if (after == battery.end()) return battery.back().voltage;
+  const auto before = after - 1;
+  const double share = static_cast<double>(utime - before->utime) / static_cast<double>(after->utime - before->utime);
+  return before->voltage + share * (after->voltage - before->voltage);
+}
+
 ThrusterForces::ThrusterForces(const ThrusterCorrection& correction, model::Vehicle vehicle)
     : correction_{correction}, vehicle_{std::move(vehicle)} {
   reference_ = vehicle_.curve.voltage > 0.0 ? vehicle_.curve.voltage : std::max(vehicle_.nominal_voltage, 1.0);

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "common/estimation/consistency.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/sensors.hpp"
 
 namespace fathom::estimation {
+
+/// Voltage [V] at `utime`: linear between samples, held at the ends, 0 when none was logged.
+[[nodiscard]] double voltage_at(const std::vector<Battery>& battery, Utime utime);
 
 class ThrusterForces {
  public:
