@@ -79,7 +79,8 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
   const Eigen::Vector3d w = motion.nu.tail<3>();
   const bool water_moves = !motion.v_WF_B.isZero(0.0);
 
-  Vector6d force = model.allocation * motion.force;
+  Vector6d force = Vector6d::Zero();  // column by column: six rows at a time are quicker than a product of unknown size
+  for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
 
   // Kirchhoff: C(nu) nu = [w x P; w x L + v x P] with momenta P, L (Fossen 2011, eq. 6.44 for diagonal M).
   if (!water_moves) {

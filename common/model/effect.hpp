@@ -60,6 +60,8 @@ class Effect {
   virtual void feel(Motion&, EffectTheta, int /*variant*/, std::span<const double> /*z*/) const {}
   /// Adds wrench and inertia. Sees the motion after all feel().
   virtual void load(const Motion&, EffectTheta, int /*variant*/, Load&) const {}
+  /// False when feel() changes the thrust by command, time and voltage alone: derivatives then need not ask it.
+  [[nodiscard]] virtual bool feels_motion() const { return true; }
   /// True when the wrench depends on where the vehicle is (not only on how it moves).
   [[nodiscard]] virtual bool feels_place() const { return false; }
   /// Size of the memory z.

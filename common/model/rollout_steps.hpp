@@ -10,12 +10,12 @@
 
 namespace fathom::model {
 
-constexpr double kLargestStep = 0.05;    // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
-constexpr double kExplicitShare = 1.5;   // damping times step that the plain rule may keep: it turns unstable at 2
-constexpr double kShortestStep = 0.005;  // s
-constexpr double kTypicalSpeed = 0.5;    // m/s, rad/s, where quadratic drag is taken to choose the step
-constexpr double kRunIn = 3.0;           // s: twenty time constants of an ordinary thruster lag
-constexpr double kAbsurd = 50.0;         // m/s or rad/s: no vehicle of ours moves like that
+constexpr double kLargestStep = 0.05;   // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
+constexpr double kExplicitShare = 1.5;  // damping times step that the plain rule may keep: it turns unstable at 2
+constexpr double kShortestStep = 0.02;  // s: what is faster decays exactly anyway
+constexpr double kTypicalSpeed = 0.5;   // m/s, rad/s, where quadratic drag is taken to choose the step
+constexpr double kRunIn = 3.0;          // s: twenty time constants of an ordinary thruster lag
+constexpr double kAbsurd = 50.0;        // m/s or rad/s: no vehicle of ours moves like that
 constexpr int kMaxMemory = 128;
 
 /// Step that follows the fastest motion of the priors: the same for every theta, so that derivatives see no change of
@@ -75,7 +75,7 @@ class Rollout {
     q_ = trial_.q_WB[window.start];
     nu.resize(6, static_cast<Eigen::Index>(window.count));
     nu.col(0) = nu_;
-    if (sensitivity_ != nullptr) sensitivity_->begin(*model_.vehicle, window.count);
+    if (sensitivity_ != nullptr) sensitivity_->begin(model_, window.count);
     for (std::size_t k = 1; k < window.count; ++k) {
       const std::size_t from = window.start + k - 1;
       for (int s = 0; s < substeps; ++s) step(from, s * h, h);
@@ -155,18 +155,20 @@ class Rollout {
     // Ostermann 2010, sec. 2.3), so that no time constant is too short for the step; second order throughout.
     const double half = 0.5 * h;
     const Vector6d decay = (damping(nu_).array() - kExplicitShare / h).cwiseMax(0.0);
-    const Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
-    const Vector6d nu_half =
-        measured_where_fixed(from, offset + half, nu_ + half * decay_share(half * decay).cwiseProduct(k1));
-    const Eigen::Vector3d p_half = p_ + half * (q_ * nu_.head<3>());
+    const bool stiff = !decay.isZero(0.0);
+    Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
+    const Eigen::Vector3d p_half = p_ + half * (motion_.R_WB * nu_.head<3>());
+    if (stiff) k1 = decay_share(half * decay).cwiseProduct(k1);
+    const Vector6d nu_half = measured_where_fixed(from, offset + half, nu_ + half * k1);
     const Eigen::Quaterniond q_half = q_ * quaternion_from_rotation_vector(half * nu_.tail<3>());
     const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);
     if (sensitivity_ != nullptr)
-      sensitivity_->advance(*this, from, offset + half, p_half, q_half, nu_half, k2, decay, h);
+      sensitivity_->advance(*this, {from, offset + half, p_half, q_half, nu_half, k2, decay}, h);
     p_ += h * (q_half * nu_half.head<3>());
     q_ = (q_ * quaternion_from_rotation_vector(h * nu_half.tail<3>())).normalized();
-    const Vector6d slope = k2 + decay.cwiseProduct(nu_half - nu_);
-    nu_ = measured_where_fixed(from, offset + h, nu_ + h * decay_share(h * decay).cwiseProduct(slope));
+    Vector6d slope = k2;
+    if (stiff) slope = decay_share(h * decay).cwiseProduct(k2 + decay.cwiseProduct(nu_half - nu_));
+    nu_ = measured_where_fixed(from, offset + h, nu_ + h * slope);
     follow_measured_attitude(from, offset + h);
   }
 

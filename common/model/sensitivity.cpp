@@ -5,21 +5,49 @@
 
 #include "common/model/regressor.hpp"
 #include "common/model/rollout_steps.hpp"
+#include "common/model/state_matrix.hpp"
 
 namespace fathom::model {
 namespace {
 
-constexpr double kAbsurdDerivative = 1e6;  // (m/s) per kg and the like
+constexpr double kAbsurdDerivative = 1e7;  // (m/s) per kg and the like, all together
 constexpr double kDifference = 1e-5;       // m, rad, m/s: truncation and rounding both below 1e-5 of an entry
 
 constexpr double kSteepest = 1e-3;  // cos^2 of the pitch beyond which the heading means nothing
 
+Load total_load(const Model& model, const Motion& motion) {
+  Load load;
+  for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
+  return load;
+}
+
+/// M^-1 of a right-hand side; rows of left-out degrees of freedom become zero.
+template <typename Right>
+Right divided_by_inertia(const Model& model, const Load& load, Right right) {
+  Matrix6d M = load.inertia;
+  M.diagonal() += model.theta.head<6>();
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    if (model.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
+    right.row(axis).setZero();
+    M.row(axis).setZero();
+    M.col(axis).setZero();
+    M(axis, axis) = 1.0;
+  }
+  if (!load.has_inertia) return M.diagonal().cwiseInverse().asDiagonal() * right;
+  return M.partialPivLu().solve(right);
+}
+
 }  // namespace
 
-void Sensitivity::begin(const Vehicle& vehicle, std::size_t samples) {
+void Sensitivity::begin(const Model& model, std::size_t samples) {
+  place_matters_ = motion_felt_ = false;
+  for (const ActiveEffect& active : model.effects) {
+    place_matters_ = place_matters_ || active.effect->feels_place();
+    motion_felt_ = motion_felt_ || active.effect->feels_motion();
+  }
   state_.setZero();
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    if (vehicle.dof[static_cast<std::size_t>(axis)]) state_(6 + axis, kBaseParameterCount + axis) = 1.0;
+    if (model.vehicle->dof[static_cast<std::size_t>(axis)]) state_(6 + axis, kBaseParameterCount + axis) = 1.0;
   }
   out_.resize(static_cast<Eigen::Index>(6 * samples), Eigen::NoChange);
   record(0);
@@ -29,77 +57,113 @@ void Sensitivity::record(std::size_t k) {
   out_.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = state_.bottomRows<6>();
 }
 
-Eigen::Matrix<double, 6, kBaseParameterCount> Sensitivity::input(Rollout& rollout, std::size_t from, double offset,
-                                                                 const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
-                                                                 const Vector6d& nu, const Vector6d& nu_dot) const {
+Sensitivity::Input Sensitivity::input(const Model& model, const Motion& motion, const Vector6d& nu_dot) const {
   // Y(nu_dot, nu, R) theta = wrench, so d(nu_dot)/d(theta) = -M^-1 Y. Drag and added mass feel the relative velocity;
   // the added mass also its change, since steady water turns in B: nu_c_dot = -w x v_c.
-  const Model& model = rollout.model();
-  rollout.felt_acceleration(from, offset, p, q, nu, 0.0);
-  const Motion& motion = rollout.motion();
-  const Vector6d nu_r = motion.nu_r();
   Vector6d nu_r_dot = nu_dot;
-  nu_r_dot.head<3>() += nu.tail<3>().cross(motion.v_WF_B);
-  Eigen::Matrix<double, 6, kBaseParameterCount> Y = base_regressor(nu_r_dot, nu_r, motion.R_WB);
-  Load load;
-  for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
-  Matrix6d M = load.inertia;
-  M.diagonal() += model.theta.head<6>();
-  for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    if (model.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
-    Y.row(axis).setZero();
-    M.row(axis).setZero();
-    M.col(axis).setZero();
-    M(axis, axis) = 1.0;
-  }
-  if (!load.has_inertia) return -(M.diagonal().cwiseInverse().asDiagonal() * Y);
-  return -M.partialPivLu().solve(Y);
+  nu_r_dot.head<3>() += motion.nu.tail<3>().cross(motion.v_WF_B);
+  const BaseRegressor Y = base_regressor(nu_r_dot, motion.nu_r(), motion.R_WB);
+  return divided_by_inertia(model, total_load(model, motion), Eigen::Matrix<double, 6, kBaseParameterCount>(-Y));
 }
 
-void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, const Eigen::Vector3d& p,
-                          const Eigen::Quaterniond& q, const Vector6d& nu, const Vector6d& nu_dot,
-                          const Vector6d& decay, double h) {
-  const Model& model = rollout.model();
-  const auto& dof = model.vehicle->dof;
-  const Eigen::Matrix3d R_WB = q.toRotationMatrix();
-  const Eigen::Vector3d v = nu.head<3>();
-  const Eigen::Vector3d w = nu.tail<3>();
-  Dynamics A = Dynamics::Zero();
-  A.block<3, 3>(0, 3) = -R_WB * skew(v);
-  A.block<3, 3>(0, 6) = R_WB;
-  A.block<3, 3>(3, 3) = -skew(w);
-  A.block<3, 3>(3, 9).setIdentity();
+void Sensitivity::velocity_rows(const Model& model, const Motion& motion, const Vector6d& nu_dot, Dynamics& A) const {
+  Eigen::Matrix<double, 6, 12> slope = Eigen::Matrix<double, 6, 12>::Zero();
+  slope.rightCols<9>() = base_force_slope(model.theta, motion);
+  const Load load = total_load(model, motion);
+  if (!load.wrench.isZero(0.0) || load.has_inertia) {
+    const auto add = [&](Eigen::Index column, const Motion& moved) {
+      const Load there = total_load(model, moved);
+      Vector6d change = there.wrench - load.wrench;
+      if (load.has_inertia) change -= (there.inertia - load.inertia) * nu_dot;
+      slope.col(column) += change / kDifference;
+    };
+    Motion moved = motion;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (place_matters_) {
+        moved.p_WB[i] += kDifference;
+        add(i, moved);
+        moved.p_WB = motion.p_WB;
+      }
+      const Eigen::Vector3d e = kDifference * Eigen::Vector3d::Unit(i);
+      moved.R_WB = motion.R_WB * quaternion_from_rotation_vector(e).toRotationMatrix();
+      add(3 + i, moved);
+      moved.R_WB = motion.R_WB;
+    }
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      moved.nu[i] += kDifference;
+      add(6 + i, moved);
+      moved.nu[i] = motion.nu[i];
+    }
+  }
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    if (!model.vehicle->dof[static_cast<std::size_t>(axis)]) slope.col(6 + axis).setZero();
+  }
+  A.bottomRows<6>() = divided_by_inertia(model, load, slope);
+}
 
-  bool place_matters = false;
-  for (const ActiveEffect& active : model.effects) place_matters = place_matters || active.effect->feels_place();
-  const auto column = [&](Eigen::Index j, const Eigen::Vector3d& p_moved, const Eigen::Quaterniond& q_moved,
-                          const Vector6d& nu_moved) {
-    A.block<6, 1>(6, j) =
-        (rollout.felt_acceleration(from, offset, p_moved, q_moved, nu_moved, 0.0) - nu_dot) / kDifference;
+void Sensitivity::velocity_rows_by_differences(Rollout& rollout, const StepMiddle& at, Dynamics& A) const {
+  const auto column = [&](Eigen::Index j, const Eigen::Vector3d& p, const Eigen::Quaterniond& q, const Vector6d& nu) {
+    A.block<6, 1>(6, j) = (rollout.felt_acceleration(at.from, at.offset, p, q, nu, 0.0) - at.nu_dot) / kDifference;
   };
   for (Eigen::Index i = 0; i < 3; ++i) {
-    if (place_matters) column(i, p + kDifference * Eigen::Vector3d::Unit(i), q, nu);
-    column(3 + i, p, q * quaternion_from_rotation_vector(kDifference * Eigen::Vector3d::Unit(i)), nu);
+    if (place_matters_) column(i, at.p + kDifference * Eigen::Vector3d::Unit(i), at.q, at.nu);
+    column(3 + i, at.p, at.q * quaternion_from_rotation_vector(kDifference * Eigen::Vector3d::Unit(i)), at.nu);
   }
   for (Eigen::Index i = 0; i < 6; ++i) {
-    if (dof[static_cast<std::size_t>(i)]) column(6 + i, p, q, nu + kDifference * Vector6d::Unit(i));
+    if (rollout.model().vehicle->dof[static_cast<std::size_t>(i)])
+      column(6 + i, at.p, at.q, at.nu + kDifference * Vector6d::Unit(i));
+  }
+}
+
+/// out = A state + B, row by row: most of A's upper half is zero, and position is left out where no effect asks for it.
+void Sensitivity::slope(const Dynamics& A, const Input& B, const State& state, State& out) const {
+  out.topRows<6>().setZero();
+  out.bottomRows<6>().leftCols<kBaseParameterCount>() = B;
+  out.bottomRows<6>().rightCols<6>().setZero();
+  for (Eigen::Index i = place_matters_ ? 0 : 3; i < 12; ++i) {
+    for (Eigen::Index j = place_matters_ ? 0 : 3; j < 12; ++j) {
+      if (A(i, j) != 0.0) out.row(i) += A(i, j) * state.row(j);
+    }
+  }
+}
+
+void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
+  const Model& model = rollout.model();
+  const Motion motion = rollout.motion();
+  const Eigen::Matrix3d& R_WB = motion.R_WB;
+  Dynamics A = Dynamics::Zero();
+  A.block<3, 3>(0, 3) = -R_WB * skew(at.nu.head<3>());
+  A.block<3, 3>(0, 6) = R_WB;
+  A.block<3, 3>(3, 3) = -skew(at.nu.tail<3>());
+  A.block<3, 3>(3, 9).setIdentity();
+  const Input B = input(model, motion, at.nu_dot);
+  if (motion_felt_) {
+    velocity_rows_by_differences(rollout, at, A);
+  } else {
+    velocity_rows(model, motion, at.nu_dot, A);
   }
 
-  State B = State::Zero();
-  B.block<6, kBaseParameterCount>(6, 0) = input(rollout, from, offset, p, q, nu, nu_dot);
   // The rollout's own rule: velocity rows decay exactly, the others take the plain midpoint.
-  Eigen::Matrix<double, 12, 1> rate = Eigen::Matrix<double, 12, 1>::Zero(), whole, half;
-  rate.tail<6>() = decay;
-  whole << Vector6d::Ones(), decay_share(h * decay);
-  half << Vector6d::Ones(), decay_share(0.5 * h * decay);
-  const State middle = 0.5 * h * (half.asDiagonal() * (A * state_ + B));
-  state_ += h * (whole.asDiagonal() * (A * (state_ + middle) + B + rate.asDiagonal() * middle));
+  State rate, middle;
+  slope(A, B, state_, rate);
+  middle = (0.5 * h) * rate;
+  if (at.decay.isZero(0.0)) {
+    slope(A, B, state_ + middle, rate);
+    state_ += h * rate;
+  } else {
+    middle.bottomRows<6>() = decay_share(0.5 * h * at.decay).asDiagonal() * middle.bottomRows<6>();
+    slope(A, B, state_ + middle, rate);
+    rate.bottomRows<6>() += at.decay.asDiagonal() * middle.bottomRows<6>();
+    rate.bottomRows<6>() = decay_share(h * at.decay).asDiagonal() * rate.bottomRows<6>();
+    state_ += h * rate;
+  }
 
   // A trajectory that diverges has no useful derivative; the solver will turn back from it.
-  if (!state_.allFinite() || state_.cwiseAbs().maxCoeff() > kAbsurdDerivative) state_.setZero();
+  if (!(state_.squaredNorm() < kAbsurdDerivative * kAbsurdDerivative)) state_.setZero();
 
   // Attitude that follows the measurement does not move with the parameters. A small rotation e in B turns the heading
   // (Euler's psi) by (down_y e_y + down_z e_z) / cos^2 theta; the rest of it is tilt.
+  if (!rollout.tilt_measured() && !rollout.heading_measured()) return;
   const Eigen::Vector3d down_B = R_WB.row(2).transpose();
   const Eigen::Vector3d across{0.0, down_B.y(), down_B.z()};
   const Eigen::RowVector3d turn = across.transpose() / std::max(across.squaredNorm(), kSteepest);
@@ -108,7 +172,7 @@ void Sensitivity::advance(Rollout& rollout, std::size_t from, double offset, con
     rotation.setZero();
   } else if (rollout.tilt_measured()) {
     rotation = (down_B * (turn * rotation)).eval();
-  } else if (rollout.heading_measured()) {
+  } else {
     rotation -= (down_B * (turn * rotation)).eval();
   }
 }

@@ -7,33 +7,45 @@ namespace fathom::model {
 
 class Rollout;
 
+/// The middle of a rollout's step, where its derivatives are taken.
+struct StepMiddle {
+  std::size_t from{};  ///< sample before the step
+  double offset{};     ///< s after it
+  const Eigen::Vector3d& p;
+  const Eigen::Quaterniond& q;
+  const Vector6d& nu;
+  const Vector6d& nu_dot;
+  const Vector6d& decay;  ///< rates of decay that the step itself uses, 1/s
+};
+
 /// S = d(state)/d(columns), state error = [position 3 in W; rotation 3 in B; velocity 6], S_dot = A S + B.
-/// A by differences of the felt acceleration, so that every effect is in it; B from the regressor, since the model is
+/// A is analytic for the base model; effects add theirs by differences. B comes from the regressor, since the model is
 /// linear in its base parameters.
 class Sensitivity {
  public:
   explicit Sensitivity(VelocityDerivatives& out) : out_{out} {}
 
-  void begin(const Vehicle& vehicle, std::size_t samples);
-  /// One midpoint step of `h` seconds; the arguments are the state at its middle, the acceleration there,
-  /// and the rates of decay that the step itself uses.
-  void advance(Rollout& rollout, std::size_t from, double offset, const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
-               const Vector6d& nu, const Vector6d& nu_dot, const Vector6d& decay, double h);
+  void begin(const Model& model, std::size_t samples);
+  /// One midpoint step of `h` seconds. The rollout's motion must be the one felt at the middle.
+  void advance(Rollout& rollout, const StepMiddle& middle, double h);
   /// Writes the velocity's derivatives of sample k.
   void record(std::size_t k);
 
  private:
   static constexpr int kColumns = kBaseParameterCount + 6;
-  using State = Eigen::Matrix<double, 12, kColumns>;
+  using State = Eigen::Matrix<double, 12, kColumns, Eigen::RowMajor>;
   using Dynamics = Eigen::Matrix<double, 12, 12>;
+  using Input = Eigen::Matrix<double, 6, kBaseParameterCount, Eigen::RowMajor>;
 
-  [[nodiscard]] Eigen::Matrix<double, 6, kBaseParameterCount> input(Rollout& rollout, std::size_t from, double offset,
-                                                                    const Eigen::Vector3d& p,
-                                                                    const Eigen::Quaterniond& q, const Vector6d& nu,
-                                                                    const Vector6d& nu_dot) const;
+  [[nodiscard]] Input input(const Model& model, const Motion& motion, const Vector6d& nu_dot) const;
+  void velocity_rows_by_differences(Rollout& rollout, const StepMiddle& middle, Dynamics& A) const;
+  void velocity_rows(const Model& model, const Motion& motion, const Vector6d& nu_dot, Dynamics& A) const;
+  void slope(const Dynamics& A, const Input& B, const State& state, State& out) const;
 
   VelocityDerivatives& out_;
   State state_{State::Zero()};
+  bool place_matters_{false};  ///< otherwise position's derivatives are not needed
+  bool motion_felt_{false};    ///< some feel() depends on the motion
 };
 
 }  // namespace fathom::model

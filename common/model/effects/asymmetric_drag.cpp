@@ -21,6 +21,7 @@ class AsymmetricDrag final : public Effect {
   }
   std::string_view revealed_by() const override { return "equal speeds in both directions along the axis"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     constexpr std::array<const char*, 3> kNames{"X_uu", "Y_vv", "Z_ww"};

@@ -22,6 +22,7 @@ class BatterySag final : public Effect {
   std::string_view sentence() const override { return "Thrust changes as the battery's voltage changes."; }
   std::string_view revealed_by() const override { return "the same manoeuvre on a full and on an emptied battery"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
     return {scene.voltage ? "voltage exponent" : "loss per 1000 s"};
   }

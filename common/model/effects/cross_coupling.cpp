@@ -56,6 +56,7 @@ class CrossCoupling final : public Effect {
   std::string_view sentence() const override { return "Motion along one axis loads another axis."; }
   std::string_view revealed_by() const override { return "motion along one axis at a time, at several speeds"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     // Positions in this list are the variant numbers, so a term whose axes stand still keeps its place with no name.

@@ -19,6 +19,7 @@ class ThrusterDeadband final : public Effect {
   std::string_view sentence() const override { return "Small commands produce no thrust."; }
   std::string_view revealed_by() const override { return "small thrust commands that change sign"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene&) const override { return {"offset", "step"}; }
   std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
     const double typical = scene.force_rms.size() > 0 ? scene.force_rms.maxCoeff() : 1.0;

@@ -19,6 +19,7 @@ class ThrusterDelay final : public Effect {
     return "steps and reversals of thrust, each held for several seconds";
   }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}, {0.2}, {0.5}}; }
 
   void feel(Motion& motion, EffectTheta theta, int, std::span<const double>) const override {

@@ -19,6 +19,7 @@ class ThrusterGain final : public Effect {
     return "sway, surge and yaw at constant thrust: the odd one turns the vehicle";
   }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     if (scene.input_is_wrench) return {};

@@ -17,6 +17,7 @@ class ThrusterLag final : public Effect {
   std::string_view sentence() const override { return "Thrust builds up gradually after each change of command."; }
   std::string_view revealed_by() const override { return "steps and a sweep of thrust up to about 2 Hz"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool feels_motion() const override { return false; }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.08}, {0.3}, {0.9}}; }
   int state_size(const Vehicle&, int actuators) const override { return actuators; }
 
