@@ -1,0 +1,63 @@
+// What the files of mechanisms share: a base that keeps name and limits, and one line per entry of a list.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "test/sealed/mechanism.hpp"
+
+namespace fathom::sealed {
+
+/// A mechanism whose size is one number with stated limits.
+class Sized : public Mechanism {
+ public:
+  Sized(const std::string& name, double guess, double largest) : Mechanism(name), guess_(guess), largest_(largest) {}
+  [[nodiscard]] double first_guess() const override { return guess_; }
+  [[nodiscard]] double largest() const override { return largest_; }
+
+ private:
+  double guess_, largest_;
+};
+
+template <class Kind>
+std::unique_ptr<Mechanism> make(const std::string& name, const Craft& craft, const Site& site, Random& random) {
+  return std::make_unique<Kind>(name, craft, site, random);
+}
+
+/// Wrench that the hull's drag makes at the vehicle's usual pace: a yardstick for sizes.
+[[nodiscard]] inline Vector6 usual_drag(const Craft& craft) {
+  return craft.pace.cwiseProduct(craft.hull.linear + craft.hull.quadratic.cwiseProduct(craft.pace));
+}
+
+/// One of the degrees of freedom in which the vehicle is driven, below `limit`.
+[[nodiscard]] inline int draw_axis(const Craft& craft, Random& random, int limit = 6) {
+  for (;;) {
+    const int axis = random.below(limit);
+    if (craft.actuated[static_cast<std::size_t>(axis)]) return axis;
+  }
+}
+
+[[nodiscard]] inline Eigen::Index draw_jet(const Craft& craft, Random& random) {
+  return random.below(static_cast<int>(craft.jets.size()));
+}
+
+/// Moments at which something is wrong: episodes of random length at random distance.
+struct Episodes {
+  std::vector<std::pair<double, double>> spans;
+  void draw(double from, double to, double gap, double shortest, double longest, Random& random) {
+    spans.clear();
+    for (double t = from; t < to;) {
+      t += -gap * std::log(1.0 - random.unit());
+      const double length = random.uniform(shortest, longest);
+      spans.emplace_back(t, t + length);
+      t += length;
+    }
+  }
+  [[nodiscard]] bool at(double t) const {
+    const auto next = std::upper_bound(spans.begin(), spans.end(), std::pair{t, 1e300});
+    return next != spans.begin() && t < std::prev(next)->second;
+  }
+};
+
+}  // namespace fathom::sealed

@@ -1,0 +1,213 @@
+#include "test/sealed/sealed_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace fathom::sealed {
+namespace {
+
+constexpr double kTrial = 330.0;       // s
+constexpr double kValidation = 165.0;  // s
+constexpr double kCloseEnough = 0.04;  // of the share that is aimed at
+constexpr double kReached = 0.10;
+constexpr int kTries = 14;
+
+struct Turn {
+  Kind kind;
+  const Entry* entry;
+};
+
+/// Every effect once, and in between what must stay unnamed.
+std::vector<Turn> round_of() {
+  std::vector<Turn> turns;
+  int count = 0;
+  for (const Entry& entry : catalogue()) {
+    turns.push_back({Kind::kSingle, &entry});
+    if (++count % 5 == 0) turns.push_back({Kind::kPair, nullptr});
+    if (count % 6 == 1) turns.push_back({Kind::kForeign, nullptr});
+    if (count % 6 == 3) turns.push_back({Kind::kClean, nullptr});
+    if (count % 12 == 5) turns.push_back({Kind::kNoise, nullptr});
+  }
+  return turns;
+}
+
+bool goes_together(const Entry& a, const Entry& b) {
+  const auto sensor = [](const Entry& e) { return e.name.starts_with("sensor_") || e.name == "lever_arm"; };
+  const bool same = a.name == b.name || (sensor(a) && sensor(b));
+  const auto either = [&](const char* x, const char* y) {
+    return (a.name == x && b.name == y) || (a.name == y && b.name == x);
+  };
+  return !same && !either("thruster_gain", "thruster_failure") && !either("thruster_lag", "thruster_delay") &&
+         !either("bottom_effect", "compressibility");
+}
+
+std::vector<Dive> train_dives(const SealedSet& set, const Mechanisms& mechanisms) {
+  std::vector<Dive> dives;
+  double begin = 0.0;
+  const int files = set.plan.train_files;
+  const double length = set.plan.validates ? kTrial / files : kTrial + kValidation;
+  for (int i = 0; i < files; ++i) {
+    const std::string purpose = "train-" + std::to_string(i + 1);
+    dives.push_back(dive(set.craft, set.site, mechanisms, set.noise,
+                         {.begin = begin, .length = length, .seed = set.plan.seed, .purpose = purpose}));
+    if (set.plan.one_clock) begin = std::round(begin + length + 31.0 + i);
+  }
+  return dives;
+}
+
+/// Mechanism `index` alone, at `size`: its share; a run that ran away is as bad as any.
+double share_of(SealedSet& set, std::size_t index, double size) {
+  Mechanisms alone;
+  alone.push_back(std::move(set.mechanisms[index]));
+  alone.front()->set_size(size);
+  const std::vector<Dive> dives = train_dives(set, alone);
+  set.mechanisms[index] = std::move(alone.front());
+  for (const Dive& one : dives) {
+    if (!one.sound) return 1e3;
+  }
+  return added_share(set.craft, fit_base(set.craft, dives), set.clean_fit);
+}
+
+/// Finds the size whose share is the class's: regula falsi on logarithms, since shares grow about like powers of sizes.
+double scale(SealedSet& set, std::size_t index, double target) {
+  Mechanism& mechanism = *set.mechanisms[index];
+  const double largest = mechanism.largest();
+  double size = std::min(mechanism.first_guess(), largest), low = 0.0, high = 0.0, low_share = 0.0, high_share = 0.0;
+  double best = size, best_share = 0.0;
+  for (int i = 0; i < kTries; ++i) {
+    const double share = share_of(set, index, size);
+    if (std::abs(share - target) < std::abs(best_share - target) && share < 1e3) {
+      best = size;
+      best_share = share;
+    }
+    if (std::abs(share - target) < kCloseEnough * target) break;
+    if (share < target) {
+      if (size >= largest) break;
+      low = size;
+      low_share = share;
+    } else {
+      high = size;
+      high_share = share;
+    }
+    if (low > 0.0 && high > 0.0) {
+      double part = 0.5;
+      if (i % 3 != 2 && high_share < 1e3 && low_share > 0.0) {
+        part = std::clamp(std::log(target / low_share) / std::log(high_share / low_share), 0.1, 0.9);
+      }
+      size = low * std::pow(high / low, part);
+    } else {
+      size = std::min(size * std::clamp(target / std::max(share, 1e-9), 0.3, 4.0), largest);
+    }
+  }
+  (void)share_of(set, index, best);  // leaves the size set
+  return best_share;
+}
+
+}  // namespace
+
+Plan make_plan(std::uint64_t seed, const Wish& wish) {
+  static const std::vector<Turn> kRound = round_of();
+  const std::uint64_t round = seed / kRound.size();
+  const Turn& turn = kRound[seed % kRound.size()];
+  Random random(seed, "plan");
+  Plan plan{.seed = seed, .kind = turn.kind, .size = static_cast<Size>((seed + round) % kShares.size())};
+  const Entry* entry = turn.entry;
+  if (!wish.effect.empty()) {
+    entry = nullptr;
+    const auto* kind = std::find(kKindNames.begin(), kKindNames.end(), wish.effect);
+    if (kind != kKindNames.end()) {
+      plan.kind = static_cast<Kind>(kind - kKindNames.begin());
+    } else {
+      entry = find_entry(wish.effect);
+      if (entry == nullptr) throw std::runtime_error("no effect is called '" + wish.effect + "'");
+      const bool listed =
+          std::any_of(catalogue().begin(), catalogue().end(), [&](const Entry& e) { return &e == entry; });
+      plan.kind = listed ? Kind::kSingle : entry == &coloured_noise() ? Kind::kNoise : Kind::kForeign;
+    }
+  }
+  const auto any_of = [&](const std::vector<Entry>& list) {
+    return &list[static_cast<std::size_t>(random.below(static_cast<int>(list.size())))];
+  };
+  std::vector<const Entry*> chosen;
+  switch (plan.kind) {
+    case Kind::kClean:
+      break;
+    case Kind::kNoise:
+      chosen = {&coloured_noise()};
+      break;
+    case Kind::kSingle:
+      chosen = {entry != nullptr ? entry : any_of(catalogue())};
+      break;
+    case Kind::kForeign:
+      chosen = {entry != nullptr ? entry : any_of(foreign())};
+      break;
+    case Kind::kPair:
+      chosen = {any_of(catalogue()), any_of(catalogue())};
+      while (!goes_together(*chosen[0], *chosen[1])) chosen[1] = any_of(catalogue());
+      if (!wish.size && plan.size == Size::kWeak) plan.size = Size::kMedium;
+      break;
+  }
+  if (wish.size) plan.size = *wish.size;
+  bool thrusters = false, clock = false;
+  for (const Entry* one : chosen) {
+    plan.names.push_back(one->name);
+    thrusters = thrusters || one->needs.thrusters;
+    clock = clock || one->needs.clock;
+  }
+  plan.one_clock = random.chance(0.5);
+  const double files = random.unit();
+  plan.train_files = files < 0.25 && !clock ? 3 : 1;
+  plan.validates = files < 0.8;
+  plan.wrench = random.chance(0.25) && !thrusters;
+  plan.voltage = random.chance(0.3);
+  plan.priors = random.chance(0.5);
+  return plan;
+}
+
+SealedSet make_set(const Plan& plan) {
+  SealedSet set{.plan = plan};
+  Needs needs;
+  for (const std::string& name : plan.names) {
+    const Needs& one = find_entry(name)->needs;
+    needs.tilting = needs.tilting || one.tilting;
+    needs.moments = needs.moments || one.moments;
+  }
+  Random random(plan.seed, "vehicle");
+  const auto family = static_cast<Family>(needs.tilting || random.chance(0.25) ? 4 + random.below(2) : random.below(4));
+  set.craft = draw_craft(family, random);
+  if (needs.moments) {
+    set.craft.states_moments = false;
+    set.craft.hull.first_moment.setZero();
+  }
+  set.site.half << random.uniform(1.5, 4.0), random.uniform(1.5, 3.5), random.uniform(0.7, 1.8);
+  set.site.centre << random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), set.site.half.z() + random.uniform(0.6, 2.0);
+  Random details(plan.seed, "effect");
+  for (const std::string& name : plan.names) {
+    const Entry* entry = find_entry(name);
+    set.mechanisms.push_back(entry->make(name, set.craft, set.site, details));
+  }
+  const double target = kShares[static_cast<std::size_t>(plan.size)];
+  set.clean_fit = fit_base(set.craft, train_dives(set, {}));
+  for (std::size_t i = 0; i < set.mechanisms.size(); ++i) {
+    set.shares.push_back(scale(set, i, target));
+    set.reached = set.reached && std::abs(set.shares.back() - target) < kReached * target;
+  }
+  for (int i = 0; i < kTries; ++i) {  // two that are bearable alone may not be so together
+    set.train = train_dives(set, set.mechanisms);
+    if (std::all_of(set.train.begin(), set.train.end(), [](const Dive& d) { return d.sound; })) break;
+    for (const auto& mechanism : set.mechanisms) mechanism->set_size(0.7 * mechanism->size());
+    set.reached = false;
+  }
+  set.fit = fit_base(set.craft, set.train);
+  if (plan.validates) {
+    const Dive& last = set.train.back();
+    const double length = static_cast<double>(last.size()) * last.dt;
+    const double begin = plan.one_clock ? std::round(last.begin + length + 45.0) : 0.0;
+    set.validate = dive(set.craft, set.site, set.mechanisms, set.noise,
+                        {.begin = begin, .length = kValidation, .seed = plan.seed, .purpose = "validate"});
+  }
+  return set;
+}
+
+}  // namespace fathom::sealed
