@@ -1,6 +1,5 @@
 #include "test/sealed/craft.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace fathom::sealed {
@@ -82,7 +81,8 @@ void load_hull(bool slender, bool six, Random& random, Craft& craft) {
   }
   hull.net_weight = hull.mass * kGravity * random.uniform(-0.015, 0.006);
   const double lift = hull.mass * kGravity * (six ? random.uniform(0.004, 0.02) : random.uniform(0.03, 0.06));
-  hull.first_moment = {0.06 * lift * random.normal(), 0.06 * lift * random.normal(), lift};
+  const double askew = six ? 0.06 * lift : 0.0;  // four degrees of freedom have no numbers for it
+  hull.first_moment = {askew * random.normal(), askew * random.normal(), lift};
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ Craft draw_craft(Family family, Random& random) {
   const bool slender = family == Family::kSlender, six = slender || family == Family::kHeavy;
   craft.density = random.chance(0.5) ? random.uniform(996.0, 1000.0) : random.uniform(1018.0, 1028.0);
   craft.nominal_voltage = std::round(random.uniform(13.0, 25.0));
-  const double scale = random.log_uniform(0.8, 1.5);
+  const double scale = random.log_uniform(0.75, 1.3);
   craft.extent = slender ? Vector3d(1.5, 0.24, 0.24) * scale : Vector3d(0.48, 0.36, 0.3) * scale;
   for (int k = 0; k < 3; ++k) craft.extent[k] *= random.uniform(0.85, 1.2);
   load_hull(slender, six, random, craft);
