@@ -5,7 +5,8 @@
 namespace fathom::sealed {
 namespace {
 
-constexpr int kEvery = 4;  // samples: motion is slow, rows are many
+constexpr std::size_t kEvery = 4;  // samples: motion is slow, rows are many
+constexpr std::size_t kSpan = 10;  // samples
 constexpr std::array<const char*, 6> kAxes{"X", "Y", "Z", "K", "M", "N"};
 constexpr std::array<const char*, 6> kSpeeds{"u", "v", "w", "p", "q", "r"};
 
@@ -30,16 +31,16 @@ std::vector<Number> numbers_of(const Craft& craft) {
   return list;
 }
 
-/// Derivative of the sensed speed: true accelerations where the instruments are honest, else central differences.
+/// Derivative of the sensed speed: the true one where the instruments are honest, else a central difference over a span
+/// that does not make a spike of a reading that jumps.
 Vector6 acceleration(const Dive& run, std::size_t k) {
-  const Vector6 speed = run.state[k].segment<6>(kSpeed);
   constexpr double kHonest = 1e-12;
   const auto& nu = run.sensed.nu;
-  if ((nu[k] - speed).cwiseAbs().maxCoeff() < kHonest &&
-      (nu[k - 2] - run.state[k - 2].segment<6>(kSpeed)).cwiseAbs().maxCoeff() < kHonest) {
-    return run.nu_dot[k];
-  }
-  return (nu[k + 1] - nu[k - 1]) / (2.0 * run.dt);
+  const auto honest = [&](std::size_t i) {
+    return (nu[i] - run.state[i].segment<6>(kSpeed)).cwiseAbs().maxCoeff() < kHonest;
+  };
+  if (honest(k - kSpan) && honest(k) && honest(k + kSpan)) return run.nu_dot[k];
+  return (nu[k + kSpan] - nu[k - kSpan]) / (2.0 * static_cast<double>(kSpan) * run.dt);
 }
 
 }  // namespace
@@ -189,7 +190,7 @@ BaseFit fit_base(const Craft& craft, std::span<const Dive> runs) {
   double samples = 0.0;
   const auto every_sample = [&](const auto& use) {
     for (const Dive& run : runs) {
-      for (std::size_t k = kEvery; k + kEvery < run.size(); k += kEvery) use(run, k);
+      for (std::size_t k = kSpan; k + kSpan < run.size(); k += kEvery) use(run, k);
     }
   };
   every_sample([&](const Dive& run, std::size_t k) {

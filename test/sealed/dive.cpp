@@ -70,7 +70,7 @@ Dive dive(const Craft& craft, const Site& site, const Mechanisms& mechanisms, co
       }
     }
     for (int i = 0; i < kSteps; ++i) body.step(t + i * run.dt / kSteps, run.dt / kSteps, run.commands, state);
-    if (!state.allFinite() || state.segment<6>(kSpeed).cwiseAbs().maxCoeff() > kRunaway || std::abs(state[4]) > 1.3) {
+    if (!state.allFinite() || state.segment<6>(kSpeed).cwiseAbs().maxCoeff() > kRunaway || std::abs(state[4]) > 1.4) {
       run.sound = false;
       return run;
     }

@@ -11,7 +11,7 @@ using Numbers = std::map<std::string, double>;
 class Vortices : public Sized {
  public:
   Vortices(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.3, 30.0),
+      : Sized(name, 0.3, 8.0),
         width_(craft.extent.y()),
         drag_(craft.hull.quadratic[1]),
         strouhal_(random.uniform(0.12, 0.25)) {}
@@ -122,7 +122,7 @@ class Stick : public Sized {
 class Rope : public Sized {
  public:
   Rope(const std::string& name, const Craft&, const Site&, Random& random)
-      : Sized(name, 0.2, 10.0), start_(random.uniform(-std::numbers::pi, std::numbers::pi)) {}
+      : Sized(name, 0.2, 4.0), start_(random.uniform(-std::numbers::pi, std::numbers::pi)) {}
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
     const double turns = std::abs(at.euler[2] - start_) / (2.0 * std::numbers::pi);
     terms.drag_factor.array() += size() * turns;
@@ -136,7 +136,7 @@ class Rope : public Sized {
 /// Weed collects: all drag grows with time.
 class Fouling : public Sized {
  public:
-  Fouling(const std::string& name, const Craft&, const Site&, Random&) : Sized(name, 0.3, 10.0) {}
+  Fouling(const std::string& name, const Craft&, const Site&, Random&) : Sized(name, 0.3, 4.0) {}
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
     terms.drag_factor.array() += size() * std::max(at.t, 0.0) / 300.0;
   }
@@ -147,7 +147,7 @@ class Fouling : public Sized {
 class FinLift : public Sized {
  public:
   FinLift(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.3, 20.0),
+      : Sized(name, 0.3, 8.0),
         unit_(craft.hull.quadratic[1]),
         arm_(random.sign() * random.uniform(0.2, 0.45) * craft.extent.x()) {}
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {

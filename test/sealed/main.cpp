@@ -1,16 +1,180 @@
 // The sealed benchmark: draws sets, lets fathom diagnose see the data only, then opens the truth and keeps the score.
+// Stops and goes on where it was: a set is drawn once, and diagnosed again only when the tool is newer than its answer.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
 
+#include "test/sealed/page.hpp"
+#include "test/sealed/tool.hpp"
 #include "test/sealed/writing.hpp"
 
-using namespace fathom::sealed;
+namespace fathom::sealed {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+struct Options {
+  std::string seeds{"1..120"}, only, size, out, tool, page;
+  int jobs{1};
+  bool draw_only{}, score_only{};
+  std::uint64_t first{}, last{};
+};
+
+Json read_json(const std::string& path) {
+  std::ifstream file(path);
+  return file ? Json::parse(file, nullptr, false) : Json();
+}
+
+bool valid(const Json& json) { return json.is_object() && !json.empty(); }
+
+void parse_seeds(Options& options) {
+  const auto dots = options.seeds.find("..");
+  try {
+    options.first = std::stoull(options.seeds);
+    options.last = dots == std::string::npos ? options.first : std::stoull(options.seeds.substr(dots + 2));
+  } catch (const std::exception&) {
+    throw std::runtime_error("--seeds: '" + options.seeds + "' is neither A..B nor a number");
+  }
+}
+
+Wish wish_of(const Options& options) {
+  Wish wish{.effect = options.only};
+  for (std::size_t i = 0; i < kSizeNames.size(); ++i) {
+    if (options.size == kSizeNames[i]) wish.size = static_cast<Size>(i);
+  }
+  return wish;
+}
+
+void draw(std::uint64_t seed, const Options& options, const Places& where) {
+  const Json truth = read_json(where.truth);
+  if (valid(truth) && truth.value("generator", 0) == kGenerator) return;
+  fs::remove_all(where.found);
+  fs::remove_all(where.data);
+  write_set(make_set(make_plan(seed, wish_of(options))), where);
+}
+
+/// The tool's command line. Only the data's folder is named in it.
+std::vector<std::string> command(const Options& options, const Places& where) {
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::string> words{options.tool, "diagnose", "--vehicle", where.data + "/vehicle.yaml", "--train"};
+  for (int i = 1; fs::exists(where.data + "/train-" + std::to_string(i) + ".csv"); ++i) {
+    words.push_back(where.data + "/train-" + std::to_string(i) + ".csv");
+  }
+  if (fs::exists(where.data + "/validate.csv")) words.insert(words.end(), {"--validate", where.data + "/validate.csv"});
+  words.insert(words.end(), {"--out", where.found, "--threads",
+                             std::to_string(std::max(1U, cores / static_cast<unsigned>(options.jobs)))});
+  return words;
+}
+
+void diagnose(const Options& options, const Places& where) {
+  const std::string note = where.found + "/run.json";
+  if (fs::exists(note) && fs::last_write_time(note) > fs::last_write_time(options.tool)) return;
+  fs::create_directories(where.found);
+  fs::remove(where.found + "/result.json");
+  const Measured measured = run_tool(command(options, where), where.found + "/log.txt");
+  std::ofstream(note) << Json{{"code", measured.code},
+                              {"seconds", measured.seconds},
+                              {"processor", measured.processor},
+                              {"megabytes", measured.megabytes}};
+}
+
+Score score_of(const Places& where) {
+  Json result = read_json(where.found + "/result.json");
+  if (!valid(result)) result = Json::object();
+  return judge(read_json(where.truth), result, read_json(where.found + "/run.json"));
+}
+
+std::string line(const Score& s) {
+  const auto joined = [](const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : "+") + name;
+    return all.empty() ? std::string("-") : all;
+  };
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(), "%5llu  %-8s %-6s %-42s %-11s %-42s %6.1f s  x%.2f -> x%.2f of the floor",
+                static_cast<unsigned long long>(s.seed), s.kind.c_str(), s.size.c_str(), joined(s.truth).c_str(),
+                s.outcome.c_str(), joined(s.found).c_str(), s.seconds, s.before / s.floor, s.after / s.floor);
+  return text.data();
+}
+
+void work(const Options& options) {
+  std::atomic<std::uint64_t> next{options.first};
+  std::mutex printing;
+  std::string trouble;
+  const auto worker = [&] {
+    for (std::uint64_t seed = next++; seed <= options.last; seed = next++) {
+      try {
+        const Places where = places(options.out, seed);
+        draw(seed, options, where);
+        if (!options.draw_only) diagnose(options, where);
+        const std::string said = options.draw_only ? where.data : line(score_of(where));
+        const std::lock_guard lock(printing);
+        std::printf("%s\n", said.c_str());
+        std::fflush(stdout);
+      } catch (const std::exception& error) {
+        const std::lock_guard lock(printing);
+        trouble = "set " + std::to_string(seed) + ": " + error.what();
+        next = options.last + 1;
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 0; i < options.jobs; ++i) threads.emplace_back(worker);
+  for (std::thread& thread : threads) thread.join();
+  if (!trouble.empty()) throw std::runtime_error(trouble);
+}
+
+void conclude(const Options& options) {
+  std::vector<Score> scores;
+  Json all = Json::array();
+  for (std::uint64_t seed = options.first; seed <= options.last; ++seed) {
+    const Places where = places(options.out, seed);
+    if (!fs::exists(where.truth) || !fs::exists(where.found + "/run.json")) continue;
+    scores.push_back(score_of(where));
+    all.push_back(to_json(scores.back()));
+  }
+  std::ofstream(options.out + "/scores.json") << all.dump(1) << "\n";
+  std::string how = "./check --sealed --seeds " + options.seeds;
+  if (!options.only.empty()) how += " --only " + options.only;
+  if (!options.size.empty()) how += " --size " + options.size;
+  const std::string page = options.page.empty() ? options.out + "/benchmark.md" : options.page;
+  const std::string picture = fs::path(page).replace_extension(".svg").string();
+  draw_picture(scores, picture);
+  std::ofstream(page) << to_page(scores, how, fs::path(picture).filename().string());
+  std::printf("%s, %s, %s/scores.json\n", page.c_str(), picture.c_str(), options.out.c_str());
+}
+
+}  // namespace
+}  // namespace fathom::sealed
 
 int main(int argc, char** argv) {
-  std::uint64_t seed = std::strtoull(argv[1], nullptr, 10);
-  Wish wish;
-  if (argc > 3) wish.effect = argv[3];
-  if (argc > 4) wish.size = static_cast<Size>(std::atoi(argv[4]));
-  const auto set = make_set(make_plan(seed, wish));
-  write_set(set, places(argv[2], seed));
+  using namespace fathom::sealed;
+  Options options;
+  CLI::App app{"Draws sealed data sets, has them diagnosed, and keeps the score.", "sealed"};
+  app.add_option("--seeds", options.seeds, "A..B or one number (default " + options.seeds + ")");
+  app.add_option("--only", options.only, "an effect's name, or: single clean noise pair foreign");
+  app.add_option("--size", options.size)->check(CLI::IsMember({"weak", "medium", "strong"}));
+  app.add_option("--out", options.out, "folder of data, truth and answers")->required();
+  app.add_option("--tool", options.tool, "the program fathom")->required();
+  app.add_option("--page", options.page, "write the page here instead of into --out; its picture beside it");
+  app.add_option("-j", options.jobs, "sets at a time")->check(CLI::Range(1, 64));
+  app.add_flag("--draw-only", options.draw_only, "only draw the sets");
+  app.add_flag("--score-only", options.score_only, "only score the answers that are there");
+  try {
+    app.parse(argc, argv);
+    parse_seeds(options);
+    if (!options.score_only) work(options);
+    if (!options.draw_only) conclude(options);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "sealed: %s\n", error.what());
+    return 1;
+  }
 }

@@ -140,8 +140,8 @@ Vector6 Pilot::keeping(double dt, const Eigen::Vector3d& position, const Eigen::
   const double outside = (smooth_offset_.cwiseAbs() - 0.75 * site_.half).maxCoeff() > 0.0 ? 0.6 * wall : 0.4 * omega;
   wrench.head<3>() = turn.transpose() * pull - outside * smooth_nu_.head<3>();
   const double upright = kTurn / kUprightPeriod;
-  wrench[3] = -upright * upright * euler[0] - upright * smooth_nu_[3];
-  wrench[4] = -upright * upright * euler[1] - upright * smooth_nu_[4];
+  wrench[3] = -upright * upright * euler[0] - 1.8 * upright * smooth_nu_[3];
+  wrench[4] = -upright * upright * euler[1] - 1.8 * upright * smooth_nu_[4];
   wrench[5] = -0.15 * smooth_nu_[5];
   wrench = wrench.cwiseProduct(inertia_);
   wrench.head<3>() -= craft_.hull.net_weight * turn.row(2).transpose();

@@ -39,7 +39,7 @@ class TetherTension : public Sized {
 class TetherDrag : public Sized {
  public:
   TetherDrag(const std::string& name, const Craft& craft, const Site& site, Random& random)
-      : Sized(name, 0.3, 60.0), anchor_(draw_anchor(site, random)) {
+      : Sized(name, 0.3, 10.0), anchor_(draw_anchor(site, random)) {
     unit_ = craft.hull.quadratic[0] / site.half.norm();
   }
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
@@ -59,7 +59,7 @@ class TetherDrag : public Sized {
 class Plane : public Sized {
  public:
   Plane(const std::string& name, const Craft& craft, const Site& site, Random& random)
-      : Sized(name, 0.5, 60.0), pushes_(random.chance(0.4)), reach_(random.uniform(0.5, 1.2) * craft.extent.y() + 0.1) {
+      : Sized(name, 0.5, 25.0), pushes_(random.chance(0.4)), reach_(random.uniform(0.5, 1.2) * craft.extent.y() + 0.1) {
     const bool bottom = name == "bottom_effect";
     const int axis = bottom ? 2 : random.below(2);
     normal_ = Vector3d::Unit(axis) * (bottom ? 1.0 : random.sign());  // into the solid

@@ -98,7 +98,7 @@ class OneThruster : public Sized {
 class Misalignment : public Sized {
  public:
   Misalignment(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.1, 1.2), jet_(draw_jet(craft, random)), shifted_(random.chance(0.3)) {
+      : Sized(name, 0.1, 0.8), jet_(draw_jet(craft, random)), shifted_(random.chance(0.3)) {
     const Jet& jet = craft.jets[static_cast<std::size_t>(jet_)];
     position_ = jet.position;
     axis_ = jet.axis;
@@ -139,7 +139,7 @@ class Sag : public Sized {
   Sag(const std::string& name, const Craft& craft, const Site&, Random& random)
       : Sized(name, 0.8, 3.0), nominal_(craft.nominal_voltage), logged_(random.chance(0.6)) {
     full_ = random.uniform(1.02, 1.1);
-    fall_ = random.uniform(0.0004, 0.0009);  // of nominal, per second
+    fall_ = random.uniform(0.0005, 0.0011);  // of nominal, per second
     ripple_ = random.uniform(0.005, 0.03);
     period_ = random.uniform(11.0, 40.0);
   }
@@ -161,7 +161,7 @@ class Sag : public Sized {
 /// T = T_nn |n| n - T_nv |n| v_a (Fossen 2011, sec. 9.3): a propeller that runs away from its wake finds less to push.
 class Loss : public Sized {
  public:
-  Loss(const std::string& name, const Craft& craft, const Site&, Random&) : Sized(name, 0.5, 60.0) {
+  Loss(const std::string& name, const Craft& craft, const Site&, Random&) : Sized(name, 0.5, 12.0) {
     for (const Jet& jet : craft.jets) jets_.push_back(jet);
   }
   void thrust(const Instant& at, std::span<const double>, std::span<double>, Eigen::VectorXd& force) const override {

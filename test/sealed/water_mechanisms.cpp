@@ -52,7 +52,7 @@ class Wave : public Sized {
 class FluidMemory : public Sized {
  public:
   FluidMemory(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.3, 30.0), time_(random.log_uniform(0.4, 4.0)) {
+      : Sized(name, 0.3, 8.0), time_(random.log_uniform(0.4, 4.0)) {
     const int only = random.chance(0.5) ? draw_axis(craft, random) : -1;
     for (int i = 0; i < 6; ++i) {
       if (!craft.actuated[static_cast<std::size_t>(i)] || (only >= 0 && i != only)) continue;
@@ -78,7 +78,7 @@ class FluidMemory : public Sized {
 class CubicDrag : public Sized {
  public:
   CubicDrag(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.5, 40.0), axis_(draw_axis(craft, random)) {
+      : Sized(name, 0.5, 8.0), axis_(draw_axis(craft, random)) {
     unit_ = usual_drag(craft)[axis_] / std::pow(craft.pace[axis_], 3);
   }
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {

@@ -127,6 +127,7 @@ std::string to_vehicle_file(const SealedSet& set) {
 std::string to_truth(const SealedSet& set) {
   const Plan& plan = set.plan;
   Json truth;
+  truth["generator"] = kGenerator;
   truth["seed"] = plan.seed;
   truth["kind"] = kKindNames[static_cast<std::size_t>(plan.kind)];
   truth["size"] = kSizeNames[static_cast<std::size_t>(plan.size)];

@@ -7,6 +7,9 @@
 
 namespace fathom::sealed {
 
+/// Counts up whenever the same number draws another set: old sets are then drawn again.
+constexpr int kGenerator = 1;
+
 /// Where a set lies below the benchmark's folder.
 struct Places {
   std::string data;   ///< folder: vehicle.yaml, train-*.csv, validate.csv

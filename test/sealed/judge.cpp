@@ -1,0 +1,182 @@
+#include "test/sealed/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace fathom::sealed {
+namespace {
+
+using Json = nlohmann::json;
+using Names = std::vector<std::string>;
+
+constexpr std::size_t kLargestAliasSet = 3;
+constexpr double kConfident = 0.9;
+constexpr double kScored = 5.0;  // s, the horizon that is compared
+
+bool contains(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// One accepted effect: its name first, then what it could be instead.
+struct Named {
+  Names set;
+  double probability{};
+  const Json* json{};
+  [[nodiscard]] bool covers(const std::string& name) const {
+    return set.front() == name || (set.size() <= kLargestAliasSet && contains(set, name));
+  }
+};
+
+std::vector<Named> accepted(const Json& result) {
+  std::vector<Named> list;
+  for (const Json& effect : result.at("effects")) {
+    if (!effect.value("accepted", true)) continue;
+    Named one{.set = {effect.at("name")}, .json = &effect};
+    for (const Json& other : effect.at("alternatives")) {
+      const std::string name = other.is_string() ? other.get<std::string>() : other.at("name").get<std::string>();
+      if (!contains(one.set, name)) one.set.push_back(name);
+    }
+    const Json& odds = effect.at("log_odds");
+    one.probability = effect.contains("probability") ? effect.at("probability").get<double>()
+                      : odds.is_number()             ? 1.0 / (1.0 + std::exp(-odds.get<double>()))
+                                                     : kUnknown;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+/// RMSE over standard deviation of the motion, mean over the axes, at 5 s.
+double normalised(const Json& error) {
+  double sum = 0.0, axes = 0.0;
+  for (const Json& row : error.at("prediction")) {
+    if (row.at("horizon_s").get<double>() != kScored) continue;
+    for (const Json& r2 : row.at("r2")) {
+      if (!r2.is_number()) continue;
+      sum += std::sqrt(std::max(1.0 - r2.get<double>(), 0.0));
+      axes += 1.0;
+    }
+  }
+  return axes > 0.0 ? sum / axes : kUnknown;
+}
+
+std::string size_of(const Json& truth) {
+  double share = std::numeric_limits<double>::infinity();
+  for (const Json& effect : truth.at("effects")) share = std::min(share, effect.at("share").get<double>());
+  if (!std::isfinite(share)) return "";
+  // Borders are the geometric means between the classes of 5, 15 and 40 %.
+  return share < 0.03 ? "faint" : share < 0.0866 ? "weak" : share < 0.245 ? "medium" : "strong";
+}
+
+std::string outcome_of(const Score& score, const std::vector<Named>& named) {
+  const auto covered = [&](const std::string& name) {
+    return std::any_of(named.begin(), named.end(), [&](const Named& n) { return n.covers(name); });
+  };
+  if (score.kind == "clean" || score.kind == "noise") return named.empty() ? "silent" : "false alarm";
+  if (score.kind == "foreign") {
+    const bool sure = std::any_of(named.begin(), named.end(),
+                                  [](const Named& n) { return n.set.size() == 1 && !(n.probability < kConfident); });
+    return named.empty() ? "refused" : sure ? "wrong name" : "hesitant";
+  }
+  if (named.empty()) return "missed";
+  if (score.kind == "pair") {
+    const auto right = std::count_if(score.truth.begin(), score.truth.end(), covered);
+    return right == 2 ? "whole" : right == 1 ? "half" : "wrong";
+  }
+  const std::string& name = score.truth.front();
+  if (named.front().set.front() == name) return "named";
+  if (named.front().covers(name)) return "alias";
+  return covered(name) ? "later" : "wrong";
+}
+
+/// Deviations of found parameters whose names the truth knows too.
+void compare_parameters(const Json& truth, const Named& named, Score& score) {
+  for (const Json& effect : truth.at("effects")) {
+    if (effect.at("name") != named.set.front()) continue;
+    const Json& true_values = effect.at("parameters");
+    for (const auto& [key, found] : named.json->at("parameters").items()) {
+      const std::string name = key.substr(key.find_last_of('.') + 1);  // npos + 1 is 0: no prefix
+      const Json& value = found.at("value");
+      const Json& std = found.at("std");
+      if (!true_values.contains(name) || !value.is_number() || !std.is_number() || std.get<double>() <= 0.0) continue;
+      score.deviations.push_back((value.get<double>() - true_values.at(name).get<double>()) / std.get<double>());
+    }
+  }
+}
+
+}  // namespace
+
+Score judge(const Json& truth, const Json& result, const Json& run) {
+  Score score;
+  score.seed = truth.at("seed");
+  score.kind = truth.at("kind");
+  score.size = size_of(truth);
+  for (const Json& effect : truth.at("effects")) score.truth.push_back(effect.at("name"));
+  score.floor = truth.at("floor").at("truth");
+  score.base = truth.at("floor").at("base").is_number() ? truth.at("floor").at("base").get<double>() : kUnknown;
+  score.seconds = run.value("seconds", kUnknown);
+  score.megabytes = run.value("megabytes", kUnknown);
+  if (result.empty()) {
+    score.outcome = "failed";
+    return score;
+  }
+  score.verdict = result.at("verdict");
+  const std::vector<Named> named = accepted(result);
+  for (const Named& one : named) {
+    score.found.push_back(one.set.front());
+    const bool right = std::any_of(score.truth.begin(), score.truth.end(),
+                                   [&](const std::string& name) { return one.covers(name); }) &&
+                       score.kind != "foreign" && score.kind != "noise";
+    if (!right) ++score.strangers;
+    if (std::isfinite(one.probability)) score.claims.push_back({one.probability, right});
+    compare_parameters(truth, one, score);
+  }
+  score.outcome = outcome_of(score, named);
+  const Names wished{"named", "alias", "whole", "silent", "refused"};
+  score.good = contains(wished, score.outcome);
+  const std::string first = score.truth.empty() ? "" : score.truth.front();
+  for (const Json& finding : result.at("consistency")) {
+    const std::string what = finding.at("finding");
+    score.in_sensor_check = score.in_sensor_check || (first == "sensor_latency" && what == "delay") ||
+                            (first == "sensor_scale" && what == "scale") ||
+                            (first == "lever_arm" && what == "lever_arm");
+  }
+  score.before = normalised(result.at("error").at("before"));
+  score.after = normalised(result.at("error").at("after"));
+  if (truth.contains("bound")) {
+    for (const auto& [name, bound] : truth.at("bound").items()) {
+      const Json& fitted = result.at("parameters").at("after");
+      if (!fitted.contains(name) || !fitted.at(name).at("value").is_number()) continue;
+      const double error = fitted.at(name).at("value").get<double>() - truth.at("base").at(name).get<double>();
+      score.over_bound.push_back(error / bound.at("speeds").get<double>());
+    }
+  }
+  return score;
+}
+
+Json to_json(const Score& score) {
+  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json json{{"seed", score.seed},
+            {"kind", score.kind},
+            {"size", score.size},
+            {"truth", score.truth},
+            {"found", score.found},
+            {"verdict", score.verdict},
+            {"outcome", score.outcome},
+            {"good", score.good},
+            {"strangers", score.strangers},
+            {"in_sensor_check", score.in_sensor_check},
+            {"before", finite(score.before)},
+            {"after", finite(score.after)},
+            {"floor", finite(score.floor)},
+            {"base", finite(score.base)},
+            {"seconds", finite(score.seconds)},
+            {"megabytes", finite(score.megabytes)},
+            {"deviations", score.deviations},
+            {"over_bound", score.over_bound}};
+  json["claims"] = Json::array();
+  for (const Claim& claim : score.claims) json["claims"].push_back({claim.probability, claim.right});
+  return json;
+}
+
+}  // namespace fathom::sealed

@@ -1,0 +1,43 @@
+// Opens the truth of one set and compares it with what fathom diagnose found.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace fathom::sealed {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A statement with odds: was it right?
+struct Claim {
+  double probability{};
+  bool right{};
+};
+
+struct Score {
+  std::uint64_t seed{};
+  std::string kind, size;          ///< size: the class nearest to the share that was reached; "faint" when below all
+  std::vector<std::string> truth;  ///< names
+  std::vector<std::string> found;  ///< accepted names, in the tool's order
+  std::string verdict;
+  /// single: named, alias, later, missed, wrong.  pair: whole, half, missed, wrong.  clean and noise: silent, false
+  /// alarm.  foreign: refused, hesitant, wrong name.  Any: failed.
+  std::string outcome;
+  bool good{};             ///< the outcome that is wished
+  int strangers{};         ///< accepted names that are not in the truth nor an alias of it
+  bool in_sensor_check{};  ///< a fault of an instrument that the comparison of sensors reported by itself
+  double before{kUnknown}, after{kUnknown}, floor{kUnknown}, base{kUnknown};  ///< normalised 5 s errors
+  double seconds{}, megabytes{};
+  std::vector<Claim> claims;
+  std::vector<double> deviations;  ///< (found - true) / standard deviation, of effect parameters that mean the same
+  std::vector<double> over_bound;  ///< (found - true) / Cramer-Rao bound, of base numbers on clean data
+};
+
+/// `run` is what the runner measured; `result` is empty when the tool failed.
+[[nodiscard]] Score judge(const nlohmann::json& truth, const nlohmann::json& result, const nlohmann::json& run);
+[[nodiscard]] nlohmann::json to_json(const Score& score);
+
+}  // namespace fathom::sealed
