@@ -1,0 +1,79 @@
+// The scorer: what counts as named, as alias, as whole, as false alarm and as a wrong confident name.
+#include "test/sealed/judge.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace fathom::sealed {
+namespace {
+
+using Json = nlohmann::json;
+using Names = std::vector<std::string>;
+
+Json truth_of(const std::string& kind, const Names& names) {
+  Json truth{{"seed", 1}, {"kind", kind}, {"floor", {{"truth", 0.02}, {"base", 0.1}}}};
+  truth["effects"] = Json::array();
+  for (const auto& name : names)
+    truth["effects"].push_back({{"name", name}, {"share", 0.15}, {"parameters", {{"T", 0.2}}}});
+  return truth;
+}
+
+Json effect(const std::string& name, const Names& others = {}, double log_odds = 5.0) {
+  return {{"name", name},
+          {"accepted", true},
+          {"alternatives", others},
+          {"log_odds", log_odds},
+          {"parameters", {{"T", {{"value", 0.22}, {"std", 0.02}}}, {"own", {{"value", 1.0}, {"std", 1.0}}}}}};
+}
+
+Score judged(const Json& truth, const std::vector<Json>& effects) {
+  const Json error{{"prediction", {{{"horizon_s", 5}, {"r2", {{"u", 0.99}, {"v", 0.96}, {"p", nullptr}}}}}}};
+  const Json result{{"verdict", "effect"},
+                    {"effects", effects},
+                    {"consistency", Json::array()},
+                    {"parameters", {{"after", Json::object()}}},
+                    {"error", {{"before", error}, {"after", error}}}};
+  return judge(truth, result, {{"seconds", 3.0}});
+}
+
+}  // namespace
+
+TEST_CASE("judge: one effect") {
+  const Json truth = truth_of("single", {"thruster_lag"});
+  CHECK(judged(truth, {effect("thruster_lag")}).outcome == "named");
+  CHECK(judged(truth, {effect("thruster_delay", {"thruster_lag", "wave"})}).outcome == "alias");
+  CHECK(judged(truth, {effect("thruster_delay", {"thruster_lag", "wave", "current"})}).outcome == "wrong");
+  CHECK(judged(truth, {effect("current"), effect("thruster_lag")}).outcome == "later");
+  CHECK(judged(truth, {effect("current")}).outcome == "wrong");
+  CHECK(judged(truth, {}).outcome == "missed");
+  CHECK(judged(truth, {effect("thruster_lag"), effect("current")}).strangers == 1);
+  CHECK(judged(truth, {effect("thruster_lag")}).size == "medium");
+  CHECK(judge(truth, Json::object(), Json::object()).outcome == "failed");
+}
+
+TEST_CASE("judge: pairs, silence and strangers") {
+  const Json pair = truth_of("pair", {"current", "thruster_lag"});
+  CHECK(judged(pair, {effect("thruster_lag"), effect("current")}).outcome == "whole");
+  CHECK(judged(pair, {effect("thruster_delay", {"thruster_lag"}), effect("current")}).outcome == "whole");
+  CHECK(judged(pair, {effect("current")}).outcome == "half");
+  CHECK(judged(truth_of("clean", {}), {}).good);
+  CHECK(judged(truth_of("noise", {"coloured_noise"}), {effect("current")}).outcome == "false alarm");
+  const Json foreign = truth_of("foreign", {"rope_wrapping"});
+  CHECK(judged(foreign, {}).outcome == "refused");
+  CHECK(judged(foreign, {effect("current")}).outcome == "wrong name");
+  CHECK(judged(foreign, {effect("current", {"wave"})}).outcome == "hesitant");
+  CHECK(judged(foreign, {effect("current", {}, 0.5)}).outcome == "hesitant");
+}
+
+TEST_CASE("judge: numbers") {
+  const Score score = judged(truth_of("single", {"thruster_lag"}), {effect("thruster_lag")});
+  CHECK(score.after == doctest::Approx(0.5 * (0.1 + 0.2)));  // sqrt(1 - r2), mean over axes that are simulated
+  REQUIRE(score.deviations.size() == 1);
+  CHECK(score.deviations.front() == doctest::Approx(1.0));
+  REQUIRE(score.claims.size() == 1);
+  CHECK(score.claims.front().right);
+  CHECK(score.claims.front().probability == doctest::Approx(0.99331).epsilon(1e-4));
+}
+
+}  // namespace fathom::sealed
