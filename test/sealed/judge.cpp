@@ -1,6 +1,7 @@
 #include "test/sealed/judge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -89,17 +90,39 @@ std::string outcome_of(const Score& score, const std::vector<Named>& named) {
   return covered(name) ? "later" : "wrong";
 }
 
-/// Deviations of found parameters whose names the truth knows too.
+/// Numbers of effects whose definition here and in the tool is the same: effect, name in result.json, name in the
+/// truth.
+struct SameMeaning {
+  const char *effect, *found, *truth;
+};
+constexpr std::array kSameMeaning{SameMeaning{"current", "v_N", "v_N"},
+                                  SameMeaning{"current", "v_E", "v_E"},
+                                  SameMeaning{"thruster_lag", "time_constant", "T"},
+                                  SameMeaning{"thruster_delay", "delay", "T"},
+                                  SameMeaning{"thruster_deadband", "half_width", "d"},
+                                  SameMeaning{"cross_coupling", "coefficient", "coefficient"},
+                                  SameMeaning{"asymmetric_drag", "coefficient", "c"}};
+
 void compare_parameters(const Json& truth, const Named& named, Score& score) {
   for (const Json& effect : truth.at("effects")) {
     if (effect.at("name") != named.set.front()) continue;
-    const Json& true_values = effect.at("parameters");
+    const std::string form = effect.value("form", ""), found_form = named.json->value("variant", "");
+    if (!form.empty() && !found_form.empty() && (" " + found_form + ",").find(" " + form + ",") == std::string::npos) {
+      score.wrong_form = true;
+      continue;
+    }
     for (const auto& [key, found] : named.json->at("parameters").items()) {
-      const std::string name = key.substr(key.find_last_of('.') + 1);  // npos + 1 is 0: no prefix
+      const auto dot = key.find_last_of('.');
+      const std::string name = key.substr(dot + 1);  // npos + 1 is 0: no prefix
+      if (dot != std::string::npos && !form.empty() && key.substr(0, dot) != form) continue;
+      const auto* same = std::find_if(kSameMeaning.begin(), kSameMeaning.end(), [&](const SameMeaning& s) {
+        return s.effect == named.set.front() && s.found == name;
+      });
       const Json& value = found.at("value");
       const Json& std = found.at("std");
-      if (!true_values.contains(name) || !value.is_number() || !std.is_number() || std.get<double>() <= 0.0) continue;
-      score.deviations.push_back((value.get<double>() - true_values.at(name).get<double>()) / std.get<double>());
+      if (same == kSameMeaning.end() || !value.is_number() || !std.is_number() || std.get<double>() <= 0.0) continue;
+      const double true_value = effect.at("parameters").at(same->truth);
+      score.deviations.push_back((value.get<double>() - true_value) / std.get<double>());
     }
   }
 }
@@ -139,7 +162,7 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
     const std::string what = finding.at("finding");
     score.in_sensor_check = score.in_sensor_check || (first == "sensor_latency" && what == "delay") ||
                             (first == "sensor_scale" && what == "scale") ||
-                            (first == "lever_arm" && what == "lever_arm");
+                            (first == "lever_arm" && what.starts_with("lever_arm"));
   }
   score.before = normalised(result.at("error").at("before"));
   score.after = normalised(result.at("error").at("after"));
@@ -149,6 +172,7 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
       if (!fitted.contains(name) || !fitted.at(name).at("value").is_number()) continue;
       const double error = fitted.at(name).at("value").get<double>() - truth.at("base").at(name).get<double>();
       score.over_bound.push_back(error / bound.at("speeds").get<double>());
+      score.over_all.push_back(error / bound.at("all").get<double>());
     }
   }
   return score;
@@ -173,7 +197,8 @@ Json to_json(const Score& score) {
             {"seconds", finite(score.seconds)},
             {"megabytes", finite(score.megabytes)},
             {"deviations", score.deviations},
-            {"over_bound", score.over_bound}};
+            {"over_bound", score.over_bound},
+            {"wrong_form", score.wrong_form}};
   json["claims"] = Json::array();
   for (const Claim& claim : score.claims) json["claims"].push_back({claim.probability, claim.right});
   return json;

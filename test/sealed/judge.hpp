@@ -33,6 +33,8 @@ struct Score {
   double seconds{}, megabytes{};
   std::vector<Claim> claims;
   std::vector<double> deviations;  ///< (found - true) / standard deviation, of effect parameters that mean the same
+  bool wrong_form{};               ///< right name, but another thruster, axis or law than the true one
+  std::vector<double> over_all;    ///< as over_bound, over the bound of all signals
   std::vector<double> over_bound;  ///< (found - true) / Cramer-Rao bound, of base numbers on clean data
 };
 

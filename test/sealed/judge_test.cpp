@@ -20,11 +20,12 @@ Json truth_of(const std::string& kind, const Names& names) {
 }
 
 Json effect(const std::string& name, const Names& others = {}, double log_odds = 5.0) {
-  return {{"name", name},
-          {"accepted", true},
-          {"alternatives", others},
-          {"log_odds", log_odds},
-          {"parameters", {{"T", {{"value", 0.22}, {"std", 0.02}}}, {"own", {{"value", 1.0}, {"std", 1.0}}}}}};
+  return {
+      {"name", name},
+      {"accepted", true},
+      {"alternatives", others},
+      {"log_odds", log_odds},
+      {"parameters", {{"time_constant", {{"value", 0.22}, {"std", 0.02}}}, {"own", {{"value", 1.0}, {"std", 1.0}}}}}};
 }
 
 Score judged(const Json& truth, const std::vector<Json>& effects) {
@@ -64,6 +65,15 @@ TEST_CASE("judge: pairs, silence and strangers") {
   CHECK(judged(foreign, {effect("current")}).outcome == "wrong name");
   CHECK(judged(foreign, {effect("current", {"wave"})}).outcome == "hesitant");
   CHECK(judged(foreign, {effect("current", {}, 0.5)}).outcome == "hesitant");
+}
+
+TEST_CASE("judge: the right name for the wrong thruster is seen") {
+  Json truth = truth_of("single", {"thruster_gain"}), found = effect("thruster_gain");
+  truth["effects"][0]["form"] = "T1";
+  for (const auto& [form, wrong] : {std::pair{"T1", false}, {"T3", true}, {"T3, T1", false}, {"T10", true}}) {
+    found["variant"] = form;
+    CHECK(judged(truth, {found}).wrong_form == wrong);
+  }
 }
 
 TEST_CASE("judge: numbers") {

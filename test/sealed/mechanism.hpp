@@ -62,7 +62,8 @@ class Mechanism {
   void set_size(double size) { size_ = size; }
   [[nodiscard]] virtual double first_guess() const = 0;  ///< of the size
   [[nodiscard]] virtual double largest() const = 0;      ///< more is not plausible
-  /// Under the names that docs/model.md uses where the definition is the same.
+  /// Which of an effect's forms it is, as result.json writes it ("X_uu", "T3"); empty: there is one form.
+  [[nodiscard]] virtual std::string form() const { return {}; }
   [[nodiscard]] virtual std::map<std::string, double> parameters() const = 0;
 
   /// A new file begins: random paths are drawn for it.

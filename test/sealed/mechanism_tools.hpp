@@ -38,6 +38,12 @@ std::unique_ptr<Mechanism> make(const std::string& name, const Craft& craft, con
   }
 }
 
+/// Thrusters are called T1, T2, ... in vehicle files.
+[[nodiscard]] inline std::string jet_name(Eigen::Index jet) { return "T" + std::to_string(jet + 1); }
+
+constexpr std::array<const char*, 6> kAxisLetters{"X", "Y", "Z", "K", "M", "N"};
+constexpr std::array<const char*, 6> kSpeedLetters{"u", "v", "w", "p", "q", "r"};
+
 [[nodiscard]] inline Eigen::Index draw_jet(const Craft& craft, Random& random) {
   return random.below(static_cast<int>(craft.jets.size()));
 }

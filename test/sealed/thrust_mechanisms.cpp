@@ -51,7 +51,8 @@ class DeadBand : public Sized {
       f = over <= 0.0 ? 0.0 : (step_ ? f : std::copysign(over, f));
     }
   }
-  [[nodiscard]] Numbers parameters() const override { return {{"d", size()}, {"is_step", step_ ? 1.0 : 0.0}}; }
+  [[nodiscard]] Numbers parameters() const override { return {{"d", size()}}; }
+  [[nodiscard]] std::string form() const override { return step_ ? "step" : "offset"; }
 
  private:
   bool step_;
@@ -83,10 +84,11 @@ class OneThruster : public Sized {
     if (at.t >= when_) force[jet_] *= 1.0 + sign_ * size();
   }
   [[nodiscard]] Numbers parameters() const override {
-    Numbers numbers{{"thruster", static_cast<double>(jet_ + 1)}, {"g", sign_ * size()}};
+    Numbers numbers{{"g", sign_ * size()}};
     if (fails_) numbers["t_0"] = when_;
     return numbers;
   }
+  [[nodiscard]] std::string form() const override { return jet_name(jet_); }
 
  private:
   bool fails_;
@@ -122,9 +124,9 @@ class Misalignment : public Sized {
     terms.wrench.tail<3>() += f * (position.cross(axis) - position_.cross(axis_));
   }
   [[nodiscard]] Numbers parameters() const override {
-    return {{"thruster", static_cast<double>(jet_ + 1)},
-            {shifted_ ? "shift_m" : "angle_rad", size() * (shifted_ ? reach_ : 1.0)}};
+    return {{shifted_ ? "shift_m" : "angle_rad", size() * (shifted_ ? reach_ : 1.0)}};
   }
+  [[nodiscard]] std::string form() const override { return jet_name(jet_); }
 
  private:
   Eigen::Index jet_;
@@ -151,6 +153,7 @@ class Sag : public Sized {
     return nominal_ * std::max(full_ - fall_ * t + ripple_ * std::sin(2.0 * std::numbers::pi * t / period_), 0.5);
   }
   [[nodiscard]] Numbers parameters() const override { return {{logged_ ? "k" : "s", size()}}; }
+  [[nodiscard]] std::string form() const override { return logged_ ? "voltage exponent" : "loss per 1000 s"; }
 
  private:
   double nominal_;

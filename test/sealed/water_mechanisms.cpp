@@ -8,6 +8,14 @@ namespace {
 using Eigen::Vector3d;
 using Numbers = std::map<std::string, double>;
 
+/// X_uu, or X_uuu.
+std::string power_name(int axis, int power) {
+  const auto i = static_cast<std::size_t>(axis);
+  std::string name = std::string(kAxisLetters[i]) + "_";
+  for (int k = 0; k < power; ++k) name += kSpeedLetters[i];
+  return name;
+}
+
 class Current : public Sized {
  public:
   Current(const std::string& name, const Craft&, const Site&, Random& random)
@@ -84,9 +92,8 @@ class CubicDrag : public Sized {
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
     terms.wrench[axis_] -= size() * unit_ * std::pow(at.nu_r[axis_], 3);
   }
-  [[nodiscard]] Numbers parameters() const override {
-    return {{"axis", static_cast<double>(axis_)}, {"c_cubic", -size() * unit_}};
-  }
+  [[nodiscard]] Numbers parameters() const override { return {{"c_cubic", -size() * unit_}}; }
+  [[nodiscard]] std::string form() const override { return power_name(axis_, 3); }
 
  private:
   int axis_;
@@ -104,9 +111,8 @@ class AsymmetricDrag : public Sized {
   void body(const Instant& at, std::span<const double>, std::span<double>, Terms& terms) const override {
     terms.wrench[axis_] += sign_ * size() * unit_ * at.nu_r[axis_] * at.nu_r[axis_];
   }
-  [[nodiscard]] Numbers parameters() const override {
-    return {{"axis", static_cast<double>(axis_)}, {"c", sign_ * size() * unit_}};
-  }
+  [[nodiscard]] Numbers parameters() const override { return {{"c", sign_ * size() * unit_}}; }
+  [[nodiscard]] std::string form() const override { return power_name(axis_, 2); }
 
  private:
   int axis_;
@@ -140,11 +146,12 @@ class CrossCoupling : public Sized {
       terms.added(j_, i_) += d;
     }
   }
-  [[nodiscard]] Numbers parameters() const override {
-    return {{"row", static_cast<double>(i_)},
-            {"column", static_cast<double>(j_)},
-            {"kind", static_cast<double>(kind_)},
-            {"coefficient", sign_ * size() * unit_}};
+  [[nodiscard]] Numbers parameters() const override { return {{"coefficient", sign_ * size() * unit_}}; }
+  [[nodiscard]] std::string form() const override {
+    const auto row = static_cast<std::size_t>(kind_ == 2 ? std::min(i_, j_) : i_);
+    const auto column = static_cast<std::size_t>(kind_ == 2 ? std::max(i_, j_) : j_);
+    const std::string axis = kAxisLetters[row], speed = kSpeedLetters[column];
+    return axis + "_" + speed + (kind_ == 0 ? "" : kind_ == 1 ? "|" + speed + "|" : "_dot");
   }
 
  private:

@@ -135,6 +135,7 @@ std::string to_truth(const SealedSet& set) {
   for (std::size_t i = 0; i < set.mechanisms.size(); ++i) {
     Json one;
     one["name"] = set.mechanisms[i]->name();
+    one["form"] = set.mechanisms[i]->form();
     one["share"] = set.shares[i];
     one["parameters"] = set.mechanisms[i]->parameters();
     truth["effects"].push_back(one);
