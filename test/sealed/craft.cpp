@@ -79,6 +79,10 @@ void load_hull(bool slender, bool six, Random& random, Craft& craft) {
     hull.quadratic[3 + k] = 0.5 * craft.density * extent[k] * std::pow(arm, 4) / 32.0 * random.uniform(0.8, 2.0) * 2.0;
     hull.linear[3 + k] = hull.quadratic[3 + k] * random.uniform(0.2, 0.6) + 0.4 * hull.inertia[k];
   }
+  if (!six) {  // four degrees of freedom have no numbers for (I_Y - I_X) p q in yaw
+    hull.inertia[1] = hull.inertia[0];
+    hull.added[4] = hull.added[3];
+  }
   hull.net_weight = hull.mass * kGravity * random.uniform(-0.015, 0.006);
   const double lift = hull.mass * kGravity * (six ? random.uniform(0.004, 0.02) : random.uniform(0.03, 0.06));
   const double askew = six ? 0.06 * lift : 0.0;  // four degrees of freedom have no numbers for it

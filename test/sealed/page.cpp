@@ -251,7 +251,7 @@ void draw_picture(std::span<const Score> scores, const std::string& path) {
   }
   std::sort(rows.begin(), rows.end());
   std::sort(columns.begin(), columns.end());
-  FILE* plot = popen("gnuplot", "w");
+  FILE* plot = popen("gnuplot 2>/dev/null", "w");  // it warns of matrices of one row
   if (plot == nullptr) return;
   std::fprintf(plot, "set terminal svg size 1500,820 font 'sans,11' noenhanced background 'white'\nset output '%s'\n",
                path.c_str());
@@ -280,9 +280,10 @@ void draw_picture(std::span<const Score> scores, const std::string& path) {
   std::fprintf(
       plot, "EOD\nplot $matrix using 1:2:3 with image, '' using 1:2:($3 > 0 ? sprintf('%%d', $3) : '') with labels\n");
   std::fprintf(plot, "set size 0.3,0.5\nset origin 0.7,0.5\nset title 'Stated and true share of right names'\n");
-  std::fprintf(plot,
-               "set xrange [0:1]\nset yrange [0:1]\nset xtics auto norotate\nset ytics auto\nset xlabel 'stated'\nset "
-               "ylabel 'right'\n$bins << EOD\n");
+  std::fprintf(
+      plot,
+      "set xrange [0:1.03]\nset yrange [0:1.03]\nset xtics auto norotate\nset ytics auto\nset xlabel 'stated'\nset "
+      "ylabel 'right'\n$bins << EOD\n");
   for (const Bin& bin : calibration(scores)) {
     // 95 % interval after Wilson (1927).
     const double n = static_cast<double>(bin.all), p = static_cast<double>(bin.right) / n, z = 1.96;

@@ -114,8 +114,13 @@ Eigen::VectorXd bound(const SealedSet& set, double length, bool all_signals) {
           body.hull = hulls[j];
           body.step(t, kEvery * run.dt, run.commands, moved[j]);
         }
-        if (!all_signals) {  // poses are taken as measured: they do not carry a nudge on
-          for (State& one : moved) one.head<6>() = plain.head<6>();
+        if (!all_signals) {  // poses and rates without a model are taken as measured: they do not carry a nudge on
+          for (State& one : moved) {
+            one.head<6>() = plain.head<6>();
+            for (int i = 0; i < 6; ++i) {
+              if (!craft.actuated[static_cast<std::size_t>(i)]) one[kSpeed + i] = plain[kSpeed + i];
+            }
+          }
         }
       }
       normal = normal.selfadjointView<Eigen::Lower>();
