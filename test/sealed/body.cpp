@@ -56,7 +56,7 @@ void Commands::at(double t, Eigen::VectorXd& out) const {
 }
 
 Body::Body(const Craft& craft, const Mechanisms& mechanisms)
-    : hull(craft.hull), craft_(craft), mechanisms_(mechanisms), allocation_(craft.allocation()) {
+    : hull(craft.hull), mechanisms_(mechanisms), allocation_(craft.allocation()) {
   for (const auto& mechanism : mechanisms_) {
     place_.push_back(memory_);
     memory_ += mechanism->memory();

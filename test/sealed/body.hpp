@@ -30,7 +30,6 @@ class Body {
   [[nodiscard]] double energy(const State& state) const;
 
  private:
-  const Craft& craft_;
   const Mechanisms& mechanisms_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> allocation_;
   double delay_{};

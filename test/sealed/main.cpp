@@ -1,6 +1,7 @@
 // The sealed benchmark: draws sets, lets fathom diagnose see the data only, then opens the truth and keeps the score.
 // Stops and goes on where it was: a set is drawn once, and diagnosed again only when the tool is newer than its answer.
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 struct Options {
-  std::string seeds{"1..120"}, only, size, out, tool, page;
+  std::string seeds{"0..122"}, only, size, out, tool, page;
   int jobs{1};
   bool draw_only{}, score_only{};
   std::uint64_t first{}, last{};
@@ -124,6 +125,7 @@ void work(const Options& options) {
     }
   };
   std::vector<std::thread> threads;
+  threads.reserve(static_cast<std::size_t>(options.jobs));
   for (int i = 0; i < options.jobs; ++i) threads.emplace_back(worker);
   for (std::thread& thread : threads) thread.join();
   if (!trouble.empty()) throw std::runtime_error(trouble);

@@ -29,7 +29,7 @@ double quantile(std::vector<double> values, double share) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
   if (values.empty()) return kUnknown;
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
 std::vector<double> collect(std::span<const Score> scores, const Filter& filter,
@@ -57,8 +57,9 @@ void add_row(std::string& text, const std::string& what, const std::string& targ
 
 void add_targets(std::span<const Score> scores, std::string& text) {
   text += "| what | target | reached |\n|---|---|---|\n";
-  for (const auto& [size, target] : {std::pair{"strong", "98 %"}, {"medium", "95 %"}, {"weak", "85 %"}}) {
-    add_row(text, std::string("single effect, ") + size + ": named first, or in an alias set of three", target,
+  for (const auto& [class_name, target] : {std::pair{"strong", "98 %"}, {"medium", "95 %"}, {"weak", "85 %"}}) {
+    const std::string size = class_name;
+    add_row(text, "single effect, " + size + ": named first, or in an alias set of three", target,
             good_of(scores, [&](const Score& s) { return s.kind == "single" && s.size == size; }));
   }
   add_row(text, "single effect, fainter than weak (cannot be made larger)", "-",

@@ -111,7 +111,8 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
   const std::uint64_t round = seed / kRound.size();
   const Turn& turn = kRound[seed % kRound.size()];
   Random random(seed, "plan");
-  Plan plan{.seed = seed, .kind = turn.kind, .size = static_cast<Size>((seed + round) % kShares.size())};
+  Plan plan{
+      .seed = seed, .kind = turn.kind, .size = static_cast<Size>((seed % kRound.size() + round) % kShares.size())};
   const Entry* entry = turn.entry;
   if (!wish.effect.empty()) {
     entry = nullptr;

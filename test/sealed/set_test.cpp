@@ -25,7 +25,8 @@ TEST_CASE("sealed set: the effect adds the share of the applied wrench that its 
   const std::vector<std::pair<const char*, Size>> orders{
       {"current", Size::kWeak}, {"thruster_lag", Size::kStrong}, {"coloured_noise", Size::kWeak}};
   std::uint64_t seed = 70;
-  for (const auto& [effect, size] : orders) {
+  for (const auto& [name, size] : orders) {
+    const std::string effect = name;
     const SealedSet set = set_of(++seed, effect, size);
     CAPTURE(effect);
     CHECK(set.reached);
@@ -109,17 +110,32 @@ TEST_CASE("sealed set: the folder of data holds data, and no word of the truth")
   }
 }
 
-TEST_CASE("sealed set: forty numbers in a row draw every effect and what must stay unnamed") {
-  std::set<std::string> seen;
+TEST_CASE("sealed set: the generator shares no code with what it judges") {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string{FATHOM_SOURCE_DIR} + "/test/sealed")) {
+    if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
+    ++files;
+    CAPTURE(entry.path().string());
+    CHECK(test::read_bytes(entry.path().string()).find(std::string{"#include \"comm"} + "on/") == std::string::npos);
+  }
+  CHECK(files > 20);  // it did look
+}
+
+TEST_CASE("sealed set: 123 numbers in a row draw every effect in every size, and what must stay unnamed") {
+  std::map<std::string, std::set<Size>> seen;
   std::map<Kind, int> kinds;
-  for (std::uint64_t seed = 1; seed <= 42; ++seed) {
+  for (std::uint64_t seed = 0; seed < 123; ++seed) {
     const Plan plan = make_plan(seed, {});
     ++kinds[plan.kind];
-    if (plan.kind == Kind::kSingle) seen.insert(plan.names.front());
+    if (plan.kind == Kind::kSingle) seen[plan.names.front()].insert(plan.size);
     CHECK(plan.names.size() == (plan.kind == Kind::kPair ? 2 : plan.kind == Kind::kClean ? 0 : 1));
   }
   CHECK(seen.size() == catalogue().size());
-  for (const Kind kind : {Kind::kClean, Kind::kNoise, Kind::kPair, Kind::kForeign}) CHECK(kinds[kind] > 0);
+  for (const auto& [name, sizes] : seen) {
+    CAPTURE(name);
+    CHECK(sizes.size() == kShares.size());
+  }
+  for (const Kind kind : {Kind::kClean, Kind::kNoise, Kind::kPair, Kind::kForeign}) CHECK(kinds[kind] >= 6);
 }
 
 TEST_CASE("sealed set: nobody beats the true simulator, and more signals never widen the bound") {
