@@ -32,10 +32,11 @@ class CandidateModel {
     Eigen::VectorXd all(total_rows());
     Eigen::Index offset = 0;
     for (std::size_t w = 0; w < base_.windows().size(); ++w) {
-      const auto& window = base_.problem().windows()[w];
+      const std::size_t place = base_.places()[w];
+      const auto& window = base_.problem().windows()[place];
       const ProjectedWindow& projected = base_.windows()[w];
       auto segment = all.segment(offset, window.rows());
-      window.evaluate(model_, base_.fit().nu0[w], base_.fit().sigma, trace_, segment);
+      window.evaluate(model_, base_.fit().nu0[place], base_.fit().sigma, trace_, segment);
       // Windows beyond the outlier bound were weighted down; their base residual tells by how much.
       if (projected.initial_basis.cols() > 0) {
         segment -= projected.initial_basis * (projected.initial_basis.transpose() * segment).eval();
@@ -50,7 +51,7 @@ class CandidateModel {
 
   [[nodiscard]] Eigen::Index total_rows() const {
     Eigen::Index rows = 0;
-    for (const auto& window : base_.problem().windows()) rows += window.rows();
+    for (const ProjectedWindow& window : base_.windows()) rows += window.residual.size();
     return rows;
   }
 
@@ -84,6 +85,12 @@ std::vector<double> clamped(const model::Effect& effect, std::vector<double> the
   return theta;
 }
 
+std::vector<std::size_t> all_places(std::size_t count) {
+  std::vector<std::size_t> places(count);
+  for (std::size_t i = 0; i < count; ++i) places[i] = i;
+  return places;
+}
+
 std::vector<double> window_costs(const Linearisation& base, const Eigen::VectorXd& residual) {
   std::vector<double> costs;
   Eigen::Index offset = 0;
@@ -97,7 +104,22 @@ std::vector<double> window_costs(const Linearisation& base, const Eigen::VectorX
 }  // namespace
 
 Linearisation::Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit)
-    : problem_{problem}, fit_{fit}, windows_{problem.linearise(fit)} {
+    : Linearisation{problem, fit, problem.linearise(fit), all_places(problem.windows().size())} {}
+
+Linearisation Linearisation::thinned(std::size_t most) const {
+  const std::size_t stride = std::max<std::size_t>(1, (windows_.size() + most - 1) / most);
+  std::vector<ProjectedWindow> windows;
+  std::vector<std::size_t> places;
+  for (std::size_t w = 0; w < windows_.size(); w += stride) {
+    windows.push_back(windows_[w]);
+    places.push_back(places_[w]);
+  }
+  return {problem_, fit_, std::move(windows), std::move(places)};
+}
+
+Linearisation::Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit,
+                             std::vector<ProjectedWindow> windows, std::vector<std::size_t> places)
+    : problem_{problem}, fit_{fit}, windows_{std::move(windows)}, places_{std::move(places)} {
   const identification::ParameterMap map{fit.model};
   const auto n = static_cast<Eigen::Index>(map.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
@@ -124,8 +146,11 @@ Eigen::VectorXd Linearisation::stacked_residual() const {
   return all;
 }
 
-Screened screen(const Linearisation& base, const model::Effect& effect, int variant, const std::string& variant_name,
-                const model::Scene& scene) {
+namespace {
+
+/// `refining`: the only start is a point found before, not merely the size of a first step away from nothing.
+Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
+                     const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining) {
   CandidateModel candidate{base, effect, variant, variant_name};
   const auto parameters = effect.parameters();
   const std::size_t k = parameters.size();
@@ -140,7 +165,6 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
     std::vector<double> theta;
   };
   std::vector<Start> ranked;
-  const auto starts = effect.starts(scene, variant);
   for (const auto& start : starts) {
     if (starts.size() == 1) {
       ranked.push_back({0.0, start});
@@ -166,7 +190,7 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
   for (const Start& start : ranked) {
     // With a single start the effect is near enough to linear for the search to begin at nothing, whose residual is
     // known.
-    const bool from_zero = starts.size() == 1;
+    const bool from_zero = starts.size() == 1 && !refining;
     std::vector<double> theta = from_zero ? std::vector<double>(k, 0.0) : clamped(effect, start.theta);
     Eigen::MatrixXd residual = without;
     if (!from_zero) {
@@ -233,6 +257,18 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
   const double norm = best.signature.norm();
   if (norm > 0.0) best.signature /= norm;
   return best;
+}
+
+}  // namespace
+
+Screened screen(const Linearisation& base, const model::Effect& effect, int variant, const std::string& variant_name,
+                std::span<const std::vector<double>> starts) {
+  return search_from(base, effect, variant, variant_name, starts, false);
+}
+
+Screened refine(const Linearisation& base, const Screened& rough) {
+  const std::vector<std::vector<double>> start{rough.theta};
+  return search_from(base, *rough.effect, rough.variant, rough.variant_name, start, true);
 }
 
 }  // namespace fathom::diagnosis

@@ -13,14 +13,18 @@
 
 namespace fathom::diagnosis {
 
-/// A fit with its derivatives, prepared once and used by every candidate.
+/// A fit with its derivatives, prepared once and used by every candidate. The fit and its problem must outlive it.
 class Linearisation {
  public:
   Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit);
+  /// The same fit on at most `most` windows, evenly chosen.
+  [[nodiscard]] Linearisation thinned(std::size_t most) const;
 
   [[nodiscard]] const identification::TrajectoryFit& problem() const { return problem_; }
   [[nodiscard]] const identification::FitResult& fit() const { return fit_; }
   [[nodiscard]] std::span<const identification::ProjectedWindow> windows() const { return windows_; }
+  /// Places of these windows among the problem's.
+  [[nodiscard]] std::span<const std::size_t> places() const { return places_; }
   /// Cost per window after the last step of the base parameters.
   [[nodiscard]] std::span<const double> window_cost() const { return window_cost_; }
   /// All residuals, as one column, after that step.
@@ -31,9 +35,13 @@ class Linearisation {
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return information_.solve(b); }
 
  private:
+  Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit,
+                std::vector<identification::ProjectedWindow> windows, std::vector<std::size_t> places);
+
   const identification::TrajectoryFit& problem_;
   const identification::FitResult& fit_;
   std::vector<identification::ProjectedWindow> windows_;
+  std::vector<std::size_t> places_;
   std::vector<double> window_cost_;
   Eigen::LDLT<Eigen::MatrixXd> information_;
   Eigen::MatrixXd unexplained_;
@@ -51,8 +59,10 @@ struct Screened {
   Eigen::VectorXd signature;          ///< change of all residuals that only this candidate can make; unit norm
 };
 
-/// Searches the candidate's numbers from all its starts.
+/// Searches the candidate's numbers from `starts`: from the best of them when there are many.
 [[nodiscard]] Screened screen(const Linearisation& base, const model::Effect& effect, int variant,
-                              const std::string& variant_name, const model::Scene& scene);
+                              const std::string& variant_name, std::span<const std::vector<double>> starts);
+/// Goes on from what a thinned linearisation found.
+[[nodiscard]] Screened refine(const Linearisation& base, const Screened& rough);
 
 }  // namespace fathom::diagnosis

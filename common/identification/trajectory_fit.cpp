@@ -5,12 +5,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
-#include <thread>
+#include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/base/parallel.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -55,24 +55,16 @@ class Evaluations final : public ceres::EvaluationCallback {
   void PrepareForEvaluation(bool jacobians, bool new_point) override {
     if (!new_point && !(jacobians && !with_jacobians_)) return;
     with_jacobians_ = jacobians;
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      model::Model model = model_;
-      map_.unpack(x_, model);
-      model::VelocityTrace trace;
-      for (std::size_t w = next++; w < windows_.size(); w = next++) {
-        One& one = at_[w];
-        one.residual.resize(windows_[w].rows());
-        windows_[w].evaluate(model, nu0_[w], sigma_, trace, one.residual);
-        if (jacobians) {
-          windows_[w].jacobians(model, map_, nu0_[w], sigma_, one.residual, one.by_parameter, one.by_initial);
-        }
-      }
-    };
-    std::vector<std::thread> pool;
-    for (int i = 1; i < threads_; ++i) pool.emplace_back(work);
-    work();
-    for (std::thread& thread : pool) thread.join();
+    model::Model model = model_;
+    map_.unpack(x_, model);
+    for_each_index(windows_.size(), threads_, [&](std::size_t w) {
+      thread_local model::VelocityTrace trace;
+      One& one = at_[w];
+      one.residual.resize(windows_[w].rows());
+      windows_[w].evaluate(model, nu0_[w], sigma_, trace, one.residual);
+      if (jacobians)
+        windows_[w].jacobians(model, map_, nu0_[w], sigma_, one.residual, one.by_parameter, one.by_initial);
+    });
   }
 
   [[nodiscard]] const One& at(std::size_t window) const { return at_[window]; }
@@ -226,24 +218,23 @@ void TrajectoryFit::score(FitResult& fit) const {
   fit.window_cost.assign(windows_.size(), 0.0);
   fit.window_square.assign(windows_.size(), {});
   fit.window_count.assign(windows_.size(), {});
-  fit.cost = 0.0;
-  model::VelocityTrace trace;
-  for (std::size_t w = 0; w < windows_.size(); ++w) {
+  for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) {
+    thread_local model::VelocityTrace trace;
     const WindowResidual& window = windows_[w];
     Eigen::VectorXd residual(window.rows());
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, residual);
     fit.window_cost[w] = window_cost(residual);
-    fit.cost += fit.window_cost[w];
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
       const int axis = window.axis(i);
       const double error = residual[i] * fit.sigma[axis];
       fit.window_square[w][static_cast<std::size_t>(axis)] += error * error;
       fit.window_count[w][static_cast<std::size_t>(axis)] += 1.0;
     }
-  }
+  });
+  fit.cost = std::accumulate(fit.window_cost.begin(), fit.window_cost.end(), 0.0);
 }
 
-void TrajectoryFit::solve(FitResult& fit, bool release) const {
+void TrajectoryFit::solve(FitResult& fit, bool release, double tolerance) const {
   const ParameterMap map{fit.model};
   const model::Model shape = fit.model;
   Eigen::VectorXd x = map.pack(fit.model);
@@ -276,7 +267,7 @@ void TrajectoryFit::solve(FitResult& fit, bool release) const {
   options.linear_solver_ordering = ordering;
   options.num_threads = 1;
   options.max_num_iterations = settings_.iterations;
-  options.function_tolerance = settings_.tolerance;
+  options.function_tolerance = tolerance > 0.0 ? tolerance : settings_.tolerance;
   options.logging_type = ceres::SILENT;
 
   // Ceres projects each step on the bounds, and a step that would cross one then hardly moves. So numbers that lie on a
@@ -300,13 +291,13 @@ void TrajectoryFit::solve(FitResult& fit, bool release) const {
   map.unpack(x, fit.model);
 }
 
-FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) const {
+FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, double tolerance) const {
   FitResult fit;
   fit.model = start;
   if (like != nullptr) {
     fit.sigma = like->sigma;
     fit.nu0 = like->nu0;
-    solve(fit, false);
+    solve(fit, false, tolerance);
     score(fit);
     return fit;
   }
@@ -314,7 +305,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) c
   score(fit);
   for (int round = 0; round < settings_.weight_rounds; ++round) {
     fit.sigma = residual_scale(fit);
-    solve(fit, true);
+    solve(fit, true, tolerance);
     score(fit);
   }
   fit.sigma = residual_scale(fit);
@@ -325,8 +316,8 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like) c
 std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool hold_bounds) const {
   const ParameterMap map{fit.model};
   std::vector<ProjectedWindow> projected(windows_.size());
-  model::VelocityTrace trace;
-  for (std::size_t w = 0; w < windows_.size(); ++w) {
+  for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) {
+    thread_local model::VelocityTrace trace;
     const WindowResidual& window = windows_[w];
     ProjectedWindow& out = projected[w];
     out.residual.resize(window.rows());
@@ -350,7 +341,7 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
       out.jacobian *= weight;
       out.initial_basis.resize(window.rows(), 0);
     }
-  }
+  });
   return projected;
 }
 

@@ -48,8 +48,8 @@ class TrajectoryFit {
   TrajectoryFit(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings);
 
   /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs
-  /// can be compared); without, sigma is found by iteration.
-  [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr) const;
+  /// can be compared); without, sigma is found by iteration. `tolerance` replaces that of the settings unless zero.
+  [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr, double tolerance = 0.0) const;
   /// Residuals and derivatives at a fit, per window. With `hold_bounds`, numbers on a physical bound have no
   /// derivative: they stay there.
   [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit, bool hold_bounds = true) const;
@@ -61,7 +61,7 @@ class TrajectoryFit {
   [[nodiscard]] const FitSettings& settings() const { return settings_; }
 
  private:
-  void solve(FitResult& fit, bool release) const;
+  void solve(FitResult& fit, bool release, double tolerance) const;
   void score(FitResult& fit) const;
   [[nodiscard]] Vector6d residual_scale(const FitResult& fit) const;
 

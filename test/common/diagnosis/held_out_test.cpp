@@ -40,11 +40,7 @@ struct Runs {
     model::Model model = without.model;
     model.add(test::active(suspect, start));
     const FitResult with = problem.fit(model, &without);
-    const auto& effect = with.model.effects.front();
-    std::vector<double> sizes;
-    for (std::size_t i = 0; i < effect.theta.size(); ++i)
-      sizes.push_back(effect.theta[i] / effect.effect->parameters()[i].sigma);
-    return held_out(problem, without, with, sizes);
+    return held_out(problem, CrossValidation{problem, without}, CrossValidation{problem, with});
   }
 };
 
@@ -67,7 +63,7 @@ TEST_CASE("held out: no change saves exactly nothing") {
   const Runs runs{{{}}, 40.0};
   const TrajectoryFit problem{runs.vehicle, runs.trials, quick()};
   const FitResult fit = problem.fit(model::nominal_model(runs.vehicle, false));
-  const HeldOut same = held_out(problem, fit, fit, std::vector<double>{1.0});
+  const HeldOut same = held_out(problem, CrossValidation{problem, fit}, CrossValidation{problem, fit});
   CHECK(same.blocks == 0.0);
   CHECK(same.runs == 0.0);
 }

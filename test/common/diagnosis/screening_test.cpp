@@ -40,7 +40,7 @@ struct Fitted {
       std::optional<Screened> best;
       for (std::size_t v = 0; v < names.size(); ++v) {
         if (names[v] == "-") continue;
-        Screened one = screen(base, *effect, static_cast<int>(v), names[v], scene);
+        Screened one = screen(base, *effect, static_cast<int>(v), names[v], effect->starts(scene, static_cast<int>(v)));
         if (!best || one.gain > best->gain) best = std::move(one);
       }
       if (best) all.push_back(std::move(*best));

@@ -1,0 +1,136 @@
+#include "common/diagnosis/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/diagnosis/evidence.hpp"
+
+namespace fathom::diagnosis {
+namespace {
+
+using identification::FitResult;
+using identification::TrajectoryFit;
+
+constexpr double kAtLimit = 0.05;  // of a limit: nearer than that, the number wants to be beyond it
+
+/// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none did.
+std::string limited_number(const model::Model& model, const Judged& judged) {
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != judged.effect || active.variant != judged.variant) continue;
+    const auto parameters = active.effect->parameters();
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      for (const double limit : {parameters[i].low, parameters[i].high}) {
+        if (limit != 0.0 && std::abs(active.theta[i] - limit) < kAtLimit * std::abs(limit))
+          return std::string(parameters[i].name);
+      }
+    }
+  }
+  return "";
+}
+
+/// Where the effect's numbers stand among the fit's parameters: after the base's, effect by effect.
+std::vector<Eigen::Index> places_of(const model::Model& model, const Judged& judged) {
+  std::size_t place = identification::ParameterMap{model}.size();
+  for (const model::ActiveEffect& active : model.effects) place -= active.theta.size();
+  std::vector<Eigen::Index> places;
+  for (const model::ActiveEffect& active : model.effects) {
+    for (std::size_t i = 0; i < active.theta.size(); ++i, ++place) {
+      if (active.effect == judged.effect && active.variant == judged.variant)
+        places.push_back(static_cast<Eigen::Index>(place));
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+double reduction(double cost_without, double cost_with) {
+  return cost_without > 0.0 ? 1.0 - std::sqrt(std::max(cost_with, 0.0) / cost_without) : 0.0;
+}
+
+double total(std::span<const double> window_cost) {
+  double sum = 0.0;
+  for (const double cost : window_cost) sum += cost;
+  return sum;
+}
+
+std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model) {
+  char text[160];
+  if (judged.error_reduction < settings.smallest_reduction) {
+    std::snprintf(text, sizeof text, "explains %.2f %% of the error: changes no prediction",
+                  100.0 * judged.error_reduction);
+    return text;
+  }
+  if (judged.change < settings.smallest_change) {
+    std::snprintf(text, sizeof text, "moves predictions by %.2f %% of the motion: too little to matter",
+                  100.0 * judged.change);
+    return text;
+  }
+  if (judged.log_odds < settings.accept_log_odds) {
+    std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
+    return text;
+  }
+  if (judged.held_out_blocks < 0.0) return "does not help on blocks of data left out of its estimate";
+  if (judged.held_out_runs < 0.0) return "does not carry over from run to run";
+  const std::string limited = model != nullptr ? limited_number(*model, judged) : "";
+  return limited.empty() ? "" : "fits only with " + limited + " at its physical limit";
+}
+
+Judged judge(const Screened& screened, const Linearisation& base, int tried) {
+  Judged judged{.effect = screened.effect, .variant = screened.variant, .variant_name = screened.variant_name};
+  const auto parameters = static_cast<int>(screened.effect->parameters().size());
+  judged.log_odds = log_odds(base.window_cost(), screened.window_cost, parameters, tried);
+  judged.error_reduction = reduction(total(base.window_cost()), total(screened.window_cost));
+  return judged;
+}
+
+void judge_by_fit(Judged& judged, const TrajectoryFit& problem, const FitResult& without,
+                  const CrossValidation& without_checked, const FitResult& with, int tried) {
+  const auto parameters = static_cast<int>(judged.effect->parameters().size());
+  judged.log_odds = log_odds(without.window_cost, with.window_cost, parameters, tried);
+  judged.error_reduction = reduction(without.cost, with.cost);
+  judged.change = prediction_change(problem, without, with);
+  const HeldOut carried =
+      held_out(problem, without_checked, CrossValidation{problem, with}, places_of(with.model, judged));
+  judged.held_out_blocks = carried.blocks;
+  judged.held_out_runs = carried.runs;
+}
+
+void find_aliases(Judged& winner, const Screened& best, const std::vector<Screened>& screened,
+                  const std::vector<Judged>& judged, const Settings& settings) {
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const Screened& other = screened[i];
+    const std::string name{other.effect->name()};
+    if (other.effect == best.effect || other.signature.size() != best.signature.size()) continue;
+    if (other.signature.dot(best.signature) < settings.alias_correlation) continue;
+    if (std::find(winner.aliased_with.begin(), winner.aliased_with.end(), name) == winner.aliased_with.end()) {
+      winner.aliased_with.push_back(name);
+    }
+    const double between = robust_log_likelihood_ratio(other.window_cost, best.window_cost);
+    if (judged[i].reason.empty() && between < kAlternativeLogOdds &&
+        std::find(winner.alternatives.begin(), winner.alternatives.end(), name) == winner.alternatives.end()) {
+      winner.alternatives.push_back(name);
+    }
+  }
+}
+
+std::vector<Judged> best_of_each_effect(const std::vector<Judged>& judged, const std::vector<Judged>& accepted) {
+  std::vector<Judged> best;
+  for (const Judged& candidate : judged) {
+    const bool taken =
+        std::any_of(accepted.begin(), accepted.end(), [&](const Judged& a) { return a.effect == candidate.effect; });
+    if (taken) continue;
+    const auto same =
+        std::find_if(best.begin(), best.end(), [&](const Judged& b) { return b.effect == candidate.effect; });
+    if (same == best.end()) {
+      best.push_back(candidate);
+    } else if (candidate.log_odds > same->log_odds) {
+      *same = candidate;
+    }
+  }
+  std::stable_sort(best.begin(), best.end(), [](const Judged& a, const Judged& b) { return a.log_odds > b.log_odds; });
+  return best;
+}
+
+}  // namespace fathom::diagnosis

@@ -1,0 +1,34 @@
+// What decides about a candidate: odds, share of the error, carrying over, physical limits, look-alikes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/diagnosis/held_out.hpp"
+#include "common/diagnosis/search.hpp"
+
+namespace fathom::diagnosis {
+
+constexpr double kAlternativeLogOdds = 3.0;  ///< 20 to 1 between two look-alikes settles which it is
+
+/// Share of the error (RMS) that a cost has lost.
+[[nodiscard]] double reduction(double cost_without, double cost_with);
+/// Sum of costs per window.
+[[nodiscard]] double total(std::span<const double> window_cost);
+/// By the screening alone; `tried` candidates share the prior.
+[[nodiscard]] Judged judge(const Screened& screened, const Linearisation& base, int tried);
+/// By a full fit of it against the fit without it.
+void judge_by_fit(Judged& judged, const identification::TrajectoryFit& problem,
+                  const identification::FitResult& without, const CrossValidation& without_checked,
+                  const identification::FitResult& with, int tried);
+/// Why it must be refused; empty when nothing speaks against it. With the fitted `model`, limits are looked at too.
+[[nodiscard]] std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model = nullptr);
+/// Names the look-alikes of the winner, and which of them the data cannot rule out.
+void find_aliases(Judged& winner, const Screened& best, const std::vector<Screened>& screened,
+                  const std::vector<Judged>& judged, const Settings& settings);
+/// The best form of every effect that is not among the accepted ones, best odds first.
+[[nodiscard]] std::vector<Judged> best_of_each_effect(const std::vector<Judged>& judged,
+                                                      const std::vector<Judged>& accepted);
+
+}  // namespace fathom::diagnosis

@@ -1,0 +1,143 @@
+#include "common/diagnosis/questions.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "common/base/parallel.hpp"
+
+namespace fathom::diagnosis {
+namespace {
+
+using identification::FitResult;
+using identification::TrajectoryFit;
+
+constexpr std::size_t kCoarseWindows = 80;  // enough to tell whether a form leads anywhere
+constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
+constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
+constexpr double kPromise = 0.5;            // of the smallest reduction: less on the spread of windows promises nothing
+
+bool holds(const model::Model& model, const Candidate& candidate) {
+  return std::any_of(model.effects.begin(), model.effects.end(), [&](const model::ActiveEffect& active) {
+    return active.effect == candidate.effect && active.variant == candidate.variant;
+  });
+}
+
+/// Places of the forms that promise most.
+std::vector<std::size_t> promising(const std::vector<Screened>& rough, const Linearisation& base,
+                                   const Settings& settings) {
+  const double cost = total(base.window_cost());
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < rough.size(); ++i) {
+    if (reduction(cost, cost - rough[i].gain) >= kPromise * settings.smallest_reduction) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rough[a].gain > rough[b].gain; });
+  std::map<const model::Effect*, int> forms;
+  std::erase_if(order, [&](std::size_t i) { return ++forms[rough[i].effect] > kCareful; });
+  return order;
+}
+
+/// Full fits on a spread of windows for effects whose small sizes tell nothing about their large ones.
+void look_afar(std::vector<Screened>& screened, const model::Vehicle& vehicle, std::span<const Trial> train,
+               const FitResult& reference, const model::Scene& scene, const Settings& settings,
+               const Progress& progress, double share) {
+  std::optional<TrajectoryFit> coarse;
+  FitResult like, base;
+  for (Screened& candidate : screened) {
+    for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
+      if (!coarse) {
+        identification::FitSettings few = settings.fit;
+        few.most_windows = kCoarseWindows;
+        coarse.emplace(vehicle, train, few);
+        like.sigma = reference.sigma;
+        for (const auto& window : coarse->windows())
+          like.nu0.push_back(window.window().trial->nu[window.window().start]);
+        base = coarse->fit(reference.model, &like);
+      }
+      progress("looking further at " + std::string(candidate.effect->name()), share);
+      model::Model model = reference.model;
+      model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
+      const FitResult far = coarse->fit(model, &like);
+      const double gain = (base.cost - far.cost) / base.cost * reference.cost;
+      if (gain <= candidate.gain) continue;
+      candidate.gain = gain;
+      candidate.start = far.model;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> all_candidates(const model::Scene& scene) {
+  std::vector<Candidate> candidates;
+  for (const model::Effect* effect : model::all_effects()) {
+    const auto variants = effect->variants(scene);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      if (variants[v] != "-") candidates.push_back({effect, static_cast<int>(v), variants[v]});
+    }
+  }
+  return candidates;
+}
+
+Answers ask(std::span<const Candidate> candidates, const TrajectoryFit& problem, const FitResult& fit,
+            std::span<const Trial> train, const model::Scene& scene, const Settings& settings, const Progress& progress,
+            double share) {
+  std::vector<Candidate> asked;
+  for (const Candidate& candidate : candidates) {
+    if (!holds(fit.model, candidate)) asked.push_back(candidate);
+  }
+  const int tried = static_cast<int>(candidates.size());
+  const Linearisation whole{problem, fit};
+  const bool thin = problem.windows().size() > kThinFrom;
+  const Linearisation base = whole.thinned(thin ? kCoarseWindows : problem.windows().size());
+
+  Answers answers;
+  answers.screened.resize(asked.size());
+  for_each_index(asked.size(), settings.threads, [&](std::size_t i) {
+    const Candidate& form = asked[i];
+    answers.screened[i] = screen(base, *form.effect, form.variant, form.name, form.effect->starts(scene, form.variant));
+  });
+  for (const Screened& rough : answers.screened) answers.judged.push_back(judge(rough, base, tried));
+  if (thin) {
+    const std::vector<std::size_t> careful = promising(answers.screened, base, settings);
+    for_each_index(careful.size(), settings.threads,
+                   [&](std::size_t k) { answers.screened[careful[k]] = refine(whole, answers.screened[careful[k]]); });
+    for (const std::size_t i : careful) answers.judged[i] = judge(answers.screened[i], whole, tried);
+    // What only the spread of windows was asked about counts by its share, so that forms can be compared.
+    const double scale = total(whole.window_cost()) / std::max(total(base.window_cost()), 1e-300);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      if (std::find(careful.begin(), careful.end(), i) == careful.end()) answers.screened[i].gain *= scale;
+    }
+  }
+  look_afar(answers.screened, problem.vehicle(), train, fit, scene, settings, progress, share);
+  for (Judged& judged : answers.judged) judged.reason = refusal(judged, settings);
+  return answers;
+}
+
+std::vector<std::size_t> worth_fitting(const Answers& answers, const Settings& settings) {
+  const std::vector<Screened>& screened = answers.screened;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    if (answers.judged[i].error_reduction < settings.smallest_reduction && !screened[i].start) continue;
+    const auto same = std::find_if(order.begin(), order.end(),
+                                   [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
+    if (same == order.end()) {
+      order.push_back(i);
+    } else if (screened[i].gain > screened[*same].gain) {
+      *same = i;
+    }
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
+  return order;
+}
+
+model::Model start_of(const FitResult& fit, const Screened& screened) {
+  if (screened.start) return *screened.start;
+  model::Model model = fit.model;
+  model.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
+  return model;
+}
+
+}  // namespace fathom::diagnosis
