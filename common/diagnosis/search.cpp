@@ -38,12 +38,6 @@ std::optional<Winner> fit_best(Answers& answers, const TrajectoryFit& problem, c
     if (!checked) checked.emplace(problem, reference);
     judge_by_fit(judged, problem, reference, *checked, fit, tried);
     judged.reason = refusal(judged, settings, &fit.model);
-    if (getenv("DBG"))
-      fprintf(stderr,
-              "\nDBG %s %s odds %.2f red %.4f cvb %.4f cvr %.4f change %.4f screened gain %.1f got %.1f of %.1f: %s\n",
-              std::string(screened.effect->name()).c_str(), screened.variant_name.c_str(), judged.log_odds,
-              judged.error_reduction, judged.held_out_blocks, judged.held_out_runs, judged.change, screened.gain,
-              reference.cost - fit.cost, reference.cost, judged.reason.c_str());
     if (judged.reason.empty() && (!best || fit.cost < best->fit.cost)) best = Winner{i, std::move(fit)};
   }
   return best;

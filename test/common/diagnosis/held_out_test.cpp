@@ -40,7 +40,10 @@ struct Runs {
     model::Model model = without.model;
     model.add(test::active(suspect, start));
     const FitResult with = problem.fit(model, &without);
-    return held_out(problem, CrossValidation{problem, without}, CrossValidation{problem, with});
+    std::vector<Eigen::Index> places;
+    const auto all = static_cast<Eigen::Index>(identification::ParameterMap{with.model}.size());
+    for (auto i = static_cast<Eigen::Index>(start.size()); i > 0; --i) places.push_back(all - i);
+    return held_out(problem, CrossValidation{problem, without}, CrossValidation{problem, with}, places);
   }
 };
 
@@ -63,7 +66,7 @@ TEST_CASE("held out: no change saves exactly nothing") {
   const Runs runs{{{}}, 40.0};
   const TrajectoryFit problem{runs.vehicle, runs.trials, quick()};
   const FitResult fit = problem.fit(model::nominal_model(runs.vehicle, false));
-  const HeldOut same = held_out(problem, CrossValidation{problem, fit}, CrossValidation{problem, fit});
+  const HeldOut same = held_out(problem, CrossValidation{problem, fit}, CrossValidation{problem, fit}, {});
   CHECK(same.blocks == 0.0);
   CHECK(same.runs == 0.0);
 }
