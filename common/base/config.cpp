@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <set>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
@@ -41,6 +43,7 @@ struct Config::Node {
   [[nodiscard]] std::string section_name() const { return path.empty() ? "" : " in '" + path + "'"; }
   Entry* find(const std::string& key);
   Entry& need(const std::string& key);
+  void refuse_misspelt() const;
   Node& value(const std::string& key, Kind kind);
   void finish() const;
 };
@@ -99,23 +102,32 @@ void refuse_second_document(const std::string& text, const std::string& name) {
                    ": text that does not belong to the document above ('---', or a bracket too many)");
 }
 
+std::string folded(std::string_view key) {  // Mass, max-gap
+  std::string same{key};
+  for (char& c : same) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return same;
+}
+
+// Letters added, lost, replaced or swapped with their neighbour (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> before, last, row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    before = std::exchange(last, row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
   return row[b.size()];
 }
 
+// X is not Y misspelt: a short key must be nearer than a long one.
 bool looks_like(std::string_view a, std::string_view b) {
-  return edit_distance(a, b) <= (std::max(a.size(), b.size()) < 5 ? 1U : 2U);
+  const std::size_t length = std::max(a.size(), b.size());
+  return edit_distance(folded(a), folded(b)) <= (length < 3 ? 0U : length < 5 ? 1U : 2U);
 }
 
 }  // namespace
@@ -131,13 +143,22 @@ Config::Node::Entry& Config::Node::need(const std::string& key) {
     entry->read = true;
     return *entry;
   }
+  refuse_misspelt();
+  throw InputError(at(line) + ": key '" + key + "' is missing" + section_name());
+}
+
+// A key that was asked for and is not here, and one that is here and nobody asked for: when the two look alike, that is
+// the mistake, and what follows from it would mislead.
+void Config::Node::refuse_misspelt() const {
   for (const Entry& entry : entries) {
-    if (!entry.read && !asked.contains(entry.key) && looks_like(entry.key, key)) {
+    if (entry.read || asked.contains(entry.key)) continue;
+    for (const std::string& wanted : asked) {
+      const bool present = std::any_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == wanted; });
+      if (present || !looks_like(entry.key, wanted)) continue;
       throw InputError(at(entry.line) + ": unknown key '" + entry.key + "'" + section_name() + "; did you mean '" +
-                       key + "'?");
+                       wanted + "'?");
     }
   }
-  throw InputError(at(line) + ": key '" + key + "' is missing" + section_name());
 }
 
 Config::Node& Config::Node::value(const std::string& key, Kind wanted) {
@@ -358,6 +379,9 @@ std::string Config::where(const std::string& key) const {
   return node_->at(node_->line);
 }
 
-void Config::fail(const std::string& key, const std::string& what) const { throw InputError(where(key) + ": " + what); }
+void Config::fail(const std::string& key, const std::string& what) const {
+  node_->refuse_misspelt();
+  throw InputError(where(key) + ": " + what);
+}
 
 }  // namespace fathom

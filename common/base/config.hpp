@@ -35,7 +35,7 @@ class Config {
   void finish() const;
   /// "file:line" of this section (or of `key`), for messages of the caller.
   [[nodiscard]] std::string where(const std::string& key = "") const;
-  /// Throws InputError "file:line: what" at `key` of this section.
+  /// Throws InputError "file:line: what" at `key` of this section; a misspelt key of the section is named instead.
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
   /// True when `key` holds a section (a map), not a value or a list.
   [[nodiscard]] bool is_section(const std::string& key) const;

@@ -107,3 +107,26 @@ TEST_CASE("config: a key that nobody read is refused, below too, with the neares
         "v.yaml:3: unknown key 'densty' in 'water'; did you mean 'density'?");
   CHECK(message_of("mass: 1 kg\nbuoyancy: 2 N\n", finish) == "no complaint");
 }
+
+TEST_CASE("config: a misspelt key is named before what follows from its absence") {
+  // The reader of an optional key learns of its absence from has(), and then complains of something else.
+  const auto vehicle = [](const Config& config) {
+    if (!config.has("mass")) config.fail("mass", "state the 'mass', or a prior for every parameter");
+    if (!config.has("dof")) config.fail("", "nothing may move");
+    static_cast<void>(config.texts("dof"));
+    static_cast<void>(config.quantity("mass", "kg"));
+    config.finish();
+  };
+  CHECK(message_of("name: a\nmas: 10 kg\ndof: [yaw]\n", vehicle) ==
+        "v.yaml:2: unknown key 'mas'; did you mean 'mass'?");
+  CHECK(message_of("dof: [yaw]\nMass: 10 kg\n", vehicle) == "v.yaml:2: unknown key 'Mass'; did you mean 'mass'?");
+  CHECK(message_of("mass: 10 kg\ndfo: [yaw]\n", vehicle) == "v.yaml:2: unknown key 'dfo'; did you mean 'dof'?");
+  CHECK(message_of("name: a\ndof: [yaw]\n", vehicle) == "v.yaml:1: state the 'mass', or a prior for every parameter");
+  // A complaint of a value stands when no key looks like an absent one.
+  CHECK(message_of("mass: 10 m\ndof: [yaw]\ncolour: red\n", vehicle).rfind("v.yaml:1: 'mass': unit 'm'", 0) == 0);
+  // Short keys that differ are other keys.
+  CHECK(message_of("Y: 1\n", [](const Config& config) { static_cast<void>(config.quantity("X", "")); }) ==
+        "v.yaml:1: key 'X' is missing");
+  CHECK(message_of("gap-max: 1 s\n", [](const Config& config) { static_cast<void>(config.quantity("gap_max", "s")); }) ==
+        "v.yaml:1: unknown key 'gap-max'; did you mean 'gap_max'?");
+}
