@@ -127,6 +127,7 @@ TEST_CASE("config: a misspelt key is named before what follows from its absence"
   // Short keys that differ are other keys.
   CHECK(message_of("Y: 1\n", [](const Config& config) { static_cast<void>(config.quantity("X", "")); }) ==
         "v.yaml:1: key 'X' is missing");
-  CHECK(message_of("gap-max: 1 s\n", [](const Config& config) { static_cast<void>(config.quantity("gap_max", "s")); }) ==
-        "v.yaml:1: unknown key 'gap-max'; did you mean 'gap_max'?");
+  CHECK(message_of("gap-max: 1 s\n", [](const Config& config) {
+          static_cast<void>(config.quantity("gap_max", "s"));
+        }) == "v.yaml:1: unknown key 'gap-max'; did you mean 'gap_max'?");
 }
