@@ -293,10 +293,12 @@ std::vector<std::string> Config::texts(const std::string& key) const {
   return words;
 }
 
-bool Config::flag(const std::string& key) const {
+bool Config::flag(const std::string& key) const { return either(key, "true", "false"); }
+
+bool Config::either(const std::string& key, const std::string& yes, const std::string& no) const {
   const std::string word = text(key);
-  if (word != "true" && word != "false") fail(key, "'" + key + "' must be true or false, not '" + word + "'");
-  return word == "true";
+  if (word != yes && word != no) fail(key, "'" + key + "' must be " + yes + " or " + no + ", not '" + word + "'");
+  return word == yes;
 }
 
 int Config::integer(const std::string& key) const {
@@ -313,6 +315,18 @@ double Config::quantity(const std::string& key, const std::string& unit) const {
   const std::vector<double> values = quantities(key, unit);
   if (values.size() != 1) fail(key, "'" + key + "' must be one number, not " + std::to_string(values.size()));
   return values.front();
+}
+
+double Config::positive(const std::string& key, const std::string& unit) const {
+  const double value = quantity(key, unit);
+  if (!(value > 0.0)) fail(key, "'" + key + "' must be positive");
+  return value;
+}
+
+double Config::not_negative(const std::string& key, const std::string& unit) const {
+  const double value = quantity(key, unit);
+  if (!(value >= 0.0)) fail(key, "'" + key + "' must not be negative");
+  return value;
 }
 
 std::vector<double> Config::quantities(const std::string& key, const std::string& unit) const {

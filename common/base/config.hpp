@@ -24,9 +24,15 @@ class Config {
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;  ///< a sequence of words
   [[nodiscard]] bool flag(const std::string& key) const;
+  /// True for the word `yes`, false for `no`; every other word is refused.
+  [[nodiscard]] bool either(const std::string& key, const std::string& yes, const std::string& no) const;
   [[nodiscard]] int integer(const std::string& key) const;
   /// "11.5 kg" read as `unit` "kg": value in `unit`. A missing or different unit is refused. `unit` "" = dimensionless.
   [[nodiscard]] double quantity(const std::string& key, const std::string& unit) const;
+  /// The same, greater than zero.
+  [[nodiscard]] double positive(const std::string& key, const std::string& unit) const;
+  /// The same, zero or greater.
+  [[nodiscard]] double not_negative(const std::string& key, const std::string& unit) const;
   [[nodiscard]] std::vector<double> quantities(
       const std::string& key, const std::string& unit) const;  ///< "[1, 2, 3] m": see docs/configuration.md
   [[nodiscard]] Eigen::Vector3d vector3(const std::string& key, const std::string& unit) const;

@@ -131,3 +131,16 @@ TEST_CASE("config: a misspelt key is named before what follows from its absence"
           static_cast<void>(config.quantity("gap_max", "s"));
         }) == "v.yaml:1: unknown key 'gap-max'; did you mean 'gap_max'?");
 }
+
+TEST_CASE("config: signs and choices are checked where they are read") {
+  const auto positive = [](const Config& config) { static_cast<void>(config.positive("x", "m")); };
+  const auto not_negative = [](const Config& config) { static_cast<void>(config.not_negative("x", "m")); };
+  CHECK(Config::parse("x: 2 m\n", "v.yaml").positive("x", "m") == 2.0);
+  CHECK(Config::parse("x: 0 m\n", "v.yaml").not_negative("x", "m") == 0.0);
+  CHECK(message_of("x: 0 m\n", positive) == "v.yaml:1: 'x' must be positive");
+  CHECK(message_of("x: -1 m\n", not_negative) == "v.yaml:1: 'x' must not be negative");
+  const auto input = [](const Config& config) { static_cast<void>(config.either("input", "linear", "hold")); };
+  CHECK(Config::parse("input: linear\n", "v.yaml").either("input", "linear", "hold"));
+  CHECK_FALSE(Config::parse("input: hold\n", "v.yaml").either("input", "linear", "hold"));
+  CHECK(message_of("input: held\n", input) == "v.yaml:1: 'input' must be linear or hold, not 'held'");
+}
