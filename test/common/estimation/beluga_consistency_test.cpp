@@ -6,20 +6,11 @@
 
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/beluga_csv.hpp"
+#include "test/support/consistency.hpp"
 #include "test/support/timing.hpp"
 
 namespace fathom {
-namespace {
-
-const ConsistencyFinding* find(const std::vector<ConsistencyFinding>& findings, const std::string& signal,
-                               const std::string& what) {
-  for (const ConsistencyFinding& one : findings) {
-    if (one.signal == signal && one.finding == what) return &one;
-  }
-  return nullptr;
-}
-
-}  // namespace
+using test::find;
 
 TEST_CASE("the sensors of the Beluga recordings disagree as independent analysis found") {
   const std::vector<Recording> runs = test::read_all_beluga();
