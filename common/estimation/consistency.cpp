@@ -136,6 +136,9 @@ ConsistencyResult Check::run() {
     report_outliers(name, *pair);
   }
   for (std::size_t r = 0; r < runs_.size(); ++r) append(compare_depth(runs_[r], pose(r)));
+  std::vector<PoseSeries> poses;
+  for (std::size_t r = 0; r < runs_.size(); ++r) poses.push_back(pose(r));
+  append(compare_with_vertical(reference_ + ".attitude", names_, poses));
   align_clocks();
   append(compare_noise(runs_));
   result_.pairs.emplace("gyro", std::move(gyro));
