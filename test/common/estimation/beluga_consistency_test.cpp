@@ -60,6 +60,9 @@ TEST_CASE("the sensors of the Beluga recordings disagree as independent analysis
   const ConsistencyFinding* scale = find(result.findings, "dvl.u", "scale");
   REQUIRE(scale != nullptr);
   CHECK(scale->size == doctest::Approx(0.979).epsilon(0.006));
+  const ConsistencyFinding* tilt = find(result.findings, "pose_capture.attitude", "tilt");
+  REQUIRE(tilt != nullptr);
+  CHECK(tilt->size == doctest::Approx(0.061).epsilon(0.1));  // rad: 3.5 degrees
 }
 
 }  // namespace fathom
