@@ -65,6 +65,7 @@ Series sensor_of(const Case& c) {
 
 TEST_CASE("increments: quadrature weights are exact for cubics and sum to the window") {
   std::vector<double> t;
+  t.reserve(kCount);
   for (int i = 0; i < kCount; ++i) t.push_back(2.0 + 0.1 * i);
   const std::vector<double> weight = quadrature_weights(t.data(), kCount);
   for (int power = 0; power <= 3; ++power) {
