@@ -136,7 +136,7 @@ TEST_CASE("live evidence: a number never leaves its bounds") {
 
 TEST_CASE("live evidence: taking thrust and mass away together explains nothing") {
   // The candidate undoes nine tenths of y, and with it of the first base parameter, a mass.
-  const auto reduction_with = [](std::vector<LiveEvidence::Mass> masses) {
+  const auto judged_with = [](std::vector<LiveEvidence::Mass> masses) {
     Bench bench;
     const LiveStart& thief = bench.start_with(1);
     LiveEvidence evidence{bench.candidates, bench.information, std::move(masses), 100};
@@ -151,12 +151,16 @@ TEST_CASE("live evidence: taking thrust and mass away together explains nothing"
       if ((k + 1) % kRows == 0) evidence.close_block();
     }
     for (const LiveSuspicion& one : evidence.judge()) {
-      if (one.form == thief.form) return one.error_reduction;
+      if (one.form == thief.form) return one;
     }
-    return -1.0;
+    return LiveSuspicion{};
   };
-  CHECK(reduction_with({}) == doctest::Approx(0.9).epsilon(0.02));
-  CHECK(reduction_with({{.column = 0, .prior_mean = 0.0}}) < 0.05);
+  const LiveSuspicion careless = judged_with({});
+  CHECK(careless.error_reduction == doctest::Approx(0.9).epsilon(0.02));
+  CHECK(careless.log_odds > 10.0);
+  const LiveSuspicion careful = judged_with({{.column = 0, .prior_mean = 0.0}});
+  CHECK(careful.error_reduction < 0.05);
+  CHECK(careful.log_odds < 3.0);
 }
 
 TEST_CASE("live evidence: blocks are bounded, of one length, and merging keeps the verdict") {
