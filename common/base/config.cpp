@@ -4,7 +4,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -13,9 +12,9 @@
 #include <set>
 #include <sstream>
 #include <string_view>
-#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/near_name.hpp"
 #include "common/base/units.hpp"
 
 namespace fathom {
@@ -100,34 +99,6 @@ void refuse_second_document(const std::string& text, const std::string& name) {
   if (!parser.HandleNextDocument(listener) || !parser.HandleNextDocument(listener)) return;
   throw InputError(name + ":" + std::to_string(listener.line) +
                    ": text that does not belong to the document above ('---', or a bracket too many)");
-}
-
-std::string folded(std::string_view key) {  // Mass, max-gap
-  std::string same{key};
-  for (char& c : same) c = c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return same;
-}
-
-// Letters added, lost, replaced or swapped with their neighbour (optimal string alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before, last, row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    before = std::exchange(last, row);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-  }
-  return row[b.size()];
-}
-
-// X is not Y misspelt: a short key must be nearer than a long one.
-bool looks_like(std::string_view a, std::string_view b) {
-  const std::size_t length = std::max(a.size(), b.size());
-  return edit_distance(folded(a), folded(b)) <= (length < 3 ? 0U : length < 5 ? 1U : 2U);
 }
 
 }  // namespace
