@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "common/base/error.hpp"
+#include "common/base/near_name.hpp"
 #include "common/base/units.hpp"
 
 namespace fathom {
@@ -41,6 +42,7 @@ struct Config::Node {
   [[nodiscard]] std::string section_name() const { return path.empty() ? "" : " in '" + path + "'"; }
   Entry* find(const std::string& key);
   Entry& need(const std::string& key);
+  void refuse_misspelt() const;
   Node& value(const std::string& key, Kind kind);
   void finish() const;
 };
@@ -99,25 +101,6 @@ void refuse_second_document(const std::string& text, const std::string& name) {
                    ": text that does not belong to the document above ('---', or a bracket too many)");
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
-bool looks_like(std::string_view a, std::string_view b) {
-  return edit_distance(a, b) <= (std::max(a.size(), b.size()) < 5 ? 1U : 2U);
-}
-
 }  // namespace
 
 Config::Node::Entry* Config::Node::find(const std::string& key) {
@@ -131,13 +114,22 @@ Config::Node::Entry& Config::Node::need(const std::string& key) {
     entry->read = true;
     return *entry;
   }
+  refuse_misspelt();
+  throw InputError(at(line) + ": key '" + key + "' is missing" + section_name());
+}
+
+// A key that was asked for and is not here, and one that is here and nobody asked for: when the two look alike, that is
+// the mistake, and what follows from it would mislead.
+void Config::Node::refuse_misspelt() const {
   for (const Entry& entry : entries) {
-    if (!entry.read && !asked.contains(entry.key) && looks_like(entry.key, key)) {
+    if (entry.read || asked.contains(entry.key)) continue;
+    for (const std::string& wanted : asked) {
+      const bool present = std::any_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == wanted; });
+      if (present || !looks_like(entry.key, wanted)) continue;
       throw InputError(at(entry.line) + ": unknown key '" + entry.key + "'" + section_name() + "; did you mean '" +
-                       key + "'?");
+                       wanted + "'?");
     }
   }
-  throw InputError(at(line) + ": key '" + key + "' is missing" + section_name());
 }
 
 Config::Node& Config::Node::value(const std::string& key, Kind wanted) {
@@ -272,10 +264,12 @@ std::vector<std::string> Config::texts(const std::string& key) const {
   return words;
 }
 
-bool Config::flag(const std::string& key) const {
+bool Config::flag(const std::string& key) const { return either(key, "true", "false"); }
+
+bool Config::either(const std::string& key, const std::string& yes, const std::string& no) const {
   const std::string word = text(key);
-  if (word != "true" && word != "false") fail(key, "'" + key + "' must be true or false, not '" + word + "'");
-  return word == "true";
+  if (word != yes && word != no) fail(key, "'" + key + "' must be " + yes + " or " + no + ", not '" + word + "'");
+  return word == yes;
 }
 
 int Config::integer(const std::string& key) const {
@@ -292,6 +286,18 @@ double Config::quantity(const std::string& key, const std::string& unit) const {
   const std::vector<double> values = quantities(key, unit);
   if (values.size() != 1) fail(key, "'" + key + "' must be one number, not " + std::to_string(values.size()));
   return values.front();
+}
+
+double Config::positive(const std::string& key, const std::string& unit) const {
+  const double value = quantity(key, unit);
+  if (!(value > 0.0)) fail(key, "'" + key + "' must be positive");
+  return value;
+}
+
+double Config::not_negative(const std::string& key, const std::string& unit) const {
+  const double value = quantity(key, unit);
+  if (!(value >= 0.0)) fail(key, "'" + key + "' must not be negative");
+  return value;
 }
 
 std::vector<double> Config::quantities(const std::string& key, const std::string& unit) const {
@@ -358,6 +364,9 @@ std::string Config::where(const std::string& key) const {
   return node_->at(node_->line);
 }
 
-void Config::fail(const std::string& key, const std::string& what) const { throw InputError(where(key) + ": " + what); }
+void Config::fail(const std::string& key, const std::string& what) const {
+  node_->refuse_misspelt();
+  throw InputError(where(key) + ": " + what);
+}
 
 }  // namespace fathom

@@ -40,47 +40,17 @@ std::map<std::string, double> force_rmse(const model::Vehicle& vehicle, const Re
   return rmse;
 }
 
-/// Where the overlaid predictions begin anew: every 10 s, as long as the longest horizon.
-std::vector<std::size_t> restarts_of(const Trial& trial) {
-  const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kHorizons.back() / trial.dt)));
-  std::vector<std::size_t> restarts;
-  for (std::size_t start = 0; start < trial.size(); start += length) restarts.push_back(start);
-  return restarts;
-}
-
-/// Velocities of `model` over the whole trial, restarted at the measured velocity.
-void overlay(const model::Model& model, const Trial& trial, std::span<const std::size_t> restarts,
-             std::vector<std::array<double, 6>>& out) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  out.assign(trial.size(), {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
-  model::VelocityTrace trace;
-  for (std::size_t r = 0; r < restarts.size(); ++r) {
-    const std::size_t start = restarts[r];
-    const std::size_t count = (r + 1 < restarts.size() ? restarts[r + 1] : trial.size()) - start;
-    model::rollout(model, {&trial, start, count}, trial.nu[start], trace);
-    for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t axis = 0; axis < 6; ++axis) {
-        if (model.vehicle->dof[axis]) {
-          out[start + k][axis] = trace(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(k));
-        }
-      }
-    }
-  }
-}
-
 PredictionTrace trace_of(const Trial& trial, const SearchResult& found, const std::vector<Vector6d>& residual_before,
                          const std::vector<Vector6d>& residual_after) {
   PredictionTrace trace{.run = trial.name, .t = trial.t};
-  trace.restarts = restarts_of(trial);
-  overlay(found.before.model, trial, trace.restarts, trace.before);
-  overlay(found.after.model, trial, trace.restarts, trace.after);
+  trace.restarts = restarts(trial);
+  trace.before = predict_anew(found.before.model, trial, trace.restarts);
+  trace.after = predict_anew(found.after.model, trial, trace.restarts);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = 0; k < trial.size(); ++k) {
     std::array<double, 6> measured = as_array(trial.nu[k]);
     for (std::size_t axis = 0; axis < 6; ++axis) {
-      const bool valid = axis < 3 ? trial.observed.velocity && trial.velocity_valid[k] != 0
-                                  : trial.observed.rates && trial.rates_valid[k] != 0;
-      if (!valid) measured[axis] = kNaN;
+      if (!is_measured(trial, k, axis)) measured[axis] = kNaN;
     }
     trace.measured.push_back(measured);
     trace.residual_before.push_back(as_array(residual_before[k]));

@@ -15,9 +15,14 @@ constexpr unsigned kSeed = 20240607;
 constexpr double kDerivativeSpan = 0.5;  // s, of the local fit that gives nu_dot
 constexpr std::size_t kScoredHorizon = 1;
 
-bool sample_valid(const Trial& trial, std::size_t k, std::size_t axis) {
-  return axis < 3 ? trial.observed.velocity && trial.velocity_valid[k] != 0
-                  : trial.observed.rates && trial.rates_valid[k] != 0;
+/// A prediction may start here: everything that is observed is valid.
+bool can_start(const Trial& trial, std::size_t k) {
+  return (!trial.observed.velocity || trial.velocity_valid[k] != 0) &&
+         (!trial.observed.rates || trial.rates_valid[k] != 0) && (!trial.observed.attitude || trial.pose_valid[k] != 0);
+}
+
+std::size_t longest_prediction(const Trial& trial) {
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kHorizons.back() / trial.dt)));
 }
 
 double normalised(const Predictions& predictions, std::span<const std::size_t> chosen, const model::Vehicle& vehicle) {
@@ -39,20 +44,20 @@ double normalised(const Predictions& predictions, std::span<const std::size_t> c
 
 }  // namespace
 
+bool is_measured(const Trial& trial, std::size_t k, std::size_t axis) {
+  return axis < 3 ? trial.observed.velocity && trial.velocity_valid[k] != 0
+                  : trial.observed.rates && trial.rates_valid[k] != 0;
+}
+
 std::vector<model::Window> prediction_windows(std::span<const Trial> trials) {
   std::vector<model::Window> windows;
   for (const Trial& trial : trials) {
-    const auto count = static_cast<std::size_t>(std::lround(kHorizons.back() / trial.dt)) + 1;
+    const std::size_t count = longest_prediction(trial) + 1;
     const auto stride = static_cast<std::size_t>(std::lround(kStride / trial.dt));
     for (std::size_t start = 0; start + count <= trial.size(); start += stride) {
       // The start may slip to the next sample at which everything observed is valid.
       std::size_t begin = start;
-      const auto ready = [&](std::size_t k) {
-        return (!trial.observed.velocity || trial.velocity_valid[k] != 0) &&
-               (!trial.observed.rates || trial.rates_valid[k] != 0) &&
-               (!trial.observed.attitude || trial.pose_valid[k] != 0);
-      };
-      while (begin < start + stride && begin + count <= trial.size() && !ready(begin)) ++begin;
+      while (begin < start + stride && begin + count <= trial.size() && !can_start(trial, begin)) ++begin;
       if (begin < start + stride && begin + count <= trial.size()) windows.push_back({&trial, begin, count});
     }
   }
@@ -71,7 +76,7 @@ Predictions predict(const model::Model& model, std::span<const model::Window> wi
       const double elapsed = static_cast<double>(k) * trial.dt;
       for (std::size_t axis = 0; axis < 6; ++axis) {
         const auto a = static_cast<Eigen::Index>(axis);
-        if (!sample_valid(trial, window.start + k, axis)) continue;
+        if (!is_measured(trial, window.start + k, axis)) continue;
         const double measured = trial.nu[window.start + k][a];
         const double error = trace(a, static_cast<Eigen::Index>(k)) - measured;
         for (std::size_t h = 0; h < kHorizons.size(); ++h) {
@@ -94,6 +99,38 @@ Predictions predict(const model::Model& model, std::span<const model::Window> wi
     }
   }
   return predictions;
+}
+
+std::vector<std::size_t> restarts(const Trial& trial) {
+  std::vector<std::size_t> starts;
+  for (std::size_t k = 0; k < trial.size();) {
+    if (!can_start(trial, k)) {
+      ++k;
+      continue;
+    }
+    starts.push_back(k);
+    k += longest_prediction(trial);
+  }
+  return starts;
+}
+
+std::vector<std::array<double, 6>> predict_anew(const model::Model& model, const Trial& trial,
+                                                std::span<const std::size_t> starts) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::array<double, 6>> nu(trial.size(), {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
+  model::VelocityTrace trace;
+  for (std::size_t s = 0; s < starts.size(); ++s) {
+    const std::size_t end = s + 1 < starts.size() ? starts[s + 1] : trial.size();
+    const std::size_t count = std::min(end - starts[s], longest_prediction(trial));
+    model::rollout(model, {&trial, starts[s], count}, trial.nu[starts[s]], trace);
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t axis = 0; axis < 6; ++axis) {
+        if (!model.vehicle->dof[axis]) continue;
+        nu[starts[s] + k][axis] = trace(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(k));
+      }
+    }
+  }
+  return nu;
 }
 
 std::vector<PredictionError> Predictions::summary(const model::Vehicle& vehicle) const {

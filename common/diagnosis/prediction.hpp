@@ -26,9 +26,19 @@ struct Predictions {
   [[nodiscard]] std::vector<PredictionError> summary(const model::Vehicle& vehicle) const;
 };
 
+/// True where the velocity of an axis at sample `k` is a measurement, not a guess across a gap.
+[[nodiscard]] bool is_measured(const Trial& trial, std::size_t k, std::size_t axis);
+
 /// Windows of 10 s whose starts follow one another every 5 s, each beginning at a valid sample.
 [[nodiscard]] std::vector<model::Window> prediction_windows(std::span<const Trial> trials);
 [[nodiscard]] Predictions predict(const model::Model& model, std::span<const model::Window> windows);
+
+/// Starts of predictions of 10 s, one after the other; each waits for a sample at which all that is observed is valid.
+[[nodiscard]] std::vector<std::size_t> restarts(const Trial& trial);
+/// Velocities u v w p q r over the whole trial, begun anew at the measured velocity of each start and followed for 10 s
+/// at most; NaN in between and where an axis is not simulated.
+[[nodiscard]] std::vector<std::array<double, 6>> predict_anew(const model::Model& model, const Trial& trial,
+                                                              std::span<const std::size_t> starts);
 
 /// Fall of the normalised 5 s error (mean over axes of RMSE over the measured standard deviation) from `before` to
 /// `after`, relative to before, with a 95 % interval by bootstrap over blocks of windows (seeded: repeatable).

@@ -17,6 +17,8 @@ namespace fathom::estimation {
 /// p(t + L) - p(t) against the integral of R v. Fixed columns: bias (3), lever (3), heading (1); with `rates` also the
 /// six numbers of a symmetric coupling to the rates, which no lever arm can make.
 [[nodiscard]] IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates);
+/// Rows and columns of those six.
+inline constexpr std::array<std::array<int, 2>, 6> kSymmetric{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 /// Second difference of p against the triangle-weighted integral of R f + g. Fixed columns: lever (3). No bias: on a
 /// vehicle that stays level it cannot be told from a tilted mount.
 [[nodiscard]] IncrementProblem acceleration_problem(const PoseSeries& pose);

@@ -53,6 +53,14 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
 /// Sign, scale and delay of the depth sensor; the offset (the water line) is nobody's fault.
 [[nodiscard]] std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseSeries& pose);
 
+/// An axis of gyro or DVL that is far noisier than the other two.
+[[nodiscard]] std::vector<ConsistencyFinding> compare_noise(std::span<const RunSignals> runs);
+
+/// The world's vertical against the direction in which the vehicle hangs; one pose series per recording.
+[[nodiscard]] std::vector<ConsistencyFinding> compare_with_vertical(const std::string& signal,
+                                                                    std::span<const std::string> names,
+                                                                    std::span<const PoseSeries> poses);
+
 /// The pose after corrections of form, axes, heading and unit; on its own clock.
 void correct_pose(const Corrections& corrections, PoseSeries& pose);
 /// The attitude that rates are compared with: motion capture, else AHRS.

@@ -1,11 +1,11 @@
 // Depth sensor against the vertical of the position: z = scale * depth(t + delay) + offset.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "common/base/statistics.hpp"
 #include "common/estimation/consistency.hpp"
+#include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -79,10 +79,8 @@ std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseS
   scales.reserve(static_cast<std::size_t>(kBlocks));
   for (int block = 0; block < static_cast<int>(kBlocks); ++block) scales.push_back(fit_line(pairs, block).scale);
   const double sigma = jackknife_sigma(scales);
-  char evidence[160];
-  std::snprintf(evidence, sizeof evidence,
-                "position z = %.5g depth %+.3g m, scale +- %.2g, misfit %.3g m, delay %.2f s", best.scale, best.offset,
-                sigma, best.misfit, delay);
+  const std::string evidence = text("position z = %.5g depth %+.3g m, scale +- %.2g, misfit %.3g m, delay %.2f s",
+                                    best.scale, best.offset, sigma, best.misfit, delay);
   const auto report = [&](const char* what, double size, const char* unit) {
     findings.push_back({.run = run.name,
                         .signal = "depth",

@@ -32,27 +32,22 @@ TranslationFilter translation_filter(const EstimatorSettings& s) {
 
 EstimatorSettings EstimatorSettings::from(const Config& config) {
   EstimatorSettings s;
-  const auto positive = [&](const char* key, const char* unit) {
-    const double value = config.quantity(key, unit);
-    if (!(value > 0.0)) config.fail(key, std::string{key} + " must be positive");
-    return value;
-  };
-  s.attitude_cutoff = positive("attitude_cutoff", "rad/s");
-  s.position_cutoff = positive("position_cutoff", "rad/s");
-  s.velocity_cutoff = positive("velocity_cutoff", "rad/s");
-  s.damping = positive("damping", "");
-  s.latency = positive("latency", "s");
-  s.max_gap = positive("max_gap", "s");
-  s.gate = positive("gate", "");
-  s.position_noise = positive("position_noise", "m");
-  s.attitude_noise = positive("attitude_noise", "rad");
-  s.depth_noise = positive("depth_noise", "m");
-  s.velocity_noise = positive("velocity_noise", "m/s");
-  s.rate_noise = positive("rate_noise", "rad/s");
-  s.bias_walk = positive("bias_walk", "rad/s");
-  s.bias_prior = positive("bias_prior", "rad/s");
-  s.acceleration_walk = positive("acceleration_walk", "m/s");
-  s.rate_walk = positive("rate_walk", "rad/s");
+  s.attitude_cutoff = config.positive("attitude_cutoff", "rad/s");
+  s.position_cutoff = config.positive("position_cutoff", "rad/s");
+  s.velocity_cutoff = config.positive("velocity_cutoff", "rad/s");
+  s.damping = config.positive("damping", "");
+  s.latency = config.positive("latency", "s");
+  s.max_gap = config.positive("max_gap", "s");
+  s.gate = config.positive("gate", "");
+  s.position_noise = config.positive("position_noise", "m");
+  s.attitude_noise = config.positive("attitude_noise", "rad");
+  s.depth_noise = config.positive("depth_noise", "m");
+  s.velocity_noise = config.positive("velocity_noise", "m/s");
+  s.rate_noise = config.positive("rate_noise", "rad/s");
+  s.bias_walk = config.positive("bias_walk", "rad/s");
+  s.bias_prior = config.positive("bias_prior", "rad/s");
+  s.acceleration_walk = config.positive("acceleration_walk", "m/s");
+  s.rate_walk = config.positive("rate_walk", "rad/s");
   return s;
 }
 

@@ -97,7 +97,6 @@ IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates) {
   frame.begin(pose);
   const Spline spline(rates != nullptr ? *rates : Series{});
   const int columns = rates != nullptr ? 13 : 7;
-  constexpr std::array<std::array<int, 2>, 6> kSymmetric{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
   frame.windows(
       pose, kWindow, [&](int first, int count, const std::vector<double>& weight, const Eigen::Matrix3d& R_BW) {
         Eigen::Matrix<double, 3, Eigen::Dynamic> fixed = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, columns);

@@ -46,13 +46,16 @@ class Design {
  private:
   bool build(std::size_t window, Rows& rows) const {
     const IncrementProblem::Window& w = problem_.windows[window];
-    rows.setZero(3, kMatrix + fixed_columns_);
+    rows.resize(3, kMatrix + fixed_columns_);
+    // M's columns stand one behind the other, as a basis does: in memory the nine columns are basis times value.
+    Eigen::Matrix<double, 9, 3> sum = Eigen::Matrix<double, 9, 3>::Zero();
     for (int s = 0; s < w.count; ++s) {
       const auto i = static_cast<std::size_t>(w.first + s);
       if (!valid_[i]) return false;
-      const Eigen::Matrix3d& basis = problem_.basis[static_cast<std::size_t>(w.basis + s)];
-      for (int k = 0; k < 3; ++k) rows.block<3, 3>(0, 3 * k) += values_[i][k] * basis;
+      const double* basis = problem_.basis[static_cast<std::size_t>(w.basis + s)].data();
+      sum.noalias() += Eigen::Map<const Eigen::Matrix<double, 9, 1>>(basis) * values_[i].transpose();
     }
+    rows.leftCols<kMatrix>() = Eigen::Map<const Eigen::Matrix<double, 3, kMatrix>>(sum.data());
     rows.rightCols(fixed_columns_) = problem_.fixed[window].leftCols(fixed_columns_);
     return true;
   }
@@ -72,8 +75,15 @@ struct Normals {
   double yy{};
   double weight{};
   void add(const Rows& rows, const Eigen::Vector3d& y, double w) {
-    h.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), w);
-    g.noalias() += w * rows.transpose() * y;
+    // Three rows at a time are too few for Eigen's blocked product, which costs four times as much.
+    const auto n = static_cast<std::size_t>(rows.cols());
+    const double* const a = rows.data();
+    double* const to = h.data();
+    for (std::size_t j = 0; j < n; ++j) {
+      const double r0 = w * a[3 * j], r1 = w * a[3 * j + 1], r2 = w * a[3 * j + 2];
+      for (std::size_t i = j; i < n; ++i) to[n * j + i] += r0 * a[3 * i] + r1 * a[3 * i + 1] + r2 * a[3 * i + 2];
+      g[static_cast<Eigen::Index>(j)] += r0 * y[0] + r1 * y[1] + r2 * y[2];
+    }
     yy += w * y.squaredNorm();
     weight += w;
   }

@@ -190,20 +190,16 @@ struct Input {
 Input read_input(const Recording& recording, Utime origin, const ThrusterCorrection& correction,
                  const model::Vehicle& vehicle) {
   Input input;
-  const double reference = vehicle.curve.voltage > 0.0 ? vehicle.curve.voltage : std::max(vehicle.nominal_voltage, 1.0);
   for (const Thrusters& one : recording.thrusters) {
     Eigen::VectorXd x;
     bool wrench = false;
     if (!one.force.empty()) {
       x = Eigen::Map<const Eigen::VectorXd>(one.force.data(), static_cast<Eigen::Index>(one.force.size()));
     } else if (correction.use_commands && one.pwm_us.size() == vehicle.thrusters.size()) {
-      const double battery = recording.battery.empty() ? reference : voltage_at(recording.battery, one.utime);
-      const double factor = correction.scale * std::pow(battery / reference, correction.exponent);
-      x.resize(static_cast<Eigen::Index>(one.pwm_us.size()));
-      for (std::size_t k = 0; k < one.pwm_us.size(); ++k) {
-        x[static_cast<Eigen::Index>(k)] =
-            factor * vehicle.curve.force_at(one.pwm_us[k], vehicle.thrusters[k].pwm_sign, battery);
-      }
+      const double voltage =
+          recording.battery.empty() ? reference_voltage(vehicle) : voltage_at(recording.battery, one.utime);
+      const std::vector<double> force = forces_of(correction, vehicle, one.pwm_us, voltage);
+      x = Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(force.size()));
     } else if (one.has_tau) {
       x = Eigen::Map<const Eigen::VectorXd>(one.tau.data(), 6);
       wrench = true;

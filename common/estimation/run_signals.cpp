@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "common/base/statistics.hpp"
+#include "common/base/units.hpp"
+#include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -14,13 +16,8 @@ constexpr double kUnitTolerance =
     1e-3;                         // of |q|: rounding to three digits passes, interpolation across a flip does not
 constexpr double kLongGap = 0.5;  // s: shorter gaps are bridged without loss
 constexpr double kSpike = 12.0;   // robust sigmas of the misfit to four neighbours
-constexpr double kDegree = 0.017453292519943295;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return text("%.3g", value); }
 
 /// Misfit of every sample to the cubic through its four neighbours.
 template <class T>

@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "common/base/statistics.hpp"
 #include "common/estimation/consistency.hpp"
 #include "common/estimation/thruster_forces.hpp"
+#include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -48,17 +49,15 @@ Estimated jackknifed(const std::array<Sums, kBlocks>& blocks, Statistic statisti
   Sums all;
   for (const Sums& block : blocks) all += block;
   Estimated result{.value = statistic(all)};
-  double mean = 0.0, square = 0.0;
+  std::array<double, kBlocks> replicates{};
   for (std::size_t out = 0; out < kBlocks; ++out) {
     Sums rest;
     for (std::size_t b = 0; b < kBlocks; ++b) {
       if (b != out) rest += blocks[b];
     }
-    const double value = rest.one > 0.0 ? statistic(rest) : result.value;
-    mean += value / kBlocks;
-    square += value * value;
+    replicates[out] = rest.one > 0.0 ? statistic(rest) : result.value;
   }
-  result.error = std::sqrt(std::max(0.0, (square - kBlocks * mean * mean) * (kBlocks - 1.0) / kBlocks));
+  result.error = jackknife_sigma(replicates);
   return result;
 }
 
@@ -82,7 +81,7 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
   };
   if (!has_tau) return decide({.use_commands = true, .scale = 1.0, .exponent = 0.0});
 
-  const double reference = vehicle.curve.voltage > 0.0 ? vehicle.curve.voltage : std::max(vehicle.nominal_voltage, 1.0);
+  const double reference = reference_voltage(vehicle);
   struct Pair {
     Vector6d tau, computed;
     double log_voltage;
@@ -94,13 +93,12 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
     for (const Thrusters& sample : recording.thrusters) {
       if (!sample.has_tau || sample.pwm_us.size() != thrusters) continue;
       const double battery = voltage_at(recording.battery, sample.utime);
-      Eigen::VectorXd force(static_cast<Eigen::Index>(thrusters));
-      for (std::size_t k = 0; k < thrusters; ++k) {
-        force[static_cast<Eigen::Index>(k)] = vehicle.curve.force_at(sample.pwm_us[k], vehicle.thrusters[k].pwm_sign,
-                                                                     battery > 0.0 ? battery : reference);
-      }
-      pairs.push_back({Eigen::Map<const Vector6d>(sample.tau.data()), vehicle.allocation * force,
-                       battery > 0.0 ? std::log(battery / reference) : 0.0});
+      const std::vector<double> force =
+          forces_of(ThrusterCorrection{}, vehicle, sample.pwm_us, battery > 0.0 ? battery : reference);
+      pairs.push_back(
+          {Eigen::Map<const Vector6d>(sample.tau.data()),
+           vehicle.allocation * Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(thrusters)),
+           battery > 0.0 ? std::log(battery / reference) : 0.0});
       size += pairs.back().tau.cwiseAbs2();
       if (battery > 0.0) {
         low = std::min(low, battery);
@@ -151,28 +149,28 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
                                .evidence = evidence,
                                .action = action});
   };
-  char evidence[200];
   const std::string action = correction.use_commands
                                  ? "thruster forces from the commands, scaled to give the logged wrench"
                                  : "the logged wrench is used";
   if (!correction.use_commands) {
-    std::snprintf(evidence, sizeof evidence,
-                  "the vehicle's curve and allocation explain %.3f of the logged wrench, %.2f is needed", explained,
-                  kAgrees);
-    report("disagreement", explained, evidence, action);
+    report("disagreement", explained,
+           text("the vehicle's curve and allocation explain %.3f of the logged wrench, %.2f is needed", explained,
+                kAgrees),
+           action);
   } else {
     const double exponent = correction.exponent + vehicle.curve.voltage_exponent;
     if (std::abs(exponent) > kExponentFloor && high > kVoltageMoves * low) {
-      std::snprintf(
-          evidence, sizeof evidence,
-          "grows as (V/%.3g V)^%.2f between %.1f and %.1f V: the logged wrench contains the voltage already (R^2 %.3f)",
-          reference, exponent, low, high, explained);
-      report("voltage", exponent, evidence, action);
+      report("voltage", exponent,
+             text("grows as (V/%.3g V)^%.2f between %.1f and %.1f V: the logged wrench contains the voltage already "
+                  "(R^2 %.3f)",
+                  reference, exponent, low, high, explained),
+             action);
     }
     if (correction.scale != 1.0) {
-      std::snprintf(evidence, sizeof evidence, "the logged wrench is %.3f +- %.3f times the computed one (R^2 %.3f)",
-                    correction.scale, scale_change.error, explained);
-      report("scale", correction.scale, evidence, action);
+      report("scale", correction.scale,
+             text("the logged wrench is %.3f +- %.3f times the computed one (R^2 %.3f)", correction.scale,
+                  scale_change.error, explained),
+             action);
     }
   }
   decide(correction);

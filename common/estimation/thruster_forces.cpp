@@ -16,10 +16,23 @@ double voltage_at(const std::vector<Battery>& battery, Utime utime) {
   return before->voltage + share * (after->voltage - before->voltage);
 }
 
-ThrusterForces::ThrusterForces(const ThrusterCorrection& correction, model::Vehicle vehicle)
-    : correction_{correction}, vehicle_{std::move(vehicle)} {
-  reference_ = vehicle_.curve.voltage > 0.0 ? vehicle_.curve.voltage : std::max(vehicle_.nominal_voltage, 1.0);
+double reference_voltage(const model::Vehicle& vehicle) {
+  return vehicle.curve.voltage > 0.0 ? vehicle.curve.voltage : std::max(vehicle.nominal_voltage, 1.0);
 }
+
+std::vector<double> forces_of(const ThrusterCorrection& correction, const model::Vehicle& vehicle,
+                              const std::vector<double>& pwm_us, double voltage) {
+  const double factor = correction.scale * std::pow(voltage / reference_voltage(vehicle), correction.exponent);
+  std::vector<double> force;
+  force.reserve(pwm_us.size());
+  for (std::size_t k = 0; k < pwm_us.size(); ++k) {
+    force.push_back(factor * vehicle.curve.force_at(pwm_us[k], vehicle.thrusters[k].pwm_sign, voltage));
+  }
+  return force;
+}
+
+ThrusterForces::ThrusterForces(const ThrusterCorrection& correction, model::Vehicle vehicle)
+    : correction_{correction}, vehicle_{std::move(vehicle)} {}
 
 void ThrusterForces::step(const Battery& battery) {
   if (battery.voltage > 0.0 && (!battery_ || battery.utime >= battery_->utime)) battery_ = battery;
@@ -27,13 +40,9 @@ void ThrusterForces::step(const Battery& battery) {
 
 Thrusters ThrusterForces::step(const Thrusters& thrusters) const {
   Thrusters result = thrusters;
-  if (!result.force.empty() || !correction_.use_commands || result.pwm_us.size() != vehicle_.thrusters.size()) {
-    return result;
-  }
-  const double voltage = battery_ ? battery_->voltage : reference_;
-  const double factor = correction_.scale * std::pow(voltage / reference_, correction_.exponent);
-  for (std::size_t k = 0; k < result.pwm_us.size(); ++k) {
-    result.force.push_back(factor * vehicle_.curve.force_at(result.pwm_us[k], vehicle_.thrusters[k].pwm_sign, voltage));
+  if (result.force.empty() && correction_.use_commands && result.pwm_us.size() == vehicle_.thrusters.size()) {
+    const double voltage = battery_ ? battery_->voltage : reference_voltage(vehicle_);
+    result.force = forces_of(correction_, vehicle_, result.pwm_us, voltage);
   }
   return result;
 }

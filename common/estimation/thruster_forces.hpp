@@ -14,6 +14,12 @@ namespace fathom::estimation {
 /// Voltage [V] at `utime`: linear between samples, held at the ends, 0 when none was logged.
 [[nodiscard]] double voltage_at(const std::vector<Battery>& battery, Utime utime);
 
+/// Voltage [V] to which a correction's exponent refers: the curve's, else the vehicle's nominal one.
+[[nodiscard]] double reference_voltage(const model::Vehicle& vehicle);
+/// Force [N] of every thruster at its command and `voltage` [V]. One command per thruster.
+[[nodiscard]] std::vector<double> forces_of(const ThrusterCorrection& correction, const model::Vehicle& vehicle,
+                                            const std::vector<double>& pwm_us, double voltage);
+
 class ThrusterForces {
  public:
   ThrusterForces(const ThrusterCorrection& correction, model::Vehicle vehicle);
@@ -25,7 +31,6 @@ class ThrusterForces {
  private:
   ThrusterCorrection correction_;
   model::Vehicle vehicle_;
-  double reference_{};  ///< V
   std::optional<Battery> battery_;
 };
 

@@ -51,6 +51,19 @@ void each_complete(const Rows& rows, const std::vector<const Group*>& groups, Co
   }
 }
 
+// As above, and leaves out what the flags call invalid.
+template <typename Use>
+void each_usable(const Rows& rows, const std::vector<const Group*>& groups, const Flags& invalid, Count& count,
+                 const Use& use) {
+  each_complete(rows, groups, count, [&](std::size_t row, Utime utime) {
+    if (invalid.set(row)) {
+      ++count.flagged;
+    } else {
+      use(row, utime);
+    }
+  });
+}
+
 void import_pose(Resolver& resolve, const PoseColumns& columns, const Rows& rows, const CsvTable& table,
                  Imported& out) {
   const auto position = optional_group(resolve, columns.position);
@@ -92,11 +105,7 @@ void import_ahrs(Resolver& resolve, const AhrsColumns& columns, const Rows& rows
   Count count{.stream = "ahrs"};
   auto& samples = out.recording.ahrs;
   samples.reserve(rows.index.size());
-  each_complete(rows, groups, count, [&](std::size_t row, Utime utime) {
-    if (invalid.set(row)) {
-      ++count.flagged;
-      return;
-    }
+  each_usable(rows, groups, invalid, count, [&](std::size_t row, Utime utime) {
     Ahrs sample{.utime = utime,
                 .has_rates = rates.has_value(),
                 .has_specific_force = specific_force.has_value(),
@@ -148,11 +157,7 @@ void import_thrusters(Resolver& resolve, const ThrusterColumns& columns, const R
   Count count{.stream = "thrusters"};
   auto& samples = out.recording.thrusters;
   samples.reserve(rows.index.size());
-  each_complete(rows, groups, count, [&](std::size_t row, Utime utime) {
-    if (invalid.set(row)) {
-      ++count.flagged;
-      return;
-    }
+  each_usable(rows, groups, invalid, count, [&](std::size_t row, Utime utime) {
     Thrusters sample;
     sample.utime = utime;
     if (pwm) sample.pwm_us = pwm->values(row);
@@ -175,11 +180,7 @@ void import_scalar(Resolver& resolve, const ScalarColumn& column, double Sample:
   const Flags invalid(resolve, column.invalid_where);
   Count count{.stream = stream};
   samples.reserve(rows.index.size());
-  each_complete(rows, {&group}, count, [&](std::size_t row, Utime utime) {
-    if (invalid.set(row)) {
-      ++count.flagged;
-      return;
-    }
+  each_usable(rows, {&group}, invalid, count, [&](std::size_t row, Utime utime) {
     Sample sample;
     sample.utime = utime;
     sample.*member = group.scalar(row);

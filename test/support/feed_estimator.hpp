@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "common/estimation/estimator.hpp"
@@ -12,41 +13,26 @@ namespace fathom::test {
 
 /// `lag` [us] holds back the velocity log's samples, as a slow channel would.
 inline std::vector<StateEstimate> feed(estimation::Estimator& estimator, const Recording& recording, Utime lag = 0) {
-  struct Arrival {
-    Utime utime;
-    std::function<const estimation::Estimator::Output&()> step;
+  using Step = std::function<const estimation::Estimator::Output&()>;
+  std::vector<std::pair<Utime, Step>> arrivals;
+  const auto add = [&](const auto& samples, Utime later) {
+    for (const auto& one : samples) {
+      arrivals.emplace_back(one.utime + later, [&]() -> decltype(estimator.step(one)) { return estimator.step(one); });
+    }
   };
-  std::vector<Arrival> arrivals;
-  for (const PoseCapture& one : recording.pose_capture) {
-    arrivals.push_back({one.utime, [&]() -> const auto& { return estimator.step(one);
+  add(recording.pose_capture, 0);
+  add(recording.ahrs, 0);
+  add(recording.dvl, lag);
+  add(recording.depth, 0);
+  std::stable_sort(arrivals.begin(), arrivals.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<StateEstimate> states;
+  for (const auto& [utime, step] : arrivals) {
+    const auto& output = step();
+    states.insert(states.end(), output.begin(), output.end());
   }
-});
-}  // namespace fathom::test
-for (const Ahrs& one : recording.ahrs) {
-    arrivals.push_back({one.utime, [&]() -> const auto& { return estimator.step(one);
-}
-});
-}
-for (const Dvl& one : recording.dvl) {
-    arrivals.push_back({one.utime + lag, [&]() -> const auto& { return estimator.step(one);
-}
-});
-}
-for (const Depth& one : recording.depth) {
-    arrivals.push_back({one.utime, [&]() -> const auto& { return estimator.step(one);
-}
-});
-}
-std::stable_sort(arrivals.begin(), arrivals.end(),
-                 [](const Arrival& a, const Arrival& b) { return a.utime < b.utime; });
-std::vector<StateEstimate> states;
-for (const Arrival& arrival : arrivals) {
-  const auto& output = arrival.step();
-  states.insert(states.end(), output.begin(), output.end());
-}
-const auto& rest = estimator.finish();
-states.insert(states.end(), rest.begin(), rest.end());
-return states;
+  const auto& rest = estimator.finish();
+  states.insert(states.end(), rest.begin(), rest.end());
+  return states;
 }
 
 }  // namespace fathom::test

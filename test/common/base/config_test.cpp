@@ -107,3 +107,40 @@ TEST_CASE("config: a key that nobody read is refused, below too, with the neares
         "v.yaml:3: unknown key 'densty' in 'water'; did you mean 'density'?");
   CHECK(message_of("mass: 1 kg\nbuoyancy: 2 N\n", finish) == "no complaint");
 }
+
+TEST_CASE("config: a misspelt key is named before what follows from its absence") {
+  // The reader of an optional key learns of its absence from has(), and then complains of something else.
+  const auto vehicle = [](const Config& config) {
+    if (!config.has("mass")) config.fail("mass", "state the 'mass', or a prior for every parameter");
+    if (!config.has("dof")) config.fail("", "nothing may move");
+    static_cast<void>(config.texts("dof"));
+    static_cast<void>(config.quantity("mass", "kg"));
+    config.finish();
+  };
+  CHECK(message_of("name: a\nmas: 10 kg\ndof: [yaw]\n", vehicle) ==
+        "v.yaml:2: unknown key 'mas'; did you mean 'mass'?");
+  CHECK(message_of("dof: [yaw]\nMass: 10 kg\n", vehicle) == "v.yaml:2: unknown key 'Mass'; did you mean 'mass'?");
+  CHECK(message_of("mass: 10 kg\ndfo: [yaw]\n", vehicle) == "v.yaml:2: unknown key 'dfo'; did you mean 'dof'?");
+  CHECK(message_of("name: a\ndof: [yaw]\n", vehicle) == "v.yaml:1: state the 'mass', or a prior for every parameter");
+  // A complaint of a value stands when no key looks like an absent one.
+  CHECK(message_of("mass: 10 m\ndof: [yaw]\ncolour: red\n", vehicle).rfind("v.yaml:1: 'mass': unit 'm'", 0) == 0);
+  // Short keys that differ are other keys.
+  CHECK(message_of("Y: 1\n", [](const Config& config) { static_cast<void>(config.quantity("X", "")); }) ==
+        "v.yaml:1: key 'X' is missing");
+  CHECK(message_of("gap-max: 1 s\n", [](const Config& config) {
+          static_cast<void>(config.quantity("gap_max", "s"));
+        }) == "v.yaml:1: unknown key 'gap-max'; did you mean 'gap_max'?");
+}
+
+TEST_CASE("config: signs and choices are checked where they are read") {
+  const auto positive = [](const Config& config) { static_cast<void>(config.positive("x", "m")); };
+  const auto not_negative = [](const Config& config) { static_cast<void>(config.not_negative("x", "m")); };
+  CHECK(Config::parse("x: 2 m\n", "v.yaml").positive("x", "m") == 2.0);
+  CHECK(Config::parse("x: 0 m\n", "v.yaml").not_negative("x", "m") == 0.0);
+  CHECK(message_of("x: 0 m\n", positive) == "v.yaml:1: 'x' must be positive");
+  CHECK(message_of("x: -1 m\n", not_negative) == "v.yaml:1: 'x' must not be negative");
+  const auto input = [](const Config& config) { static_cast<void>(config.either("input", "linear", "hold")); };
+  CHECK(Config::parse("input: linear\n", "v.yaml").either("input", "linear", "hold"));
+  CHECK_FALSE(Config::parse("input: hold\n", "v.yaml").either("input", "linear", "hold"));
+  CHECK(message_of("input: held\n", input) == "v.yaml:1: 'input' must be linear or hold, not 'held'");
+}

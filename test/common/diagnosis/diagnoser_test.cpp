@@ -24,9 +24,9 @@ struct Laggard {
 
   Laggard() {
     const test::VirtualDive dive =
-        test::make_dive(vehicle, {.duration = 165.0, .seed = 41, .effects = {test::active("thruster_lag", {0.3})}});
-    train = {test::cut_trial(dive.trial, 0, 1000)};
-    validate = {test::cut_trial(dive.trial, 1000, dive.trial.size())};
+        test::make_dive(vehicle, {.duration = 125.0, .seed = 41, .effects = {test::active("thruster_lag", {0.3})}});
+    train = {test::cut_trial(dive.trial, 0, 600)};
+    validate = {test::cut_trial(dive.trial, 600, dive.trial.size())};
     train[0].name = "first part";
     validate[0].name = "second part";
   }

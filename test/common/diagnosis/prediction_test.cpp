@@ -93,3 +93,35 @@ TEST_CASE("prediction: the wrench residual of the truth is noise, and finds a fo
   }
   CHECK(std::sqrt(worst) < 3.0);  // N: smoothing over 0.5 s across the corners of thrust
 }
+
+TEST_CASE("prediction: no prediction starts from a velocity that was guessed across a gap") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  test::VirtualDive dive = test::make_dive(vehicle, {.duration = 45.0});
+  Trial& trial = dive.trial;
+  REQUIRE(trial.size() == 451);
+  CHECK(restarts(trial) == std::vector<std::size_t>{0, 100, 200, 300, 400});
+  // A gap where the second prediction would begin: what stands in nu there must not be used.
+  for (std::size_t k = 95; k < 120; ++k) {
+    trial.velocity_valid[k] = 0;
+    trial.nu[k].setConstant(100.0);
+  }
+  trial.rates_valid[120] = 0;
+  trial.pose_valid[121] = 0;
+  const std::vector<std::size_t> starts = restarts(trial);
+  CHECK(starts == std::vector<std::size_t>{0, 122, 222, 322, 422});
+  const auto predicted = predict_anew(dive.truth, trial, starts);
+  REQUIRE(predicted.size() == trial.size());
+  for (const std::size_t start : starts) CHECK(predicted[start][0] == trial.nu[start][0]);
+  CHECK(std::isfinite(predicted[99][0]));
+  for (std::size_t k = 100; k < 122; ++k) CHECK(std::isnan(predicted[k][0]));  // 10 s are over, nothing to start from
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    if (k < 100 || k >= 122) CHECK(std::abs(predicted[k][0]) < 5.0);  // m/s
+    CHECK(std::isnan(predicted[k][4]));                               // pitch is not simulated
+  }
+  // A signal that was never observed holds up nothing; one that never becomes valid leaves no prediction.
+  trial.observed.attitude = false;
+  CHECK(restarts(trial)[1] == 121);
+  trial.rates_valid.assign(trial.size(), 0);
+  CHECK(restarts(trial).empty());
+  CHECK(std::isnan(predict_anew(dive.truth, trial, {})[0][0]));
+}

@@ -6,20 +6,11 @@
 
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/beluga_csv.hpp"
+#include "test/support/consistency.hpp"
 #include "test/support/timing.hpp"
 
 namespace fathom {
-namespace {
-
-const ConsistencyFinding* find(const std::vector<ConsistencyFinding>& findings, const std::string& signal,
-                               const std::string& what) {
-  for (const ConsistencyFinding& one : findings) {
-    if (one.signal == signal && one.finding == what) return &one;
-  }
-  return nullptr;
-}
-
-}  // namespace
+using test::find;
 
 TEST_CASE("the sensors of the Beluga recordings disagree as independent analysis found") {
   const std::vector<Recording> runs = test::read_all_beluga();
@@ -69,6 +60,9 @@ TEST_CASE("the sensors of the Beluga recordings disagree as independent analysis
   const ConsistencyFinding* scale = find(result.findings, "dvl.u", "scale");
   REQUIRE(scale != nullptr);
   CHECK(scale->size == doctest::Approx(0.979).epsilon(0.006));
+  const ConsistencyFinding* tilt = find(result.findings, "pose_capture.attitude", "tilt");
+  REQUIRE(tilt != nullptr);
+  CHECK(tilt->size == doctest::Approx(0.061).epsilon(0.1));  // rad: 3.5 degrees
 }
 
 }  // namespace fathom

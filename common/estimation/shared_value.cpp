@@ -1,0 +1,65 @@
+#include "common/estimation/shared_value.hpp"
+
+#include <cmath>
+
+namespace fathom::estimation {
+namespace {
+
+constexpr double kSignificant = 4.0;  // sigmas
+
+}  // namespace
+
+SharedValue share(std::span<const Estimate> estimates, double neutral, double floor) {
+  SharedValue decision;
+  decision.applied.assign(estimates.size(), neutral);
+  std::vector<std::size_t> used;
+  std::vector<double> all;
+  for (std::size_t r = 0; r < estimates.size(); ++r) {
+    if (!estimates[r].informative || !std::isfinite(estimates[r].sigma) || estimates[r].sigma <= 0.0) continue;
+    used.push_back(r);
+    all.push_back(estimates[r].value);
+  }
+  // A recording unlike the others: only a majority can say so.
+  if (used.size() >= 3) {
+    const double centre = median(all);
+    const double spread = mad_sigma(all);
+    std::vector<std::size_t> alike;
+    for (const std::size_t r : used) {
+      const double off = std::abs(estimates[r].value - centre);
+      if (off > 3.0 * floor && off > 6.0 * std::hypot(estimates[r].sigma, spread)) {
+        decision.different.push_back(r);
+      } else {
+        alike.push_back(r);
+      }
+    }
+    if (2 * alike.size() > used.size()) {
+      used = alike;
+    } else {
+      decision.different.clear();
+    }
+  }
+  std::vector<double> values, sigmas;
+  std::size_t blocks = 0;
+  int positive = 0, negative = 0;
+  for (const std::size_t r : used) {
+    values.push_back(estimates[r].value - neutral);
+    sigmas.push_back(estimates[r].sigma);
+    blocks += estimates[r].blocks;
+    (values.back() > 0.0 ? positive : negative) += 1;
+  }
+  decision.pooled = pool(values, sigmas);
+  if (used.empty()) return decision;
+  // Student's tail: few blocks know their own scatter badly. This follows the 6e-5 quantile down to 7 blocks.
+  const double limit = kSignificant * (1.0 + 5.0 / static_cast<double>(blocks));
+  decision.limit = limit;
+  const double size = std::abs(decision.pooled.value);
+  const int same = decision.pooled.value > 0.0 ? positive : negative;
+  const bool repeated = used.size() < 3 ? same == static_cast<int>(used.size()) : same >= 3;
+  decision.found = size > limit * decision.pooled.sigma && size > floor && repeated;
+  decision.pooled.value += neutral;
+  if (decision.found) decision.applied.assign(estimates.size(), decision.pooled.value);
+  for (const std::size_t r : decision.different) decision.applied[r] = estimates[r].value;
+  return decision;
+}
+
+}  // namespace fathom::estimation

@@ -1,0 +1,102 @@
+// When rankings come, and in which order they name what they suspect.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "common/diagnosis/live_diagnoser.hpp"
+#include "test/support/virtual_dive.hpp"
+
+namespace fathom::diagnosis {
+namespace {
+
+constexpr Utime kStart = 1'600'000'000'000'000;
+constexpr double kBlock = 5.0;  // s
+
+LiveSettings short_settings() {
+  LiveSettings settings;
+  settings.warm_up = 10.0;
+  settings.block = kBlock;
+  settings.fewest_blocks = 5;
+  return settings;
+}
+
+std::vector<EffectRanking> listen(LiveDiagnoser& diagnoser, const Trial& trial) {
+  std::vector<EffectRanking> rankings;
+  const auto keep = [&](std::optional<EffectRanking> ranking) {
+    if (ranking) rankings.push_back(*std::move(ranking));
+  };
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    const Utime utime = utime_after(kStart, trial.t[k]);
+    Thrusters thrusters{.utime = utime};
+    thrusters.force.assign(trial.input[k].data(), trial.input[k].data() + trial.input[k].size());
+    keep(diagnoser.step(thrusters));
+    keep(diagnoser.step(Battery{.utime = utime, .voltage = trial.voltage[k]}));
+    keep(diagnoser.step(
+        StateEstimate{.utime = utime, .p_WB = trial.p_WB[k], .q_WB = trial.q_WB[k], .nu = trial.nu[k], .valid = true}));
+  }
+  keep(diagnoser.finish());
+  return rankings;
+}
+
+}  // namespace
+
+TEST_CASE("live ranking: one per block of message time, collecting until there are enough of them") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 80.0, .seed = 6, .effects = {test::active("thruster_lag", {0.5})}});
+  LiveDiagnoser diagnoser{short_settings(), vehicle};
+  const auto rankings = listen(diagnoser, dive.trial);
+  REQUIRE(rankings.size() > 10);
+  std::size_t collecting = 0;
+  for (std::size_t i = 0; i + 1 < rankings.size(); ++i) {
+    CHECK(rankings[i].utime > (i == 0 ? kStart : rankings[i - 1].utime));
+    if (rankings[i].verdict == "collecting") {
+      CHECK(collecting++ == i);
+      CHECK(rankings[i].candidates.empty());
+    }
+  }
+  CHECK(collecting > 0);
+  CHECK(collecting < rankings.size() - 1);
+  // Blocks end at multiples of their length, counted from the first state.
+  for (std::size_t i = 1; i + 1 < rankings.size(); ++i) {
+    const double t = seconds_between(kStart, rankings[i].utime);
+    CHECK(std::fmod(t, kBlock) < 1.0 + 1e-9);  // a row follows each second
+  }
+  CHECK(rankings.back().utime == utime_after(kStart, dive.trial.t.back()));
+}
+
+TEST_CASE("live ranking: each effect once, the convincing ones first and by what they explain") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 100.0, .seed = 7, .effects = {test::active("thruster_lag", {0.5})}});
+  const LiveSettings settings = short_settings();
+  LiveDiagnoser diagnoser{settings, vehicle};
+  const EffectRanking last = listen(diagnoser, dive.trial).back();
+  REQUIRE_FALSE(last.candidates.empty());
+  CHECK(last.candidates.front().name == "thruster_lag");
+  CHECK((last.verdict == "effect" || last.verdict == "ambiguous"));
+  const auto convinces = [&](const EffectEvidence& one) {
+    return one.log_odds >= settings.accept_log_odds && one.error_reduction >= settings.smallest_reduction;
+  };
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < last.candidates.size(); ++i) {
+    const EffectEvidence& one = last.candidates[i];
+    CHECK(names.insert(one.name).second);
+    if (i == 0) continue;
+    const EffectEvidence& before = last.candidates[i - 1];
+    CHECK((convinces(before) || !convinces(one)));
+    if (convinces(one)) CHECK(before.error_reduction >= one.error_reduction);
+  }
+  // The numbers behind it belong to the same form.
+  REQUIRE_FALSE(diagnoser.suspicions().empty());
+  const LiveSuspicion& first = diagnoser.suspicions().front();
+  CHECK(diagnoser.forms()[static_cast<std::size_t>(first.form)].effect->name() == "thruster_lag");
+  CHECK(first.theta[0] == doctest::Approx(0.5).epsilon(0.3));
+  diagnoser.reset();
+  CHECK(diagnoser.suspicions().empty());
+  CHECK(diagnoser.forms().empty());
+  CHECK_FALSE(diagnoser.finish());
+}
+
+}  // namespace fathom::diagnosis
