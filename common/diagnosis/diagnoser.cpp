@@ -57,7 +57,7 @@ void overlay(const model::Model& model, const Trial& trial, std::span<const std:
   for (std::size_t r = 0; r < restarts.size(); ++r) {
     const std::size_t start = restarts[r];
     const std::size_t count = (r + 1 < restarts.size() ? restarts[r + 1] : trial.size()) - start;
-    model::rollout(model, {&trial, start, count}, trial.nu[start], trace);
+    model::rollout(model, {&trial, start, count}, model::true_velocity(model, trial, start), trace);
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t axis = 0; axis < 6; ++axis) {
         if (model.vehicle->dof[axis]) {
