@@ -28,7 +28,8 @@ class Compressibility final : public Effect {
     return seen ? std::vector<std::string>{""} : std::vector<std::string>{};
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
-    return {{0.1 * std::max(scene.tau_rms[2], 1e-3) / (scene.p_high.z() - scene.p_low.z())}};
+    const double range = std::max(scene.p_high.z() - scene.p_low.z(), kSmallestRange);
+    return {{0.1 * std::max(scene.tau_rms[2], 1e-3) / range}};
   }
 
   void load(const Motion& motion, EffectTheta theta, int, Load& load) const override {
