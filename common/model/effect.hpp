@@ -34,7 +34,7 @@ struct Scene {
   Vector6d tau_rms{Vector6d::Zero()};
   ActuatorForces force_rms{};  ///< N per actuator
   double tilt_rms{};           ///< horizontal share of the body's down axis; 0 when attitude was not measured
-  /// Oscillating forces that a linear regression leaves in the longest run, strongest first; empty when not known.
+  /// Oscillating forces that a linear regression leaves in the longest run, most prominent first; empty when not known.
   std::vector<Tone> tones_horizontal{}, tones_vertical{};
 };
 

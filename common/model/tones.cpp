@@ -13,10 +13,11 @@
 namespace fathom::model {
 namespace {
 
-constexpr double kBlock = 0.25;      // s: waves that move a vehicle have periods above 1 s
-constexpr double kLowest = 0.15;     // rad/s: slower swings are drift
-constexpr double kHighest = 6.0;     // rad/s
-constexpr double kShortestRun = 20;  // s
+constexpr double kBlock = 0.25;          // s: waves that move a vehicle have periods above 1 s
+constexpr double kLowest = 0.15;         // rad/s: slower swings are drift
+constexpr double kHighest = 6.0;         // rad/s
+constexpr double kShortestRun = 20;      // s
+constexpr std::size_t kNeighbours = 30;  // lines to each side
 
 struct Blocks {
   std::vector<double> t;
@@ -78,20 +79,32 @@ std::vector<Eigen::Vector3d> left_over(const Vehicle& vehicle, const Blocks& blo
   return residuals;
 }
 
-/// The `most` local maxima of one share of the power.
+/// The `most` local maxima of one share of the power that stand out most from their neighbourhood: differentiated noise
+/// rises with frequency and must not outbid a line in a quiet place.
 std::vector<Tone> peaks(const std::vector<Tone>& spectrum, std::size_t most, bool vertical) {
-  const auto power = [&](const Tone& tone) {
-    return vertical ? tone.cosine.z() * tone.cosine.z() + tone.sine.z() * tone.sine.z()
-                    : tone.cosine.head<2>().squaredNorm() + tone.sine.head<2>().squaredNorm();
-  };
-  std::vector<Tone> found;
-  for (std::size_t i = 1; i + 1 < spectrum.size(); ++i) {
-    const double here = power(spectrum[i]);
-    if (here > 0.0 && here >= power(spectrum[i - 1]) && here > power(spectrum[i + 1])) found.push_back(spectrum[i]);
+  std::vector<double> power, sum{0.0};
+  for (const Tone& tone : spectrum) {
+    power.push_back(vertical ? tone.cosine.z() * tone.cosine.z() + tone.sine.z() * tone.sine.z()
+                             : tone.cosine.head<2>().squaredNorm() + tone.sine.head<2>().squaredNorm());
+    sum.push_back(sum.back() + power.back());
   }
-  std::stable_sort(found.begin(), found.end(), [&](const Tone& a, const Tone& b) { return power(a) > power(b); });
+  struct Peak {
+    double prominence;
+    std::size_t at;
+  };
+  std::vector<Peak> found;
+  for (std::size_t i = 1; i + 1 < spectrum.size(); ++i) {
+    if (power[i] <= 0.0 || power[i] < power[i - 1] || power[i] <= power[i + 1]) continue;
+    const std::size_t low = i > kNeighbours ? i - kNeighbours : 0;
+    const std::size_t high = std::min(i + kNeighbours + 1, spectrum.size());
+    found.push_back({power[i] * static_cast<double>(high - low) / (sum[high] - sum[low]), i});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Peak& a, const Peak& b) { return a.prominence > b.prominence; });
   if (found.size() > most) found.resize(most);
-  return found;
+  std::vector<Tone> strongest;
+  for (const Peak& peak : found) strongest.push_back(spectrum[peak.at]);
+  return strongest;
 }
 
 }  // namespace

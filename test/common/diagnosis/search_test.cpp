@@ -56,8 +56,8 @@ const std::vector<Hidden>& hidden_effects() {
       {"compressibility", "", {{0.6, 1.0}}},
       {"payload_change", "", {{1.5, 3.0}, {-3.0, -2.0}, {60.0, 140.0}}},
       // Places of boundaries are counted from the deepest, or the most northern, place of the dive.
-      {"bottom_effect", "force", {{1.0, 2.0}, {0.3, 0.5}}},
-      {"wall_effect", "force", {{1.0, 2.0}, {0.0, 0.0}, {0.3, 0.5}}},
+      {"bottom_effect", "force", {{6.0, 10.0}, {0.8, 1.2}}},
+      {"wall_effect", "force", {{6.0, 10.0}, {0.0, 0.0}, {0.8, 1.2}}},
       {"lever_arm", "", {{0.2, 0.3}, {-0.15, -0.1}, {0.0, 0.0}}},
       {"sensor_scale", "u", {{0.15, 0.25}}},
       {"sensor_latency", "velocity", {{0.15, 0.3}}},
