@@ -13,6 +13,27 @@ namespace {
 
 constexpr std::array kParameters{EffectParameter{"error", "", 0.1, -0.9, 4.0}};
 
+// Products of velocities in each row of C(nu) nu, docs/model.md (2).
+constexpr std::array<std::array<std::array<int, 2>, 2>, 6> kProducts{{{{{4, 2}, {5, 1}}},
+                                                                      {{{5, 0}, {3, 2}}},
+                                                                      {{{3, 1}, {4, 0}}},
+                                                                      {{{1, 2}, {4, 5}}},
+                                                                      {{{2, 0}, {5, 3}}},
+                                                                      {{{0, 1}, {3, 4}}}}};
+constexpr double kMoves = 0.01;  // m/s, rad/s RMS
+
+/// True when the component enters another simulated axis' equation: only there its scale shows.
+bool couples(const Scene& scene, int component) {
+  for (std::size_t row = 0; row < 6; ++row) {
+    if (!scene.vehicle->dof[row]) continue;
+    for (const auto& [a, b] : kProducts[row]) {
+      if (a == component && scene.nu_rms[b] > kMoves) return true;
+      if (b == component && scene.nu_rms[a] > kMoves) return true;
+    }
+  }
+  return false;
+}
+
 class SensorScale final : public Effect {
  public:
   std::string_view name() const override { return "sensor_scale"; }
@@ -23,13 +44,13 @@ class SensorScale final : public Effect {
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
-    if (std::count(dof.begin(), dof.end(), true) < 2) return {};
     std::vector<std::string> names;
     for (std::size_t axis = 0; axis < 6; ++axis) {
-      const bool seen = dof[axis] && (axis < 3 ? scene.velocity : scene.rates);
-      names.emplace_back(seen ? kVelocityNames[axis] : "-");
+      const bool measured = dof[axis] && (axis < 3 ? scene.velocity : scene.rates);
+      names.emplace_back(measured && couples(scene, static_cast<int>(axis)) ? kVelocityNames[axis] : "-");
     }
-    return names;
+    const bool any = std::any_of(names.begin(), names.end(), [](const std::string& one) { return one != "-"; });
+    return any ? names : std::vector<std::string>{};
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}}; }
   bool measures() const override { return true; }
