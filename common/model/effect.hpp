@@ -87,9 +87,9 @@ class Effect {
   [[nodiscard]] virtual bool measures() const { return false; }
   /// True velocities, `dt` apart, become measured ones, in place. Linear in the velocities, so that derivatives go the
   /// same way.
-  virtual void measure(VelocityView /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
+  virtual void measure(VelocityView& /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
   /// The way back; at the ends of the stretch as well as it can be done.
-  virtual void unmeasure(VelocityView /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
+  virtual void unmeasure(VelocityView& /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
 };
 
 /// All effects, in the order in which they act: from the command to the water.

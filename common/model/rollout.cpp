@@ -22,8 +22,9 @@ VelocityView as_trace(VelocityDerivatives& derivatives, Eigen::Index column) {
 
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
   const bool finished = Rollout{model, *window.trial}.run(window, nu0, nu);
+  VelocityView seen{nu};
   for (const ActiveEffect& active : model.effects) {
-    if (active.effect->measures()) active.effect->measure(nu, window.trial->dt, active.theta, active.variant);
+    if (active.effect->measures()) active.effect->measure(seen, window.trial->dt, active.theta, active.variant);
   }
   return finished;
 }
@@ -32,11 +33,13 @@ bool rollout_with_derivatives(const Model& model, const Window& window, const Ve
                               VelocityDerivatives& derivatives) {
   Sensitivity sensitivity{derivatives};
   const bool finished = Rollout{model, *window.trial, &sensitivity}.run(window, nu0, nu);
+  VelocityView seen{nu};
   for (const ActiveEffect& active : model.effects) {
     if (!active.effect->measures()) continue;
-    active.effect->measure(nu, window.trial->dt, active.theta, active.variant);
+    active.effect->measure(seen, window.trial->dt, active.theta, active.variant);
     for (Eigen::Index j = 0; j < derivatives.cols(); ++j) {
-      active.effect->measure(as_trace(derivatives, j), window.trial->dt, active.theta, active.variant);
+      VelocityView column = as_trace(derivatives, j);
+      active.effect->measure(column, window.trial->dt, active.theta, active.variant);
     }
   }
   return finished;
@@ -44,9 +47,10 @@ bool rollout_with_derivatives(const Model& model, const Window& window, const Ve
 
 VelocityTrace true_velocities(const Model& model, const Trial& trial, std::size_t from, std::size_t count) {
   VelocityTrace nu(6, static_cast<Eigen::Index>(count));
+  VelocityView view{nu};
   for (std::size_t k = 0; k < count; ++k) nu.col(static_cast<Eigen::Index>(k)) = trial.nu[from + k];
   for (auto active = model.effects.rbegin(); active != model.effects.rend(); ++active) {
-    if (active->effect->measures()) active->effect->unmeasure(nu, trial.dt, active->theta, active->variant);
+    if (active->effect->measures()) active->effect->unmeasure(view, trial.dt, active->theta, active->variant);
   }
   return nu;
 }

@@ -103,6 +103,7 @@ std::vector<Tone> peaks(const std::vector<Tone>& spectrum, std::size_t most, boo
                    [](const Peak& a, const Peak& b) { return a.prominence > b.prominence; });
   if (found.size() > most) found.resize(most);
   std::vector<Tone> strongest;
+  strongest.reserve(found.size());
   for (const Peak& peak : found) strongest.push_back(spectrum[peak.at]);
   return strongest;
 }
@@ -120,6 +121,7 @@ Tones strongest_tones(const Vehicle& vehicle, const Trial& trial, std::size_t mo
 
   // Half the resolution of the record apart, so that the strongest frequency is within a quarter of a line.
   std::vector<Tone> spectrum;
+  spectrum.reserve(static_cast<std::size_t>((kHighest - kLowest) * span / std::numbers::pi) + 1);
   for (double omega = kLowest; omega < kHighest; omega += std::numbers::pi / span) {
     Tone tone{.omega = omega};
     for (std::size_t k = 0; k < force.size(); ++k) {

@@ -129,8 +129,9 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
       q = (q * quaternion_from_rotation_vector(kStep * halfway.tail<3>())).normalized();
     }
   }
+  model::VelocityView seen{measured};
   for (const auto& one : dive.truth.effects) {
-    if (one.effect->measures()) one.effect->measure(measured, settings.dt, one.theta, one.variant);
+    if (one.effect->measures()) one.effect->measure(seen, settings.dt, one.theta, one.variant);
   }
   for (std::size_t k = 0; k < samples; ++k) {
     trial.nu.emplace_back(measured.col(static_cast<Eigen::Index>(k)) + noises[k]);

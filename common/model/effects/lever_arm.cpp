@@ -40,10 +40,10 @@ class LeverArm final : public Effect {
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05, 0.05, 0.05}}; }
   bool measures() const override { return true; }
-  void measure(VelocityView nu, double, EffectTheta theta, int) const override {
+  void measure(VelocityView& nu, double, EffectTheta theta, int) const override {
     shift(nu, {theta[0], theta[1], theta[2]});
   }
-  void unmeasure(VelocityView nu, double, EffectTheta theta, int) const override {
+  void unmeasure(VelocityView& nu, double, EffectTheta theta, int) const override {
     shift(nu, {-theta[0], -theta[1], -theta[2]});
   }
 };

@@ -51,7 +51,7 @@ class Shift {
     }
     const auto k = static_cast<Eigen::Index>(position);
     const double s = position - static_cast<double>(k);
-    const Sample from = sample(k);
+    Sample from = sample(k);
     const Sample to = sample(k + 1);
     const Sample step = to - from;
     if (s == 0.0) return from;
@@ -87,10 +87,10 @@ class SensorLatency final : public Effect {
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}, {0.2}, {0.5}}; }
   bool measures() const override { return true; }
-  void measure(VelocityView nu, double dt, EffectTheta theta, int variant) const override {
+  void measure(VelocityView& nu, double dt, EffectTheta theta, int variant) const override {
     Shift{nu, variant, theta[0] / dt}.run();
   }
-  void unmeasure(VelocityView nu, double dt, EffectTheta theta, int variant) const override {
+  void unmeasure(VelocityView& nu, double dt, EffectTheta theta, int variant) const override {
     Shift{nu, variant, -theta[0] / dt}.run();
   }
 };

@@ -54,10 +54,10 @@ class SensorScale final : public Effect {
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}}; }
   bool measures() const override { return true; }
-  void measure(VelocityView nu, double, EffectTheta theta, int variant) const override {
+  void measure(VelocityView& nu, double, EffectTheta theta, int variant) const override {
     nu.row(variant) *= 1.0 + theta[0];
   }
-  void unmeasure(VelocityView nu, double, EffectTheta theta, int variant) const override {
+  void unmeasure(VelocityView& nu, double, EffectTheta theta, int variant) const override {
     nu.row(variant) /= 1.0 + theta[0];
   }
 };

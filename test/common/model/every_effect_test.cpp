@@ -53,7 +53,8 @@ struct Fixture {
       all.push_back(model::acceleration(model, motion));
       seen.col(static_cast<Eigen::Index>(k)) = trial.nu[k];
     }
-    if (effect != nullptr) effect->effect->measure(seen, trial.dt, effect->theta, effect->variant);
+    model::VelocityView view{seen};
+    if (effect != nullptr) effect->effect->measure(view, trial.dt, effect->theta, effect->variant);
     for (std::size_t k = 0; k < all.size(); ++k) all[k] += seen.col(static_cast<Eigen::Index>(k));
     return all;
   }

@@ -33,7 +33,8 @@ TEST_CASE("sensor_latency: shifts by its time, between samples too, and each for
   for (const double latency : {0.03, 0.1, 0.25, 1.2}) {
     for (const int form : {kAll, kVelocity, kRates}) {
       model::VelocityTrace nu = truth;
-      effect.measure(nu, kDt, std::vector{latency}, form);
+      model::VelocityView view{nu};
+      effect.measure(view, kDt, std::vector{latency}, form);
       for (Eigen::Index k = 13; k + 1 < nu.cols(); ++k) {  // the last has a slope on one side only
         for (int axis = 0; axis < 6; ++axis) {
           const bool late = form == kAll || (axis < 3) == (form == kVelocity);
@@ -49,9 +50,10 @@ TEST_CASE("sensor_latency: none is exactly none, whole samples are exact, and th
   const model::VelocityTrace truth = sines(50, 0.1);
   const model::Effect& effect = *model::find_effect("sensor_latency");
   model::VelocityTrace nu = truth;
-  effect.measure(nu, 0.1, std::vector{0.0}, kAll);
+  model::VelocityView view{nu};
+  effect.measure(view, 0.1, std::vector{0.0}, kAll);
   CHECK(nu == truth);
-  effect.measure(nu, 0.1, std::vector{0.3}, kAll);
+  effect.measure(view, 0.1, std::vector{0.3}, kAll);
   CHECK((nu.rightCols(47) - truth.leftCols(47)).norm() < 1e-9);
   const Vector6d slope = truth.col(1) - truth.col(0);
   CHECK((nu.col(0) - (truth.col(0) - 3.0 * slope)).norm() < 1e-9);
@@ -61,27 +63,29 @@ TEST_CASE("sensor_latency: the way back returns what was, away from the ends") {
   const model::VelocityTrace truth = sines(100, 0.1);
   const model::Effect& effect = *model::find_effect("sensor_latency");
   model::VelocityTrace nu = truth;
-  effect.measure(nu, 0.1, std::vector{0.23}, kAll);
-  effect.unmeasure(nu, 0.1, std::vector{0.23}, kAll);
+  model::VelocityView view{nu};
+  effect.measure(view, 0.1, std::vector{0.23}, kAll);
+  effect.unmeasure(view, 0.1, std::vector{0.23}, kAll);
   constexpr double kTwice = 3e-3;  // interpolated twice
   CHECK((nu.middleCols(5, 90) - truth.middleCols(5, 90)).cwiseAbs().maxCoeff() < kTwice);
 }
 
 TEST_CASE("lever_arm: a log ahead of the origin feels the turning as sway; scale: in proportion; both return") {
   model::VelocityTrace nu = model::VelocityTrace::Zero(6, 3);
+  model::VelocityView view{nu};
   nu.row(5).setConstant(0.5);
   const model::VelocityTrace truth = nu;
   const model::Effect& arm = *model::find_effect("lever_arm");
-  arm.measure(nu, 0.1, std::vector{0.3, -0.2, 0.1}, 0);
+  arm.measure(view, 0.1, std::vector{0.3, -0.2, 0.1}, 0);
   CHECK(nu(1, 1) == doctest::Approx(0.5 * 0.3));
   CHECK(nu(0, 1) == doctest::Approx(0.5 * 0.2));
   CHECK(nu(2, 1) == 0.0);
-  arm.unmeasure(nu, 0.1, std::vector{0.3, -0.2, 0.1}, 0);
+  arm.unmeasure(view, 0.1, std::vector{0.3, -0.2, 0.1}, 0);
   CHECK((nu - truth).norm() < kRounding);
   const model::Effect& scale = *model::find_effect("sensor_scale");
-  scale.measure(nu, 0.1, std::vector{0.1}, 5);
+  scale.measure(view, 0.1, std::vector{0.1}, 5);
   CHECK(nu(5, 2) == doctest::Approx(0.55));
-  scale.unmeasure(nu, 0.1, std::vector{0.1}, 5);
+  scale.unmeasure(view, 0.1, std::vector{0.1}, 5);
   CHECK((nu - truth).norm() < kRounding);
 }
 
