@@ -23,6 +23,7 @@ bool adds_inertia(const model::Effect& effect, int variant, const std::vector<do
 LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& scene) : base_{base} {
   base_.effects.clear();
   for (const model::Effect* effect : model::all_effects()) {
+    if (effect->measures()) continue;  // adds no wrench
     const std::vector<std::string> names = effect->variants(scene);
     for (std::size_t v = 0; v < names.size(); ++v) {
       if (names[v] == "-") continue;

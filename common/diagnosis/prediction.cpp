@@ -70,7 +70,7 @@ Predictions predict(const model::Model& model, std::span<const model::Window> wi
   model::VelocityTrace trace;
   for (const model::Window& window : windows) {
     const Trial& trial = *window.trial;
-    model::rollout(model, window, trial.nu[window.start], trace);
+    model::rollout(model, window, model::true_velocity(model, trial, window.start), trace);
     WindowErrors errors;
     for (std::size_t k = 1; k < window.count; ++k) {
       const double elapsed = static_cast<double>(k) * trial.dt;
@@ -122,7 +122,7 @@ std::vector<std::array<double, 6>> predict_anew(const model::Model& model, const
   for (std::size_t s = 0; s < starts.size(); ++s) {
     const std::size_t end = s + 1 < starts.size() ? starts[s + 1] : trial.size();
     const std::size_t count = std::min(end - starts[s], longest_prediction(trial));
-    model::rollout(model, {&trial, starts[s], count}, trial.nu[starts[s]], trace);
+    model::rollout(model, {&trial, starts[s], count}, model::true_velocity(model, trial, starts[s]), trace);
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t axis = 0; axis < 6; ++axis) {
         if (!model.vehicle->dof[axis]) continue;
@@ -191,9 +191,11 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
   std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
   const model::InputSignal input{trial.t.empty() ? 0.0 : trial.t.front(), trial.dt, trial.input};
   std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
+  const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());
   for (std::size_t k = 0; k < trial.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
     model::Motion motion{
-        .t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = trial.nu[k]};
+        .t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = nu.col(at)};
     input.at(motion.t, motion.force);
     motion.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
     motion.input = &input;
@@ -204,7 +206,8 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
     bool valid = true;
     Vector6d slope = Vector6d::Zero();
     for (std::size_t i = 1; i <= half; ++i) {
-      slope += static_cast<double>(i) * trial.dt * (trial.nu[k + i] - trial.nu[k - i]);
+      const auto apart = static_cast<Eigen::Index>(i);
+      slope += static_cast<double>(i) * trial.dt * (nu.col(at + apart) - nu.col(at - apart));
       for (const std::size_t j : {k - i, k + i}) {
         valid = valid && (!trial.observed.velocity || trial.velocity_valid[j] != 0) &&
                 (!trial.observed.rates || trial.rates_valid[j] != 0);

@@ -17,7 +17,6 @@ Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::stri
   Trial result = trial;
   result.name = name;
   result.t = cut(trial.t);
-  for (double& t : result.t) t -= trial.t[from];
   result.p_WB = cut(trial.p_WB);
   result.q_WB = cut(trial.q_WB);
   result.nu = cut(trial.nu);

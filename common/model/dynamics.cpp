@@ -77,9 +77,9 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
   const Vector6d nu_r = motion.nu_r();
   const Eigen::Vector3d v = motion.nu.head<3>();
   const Eigen::Vector3d w = motion.nu.tail<3>();
-  const bool water_moves = !motion.v_WF_B.isZero(0.0);
+  const bool water_moves = !motion.v_WF_B.isZero(0.0) || !motion.a_WF_B.isZero(0.0);
 
-  Vector6d force = Vector6d::Zero();  // column by column: six rows at a time are quicker than a product of unknown size
+  Vector6d force = motion.w_memory;  // column by column: six rows at a time are quicker than a product of unknown size
   for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
 
   // Kirchhoff: C(nu) nu = [w x P; w x L + v x P] with momenta P, L (Fossen 2011, eq. 6.44 for diagonal M).
@@ -100,6 +100,9 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
     // Steady water in W: its velocity seen in B turns with the body, nu_c_dot = -w x v_c.
     force.head<3>() -= w.cross(momentum + momentum_r) + added.cwiseProduct(w.cross(motion.v_WF_B));
     force.tail<3>() -= w.cross(angular) + v_r.cross(momentum_r);
+    // Accelerating water drags the added mass along, and its pressure gradient pushes the displaced water's share
+    // (Froude-Krylov), which for a vehicle near neutral buoyancy weighs as much as the vehicle: m + A in all.
+    force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
   }
 
   force += theta.segment<6>(index(BaseParameter::X_u)).cwiseProduct(nu_r);

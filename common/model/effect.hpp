@@ -12,19 +12,30 @@
 
 namespace fathom::model {
 
+/// A force that swings with time alone: cosine cos(omega t) + sine sin(omega t), t from the run's start.
+struct Tone {
+  double omega{};                                   ///< rad/s
+  Eigen::Vector3d cosine{Eigen::Vector3d::Zero()};  ///< N in W
+  Eigen::Vector3d sine{Eigen::Vector3d::Zero()};
+};
+
 /// What a data set offers and how large things are in it. Effects choose their variants and starting points from it.
 struct Scene {
   const Vehicle* vehicle{};
   bool position{false}, attitude{false}, velocity{false}, rates{false};  ///< which groups were measured
   bool input_is_wrench{false};  ///< inputs are the six axes of the wrench, not single thrusters
   bool voltage{false};
-  double duration{};                                                                ///< s, longest run
-  double mean_voltage{};                                                            ///< V
-  double voltage_range{};                                                           ///< V
+  double duration{};         ///< s, longest run
+  double t_low{}, t_high{};  ///< s, times within the runs that the data covers; equal: not known beforehand
+  double mean_voltage{};     ///< V
+  double voltage_range{};    ///< V
   Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
   Vector6d nu_rms{Vector6d::Zero()};
   Vector6d tau_rms{Vector6d::Zero()};
   ActuatorForces force_rms{};  ///< N per actuator
+  double tilt_rms{};           ///< horizontal share of the body's down axis; 0 when attitude was not measured
+  /// Oscillating forces that a linear regression leaves in the longest run, most prominent first; empty when not known.
+  std::vector<Tone> tones_horizontal{}, tones_vertical{};
 };
 
 /// One number of an effect. Zero means: the effect is absent.
@@ -70,6 +81,15 @@ class Effect {
   virtual void settle(const Motion&, EffectTheta, std::span<double> /*z*/) const {}
   /// Memory after dt, exact for constant input. Sees the motion as felt before this effect.
   virtual void advance(const Motion&, EffectTheta, double /*dt*/, std::span<double> /*z*/) const {}
+  /// Seconds of measured motion before a window that fill the memory: twenty time constants of an ordinary thruster.
+  [[nodiscard]] virtual double run_in() const { return 3.0; }
+  /// True when it alters what the sensors say, not what the vehicle does.
+  [[nodiscard]] virtual bool measures() const { return false; }
+  /// True velocities, `dt` apart, become measured ones, in place. Linear in the velocities, so that derivatives go the
+  /// same way.
+  virtual void measure(VelocityView& /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
+  /// The way back; at the ends of the stretch as well as it can be done.
+  virtual void unmeasure(VelocityView& /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
 };
 
 /// All effects, in the order in which they act: from the command to the water.

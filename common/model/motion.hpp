@@ -14,6 +14,11 @@ constexpr int kMaxActuators = 16;
 using ActuatorForces = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxActuators, 1>;            ///< N each
 using Allocation = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxActuators>;  ///< tau = B f
 
+/// Velocities at samples of equal distance in time, one column per sample: u v w [m/s], p q r [rad/s].
+using VelocityTrace = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+/// A trace wherever its numbers lie in memory.
+using VelocityView = Eigen::Ref<VelocityTrace, 0, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
+
 struct Vehicle;
 
 /// The actuators' commanded forces over time, linear between samples, held before the first and after the last.
@@ -37,6 +42,8 @@ struct Motion {
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
   Vector6d nu{Vector6d::Zero()};                    ///< B in W, in B: m/s, rad/s
   Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};  ///< m/s, water velocity seen in B; effects add to it
+  Eigen::Vector3d a_WF_B{Eigen::Vector3d::Zero()};  ///< m/s^2, acceleration of the water in W, seen in B (waves)
+  Vector6d w_memory{Vector6d::Zero()};              ///< N, N m: wrench of what effects remember of past motion
   ActuatorForces force{};                           ///< N, as they reach the water; effects alter it
   double voltage{};                                 ///< V; 0 when not logged
   const InputSignal* input{};                       ///< commanded forces at other times (delay)

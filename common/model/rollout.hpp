@@ -16,13 +16,11 @@ struct Window {
   std::size_t count{};
 };
 
-/// Velocities of a rollout, one column per sample of the window: u v w [m/s], p q r [rad/s].
-using VelocityTrace = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
 /// Simulates the window from the measured pose at its start and `nu0`, with the trial's inputs only. Degrees of freedom
 /// that the vehicle file leaves out follow the measurement. Second-order steps of at most 50 ms, shorter where the
-/// priors' drag is stiff; effects with memory are run in over the 3 s before the window. Returns false when the motion
-/// diverged (the rest is held).
+/// priors' drag is stiff; effects with memory are run in over the seconds before the window. `nu` is what the sensors
+/// say: the effects that measure have been applied to it, while `nu0` is true. Returns false when the motion diverged
+/// (the rest is held).
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
 
 /// Derivatives of a rollout's velocities: row 6 k + axis is sample k's. Columns: the base parameters in their order
@@ -35,6 +33,12 @@ using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameter
 /// own numbers are not among the columns.
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives);
+
+/// True velocities of `count` samples from `from` on, as the sensors' effects of the model explain the measured ones.
+[[nodiscard]] VelocityTrace true_velocities(const Model& model, const Trial& trial, std::size_t from,
+                                            std::size_t count);
+/// The true velocity at one sample: where a prediction begins.
+[[nodiscard]] Vector6d true_velocity(const Model& model, const Trial& trial, std::size_t at);
 
 /// Scene of a set of trials, for effects that choose starts and variants by it.
 [[nodiscard]] Scene scene_of(const Vehicle& vehicle, std::span<const Trial> trials);

@@ -14,7 +14,6 @@ constexpr double kLargestStep = 0.05;   // s: midpoint error below 1e-3 of nu fo
 constexpr double kExplicitShare = 1.5;  // damping times step that the plain rule may keep: it turns unstable at 2
 constexpr double kShortestStep = 0.02;  // s: what is faster decays exactly anyway
 constexpr double kTypicalSpeed = 0.5;   // m/s, rad/s, where quadratic drag is taken to choose the step
-constexpr double kRunIn = 3.0;          // s: twenty time constants of an ordinary thruster lag
 constexpr double kAbsurd = 50.0;        // m/s or rad/s: no vehicle of ours moves like that
 constexpr int kMaxMemory = 128;
 
@@ -146,6 +145,8 @@ class Rollout {
     motion_.R_WB = q.toRotationMatrix();
     motion_.nu = nu;
     motion_.v_WF_B.setZero();
+    motion_.a_WF_B.setZero();
+    motion_.w_memory.setZero();
     input_.at(motion_.t, motion_.force);
     motion_.voltage = trial_.voltage.empty() ? 0.0 : trial_.voltage[from];
   }
@@ -182,7 +183,9 @@ class Rollout {
 
   void run_in(std::size_t start, double h) {
     if (memory_size_ == 0) return;
-    const auto back = static_cast<std::size_t>(kRunIn / trial_.dt);
+    double seconds = 0.0;
+    for (const ActiveEffect& active : model_.effects) seconds = std::max(seconds, active.effect->run_in());
+    const auto back = static_cast<std::size_t>(seconds / trial_.dt);
     const std::size_t first = start > back ? start - back : 0;
     set_motion(first, 0.0, trial_.p_WB[first], trial_.q_WB[first], trial_.nu[first]);
     settle(model_, motion_, memory());

@@ -61,7 +61,7 @@ Sensitivity::Input Sensitivity::input(const Model& model, const Motion& motion, 
   // Y(nu_dot, nu, R) theta = wrench, so d(nu_dot)/d(theta) = -M^-1 Y. Drag and added mass feel the relative velocity;
   // the added mass also its change, since steady water turns in B: nu_c_dot = -w x v_c.
   Vector6d nu_r_dot = nu_dot;
-  nu_r_dot.head<3>() += motion.nu.tail<3>().cross(motion.v_WF_B);
+  nu_r_dot.head<3>() += motion.nu.tail<3>().cross(motion.v_WF_B) - motion.a_WF_B;
   const BaseRegressor Y = base_regressor(nu_r_dot, motion.nu_r(), motion.R_WB);
   return divided_by_inertia(model, total_load(model, motion), Eigen::Matrix<double, 6, kBaseParameterCount>(-Y));
 }

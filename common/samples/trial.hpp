@@ -24,7 +24,7 @@ struct Trial {
   std::string name;
   double dt{};  ///< s
   Observed observed;
-  std::vector<double> t;                 ///< s from the run's start
+  std::vector<double> t;                 ///< s from the run's start (of the whole run, where this is a part of one)
   std::vector<Eigen::Vector3d> p_WB;     ///< m; zero when not observed
   std::vector<Eigen::Quaterniond> q_WB;  ///< unit; identity when not observed
   std::vector<Vector6d> nu;              ///< u v w [m/s] p q r [rad/s], reference for fit and score

@@ -91,6 +91,8 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     tau.head<3>() -= (q.conjugate() * p).cwiseProduct(0.15 * excitation.strength().head<3>());
     return Eigen::VectorXd{inverse.solve(Eigen::VectorXd{tau})};
   };
+  std::vector<Vector6d> noises;
+  model::VelocityTrace measured(6, static_cast<Eigen::Index>(samples));
   trial.input.reserve(samples + 1);
   trial.input.push_back(command(0.0));
   for (std::size_t k = 0; k < samples; ++k) {
@@ -100,9 +102,10 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     trial.t.push_back(t);
     trial.p_WB.push_back(p);
     trial.q_WB.push_back(q);
-    Vector6d noisy = nu;
-    for (int i = 0; i < 6; ++i) noisy[i] += trial.nu_sigma[i] * normal(random);
-    trial.nu.push_back(noisy);
+    Vector6d noise;
+    for (int i = 0; i < 6; ++i) noise[i] = trial.nu_sigma[i] * normal(random);
+    noises.push_back(noise);
+    measured.col(static_cast<Eigen::Index>(k)) = nu;
     trial.voltage.push_back(voltage);
     const model::InputSignal input{0.0, settings.dt, trial.input};
     const auto motion_at = [&](double time, const Vector6d& velocity) {
@@ -125,6 +128,13 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
       p += kStep * (q * halfway.head<3>());
       q = (q * quaternion_from_rotation_vector(kStep * halfway.tail<3>())).normalized();
     }
+  }
+  model::VelocityView seen{measured};
+  for (const auto& one : dive.truth.effects) {
+    if (one.effect->measures()) one.effect->measure(seen, settings.dt, one.theta, one.variant);
+  }
+  for (std::size_t k = 0; k < samples; ++k) {
+    trial.nu.emplace_back(measured.col(static_cast<Eigen::Index>(k)) + noises[k]);
   }
   trial.input.pop_back();
   trial.pose_valid.assign(samples, 1);

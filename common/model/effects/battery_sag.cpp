@@ -1,7 +1,7 @@
 // Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an
-// open propeller on a DC motor (bounds a little wider); without a voltage log, f = f_c (1 - s t) with t the time in the
-// run. Ignores: load-dependent sag within the thruster's own cable. Revealed by the same manoeuvre early and late.
-// Confused with payload change and, in one short run, with drag.
+// open propeller on a DC motor (bounds a little wider); where no voltage is logged, or it does not change,
+// f = f_c (1 - s t / 300 s) with t the time in the run. Ignores: load-dependent sag within the thruster's own cable.
+// Revealed by the same manoeuvre early and late. Confused with payload change and, in one short run, with drag.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +12,11 @@
 namespace fathom::model::effects {
 namespace {
 
-// One number with two meanings would hide its unit: the time form is scaled to "share lost per 1000 s".
 constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 2.5}};
-constexpr double kTimeScale = 1000.0;  // s
+enum Form { kVoltage, kTime };
+constexpr double kTimeScale = 300.0;      // s: a bound of 2.5 then allows a battery that is empty after two minutes
+constexpr double kSmallestRange = 0.003;  // of the voltage: less says nothing
+constexpr double kSmallestShare = 0.05;   // of the thrust, which cannot turn round
 
 class BatterySag final : public Effect {
  public:
@@ -24,19 +26,18 @@ class BatterySag final : public Effect {
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
-    return {scene.voltage ? "voltage exponent" : "loss per 1000 s"};
+    const bool useful = scene.voltage && scene.voltage_range > kSmallestRange * scene.mean_voltage;
+    return {useful ? "voltage exponent" : "-", useful ? "-" : "loss per 300 s"};
   }
 
-  void feel(Motion& motion, EffectTheta theta, int, std::span<const double>) const override {
-    double factor = 0.0;
-    if (motion.voltage > 0.0) {
+  void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {
+    if (variant == kTime) {
+      motion.force *= std::max(1.0 - theta[0] * motion.t / kTimeScale, kSmallestShare);
+    } else if (motion.voltage > 0.0) {
       const double reference =
           motion.vehicle->nominal_voltage > 0.0 ? motion.vehicle->nominal_voltage : kFallbackVoltage;
-      factor = std::pow(motion.voltage / reference, theta[0]);
-    } else {
-      factor = std::max(1.0 - theta[0] * motion.t / kTimeScale, 0.05);
+      motion.force *= std::pow(motion.voltage / reference, theta[0]);
     }
-    motion.force *= factor;
   }
 
  private:

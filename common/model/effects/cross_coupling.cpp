@@ -1,7 +1,7 @@
 // Physics: motion along one axis loads another. Off-diagonal drag w_i = D_ij nu_r,j or D_ij |nu_r,j| nu_r,j, and
-// off-diagonal added mass (symmetric; its Coriolis part is ignored). Only pairs that a hull symmetric about its x-z
-// plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4). Revealed by single-axis
-// motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment.
+// off-diagonal added mass M_ij = M_ji with its Coriolis part, so that it does no work. Only pairs that a hull symmetric
+// about its x-z plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4). Revealed by
+// single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,13 +80,28 @@ class CrossCoupling final : public Effect {
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
     const Term& term = kTerms[static_cast<std::size_t>(variant)];
-    const double velocity = motion.nu_r()[term.column];
+    if (theta[0] == 0.0) return;
+    const Vector6d nu_r = motion.nu_r();
+    const double velocity = nu_r[term.column];
     if (term.form == Form::kLinear) load.wrench[term.row] += theta[0] * velocity;
     if (term.form == Form::kQuadratic) load.wrench[term.row] += theta[0] * std::abs(velocity) * velocity;
     if (term.form == Form::kInertia) {
       load.inertia(term.row, term.column) += theta[0];
       load.inertia(term.column, term.row) += theta[0];
       load.has_inertia = true;
+      // Momentum that the pair adds, and what it costs to turn it (Fossen 2011, eq. 6.44); steady water seen from a
+      // turning body accelerates by -w x v_WF.
+      const Eigen::Vector3d w = motion.nu.tail<3>();
+      Vector6d momentum = Vector6d::Zero(), water = Vector6d::Zero();
+      const Eigen::Vector3d water_dot = motion.a_WF_B - w.cross(motion.v_WF_B);
+      momentum[term.row] = theta[0] * nu_r[term.column];
+      momentum[term.column] = theta[0] * nu_r[term.row];
+      if (term.column < 3) water[term.row] = theta[0] * water_dot[term.column];
+      if (term.row < 3) water[term.column] = theta[0] * water_dot[term.row];
+      const Eigen::Vector3d P = momentum.head<3>(), L = momentum.tail<3>(), v_r = nu_r.head<3>();
+      load.wrench.head<3>() -= w.cross(P);
+      load.wrench.tail<3>() -= w.cross(L) + v_r.cross(P);
+      load.wrench += water;
     }
   }
 };

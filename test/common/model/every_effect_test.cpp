@@ -17,13 +17,22 @@ namespace {
 
 constexpr double kAbsent = 1e-12;  // relative: battery_sag multiplies by pow(x, 0)
 
-struct Fixture {
+/// Six axes, eight thrusters, and one component of the restoring moment that the base model does not have.
+model::Vehicle vehicle_without_G_y() {
   model::Vehicle vehicle = test::vehicle_from_repository("beluga");
+  const auto place = std::find(vehicle.parameters.begin(), vehicle.parameters.end(), "G_y");
+  vehicle.priors.erase(vehicle.priors.begin() + (place - vehicle.parameters.begin()));
+  vehicle.parameters.erase(place);
+  return vehicle;
+}
+
+struct Fixture {
+  model::Vehicle vehicle = vehicle_without_G_y();
   test::VirtualDive dive =
-      test::make_dive(vehicle, {.duration = 20.0, .seed = 4, .velocity_noise = 0.0, .rate_noise = 0.0});
+      test::make_dive(vehicle, {.duration = 30.0, .seed = 4, .velocity_noise = 0.0, .rate_noise = 0.0});
   model::Scene scene = model::scene_of(vehicle, {&dive.trial, 1});
 
-  /// Accelerations along the dive with one effect, or none.
+  /// Accelerations along the dive with one effect, or none; for one that only measures, what it says of the dive.
   [[nodiscard]] std::vector<Vector6d> accelerations(const model::ActiveEffect* effect) const {
     model::Model model = dive.truth;
     if (effect != nullptr) model.add(*effect);
@@ -31,6 +40,7 @@ struct Fixture {
     const Trial& trial = dive.trial;
     const model::InputSignal input{0.0, trial.dt, trial.input};
     std::vector<Vector6d> all;
+    model::VelocityTrace seen(6, static_cast<Eigen::Index>(trial.size()));
     for (std::size_t k = 0; k < trial.size(); ++k) {
       model::Motion motion{
           .t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = trial.nu[k]};
@@ -41,7 +51,11 @@ struct Fixture {
       if (k == 0) model::settle(model, motion, memory);
       model::feel(model, motion, memory, k == 0 ? 0.0 : trial.dt);
       all.push_back(model::acceleration(model, motion));
+      seen.col(static_cast<Eigen::Index>(k)) = trial.nu[k];
     }
+    model::VelocityView view{seen};
+    if (effect != nullptr) effect->effect->measure(view, trial.dt, effect->theta, effect->variant);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] += seen.col(static_cast<Eigen::Index>(k));
     return all;
   }
 };

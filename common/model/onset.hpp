@@ -1,0 +1,26 @@
+// A change at a moment to be found: how much of it has happened, and where a search for the moment may begin.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+namespace fathom::model {
+
+constexpr double kOnsetDuration = 1.0;  // s, within which a change happens: smooth, so that its moment can be searched
+
+/// Share of the change at `t`: 0 before `onset`, 1 after it, with two continuous derivatives.
+inline double onset_share(double t, double onset) {
+  const double s = std::clamp((t - onset) / kOnsetDuration + 0.5, 0.0, 1.0);
+  return s * s * s * (s * (6.0 * s - 15.0) + 10.0);
+}
+
+/// Moments spread over the data, none so close to an end that hardly anything would come before or after.
+inline std::vector<double> onset_starts(double t_low, double t_high, int count) {
+  std::vector<double> moments;
+  for (int k = 0; k < count && t_high > t_low; ++k) {
+    moments.push_back(t_low + (t_high - t_low) * (k + 0.5) / count);
+  }
+  return moments;
+}
+
+}  // namespace fathom::model

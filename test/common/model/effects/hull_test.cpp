@@ -1,0 +1,218 @@
+// Effects of hull, payload and water, against hand-written formulas, steady states and energy.
+#include <doctest/doctest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "common/model/dynamics.hpp"
+#include "common/model/rollout.hpp"
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+
+namespace {
+
+constexpr double kRounding = 1e-12;
+constexpr double kMidpoint = 2e-3;  // of the largest speed: midpoint steps of 50 ms against an exact solution
+using model::BaseParameter;
+
+/// No drag, no weight, masses of 20 kg and 1 kg m^2: what happens is the effect's doing.
+struct Bare {
+  explicit Bare(std::array<bool, 6> dof) {
+    vehicle.name = "bare";
+    vehicle.dof = dof;
+    vehicle.mass = 10.0;
+    model = model::nominal_model(vehicle, true);
+    model.theta.setZero();
+    model.theta.head<6>() << 20, 20, 20, 1, 1, 1;
+  }
+  [[nodiscard]] Trial run(double duration, const std::function<Vector6d(double)>& wrench) const {
+    Trial trial;
+    trial.dt = 0.1;
+    trial.input_is_wrench = true;
+    trial.observed = {true, true, true, true};
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(std::lround(duration / trial.dt)); ++k) {
+      trial.t.push_back(static_cast<double>(k) * trial.dt);
+      trial.p_WB.emplace_back(0, 0, 1);
+      trial.q_WB.push_back(Eigen::Quaterniond::Identity());
+      trial.nu.emplace_back(Vector6d::Zero());
+      trial.input.emplace_back(wrench(trial.t.back()));
+    }
+    return trial;
+  }
+  [[nodiscard]] model::VelocityTrace rollout(const Trial& trial) const {
+    model::VelocityTrace nu;
+    REQUIRE(model::rollout(model, {&trial, 0, trial.size()}, Vector6d::Zero(), nu));
+    return nu;
+  }
+
+  model::Vehicle vehicle;
+  model::Model model;
+};
+
+Vector6d along(int axis, double value) { return value * Vector6d::Unit(axis); }
+
+}  // namespace
+
+TEST_CASE("cubic_drag: constant thrust ends at the cube root") {
+  Bare bare{{true, false, false, false, false, false}};
+  bare.model.add(test::active("cubic_drag", {64.0}, 0));
+  const model::VelocityTrace nu = bare.rollout(bare.run(20.0, [](double) { return along(0, 8.0); }));
+  CHECK(nu(0, nu.cols() - 1) == doctest::Approx(0.5).epsilon(kMidpoint));
+}
+
+TEST_CASE("restoring_moment: the same motion as with that component in the base model") {
+  Bare bare{{true, true, true, true, true, true}};
+  model::Motion motion;
+  motion.vehicle = &bare.vehicle;
+  motion.force = Vector6d::Zero();
+  motion.R_WB = rotation_from_euler({0.3, -0.2, 1.0});
+  const Eigen::Vector3d down = motion.R_WB.transpose() * Eigen::Vector3d::UnitZ();
+  for (int component = 0; component < 3; ++component) {
+    model::Load load;
+    model::find_effect("restoring_moment")->load(motion, std::vector{2.0}, component, load);
+    const Eigen::Vector3d expected = (2.0 * Eigen::Vector3d::Unit(component)).cross(down);
+    CHECK((load.wrench.tail<3>() - expected).norm() < kRounding);
+    CHECK(load.wrench.head<3>().isZero(0.0));
+    model::Model base = bare.model;
+    base.theta[model::index(BaseParameter::G_x) + component] = 2.0;
+    CHECK((model::acceleration(base, motion).tail<3>() - expected).norm() < kRounding);
+  }
+}
+
+TEST_CASE("restoring_moment: asked for only where the base model does not have it and something feels it") {
+  model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");  // roll is free, pitch is not
+  model::Scene scene{.vehicle = &vehicle};
+  const model::Effect& effect = *model::find_effect("restoring_moment");
+  CHECK(effect.variants(scene).empty());
+  scene.tilt_rms = 0.1;  // then G_x turns the bow
+  CHECK(effect.variants(scene) == std::vector<std::string>{"G_x", "-", "-"});
+  vehicle.parameters = {"m_X"};
+  scene.tilt_rms = 0.0;
+  CHECK(effect.variants(scene) == std::vector<std::string>{"-", "G_y", "G_z"});
+}
+
+TEST_CASE("compressibility: stiffer than water, a vehicle swings about its neutral depth") {
+  Bare bare{{false, false, true, false, false, false}};
+  bare.model.add(test::active("compressibility", {-5.0}));                   // sqrt(5 / 20) = 0.5 rad/s
+  const Trial trial = bare.run(20.0, [](double) { return along(2, 0.0); });  // starts 1 m deep
+  const model::VelocityTrace nu = bare.rollout(trial);
+  for (Eigen::Index k = 0; k < nu.cols(); ++k) {
+    CHECK(std::abs(nu(2, k) + 0.5 * std::sin(0.5 * trial.t[static_cast<std::size_t>(k)])) < kMidpoint);
+  }
+}
+
+TEST_CASE("payload_change: heavier after its moment, and sinking by its weight") {
+  Bare bare{{true, false, true, false, false, false}};
+  bare.model.add(test::active("payload_change", {5.0, 2.5, 10.0}));
+  const model::VelocityTrace nu = bare.rollout(bare.run(20.0, [](double) { return along(0, 10.0); }));
+  const auto slope = [&](int axis, Eigen::Index k) { return (nu(axis, k + 10) - nu(axis, k)) / 1.0; };
+  CHECK(slope(0, 50) == doctest::Approx(10.0 / 20.0));
+  CHECK(slope(2, 50) == doctest::Approx(0.0));
+  CHECK(slope(0, 150) == doctest::Approx(10.0 / 25.0));
+  CHECK(slope(2, 150) == doctest::Approx(2.5 / 25.0));
+}
+
+TEST_CASE("payload_change, cross_coupling: what mass adds does no work") {
+  std::mt19937 random{3};
+  std::normal_distribution<double> normal;
+  Bare bare{{true, true, true, true, true, true}};
+  const auto names =
+      model::find_effect("cross_coupling")->variants({.vehicle = &bare.vehicle, .nu_rms = Vector6d::Ones()});
+  std::vector<model::ActiveEffect> heavy{test::active("payload_change", {4.0, 0.0, 0.0})};
+  for (std::size_t v = 0; v < names.size(); ++v) {
+    if (names[v].ends_with("_dot")) heavy.push_back(test::active("cross_coupling", {0.6}, static_cast<int>(v)));
+  }
+  REQUIRE(heavy.size() == 7);
+  for (const model::ActiveEffect& effect : heavy) {
+    model::Model model = bare.model;
+    model.theta.head<6>() << 20, 25, 30, 1, 2, 3;
+    model.add(effect);
+    for (int i = 0; i < 20; ++i) {
+      model::Motion motion{.t = 5.0};
+      motion.vehicle = &bare.vehicle;
+      motion.force = Vector6d::Zero();
+      for (int axis = 0; axis < 6; ++axis) motion.nu[axis] = normal(random);
+      model::Load load;
+      (void)model::generalised_force(model, motion, load);
+      Matrix6d M = load.inertia;
+      M.diagonal() += model.theta.head<6>();
+      CHECK(std::abs(motion.nu.dot(M * model::acceleration(model, motion))) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("cross_coupling: covers drag and added mass of every pair that a symmetric hull has") {
+  const model::Vehicle beluga = test::vehicle_from_repository("beluga");
+  const auto names = model::find_effect("cross_coupling")->variants({.vehicle = &beluga, .nu_rms = Vector6d::Ones()});
+  for (const char* wanted :
+       {"Y_r", "N_v", "Y_r|r|", "N_v|v|", "Y_r_dot", "X_q_dot", "M_u", "Z_q|q|", "K_v", "K_r_dot"}) {
+    CAPTURE(wanted);
+    CHECK(std::count(names.begin(), names.end(), wanted) == 1);
+  }
+}
+
+TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the step") {
+  const model::Effect& effect = *model::find_effect("fluid_memory");
+  const std::vector<double> theta{10.0, 2.0};
+  model::Motion motion;
+  for (const double dt : {0.01, 0.5, 7.0}) {
+    std::vector<double> z(12, 0.0);
+    motion.nu.setZero();
+    effect.settle(motion, theta, z);
+    motion.nu.setConstant(1.0);
+    effect.advance(motion, theta, 1e-12, z);  // the step of velocity happens at once
+    double elapsed = 0.0;
+    for (int i = 0; i < 10; ++i) {
+      effect.advance(motion, theta, dt, z);
+      elapsed += dt;
+      CHECK(z[0] == doctest::Approx(-std::expm1(-elapsed / 2.0)).epsilon(1e-9));
+    }
+    model::Motion felt = motion;
+    effect.feel(felt, theta, 1, z);
+    CHECK(felt.w_memory[1] == doctest::Approx(-10.0 * z[1]));
+    CHECK(felt.w_memory[0] == 0.0);
+  }
+}
+
+TEST_CASE("fluid_memory: follows a sine late and smaller, and takes energy") {
+  // In a rollout: m u_dot = tau - k z. For u = sin(w t): z lags by atan(w T) and shrinks by 1 / sqrt(1 + w^2 T^2).
+  constexpr double kOmega = 1.0, kT = 2.0, kK = 10.0;
+  Bare bare{{true, false, false, false, false, false}};
+  bare.model.add(test::active("fluid_memory", {kK, kT}, 0));
+  const double gain = 1.0 / std::sqrt(1.0 + kOmega * kOmega * kT * kT), late = std::atan(kOmega * kT);
+  const Trial trial = bare.run(60.0, [&](double t) {
+    return along(0, 20.0 * kOmega * std::cos(kOmega * t) + kK * gain * std::sin(kOmega * t - late));
+  });
+  const model::VelocityTrace nu = bare.rollout(trial);
+  // What the start leaves dies out at the rate of the memory's poles: 20 s^2 + 10 s + 5.
+  constexpr double kSmall = 0.01;
+  double mean = 0.0;
+  for (Eigen::Index k = 400; k < nu.cols(); ++k)
+    mean += nu(0, k) - std::sin(kOmega * trial.t[static_cast<std::size_t>(k)]);
+  mean /= static_cast<double>(nu.cols() - 400);
+  for (Eigen::Index k = 400; k < nu.cols(); ++k) {
+    CHECK(std::abs(nu(0, k) - mean - std::sin(kOmega * trial.t[static_cast<std::size_t>(k)])) < kSmall);
+  }
+  CHECK(gain * std::cos(late) > 0.0);  // the force's share in phase with the velocity: it brakes
+}
+
+TEST_CASE("fluid_memory, cubic_drag, tether_drag, drag of boundaries: none feeds the motion") {
+  std::mt19937 random{5};
+  std::normal_distribution<double> normal;
+  model::Motion motion;
+  motion.force = Vector6d::Zero();
+  for (int i = 0; i < 50; ++i) {
+    for (int axis = 0; axis < 6; ++axis) motion.nu[axis] = normal(random);
+    motion.R_WB = rotation_from_euler({0.2 * normal(random), 0.2 * normal(random), normal(random)});
+    motion.p_WB = Eigen::Vector3d{normal(random), normal(random), normal(random)};
+    model::Load load;
+    for (int axis = 0; axis < 6; ++axis) model::find_effect("cubic_drag")->load(motion, std::vector{3.0}, axis, load);
+    model::find_effect("tether_drag")->load(motion, std::vector{3.0, 1.0, 2.0, 3.0}, 0, load);
+    model::find_effect("bottom_effect")->load(motion, std::vector{3.0, 4.0}, 1, load);
+    model::find_effect("wall_effect")->load(motion, std::vector{3.0, 0.4, 5.0}, 1, load);
+    CHECK(load.wrench.dot(motion.nu) < 0.0);
+  }
+}

@@ -1,0 +1,101 @@
+// Effects that depend on where the vehicle is: bottom, walls, a tether's length.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/model/dynamics.hpp"
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+model::Load load_of(const char* name, const std::vector<double>& theta, int variant, const model::Motion& motion) {
+  model::Load load;
+  model::find_effect(name)->load(motion, theta, variant, load);
+  return load;
+}
+
+model::Scene scene_in_a_tank(const model::Vehicle& vehicle) {
+  model::Scene scene{.vehicle = &vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
+  scene.p_low = {-2.0, -1.0, 0.5};
+  scene.p_high = {2.0, 1.0, 1.5};
+  scene.nu_rms.setConstant(0.3);
+  scene.tau_rms.setConstant(5.0);
+  scene.force_rms = Vector6d::Constant(5.0);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("bottom_effect: pushes up along the world's vertical as the inverse square of the height") {
+  model::Motion motion;
+  motion.p_WB.z() = 3.0;
+  motion.R_WB = rotation_from_euler({0.4, -0.3, 2.0});
+  const model::Load far = load_of("bottom_effect", {8.0, 5.0}, 0, motion);
+  CHECK((motion.R_WB * far.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, -2.0)).norm() < kRounding);
+  motion.p_WB.z() = 4.0;
+  CHECK((motion.R_WB * load_of("bottom_effect", {8.0, 5.0}, 0, motion).wrench.head<3>()).z() == doctest::Approx(-8.0));
+  // Touching, and below it: as close as it gets, and finite.
+  motion.p_WB.z() = 6.0;
+  CHECK(load_of("bottom_effect", {8.0, 5.0}, 0, motion).wrench.head<3>().norm() == doctest::Approx(800.0));
+}
+
+TEST_CASE("bottom_effect: its drag is quadratic in the speed through the water, against it") {
+  model::Motion motion;
+  motion.p_WB.z() = 4.5;
+  motion.nu << 0.6, 0.0, 0.8, 0.1, 0.1, 0.1;
+  const model::Load load = load_of("bottom_effect", {2.0, 5.0}, 1, motion);
+  CHECK((load.wrench.head<3>() + 2.0 / 0.25 * 1.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  CHECK(load.wrench.tail<3>().isZero(0.0));
+}
+
+TEST_CASE("wall_effect: pushes away from the wall, whatever the heading") {
+  model::Motion motion;
+  motion.p_WB = {1.0, 3.0, 0.0};
+  // A wall in the east, 5 m from the origin: 2 m away.
+  const std::vector<double> theta{8.0, 0.5 * std::numbers::pi, 5.0};
+  motion.R_WB = rotation_from_euler({0.0, 0.0, 0.5 * std::numbers::pi});  // looking at it
+  const model::Load load = load_of("wall_effect", theta, 0, motion);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(-2.0, 0.0, 0.0)).norm() < kRounding);
+}
+
+TEST_CASE("tether_drag: proportional to the way to the fixed end, and to the square of speed") {
+  model::Motion motion;
+  motion.p_WB = {3.0, 4.0, 0.0};
+  motion.nu[1] = 0.5;
+  const model::Load load = load_of("tether_drag", {2.0, 0.0, 0.0, 0.0}, 0, motion);
+  CHECK(load.wrench[1] == doctest::Approx(-2.0 * 5.0 * 0.25));
+  CHECK(load_of("tether_drag", {2.0, 3.0, 4.0, 0.0}, 0, motion).wrench.isZero(0.0));
+  motion.v_WF_B.y() = 0.5;  // drifting with the water
+  CHECK(load_of("tether_drag", {2.0, 0.0, 0.0, 0.0}, 0, motion).wrench.isZero(0.0));
+}
+
+TEST_CASE("effects of place: starts surround the water worked in, and nothing is asked without positions") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Scene scene = scene_in_a_tank(vehicle);
+  for (const auto& start : model::find_effect("bottom_effect")->starts(scene, 0)) CHECK(start[1] > scene.p_high.z());
+  for (const auto& start : model::find_effect("wall_effect")->starts(scene, 0)) {
+    const Eigen::Vector3d n{std::cos(start[1]), std::sin(start[1]), 0.0};
+    for (const double x : {-2.0, 2.0}) {
+      for (const double y : {-1.0, 1.0}) CHECK(n.dot(Eigen::Vector3d(x, y, 0.0)) < start[2]);
+    }
+  }
+  constexpr std::size_t kMost = 24;  // each start costs a rollout over all data
+  for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility"}) {
+    CHECK(model::find_effect(name)->starts(scene, 0).size() <= kMost);
+    CHECK(model::find_effect(name)->feels_place());
+    CHECK_FALSE(model::find_effect(name)->variants(scene).empty());
+  }
+  scene.position = false;
+  for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility"}) {
+    CHECK(model::find_effect(name)->variants(scene).empty());
+  }
+  scene.position = true;
+  scene.p_high.z() = scene.p_low.z();  // constant depth
+  CHECK(model::find_effect("compressibility")->variants(scene).empty());
+  CHECK(model::find_effect("bottom_effect")->variants(scene).empty());
+}

@@ -1,0 +1,169 @@
+// Effects between the command and the water, against hand-written formulas.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "common/model/dynamics.hpp"
+#include "common/model/onset.hpp"
+#include "common/model/rollout.hpp"
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+struct Fixture {
+  model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Motion motion;
+  model::Scene scene{.vehicle = &vehicle, .attitude = true, .velocity = true, .rates = true, .t_high = 100.0};
+
+  Fixture() {
+    motion.vehicle = &vehicle;
+    motion.force = Eigen::Vector4d(16.0, -16.0, 9.0, 4.0);
+    scene.force_rms = Eigen::Vector4d(5.0, 5.0, 5.0, 5.0);
+    scene.nu_rms.setConstant(0.3);
+    scene.tau_rms.setConstant(5.0);
+  }
+  [[nodiscard]] model::ActuatorForces felt(const char* name, std::vector<double> theta, int variant = 0) const {
+    model::Motion copy = motion;
+    model::find_effect(name)->feel(copy, theta, variant, {});
+    return copy.force;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("thruster_failure: all before the moment, the rest after it, half at it, one thruster only") {
+  Fixture fixture;
+  const std::vector<double> theta{0.4, 50.0};
+  fixture.motion.t = 49.0;
+  CHECK(fixture.felt("thruster_failure", theta, 1) == fixture.motion.force);
+  fixture.motion.t = 50.0;
+  CHECK(fixture.felt("thruster_failure", theta, 1)[1] == doctest::Approx(-16.0 * 0.8));
+  fixture.motion.t = 51.0;
+  const model::ActuatorForces after = fixture.felt("thruster_failure", theta, 1);
+  CHECK(after[1] == doctest::Approx(-16.0 * 0.6));
+  CHECK(after[0] == 16.0);
+  CHECK(after[2] == 9.0);
+}
+
+TEST_CASE("thruster_failure: one form per thruster that was used, moments across the run, none for a wrench") {
+  Fixture fixture;
+  fixture.scene.force_rms[3] = 0.0;
+  const model::Effect& effect = *model::find_effect("thruster_failure");
+  CHECK(effect.variants(fixture.scene) == std::vector<std::string>{"port", "starboard", "vertical", "-"});
+  for (const auto& start : effect.starts(fixture.scene, 0)) {
+    CHECK(start[1] > 0.0);
+    CHECK(start[1] < 100.0);
+  }
+  fixture.scene.input_is_wrench = true;
+  CHECK(effect.variants(fixture.scene).empty());
+}
+
+TEST_CASE("onset: rises from nothing to all within its second, with two continuous derivatives") {
+  constexpr double kStep = 1e-3;
+  constexpr double kSmall = 0.1;  // of 1/s^2: the third derivative is at most 60
+  CHECK(model::onset_share(9.5, 10.0) == 0.0);
+  CHECK(model::onset_share(10.0, 10.0) == doctest::Approx(0.5));
+  CHECK(model::onset_share(10.5, 10.0) == 1.0);
+  double last_slope = 0.0, last_bend = 0.0;
+  for (double t = 9.4; t < 10.6; t += kStep) {
+    const double slope = (model::onset_share(t + kStep, 10.0) - model::onset_share(t, 10.0)) / kStep;
+    const double bend = (slope - last_slope) / kStep;
+    CHECK(slope >= 0.0);
+    CHECK(std::abs(bend - last_bend) < kSmall);
+    last_slope = slope;
+    last_bend = bend;
+  }
+}
+
+TEST_CASE("thruster_misalignment: a turned thruster pushes along its new axis at its old place") {
+  const Fixture fixture;
+  const model::Effect& effect = *model::find_effect("thruster_misalignment");
+  constexpr double kAngle = 0.2;
+  constexpr int kStarboardAboutZ = 6 + 2;
+  model::Load load;
+  effect.load(fixture.motion, std::vector{kAngle}, kStarboardAboutZ, load);
+  const Eigen::Vector3d p{-0.135, 0.0475, 0.0};
+  const Eigen::Vector3d before = -16.0 * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d after = -16.0 * Eigen::Vector3d{std::cos(kAngle), std::sin(kAngle), 0.0};
+  // The allocation knows moments, not places: along its own axis a thruster may be moved freely.
+  const Eigen::Vector3d shortest{0.0, 0.0475, 0.0};
+  CHECK((load.wrench.head<3>() - (after - before)).norm() < kRounding);
+  CHECK((load.wrench.tail<3>() - shortest.cross(after - before)).norm() < kRounding);
+  CHECK(std::abs((p - shortest).dot(Eigen::Vector3d::UnitY())) < kRounding);
+}
+
+TEST_CASE("thruster_misalignment: a shifted thruster turns the vehicle by force times shift") {
+  const Fixture fixture;
+  constexpr int kPortAlongY = 4;
+  model::Load load;
+  model::find_effect("thruster_misalignment")->load(fixture.motion, std::vector{0.02}, kPortAlongY, load);
+  CHECK(load.wrench.head<5>().norm() < kRounding);
+  CHECK(load.wrench[5] == doctest::Approx(-0.02 * 16.0));  // to starboard of the middle, pushing ahead turns to port
+}
+
+TEST_CASE("thruster_misalignment: forms that this vehicle cannot feel are not asked for") {
+  const Fixture fixture;
+  const auto names = model::find_effect("thruster_misalignment")->variants(fixture.scene);
+  REQUIRE(names.size() == 24);
+  CHECK(names[0] == "-");  // turned about its own axis
+  CHECK(names[1] == "port turned about y");
+  CHECK(names[2] == "port turned about z");
+  CHECK(names[3] == "-");  // shifted along its own axis
+  CHECK(names[4] == "port shifted along y");
+  CHECK(names[5] == "-");   // pitch, which is not free
+  CHECK(names[15] == "-");  // the vertical thruster's arms: roll and pitch
+  CHECK(names[16] == "-");
+}
+
+TEST_CASE("thrust_loss: bilinear in shaft speed and advance, in both directions") {
+  Fixture fixture;
+  fixture.motion.nu[0] = 0.5;
+  CHECK(fixture.felt("thrust_loss", {0.8}, 0)[0] == doctest::Approx(16.0 - 0.8 * 4.0 * 0.5));
+  CHECK(fixture.felt("thrust_loss", {0.1}, 1)[0] == doctest::Approx(16.0 - 0.1 * 16.0 * 0.5));
+  CHECK(fixture.felt("thrust_loss", {0.8}, 0)[1] == doctest::Approx(-16.0 - 0.8 * 4.0 * 0.5));  // crash stop gains
+  fixture.motion.nu[0] = -0.5;
+  CHECK(fixture.felt("thrust_loss", {0.8}, 0)[1] == doctest::Approx(-16.0 + 0.8 * 4.0 * 0.5));
+  fixture.motion.nu[0] = 0.0;
+  CHECK(fixture.felt("thrust_loss", {0.8}, 0) == fixture.motion.force);
+}
+
+TEST_CASE("thrust_loss: turning moves the thrusters too, and water that moves along takes nothing") {
+  Fixture fixture;
+  fixture.motion.nu[5] = 1.0;
+  // The port thruster, 4.75 cm to port, is carried ahead when the bow turns to starboard.
+  CHECK(fixture.felt("thrust_loss", {0.8}, 0)[0] == doctest::Approx(16.0 - 0.8 * 4.0 * 0.0475));
+  fixture.motion.nu << 0.4, 0.0, 0.0, 0.0, 0.0, 0.0;
+  fixture.motion.v_WF_B.x() = 0.4;
+  CHECK(fixture.felt("thrust_loss", {0.8}, 0) == fixture.motion.force);
+}
+
+TEST_CASE("thrust_loss: a wrench loses force along its axes, and no moment") {
+  Fixture fixture;
+  fixture.motion.force = Vector6d::Constant(4.0);
+  fixture.motion.nu.setConstant(0.5);
+  const model::ActuatorForces felt = fixture.felt("thrust_loss", {1.0}, 0);
+  for (Eigen::Index i = 0; i < 3; ++i) CHECK(felt[i] == doctest::Approx(3.0));
+  for (Eigen::Index i = 3; i < 6; ++i) CHECK(felt[i] == 4.0);
+}
+
+TEST_CASE("battery_sag: by voltage where it says something, by time where it is not logged or does not change") {
+  Fixture fixture;
+  const model::Effect& effect = *model::find_effect("battery_sag");
+  CHECK(effect.variants(fixture.scene) == std::vector<std::string>{"-", "loss per 300 s"});
+  fixture.scene.voltage = true;
+  fixture.scene.mean_voltage = 15.0;
+  CHECK(effect.variants(fixture.scene) == std::vector<std::string>{"-", "loss per 300 s"});
+  fixture.scene.voltage_range = 2.0;
+  CHECK(effect.variants(fixture.scene) == std::vector<std::string>{"voltage exponent", "-"});
+  fixture.motion.t = 150.0;
+  CHECK(fixture.felt("battery_sag", {0.4}, 1)[0] == doctest::Approx(16.0 * 0.8));
+  fixture.motion.voltage = 8.0;
+  fixture.vehicle.nominal_voltage = 16.0;
+  CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == doctest::Approx(4.0));
+  fixture.motion.voltage = 0.0;  // a gap in the log
+  CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == 16.0);
+}
