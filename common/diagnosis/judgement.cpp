@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "common/diagnosis/evidence.hpp"
 
@@ -12,9 +13,11 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
+constexpr double kEdge = 0.03;     // of the data's length
 constexpr double kAtLimit = 0.05;  // of a limit: nearer than that, the number wants to be beyond it
 
-/// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none did.
+/// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none
+/// did.
 std::string limited_number(const model::Model& model, const Judged& judged) {
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;
@@ -43,6 +46,24 @@ std::vector<Eigen::Index> places_of(const model::Model& model, const Judged& jud
   return places;
 }
 
+/// True when the effect begins or ends so close to the edge of the data that it acts all the time, or never.
+bool onset_at_edge(const TrajectoryFit& problem, const model::Model& model, const Judged& judged) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& window : problem.windows()) {
+    low = std::min(low, window.window().trial->t.front());
+    high = std::max(high, window.window().trial->t.back());
+  }
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != judged.effect || active.variant != judged.variant) continue;
+    for (std::size_t i = 0; i < active.theta.size(); ++i) {
+      if (active.effect->parameters()[i].name != "onset") continue;
+      const double margin = kEdge * (high - low);
+      if (active.theta[i] < low + margin || active.theta[i] > high - margin) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 double reduction(double cost_without, double cost_with) {
@@ -53,6 +74,18 @@ double total(std::span<const double> window_cost) {
   double sum = 0.0;
   for (const double cost : window_cost) sum += cost;
   return sum;
+}
+
+double surprise(const model::Model& model, const Judged& judged) {
+  double cost = 0.0;
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != judged.effect || active.variant != judged.variant) continue;
+    for (std::size_t i = 0; i < active.theta.size(); ++i) {
+      const double size = active.theta[i] / active.effect->parameters()[i].sigma;
+      cost += std::max(std::log(0.5 * (1.0 + size * size)), 0.0);
+    }
+  }
+  return cost;
 }
 
 std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model) {
@@ -71,6 +104,7 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
     std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
     return text;
   }
+  if (judged.lasting) return "begins at the edge of the data: something that always acts, not an event";
   if (judged.held_out_blocks < 0.0) return "does not help on blocks of data left out of its estimate";
   if (judged.held_out_runs < 0.0) return "does not carry over from run to run";
   const std::string limited = model != nullptr ? limited_number(*model, judged) : "";
@@ -88,9 +122,10 @@ Judged judge(const Screened& screened, const Linearisation& base, int tried) {
 void judge_by_fit(Judged& judged, const TrajectoryFit& problem, const FitResult& without,
                   const CrossValidation& without_checked, const FitResult& with, int tried) {
   const auto parameters = static_cast<int>(judged.effect->parameters().size());
-  judged.log_odds = log_odds(without.window_cost, with.window_cost, parameters, tried);
+  judged.log_odds = log_odds(without.window_cost, with.window_cost, parameters, tried) - surprise(with.model, judged);
   judged.error_reduction = reduction(without.cost, with.cost);
   judged.change = prediction_change(problem, without, with);
+  judged.lasting = onset_at_edge(problem, with.model, judged);
   const HeldOut carried =
       held_out(problem, without_checked, CrossValidation{problem, with}, places_of(with.model, judged));
   judged.held_out_blocks = carried.blocks;

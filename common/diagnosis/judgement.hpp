@@ -22,6 +22,9 @@ constexpr double kAlternativeLogOdds = 3.0;  ///< 20 to 1 between two look-alike
 void judge_by_fit(Judged& judged, const identification::TrajectoryFit& problem,
                   const identification::FitResult& without, const CrossValidation& without_checked,
                   const identification::FitResult& with, int tried);
+/// Log odds that numbers far beyond the ordinary cost: a prior with tails that never rule anything out (Cauchy), free
+/// of charge up to one prior sigma.
+[[nodiscard]] double surprise(const model::Model& model, const Judged& judged);
 /// Why it must be refused; empty when nothing speaks against it. With the fitted `model`, limits are looked at too.
 [[nodiscard]] std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model = nullptr);
 /// Names the look-alikes of the winner, and which of them the data cannot rule out.

@@ -12,7 +12,7 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kCoarseWindows = 80;  // enough to tell whether a form leads anywhere
+constexpr std::size_t kCoarseWindows = 60;  // enough to tell whether a form leads anywhere
 constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
 constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
 constexpr double kPromise = 0.5;            // of the smallest reduction: less on the spread of windows promises nothing
@@ -38,35 +38,6 @@ std::vector<std::size_t> promising(const std::vector<Screened>& rough, const Lin
   return order;
 }
 
-/// Full fits on a spread of windows for effects whose small sizes tell nothing about their large ones.
-void look_afar(std::vector<Screened>& screened, const model::Vehicle& vehicle, std::span<const Trial> train,
-               const FitResult& reference, const model::Scene& scene, const Settings& settings,
-               const Progress& progress, double share) {
-  std::optional<TrajectoryFit> coarse;
-  FitResult like, base;
-  for (Screened& candidate : screened) {
-    for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
-      if (!coarse) {
-        identification::FitSettings few = settings.fit;
-        few.most_windows = kCoarseWindows;
-        coarse.emplace(vehicle, train, few);
-        like.sigma = reference.sigma;
-        for (const auto& window : coarse->windows())
-          like.nu0.push_back(window.window().trial->nu[window.window().start]);
-        base = coarse->fit(reference.model, &like);
-      }
-      progress("looking further at " + std::string(candidate.effect->name()), share);
-      model::Model model = reference.model;
-      model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
-      const FitResult far = coarse->fit(model, &like);
-      const double gain = (base.cost - far.cost) / base.cost * reference.cost;
-      if (gain <= candidate.gain) continue;
-      candidate.gain = gain;
-      candidate.start = far.model;
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<Candidate> all_candidates(const model::Scene& scene) {
@@ -81,8 +52,7 @@ std::vector<Candidate> all_candidates(const model::Scene& scene) {
 }
 
 Answers ask(std::span<const Candidate> candidates, const TrajectoryFit& problem, const FitResult& fit,
-            std::span<const Trial> train, const model::Scene& scene, const Settings& settings, const Progress& progress,
-            double share) {
+            const model::Scene& scene, const Settings& settings) {
   std::vector<Candidate> asked;
   for (const Candidate& candidate : candidates) {
     if (!holds(fit.model, candidate)) asked.push_back(candidate);
@@ -110,9 +80,38 @@ Answers ask(std::span<const Candidate> candidates, const TrajectoryFit& problem,
       if (std::find(careful.begin(), careful.end(), i) == careful.end()) answers.screened[i].gain *= scale;
     }
   }
-  look_afar(answers.screened, problem.vehicle(), train, fit, scene, settings, progress, share);
+  answers.fitted.assign(asked.size(), false);
   for (Judged& judged : answers.judged) judged.reason = refusal(judged, settings);
   return answers;
+}
+
+void look_afar(Answers& answers, const TrajectoryFit& problem, const FitResult& fit, std::span<const Trial> train,
+               const model::Scene& scene, const Settings& settings, const Progress& progress, double share) {
+  std::optional<TrajectoryFit> coarse;
+  FitResult like, base;
+  for (std::size_t i = 0; i < answers.screened.size(); ++i) {
+    Screened& candidate = answers.screened[i];
+    for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
+      if (!coarse) {
+        identification::FitSettings few = settings.fit;
+        few.most_windows = kCoarseWindows;
+        coarse.emplace(problem.vehicle(), train, few);
+        like.sigma = fit.sigma;
+        for (const auto& window : coarse->windows())
+          like.nu0.push_back(window.window().trial->nu[window.window().start]);
+        base = coarse->fit(fit.model, &like);
+      }
+      progress("looking further at " + std::string(candidate.effect->name()), share);
+      model::Model model = fit.model;
+      model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
+      const FitResult far = coarse->fit(model, &like);
+      const double gain = (base.cost - far.cost) / base.cost * fit.cost;
+      if (gain <= candidate.gain) continue;
+      candidate.gain = gain;
+      candidate.start = far.model;
+      answers.fitted[i] = false;
+    }
+  }
 }
 
 std::vector<std::size_t> worth_fitting(const Answers& answers, const Settings& settings) {

@@ -22,13 +22,19 @@ struct Candidate {
 /// Answers in the order of the candidates.
 struct Answers {
   std::vector<Screened> screened;
-  std::vector<Judged> judged;  ///< by the screening, refusals included
+  std::vector<Judged> judged;  ///< by the screening until a fit has told, refusals included
+  std::vector<bool> fitted;    ///< in full
 };
 
-/// Those of `candidates` that `fit` does not hold are asked. `progress` hears of it at `share`.
+/// Those of `candidates` that `fit` does not hold are asked.
 [[nodiscard]] Answers ask(std::span<const Candidate> candidates, const identification::TrajectoryFit& problem,
-                          const identification::FitResult& fit, std::span<const Trial> train, const model::Scene& scene,
-                          const Settings& settings, const Progress& progress, double share);
+                          const identification::FitResult& fit, const model::Scene& scene, const Settings& settings);
+
+/// Full fits on a spread of windows for effects whose small sizes tell nothing about their large ones. What is found
+/// waits for another full fit. `progress` hears of it at `share`.
+void look_afar(Answers& answers, const identification::TrajectoryFit& problem, const identification::FitResult& fit,
+               std::span<const Trial> train, const model::Scene& scene, const Settings& settings,
+               const Progress& progress, double share);
 
 /// The best form of each effect that may matter, those that gain most first.
 [[nodiscard]] std::vector<std::size_t> worth_fitting(const Answers& answers, const Settings& settings);

@@ -23,6 +23,10 @@ struct Tone {
 struct Scene {
   const Vehicle* vehicle{};
   bool position{false}, attitude{false}, velocity{false}, rates{false};  ///< which groups were measured
+  /// A sensor that kinematics has compared with another is corrected before anything is fitted: forces need not be
+  /// asked.
+  [[nodiscard]] bool velocity_checked() const { return velocity && position && attitude; }
+  [[nodiscard]] bool rates_checked() const { return rates && attitude; }
   bool input_is_wrench{false};  ///< inputs are the six axes of the wrench, not single thrusters
   bool voltage{false};
   double duration{};         ///< s, longest run

@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/diagnoser.hpp"
+#include "common/diagnosis/sensor_faults.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
 #include "common/report/report.hpp"
@@ -69,6 +70,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
         progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
       });
   report.result.consistency = std::move(consistency.findings);
+  diagnosis::adopt_sensor_faults(report.result);
   return report;
 }
 

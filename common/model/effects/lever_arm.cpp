@@ -34,8 +34,8 @@ class LeverArm final : public Effect {
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
-    const bool seen =
-        scene.velocity && (dof[0] || dof[1] || dof[2]) && scene.nu_rms.tail<3>().norm() > kSmallestTurning;
+    const bool seen = scene.velocity && !scene.velocity_checked() && (dof[0] || dof[1] || dof[2]) &&
+                      scene.nu_rms.tail<3>().norm() > kSmallestTurning;
     return seen ? std::vector<std::string>{""} : std::vector<std::string>{};
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05, 0.05, 0.05}}; }

@@ -83,7 +83,8 @@ class SensorLatency final : public Effect {
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const bool both = scene.velocity && scene.rates && (dof[0] || dof[1] || dof[2]) && (dof[3] || dof[4] || dof[5]);
-    return {"all", both ? "velocity" : "-", both ? "rates" : "-"};
+    const auto form = [both](const char* name, bool checked) { return std::string(both && !checked ? name : "-"); };
+    return {"all", form("velocity", scene.velocity_checked()), form("rates", scene.rates_checked())};
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}, {0.2}, {0.5}}; }
   bool measures() const override { return true; }

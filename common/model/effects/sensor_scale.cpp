@@ -46,7 +46,8 @@ class SensorScale final : public Effect {
     const auto& dof = scene.vehicle->dof;
     std::vector<std::string> names;
     for (std::size_t axis = 0; axis < 6; ++axis) {
-      const bool measured = dof[axis] && (axis < 3 ? scene.velocity : scene.rates);
+      const bool measured =
+          dof[axis] && (axis < 3 ? scene.velocity && !scene.velocity_checked() : scene.rates && !scene.rates_checked());
       names.emplace_back(measured && couples(scene, static_cast<int>(axis)) ? kVelocityNames[axis] : "-");
     }
     const bool any = std::any_of(names.begin(), names.end(), [](const std::string& one) { return one != "-"; });

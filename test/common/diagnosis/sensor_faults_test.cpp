@@ -1,0 +1,52 @@
+// Corrected sensor faults take their place among the effects; what is pooled, certain and corrected, and nothing else.
+#include "common/diagnosis/sensor_faults.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace fathom;
+
+namespace {
+
+ConsistencyFinding finding(const char* signal, const char* what, double size, double std) {
+  return {.run = "all",
+          .signal = signal,
+          .reference = "pose_capture",
+          .finding = what,
+          .size = size,
+          .std = std,
+          .action = "corrected: as said"};
+}
+
+}  // namespace
+
+TEST_CASE("sensor faults: delay, scale and lever arm become effects, in the terms of the effect") {
+  DiagnosisResult result{.verdict = "adequate", .paragraph = "Nothing else."};
+  result.candidates.push_back({.name = "sensor_scale", .reason = "not applicable"});
+  result.effects.push_back({.name = "current"});
+  result.consistency = {finding("dvl", "delay", 0.2, 0.002), finding("dvl.u", "scale", 0.8, 0.01),
+                        finding("dvl.v", "scale", 0.9, 0.01), finding("dvl", "lever_arm_x", 0.1, 0.01)};
+  diagnosis::adopt_sensor_faults(result);
+  REQUIRE(result.effects.size() == 4);
+  CHECK(result.effects[0].name == "sensor_latency");
+  CHECK(result.effects[1].name == "sensor_scale");
+  CHECK(result.effects[1].variant == "dvl.u, dvl.v");
+  REQUIRE(result.effects[1].parameters.size() == 2);
+  CHECK(result.effects[1].parameters[0].value == doctest::Approx(0.25));
+  CHECK(result.effects[1].parameters[0].std == doctest::Approx(0.01 / 0.64));
+  CHECK(result.effects[2].name == "lever_arm");
+  CHECK(result.effects[3].name == "current");
+  CHECK(result.verdict == "effect");
+  CHECK(result.candidates.size() == 3);
+  CHECK(result.effects[0].log_odds > 3.0);
+}
+
+TEST_CASE("sensor faults: what was only reported, held in one run only, or is a count is no effect") {
+  DiagnosisResult result{.verdict = "adequate"};
+  result.consistency = {finding("dvl", "delay", 0.2, 0.002), finding("dvl", "delay", 0.2, 0.002),
+                        finding("pose_capture", "gap", 3.0, 0.0)};
+  result.consistency[0].action = "reported only";
+  result.consistency[1].run = "surge-1";
+  diagnosis::adopt_sensor_faults(result);
+  CHECK(result.effects.empty());
+  CHECK(result.verdict == "adequate");
+}
