@@ -1,5 +1,7 @@
 #include "common/devices/ms5837.hpp"
 
+#include <cmath>
+
 #include "common/base/error.hpp"
 
 namespace fathom::devices::ms5837 {
@@ -11,24 +13,24 @@ constexpr std::uint8_t kPressure = 0x4A, kTemperature = 0x5A;  // oversampling 8
 constexpr double kResetTime = 0.010;                           // s
 constexpr double kConversionTime = 0.0205;                     // s at oversampling 8192
 
-std::int64_t square(std::int64_t value) { return value * value; }
+double square(double value) { return value * value; }
 
 struct Correction {
-  std::int64_t temperature{}, offset{}, sensitivity{};
+  double temperature{}, offset{}, sensitivity{};
 };
 
 // The datasheets' second order; T in 0.01 deg C.
-Correction second_order(Model model, std::int64_t dT, std::int64_t T) {
-  const std::int64_t below = square(T - 2000);
+Correction second_order(Model model, double dT, double T) {
+  const double below = square(T - 2000.0);
   if (model == Model::k02Ba) {
-    if (T >= 2000) return {};
-    return {11 * square(dT) >> 35, 31 * below >> 3, 63 * below >> 5};
+    if (T >= 2000.0) return {};
+    return {std::ldexp(11.0 * square(dT), -35), 31.0 * below / 8.0, 63.0 * below / 32.0};
   }
-  if (T >= 2000) return {2 * square(dT) >> 37, below >> 4, 0};
-  Correction cold{3 * square(dT) >> 33, 3 * below >> 1, 5 * below >> 3};
-  if (T < -1500) {
-    cold.offset += 7 * square(T + 1500);
-    cold.sensitivity += 4 * square(T + 1500);
+  if (T >= 2000.0) return {std::ldexp(2.0 * square(dT), -37), below / 16.0, 0.0};
+  Correction cold{std::ldexp(3.0 * square(dT), -33), 3.0 * below / 2.0, 5.0 * below / 8.0};
+  if (T < -1500.0) {
+    cold.offset += 7.0 * square(T + 1500.0);
+    cold.sensitivity += 4.0 * square(T + 1500.0);
   }
   return cold;
 }
@@ -51,20 +53,16 @@ bool crc_right(const Prom& prom) {
   return rem >> 12 == static_cast<std::uint32_t>(prom[0] >> 12);
 }
 
+// The datasheets' arithmetic without its rounding, which would cost a millimetre of depth.
 Compensated compensate(Model model, const Prom& prom, std::uint32_t d1, std::uint32_t d2) {
   const bool bar30 = model == Model::k30Ba;
-  const std::int64_t dT = std::int64_t{d2} - std::int64_t{prom[5]} * 256;
-  const std::int64_t T = 2000 + (dT * prom[6]) / 8388608;
-  const std::int64_t offset =
-      bar30 ? std::int64_t{prom[2]} * 65536 + prom[4] * dT / 128 : std::int64_t{prom[2]} * 131072 + prom[4] * dT / 64;
-  const std::int64_t sensitivity =
-      bar30 ? std::int64_t{prom[1]} * 32768 + prom[3] * dT / 256 : std::int64_t{prom[1]} * 65536 + prom[3] * dT / 128;
-  const std::int64_t divisor = bar30 ? 8192 : 32768;
-  const double unit = bar30 ? 10.0 : 1.0;  // Pa in one count of the result
-  const auto reading = [&](std::int64_t temperature, std::int64_t off, std::int64_t sens) {
-    const std::int64_t pressure = (d1 * sens / 2097152 - off) / divisor;
-    return Reading{.pressure = static_cast<double>(pressure) * unit,
-                   .temperature = 0.01 * static_cast<double>(temperature)};
+  const double dT = static_cast<double>(d2) - 256.0 * prom[5];
+  const double T = 2000.0 + std::ldexp(dT * prom[6], -23);
+  const double offset = std::ldexp(prom[2], bar30 ? 16 : 17) + std::ldexp(prom[4] * dT, bar30 ? -7 : -6);
+  const double sensitivity = std::ldexp(prom[1], bar30 ? 15 : 16) + std::ldexp(prom[3] * dT, bar30 ? -8 : -7);
+  const auto reading = [&](double temperature, double off, double sens) {
+    const double counts = std::ldexp(std::ldexp(d1 * sens, -21) - off, bar30 ? -13 : -15);
+    return Reading{.pressure = counts * (bar30 ? 10.0 : 1.0), .temperature = 0.01 * temperature};
   };
   const Correction correction = second_order(model, dT, T);
   return {.first_order = reading(T, offset, sensitivity),
