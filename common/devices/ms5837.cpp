@@ -20,14 +20,14 @@ struct Correction {
 };
 
 // The datasheets' second order; T in 0.01 deg C.
-Correction second_order(Model model, double dT, double T) {
+Correction second_order(Model model, double d_T, double T) {
   const double below = square(T - 2000.0);
   if (model == Model::k02Ba) {
     if (T >= 2000.0) return {};
-    return {std::ldexp(11.0 * square(dT), -35), 31.0 * below / 8.0, 63.0 * below / 32.0};
+    return {std::ldexp(11.0 * square(d_T), -35), 31.0 * below / 8.0, 63.0 * below / 32.0};
   }
-  if (T >= 2000.0) return {std::ldexp(2.0 * square(dT), -37), below / 16.0, 0.0};
-  Correction cold{std::ldexp(3.0 * square(dT), -33), 3.0 * below / 2.0, 5.0 * below / 8.0};
+  if (T >= 2000.0) return {std::ldexp(2.0 * square(d_T), -37), below / 16.0, 0.0};
+  Correction cold{std::ldexp(3.0 * square(d_T), -33), 3.0 * below / 2.0, 5.0 * below / 8.0};
   if (T < -1500.0) {
     cold.offset += 7.0 * square(T + 1500.0);
     cold.sensitivity += 4.0 * square(T + 1500.0);
@@ -56,15 +56,15 @@ bool crc_right(const Prom& prom) {
 // The datasheets' arithmetic without its rounding, which would cost a millimetre of depth.
 Compensated compensate(Model model, const Prom& prom, std::uint32_t d1, std::uint32_t d2) {
   const bool bar30 = model == Model::k30Ba;
-  const double dT = static_cast<double>(d2) - 256.0 * prom[5];
-  const double T = 2000.0 + std::ldexp(dT * prom[6], -23);
-  const double offset = std::ldexp(prom[2], bar30 ? 16 : 17) + std::ldexp(prom[4] * dT, bar30 ? -7 : -6);
-  const double sensitivity = std::ldexp(prom[1], bar30 ? 15 : 16) + std::ldexp(prom[3] * dT, bar30 ? -8 : -7);
+  const double d_T = static_cast<double>(d2) - 256.0 * prom[5];
+  const double T = 2000.0 + std::ldexp(d_T * prom[6], -23);
+  const double offset = std::ldexp(prom[2], bar30 ? 16 : 17) + std::ldexp(prom[4] * d_T, bar30 ? -7 : -6);
+  const double sensitivity = std::ldexp(prom[1], bar30 ? 15 : 16) + std::ldexp(prom[3] * d_T, bar30 ? -8 : -7);
   const auto reading = [&](double temperature, double off, double sens) {
     const double counts = std::ldexp(std::ldexp(d1 * sens, -21) - off, bar30 ? -13 : -15);
     return Reading{.pressure = counts * (bar30 ? 10.0 : 1.0), .temperature = 0.01 * temperature};
   };
-  const Correction correction = second_order(model, dT, T);
+  const Correction correction = second_order(model, d_T, T);
   return {.first_order = reading(T, offset, sensitivity),
           .second_order =
               reading(T - correction.temperature, offset - correction.offset, sensitivity - correction.sensitivity)};

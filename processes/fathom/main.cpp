@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
   fathom::tool::add_compare(app);
+  fathom::tool::add_decode(app);
   try {
     app.parse(argc, argv);
     return 0;

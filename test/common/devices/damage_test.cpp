@@ -128,9 +128,10 @@ TEST_CASE("damage: lost bytes and inserted rubbish are skipped, and what was nev
       if (!stream.checksum) continue;
       std::size_t foreign = 0;
       for (const WireRow& row : told.rows) foreign += sent.contains(contents(row.bytes)) ? 0 : 1;
-      // Eight bits of checksum let one wound in 256 pass, sixteen next to none.
+      // Eight bits of checksum let one wound in 256 pass, more where a line ends in the tail of one like it; sixteen
+      // let next to none.
       const bool eight_bits = stream.bytes[0] == '$' || stream.bytes[0] == 'w';
-      CHECK(foreign <= (eight_bits ? 1 + wounds / 40 : 0));
+      CHECK(foreign <= (eight_bits ? 2 + wounds / 40 : 0));
     }
   }
 }
