@@ -49,6 +49,7 @@ double emulated_rate(std::string_view name) {
       return 1.0;
     case Kind::kDepth:
     case Kind::kLoads:
+    case Kind::kThrusters:
       return 10.0;
   }
   return 1.0;

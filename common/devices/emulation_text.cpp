@@ -1,6 +1,7 @@
 // Acoustic positions and ranges, depth and loads: text lines from samples.
 #include <cmath>
 
+#include "common/devices/checksum.hpp"
 #include "common/devices/emulation.hpp"
 
 namespace fathom::devices::detail {
@@ -60,6 +61,31 @@ std::string load_text(const Instant& now, const Settings& settings) {
   return text + "\r\n";
 }
 
+// What ArduSub says unasked: SERVO_OUTPUT_RAW and SYS_STATUS.
+std::string mavlink_packets(const Instant& now) {
+  const auto packet = [](std::uint8_t id, std::uint8_t crc_extra, const std::string& payload) {
+    FrameWriter body;
+    body.little(static_cast<std::uint8_t>(payload.size()));
+    body.text += std::string("\0\0\0\1\1", 5);
+    body.little(id);
+    body.zeros(2);
+    body.text += payload;
+    const std::string checked = body.text + static_cast<char>(crc_extra);
+    body.little(crc16_reflected(as_bytes(checked), 0xFFFF));
+    return "\xFD" + body.text;
+  };
+  FrameWriter servo;
+  servo.little(static_cast<std::uint32_t>(static_cast<std::uint64_t>(now.time * 1e6) & 0xFFFFFFFFU));
+  for (int i = 0; i < 8; ++i) servo.little(static_cast<std::uint16_t>(1500 + 10 * i));
+  servo.little(std::uint8_t{1});
+  FrameWriter status;
+  status.zeros(14);
+  status.little(std::uint16_t{16200});  // mV
+  status.zeros(14);
+  status.little(std::int8_t{80});
+  return packet(36, 222, servo.text) + packet(1, 124, status.text);
+}
+
 }  // namespace
 
 std::string emulate_text(std::string_view protocol, const Instant& now, const Settings& settings) {
@@ -68,7 +94,11 @@ std::string emulate_text(std::string_view protocol, const Instant& now, const Se
   if (protocol == "psimlbm") return psimlbm(now);
   if (protocol == "range_text") return range_text(now, settings);
   if (protocol == "load_text") return load_text(now, settings);
-  return nmea_sentence(format("SDDPT,%.3f,0.00", now.depth.z - settings.port_depth));
+  if (protocol == "mavlink") return mavlink_packets(now);
+  if (protocol == "thruster_text") {
+    return nmea_sentence("FTBAT,16.20") + nmea_sentence("FTAPP,1500,1510,1520,1530,1540,1550,1560,1570");
+  }
+  return nmea_sentence(format("SDDPT,%.3f,0.00", now.depth.z));
 }
 
 }  // namespace fathom::devices::detail

@@ -19,7 +19,6 @@ std::optional<double> below(const Words& words) {
 
 NmeaDepth::NmeaDepth(const Settings& settings)
     : NmeaParser{settings.checksum_required},
-      port_depth_{settings.port_depth},
       air_pressure_{settings.air_pressure},
       per_metre_{settings.water_density * settings.gravity},
       absolute_{settings.pressure_is_absolute} {}
@@ -47,7 +46,7 @@ void NmeaDepth::sentence(const Words& words, Frame& frame) {
     z = depth_m_;
   }
   if (!z) return;
-  sample_ = Depth{.z = *z + port_depth_};
+  sample_ = Depth{.z = *z};
   frame.sample = &sample_;
 }
 

@@ -18,7 +18,7 @@ class NmeaDepth final : public NmeaParser {
   void describe_values(Fields& fields) const override;
   void read_prvat(const Words& words);
 
-  double port_depth_, air_pressure_, per_metre_;  ///< m, Pa, Pa/m
+  double air_pressure_, per_metre_;  ///< Pa, Pa/m
   bool absolute_;
   std::optional<double> depth_m_, offset_m_, altitude_m_, pressure_dbar_;
   Depth sample_;

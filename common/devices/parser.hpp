@@ -54,7 +54,7 @@ class Fields {
 
 /// What a frame says, in SI units and the body's frame; utime is for the driver to set.
 using Sample = std::variant<std::monostate, const Ahrs*, const Dvl*, const Usbl*, const Ranges*, const Depth*,
-                            const Loads*, const Battery*>;
+                            const Loads*, const Battery*, const Thrusters*>;
 
 /// One good frame. It and its sample live as long as the call that brings it.
 struct Frame {

@@ -7,6 +7,7 @@
 #include "common/base/spatial.hpp"
 #include "common/devices/evologics.hpp"
 #include "common/devices/load_text.hpp"
+#include "common/devices/mavlink.hpp"
 #include "common/devices/microstrain_gx3.hpp"
 #include "common/devices/nmea_attitude.hpp"
 #include "common/devices/nmea_depth.hpp"
@@ -18,6 +19,7 @@
 #include "common/devices/sbg_ecom.hpp"
 #include "common/devices/sbg_ig500.hpp"
 #include "common/devices/text_ranges.hpp"
+#include "common/devices/thruster_text.hpp"
 #include "common/devices/vectornav.hpp"
 #include "common/devices/water_linked_json.hpp"
 #include "common/devices/water_linked_serial.hpp"
@@ -47,6 +49,8 @@ constexpr std::array kProtocols{
     Protocol{"range_text", Kind::kRanges, "lines of NAME=METRES", 9600, make<TextRanges>},
     Protocol{"nmea_depth", Kind::kDepth, "$--DPT, $--DBT, $PRVAT", 9600, make<NmeaDepth>},
     Protocol{"load_text", Kind::kLoads, "lines of readings", 9600, make<LoadText>},
+    Protocol{"mavlink", Kind::kThrusters, "MAVLink 1 and 2 of ArduSub", 115200, make<Mavlink>},
+    Protocol{"thruster_text", Kind::kThrusters, "$FTAPP, $FTBAT of a test rig", 115200, make<ThrusterText>},
 };
 
 Eigen::Matrix3d read_rotation(const Config& config) { return rotation_from_euler(config.vector3("rotation", "rad")); }
@@ -100,7 +104,6 @@ void read_dvl(const Config& config, const Protocol& protocol, Settings& settings
 }
 
 void read_depth(const Config& config, Settings& settings) {
-  settings.port_depth = config.quantity("port_depth", "m");
   settings.water_density = read_positive(config, "water_density", "kg/m^3");
   settings.gravity = read_positive(config, "gravity", "m/s^2");
   settings.air_pressure = read_positive(config, "air_pressure", "Pa");
@@ -143,6 +146,8 @@ Settings read_settings(const Config& config, const Protocol& protocol) {
       break;
     case Kind::kLoads:
       read_cells(config, settings.cells);
+      break;
+    case Kind::kThrusters:
       break;
   }
   return settings;

@@ -12,7 +12,7 @@
 
 namespace fathom::devices {
 
-enum class Kind : std::uint8_t { kAhrs, kDvl, kUsbl, kRanges, kDepth, kLoads };
+enum class Kind : std::uint8_t { kAhrs, kDvl, kUsbl, kRanges, kDepth, kLoads, kThrusters };
 
 struct Protocol {
   std::string_view name;

@@ -82,6 +82,11 @@ void describe_sample(const Sample& sample, Kind kind, const Settings& settings, 
       return describe(as<Ranges>(sample), settings, fields);
     case Kind::kLoads:
       return describe(as<Loads>(sample), settings, fields);
+    case Kind::kThrusters: {
+      const auto* battery = as<Battery>(sample);
+      fields.add("SI voltage [V]", battery != nullptr ? std::optional{battery->voltage} : std::nullopt);
+      return;
+    }
     case Kind::kDepth: {
       const auto* depth = as<Depth>(sample);
       fields.add("SI z [m]", depth != nullptr ? std::optional{depth->z} : std::nullopt);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,13 +44,13 @@ struct Settings {
   Transceiver transceiver;
   std::vector<std::string> transponders;  ///< names in the order of the vehicle file (text ranges); empty: as they come
   double sound_speed{1500.0};             ///< m/s, for ranges that are told as times
-  double port_depth{};                    ///< m, added to a depth: how far Bo is below the pressure port when level
   double water_density{1000.0};           ///< kg/m^3, for depth from pressure
   double gravity{9.81};                   ///< m/s^2
   double air_pressure{101325.0};          ///< Pa
   bool pressure_is_absolute{false};       ///< PRVAT: the instrument's pressure includes that of the air
   std::string sensor;                     ///< MS5837: "30BA" or "02BA"
   std::vector<LoadCell> cells;            ///< order of the vehicle file
+  std::size_t motors{8};                  ///< thrusters whose feedback is read
 };
 
 }  // namespace fathom::devices

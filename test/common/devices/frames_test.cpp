@@ -393,18 +393,17 @@ TEST_CASE("depth: an offset above zero is the transducer's depth, pressure becom
   devices::Settings settings;
   settings.water_density = 1000.0;
   settings.gravity = 10.0;
-  settings.port_depth = 0.1;
   const auto sentence = [](const std::string& body) { return devices::detail::nmea_sentence(body); };
   const auto z = [&](const std::string& body) {
     return decode("nmea_depth", sentence(body), settings)[0].value("SI z [m]");
   };
-  CHECK(z("KIDPT,4674.70,8.62,12000.0") == doctest::Approx(4683.42));
-  CHECK(z("SDDPT,14.39,-2.00") == doctest::Approx(14.49));
-  CHECK(z("SDDBT,,f,3.00,M,,F") == doctest::Approx(3.1));
-  CHECK(z("SDDBT,10.0,f,,M,,F") == doctest::Approx(3.148));
-  CHECK(z("PRVAT,00.210,M,0007.497,Metres") == doctest::Approx(7.597));
-  CHECK(z("PRVAT,00.115,M,0010.000,dBar") == doctest::Approx(10.1));
+  CHECK(z("KIDPT,4674.70,8.62,12000.0") == doctest::Approx(4683.32));
+  CHECK(z("SDDPT,14.39,-2.00") == doctest::Approx(14.39));
+  CHECK(z("SDDBT,,f,3.00,M,,F") == doctest::Approx(3.0));
+  CHECK(z("SDDBT,10.0,f,,M,,F") == doctest::Approx(3.048));
+  CHECK(z("PRVAT,00.210,M,0007.497,Metres") == doctest::Approx(7.497));
+  CHECK(z("PRVAT,00.115,M,0010.000,dBar") == doctest::Approx(10.0));
   settings.pressure_is_absolute = true;
-  CHECK(z("PRVAT,00.115,M,0020.1325,dBar") == doctest::Approx(10.1));
+  CHECK(z("PRVAT,00.115,M,0020.1325,dBar") == doctest::Approx(10.0));
   CHECK(decode("nmea_depth", sentence("SDDPT,,0.0"), settings)[0].at("SI z [m]").empty());
 }
