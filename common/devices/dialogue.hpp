@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/devices/parser.hpp"
 #include "common/devices/settings.hpp"
@@ -36,10 +37,16 @@ class EmulatedAnswers {
   [[nodiscard]] std::string hear(std::string_view bytes);
   /// An instrument that waits to be told does not send data before.
   [[nodiscard]] bool sends_data() const { return sends_; }
+  /// Pulse widths that thrusters were told; neutral again half a second after the last command.
+  [[nodiscard]] const std::vector<double>& applied() const { return applied_; }
+  /// Time goes on [s].
+  void at(double now);
 
  private:
   [[nodiscard]] std::string answer_ig500(Bytes frame);
   [[nodiscard]] std::string answer_water_linked(std::string_view line);
+  void hear_rig(std::string_view line);
+  void hear_mavlink(std::string_view bytes);
 
   std::string protocol_;
   std::string waiting_;
@@ -47,6 +54,9 @@ class EmulatedAnswers {
   std::uint32_t mask_{0};
   std::uint8_t continuous_{0}, divider_{1};
   bool sends_;
+  std::vector<double> applied_;
+  double now_{}, commanded_{};
+  std::unique_ptr<Parser> commands_;  ///< of a ground station (MAVLink)
 };
 
 }  // namespace fathom::devices

@@ -82,6 +82,7 @@ Instant emulated_motion(double time, double since_start, const Settings& setting
     now.ranges.range.push_back((beacon - now.usbl.p_WB).norm());
     now.ranges.valid.push_back(1);
   }
+  now.thrusters.pwm_us.assign(settings.motors, 1500.0);
   const std::size_t cells = settings.cells.empty() ? 1 : settings.cells.size();
   for (std::size_t i = 0; i < cells; ++i) now.loads.load.push_back(10.0 + static_cast<double>(i) + std::sin(t));
   return now;

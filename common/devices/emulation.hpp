@@ -21,6 +21,7 @@ struct Instant {
   Depth depth;
   Ranges ranges;
   Loads loads;
+  Thrusters thrusters;
 };
 
 struct EmulatedDvl {

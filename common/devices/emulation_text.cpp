@@ -76,7 +76,11 @@ std::string mavlink_packets(const Instant& now) {
   };
   FrameWriter servo;
   servo.little(static_cast<std::uint32_t>(static_cast<std::uint64_t>(now.time * 1e6) & 0xFFFFFFFFU));
-  for (int i = 0; i < 8; ++i) servo.little(static_cast<std::uint16_t>(1500 + 10 * i));
+  for (int i = 0; i < 8; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double pwm = k < now.thrusters.pwm_us.size() ? now.thrusters.pwm_us[k] : 1500.0;
+    servo.little(static_cast<std::uint16_t>(std::lround(pwm)));
+  }
   servo.little(std::uint8_t{1});
   FrameWriter status;
   status.zeros(14);
@@ -96,7 +100,9 @@ std::string emulate_text(std::string_view protocol, const Instant& now, const Se
   if (protocol == "load_text") return load_text(now, settings);
   if (protocol == "mavlink") return mavlink_packets(now);
   if (protocol == "thruster_text") {
-    return nmea_sentence("FTBAT,16.20") + nmea_sentence("FTAPP,1500,1510,1520,1530,1540,1550,1560,1570");
+    std::string applied = "FTAPP";
+    for (const double pwm : now.thrusters.pwm_us) applied += format(",%.0f", pwm);
+    return nmea_sentence("FTBAT,16.20") + nmea_sentence(applied);
   }
   return nmea_sentence(format("SDDPT,%.3f,0.00", now.depth.z));
 }

@@ -12,5 +12,6 @@ void add_check(CLI::App& app);
 void add_diagnose(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_decode(CLI::App& app);
+void add_emulate(CLI::App& app);
 
 }  // namespace fathom::tool

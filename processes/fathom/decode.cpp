@@ -1,19 +1,17 @@
 // fathom decode: recorded bytes of an instrument to a table: what it said, in its own units, beside what that means.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/devices/protocols.hpp"
 #include "common/devices/sample_fields.hpp"
+#include "common/link/raw_log.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
 namespace {
-
-constexpr std::size_t kPiece = 65536;
 
 struct Options {
   std::string protocol, file, csv, config;
@@ -80,17 +78,12 @@ void run(const Options& options) {
       }
     }
   }
-  std::ifstream in{options.file, std::ios::binary};
-  if (!in) throw InputError(options.file + ": cannot be read; check the name");
+  link::RawReader in{options.file, 0, 1.0};
   std::FILE* out = std::fopen(options.csv.c_str(), "w");
   if (out == nullptr) throw InputError(options.csv + ": cannot be written; check that the folder exists and is yours");
   const auto parser = protocol.make(settings);
   Table table{out, protocol, settings};
-  std::string piece(kPiece, '\0');
-  while (in) {
-    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    parser->feed(devices::as_bytes(std::string_view{piece}.substr(0, static_cast<std::size_t>(in.gcount()))), table);
-  }
+  while (const auto piece = in.next()) parser->feed(piece->bytes, table);
   parser->finish(table);
   if (std::fclose(out) != 0) throw InputError(options.csv + ": writing failed; is the disk full?");
 
@@ -121,7 +114,7 @@ void add_decode(CLI::App& app) {
     known += "\n" + std::string{each.name} + ": " + std::string{each.title};
   }
   command->add_option("protocol", options->protocol, known)->required();
-  command->add_option("file", options->file, "recorded bytes")->required();
+  command->add_option("file", options->file, "recorded bytes, bare or by a driver's 'record'")->required();
   command->add_option("--csv", options->csv, "the table: a row per frame")->required();
   command->add_option("--config", options->config, "driver's configuration: mounting and the like; left out: none");
   command->callback([options] { run(*options); });

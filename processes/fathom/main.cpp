@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_diagnose(app);
   fathom::tool::add_compare(app);
   fathom::tool::add_decode(app);
+  fathom::tool::add_emulate(app);
   try {
     app.parse(argc, argv);
     return 0;
