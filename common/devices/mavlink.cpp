@@ -149,7 +149,8 @@ Parser::Look Mavlink::look(Bytes bytes) const {
   if (bytes.size() < head.size + head.payload + head.trailer) return kMore;
   const std::uint16_t crc = crc16_reflected(bytes.subspan(1, head.size - 1 + head.payload), 0xFFFF);
   const std::uint8_t extra[]{known->crc_extra};
-  if (crc16_reflected(extra, crc) != little<std::uint16_t>(bytes, head.size + head.payload)) return kBadChecksum;
+  const auto stated = little<std::uint16_t>(bytes, head.size + head.payload);
+  if (!checksum_right(stated, crc16_reflected(extra, crc))) return kBadChecksum;
   return whole_frame(head.size + head.payload + head.trailer);
 }
 

@@ -37,7 +37,7 @@ Parser::Look MicrostrainGx3::look(Bytes bytes) const {
   const std::size_t size = size_of(bytes[0]);
   if (size == 0) return skip(1);
   if (bytes.size() < size) return kMore;
-  if (sum16(bytes.first(size - 2)) != big<std::uint16_t>(bytes, size - 2)) return kBadChecksum;
+  if (!checksum_right(big<std::uint16_t>(bytes, size - 2), sum16(bytes.first(size - 2)))) return kBadChecksum;
   return whole_frame(size);
 }
 

@@ -44,7 +44,7 @@ Parser::Look NmeaParser::look(Bytes bytes) const {
     return good ? whole_frame(end + 1) : kBadChecksum;
   }
   const auto stated = hex_byte(sentence.check);
-  if (!stated || *stated != xor8(as_bytes(sentence.body))) return kBadChecksum;
+  if (!stated || !checksum_right(*stated, xor8(as_bytes(sentence.body)))) return kBadChecksum;
   return printable(sentence.body) ? whole_frame(end + 1) : kBadFrame;
 }
 

@@ -34,7 +34,7 @@ Parser::Look Pd0::look(Bytes bytes) const {
   if (size > kMostBytes) complain("a frame claims more bytes than PD0 has; is it PD0, and is the baud rate right?");
   if (size < kFewestBytes || size > kMostBytes || 6 + 2 * std::size_t{bytes[5]} > size) return kBadFrame;
   if (bytes.size() < size + 2) return kMore;
-  if (sum16(bytes.first(size)) != little<std::uint16_t>(bytes, size)) return kBadChecksum;
+  if (!checksum_right(little<std::uint16_t>(bytes, size), sum16(bytes.first(size)))) return kBadChecksum;
   return whole_frame(size + 2);
 }
 

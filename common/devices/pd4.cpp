@@ -32,7 +32,7 @@ Parser::Look Pd4::look(Bytes bytes) const {
   const std::size_t stated = little<std::uint16_t>(bytes, 2);
   if (stated != size && stated != size - 2) return kBadFrame;
   if (bytes.size() < size) return kMore;
-  if (sum16(bytes.first(size - 2)) != little<std::uint16_t>(bytes, size - 2)) return kBadChecksum;
+  if (!checksum_right(little<std::uint16_t>(bytes, size - 2), sum16(bytes.first(size - 2)))) return kBadChecksum;
   return whole_frame(size);
 }
 

@@ -29,7 +29,8 @@ Parser::Look SbgEcom::look(Bytes bytes) const {
   if (size > kMostData) return kBadFrame;
   if (bytes.size() < size + kAround) return kMore;
   if (bytes[size + 8] != 0x33) return kBadFrame;
-  if (crc16_reflected(bytes.subspan(2, size + 4), 0) != little<std::uint16_t>(bytes, size + 6)) return kBadChecksum;
+  if (!checksum_right(little<std::uint16_t>(bytes, size + 6), crc16_reflected(bytes.subspan(2, size + 4), 0)))
+    return kBadChecksum;
   return whole_frame(size + kAround);
 }
 

@@ -71,7 +71,8 @@ Parser::Look SbgIg500::look(Bytes bytes) const {
   if (size > kMostData) return kBadFrame;
   if (bytes.size() < size + kAround) return kMore;
   if (bytes[size + 7] != 0x03) return kBadFrame;
-  if (crc16_reflected(bytes.subspan(2, size + 3), 0) != big<std::uint16_t>(bytes, size + 5)) return kBadChecksum;
+  if (!checksum_right(big<std::uint16_t>(bytes, size + 5), crc16_reflected(bytes.subspan(2, size + 3), 0)))
+    return kBadChecksum;
   if (bytes[2] == ig500::kContinuous && size != buffer_size_) {
     complain("data frames do not have the length of the configured output mask; let the driver configure it");
     return kBadFrame;

@@ -50,7 +50,7 @@ Parser::Look VectorNav::look(Bytes bytes) const {
     }
   }
   if (bytes.size() < size + 2) return kMore;
-  return crc16_xmodem(bytes.subspan(1, size + 1)) == 0 ? whole_frame(size + 2) : kBadChecksum;
+  return checksum_right(0, crc16_xmodem(bytes.subspan(1, size + 1))) ? whole_frame(size + 2) : kBadChecksum;
 }
 
 void VectorNav::take(Frame& frame) {

@@ -22,7 +22,7 @@ Parser::Look WaterLinkedSerial::look(Bytes bytes) const {
   if (end == std::string_view::npos) return text.size() < kLongest ? kMore : kBadFrame;
   if (end < 6 || text[end - 3] != '*') return kBadFrame;
   const auto stated = hex_byte(text.substr(end - 2, 2));
-  if (!stated || *stated != crc8(bytes.first(end - 3))) return kBadChecksum;
+  if (!stated || !checksum_right(*stated, crc8(bytes.first(end - 3)))) return kBadChecksum;
   return whole_frame(end + 1);
 }
 

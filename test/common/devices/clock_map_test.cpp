@@ -57,7 +57,7 @@ TEST_CASE("clock map: an instrument that starts anew is counted and mapped anew"
   for (int i = 500; i < 1000; ++i) {
     const Utime arrival = line.arrival(0.01 * i);
     const Utime utime = map.map(line.device(0.01 * i), arrival);
-    CHECK(utime <= arrival);
+    CHECK(seconds_between(arrival, utime) < 0.05);  // behind what was said before the restart, times must rise
     CHECK(seconds_between(utime, arrival) < 0.2);
   }
   CHECK(map.restarts() == 1);

@@ -32,8 +32,11 @@ struct Heard {
 template <class Condition>
 bool until(Link& link, Condition&& condition, double seconds = 5.0) {
   const double end = wall_seconds() + seconds;
-  while (!condition() && wall_seconds() < end) link.wait({}, 10);
-  return condition();
+  while (!condition()) {
+    if (wall_seconds() > end) return false;
+    link.wait({}, 10);
+  }
+  return true;
 }
 
 }  // namespace
