@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/base/error.hpp"
 #include "common/devices/clock_map.hpp"
 #include "common/devices/dialogue.hpp"
 #include "common/driver/lever_arm.hpp"
@@ -46,7 +47,7 @@ class SensorDriver final : public devices::Output {
         link_{link::Endpoint::parse(config.text("link"), config.where("link")),
               [this](std::span<const std::uint8_t> bytes, Utime arrival) { received(bytes, arrival); },
               [this](bool up, const std::string& why) { changed(up, why); }} {
-    if (config.has("record")) raw_.emplace(config.text("record"));
+    if (config.has("record")) raw_.emplace(link::free_name(config.text("record")));
     if (link_.endpoint().kind == link::Endpoint::Kind::kFile) dialogue_.reset();  // nobody answers
     if (arm_.needed()) {
       process_.on_latest<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
@@ -88,10 +89,21 @@ class SensorDriver final : public devices::Output {
   }
 
   void received(std::span<const std::uint8_t> bytes, Utime arrival) {
-    if (raw_) raw_->write(arrival, bytes);
+    record(bytes, arrival);
     arrival_ = arrival;
     watch_.bytes(bytes.size(), steady_seconds());
     parser_->feed(bytes, *this);
+  }
+
+  // A full disk costs the recording, not the measurements.
+  void record(std::span<const std::uint8_t> bytes, Utime arrival) {
+    if (!raw_) return;
+    try {
+      raw_->write(arrival, bytes);
+    } catch (const InputError& error) {
+      raw_.reset();
+      process_.log_warning(std::string{error.what()} + " No raw bytes are recorded any more");
+    }
   }
 
   void changed(bool up, const std::string& why) {

@@ -32,6 +32,12 @@ std::array<char, N> to_bytes(std::uint64_t value) {
 
 }  // namespace
 
+std::string free_name(const std::string& path) {
+  std::string name = path;
+  for (int i = 1; std::filesystem::exists(name); ++i) name = path + "." + std::to_string(i);
+  return name;
+}
+
 RawWriter::RawWriter(const std::string& path) : path_{path} {
   if (std::filesystem::exists(path)) throw InputError(path + ": is there already; name another file for the raw bytes");
   file_.open(path, std::ios::binary);

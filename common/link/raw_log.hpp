@@ -30,6 +30,9 @@ class RawWriter {
   std::ofstream file_;
 };
 
+/// `path`, or with ".1", ".2" ... behind it when that is taken: a process that is started again goes on recording.
+[[nodiscard]] std::string free_name(const std::string& path);
+
 /// Reads what RawWriter wrote, or bare bytes with times from a rate.
 class RawReader {
  public:

@@ -74,6 +74,9 @@ TEST_CASE("raw recordings: pieces and times come back, bare bytes get times from
   CHECK_FALSE(reader.next());
   CHECK_FALSE(test::complaint_of<InputError>([&] { RawWriter again{path}; }).empty());  // nothing is overwritten
 
+  CHECK(free_name(path) == path + ".1");
+  CHECK(free_name(scratch.path("other.raw")) == scratch.path("other.raw"));
+
   test::write_bytes(scratch.path("bare"), std::string(100, 'x'));
   RawReader bare{scratch.path("bare"), 1'000'000, 100.0};
   std::size_t count = 0;
