@@ -107,6 +107,7 @@ constexpr std::uint8_t kMagic1 = 0xFE, kMagic2 = 0xFD;
 constexpr std::size_t kSignature = 13;
 constexpr std::size_t kLongest = 10 + 255 + 2 + kSignature;
 constexpr std::uint32_t kSysStatus = 1, kServoOutput = 36, kBatteryStatus = 147;
+constexpr double kExact = 9e15;      // whole numbers below are whole in a double
 constexpr double kNoCell = 65535.0;  // mV: there is no such cell
 
 std::size_t size_of(char kind) {
@@ -220,6 +221,8 @@ void Mavlink::describe(Fields& fields) const {
       fields.add(kNames[i], "");
     } else if (message_->fields[i] == 'f') {
       fields.add(kNames[i], static_cast<float>(value(i)));
+    } else if (value(i) > kExact) {
+      fields.add(kNames[i], value(i));
     } else {
       fields.add(kNames[i], static_cast<std::int64_t>(value(i)));
     }
