@@ -29,6 +29,28 @@ constexpr std::array kMessages{
     Message{147, "BATTERY_STATUS", 154, "iihHHHHHHHHHHhBBBb"},
     Message{173, "RANGEFINDER", 83, "ff"},
     Message{178, "AHRS2", 47, "ffffii"},
+    // What ArduSub says besides: only to be told from damage. The bytes are those of a recorded vehicle.
+    Message{2, "SYSTEM_TIME", 137, ""},
+    Message{22, "PARAM_VALUE", 220, ""},
+    Message{24, "GPS_RAW_INT", 24, ""},
+    Message{33, "GLOBAL_POSITION_INT", 104, ""},
+    Message{42, "MISSION_CURRENT", 28, ""},
+    Message{62, "NAV_CONTROLLER_OUTPUT", 183, ""},
+    Message{66, "REQUEST_DATA_STREAM", 148, ""},
+    Message{111, "TIMESYNC", 34, ""},
+    Message{125, "POWER_STATUS", 203, ""},
+    Message{148, "AUTOPILOT_VERSION", 178, ""},
+    Message{150, "SENSOR_OFFSETS", 134, ""},
+    Message{152, "MEMINFO", 208, ""},
+    Message{158, "MOUNT_STATUS", 134, ""},
+    Message{163, "AHRS", 127, ""},
+    Message{165, "HWSTATUS", 21, ""},
+    Message{193, "EKF_STATUS_REPORT", 71, ""},
+    Message{232, "GPS_INPUT", 151, ""},
+    Message{241, "VIBRATION", 90, ""},
+    Message{251, "NAMED_VALUE_FLOAT", 170, ""},
+    Message{253, "STATUSTEXT", 83, ""},
+    Message{322, "PARAM_EXT_VALUE", 243, ""},
 };
 
 void put(std::string& out, std::uint64_t value, std::size_t bytes) {

@@ -4,6 +4,7 @@
 #include "common/base/error.hpp"
 #include "common/tables/csv.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   try {
     (void)fathom::tables::parse_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");

@@ -1,9 +1,14 @@
 // Any bytes, in any pieces, through one parser: no crash, no sample that holds what is no number, all bytes accounted
 // for.
+#include <algorithm>
 #include <cstdlib>
 
 #include "common/devices/protocols.hpp"
 #include "common/devices/sample_fields.hpp"
+
+#ifndef FATHOM_PROTOCOL
+#define FATHOM_PROTOCOL "pd0"  // the build names one per executable
+#endif
 
 namespace {
 
@@ -40,6 +45,7 @@ class Check final : public devices::Output {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   static const devices::Protocol& protocol = devices::protocol(FATHOM_PROTOCOL, "fuzz");

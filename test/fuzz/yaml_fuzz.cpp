@@ -33,6 +33,7 @@ void walk(const fathom::Config& config, int depth) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   attempt([&] {
     const auto config = fathom::Config::parse({reinterpret_cast<const char*>(data), size}, "fuzz.yaml");

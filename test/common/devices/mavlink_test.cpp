@@ -66,6 +66,16 @@ TEST_CASE("MAVLink: every field of every known packet of a real vehicle's log") 
   CHECK(compared > 9'000);
 }
 
+TEST_CASE("MAVLink: hardly any byte of a vehicle's log is not understood") {
+  const devices::Protocol& known = devices::protocol("mavlink", "test");
+  const auto parser = known.make({});
+  (void)decode_wire(*parser, known, {}, wire_bytes("mavlink_ardusub_tlog/small.tlog"));
+  const devices::Counters& counters = parser->counters();
+  CHECK(counters.frames > 3'500);               // of 3,528
+  CHECK(counters.bad_checksum < 20);            // false beginnings inside of those that are not known
+  CHECK(counters.skipped < 3'528 * 8 + 3'000);  // the time stamps of the log, and the others
+}
+
 TEST_CASE("MAVLink: the extra bytes follow from the definitions") {
   // Name, then type and name of each field in wire order, through the same CRC, folded to eight bits.
   const auto extra = [](std::string definition) {
