@@ -189,8 +189,8 @@ TEST_CASE("drivers: bad configuration is refused with one line") {
   Chain chain = chains()[2];
   const auto complain = [&](const std::string& link) {
     configure(chain, link, scratch.path("x.yaml"), "");
-    const auto ran = shell(program(chain.driver) + " --config " + scratch.path("x.yaml") + " --out file://" +
-                           scratch.path("x.lcmlog"));
+    auto ran = shell(program(chain.driver) + " --config " + scratch.path("x.yaml") + " --out file://" +
+                     scratch.path("x.lcmlog"));
     CHECK(ran.code == 1);
     CHECK(ran.lines() == 1);
     return ran;

@@ -79,7 +79,7 @@ TEST_CASE("damage: one flipped bit costs its own frame and nothing else") {
     for (int round = 0; round < kRounds; ++round) {
       std::string bytes = stream.bytes;
       std::set<std::size_t> hit;  // every fourth frame
-      for (std::size_t i = round % 4; i < whole.size(); i += 4) {
+      for (std::size_t i = static_cast<std::size_t>(round % 4); i < whole.size(); i += 4) {
         std::uniform_int_distribution<std::size_t> place{0, whole[i].bytes.size() - 1};
         bytes[whole[i].offset + place(random)] ^= static_cast<char>(1 << random() % 8);
         hit.insert(i);
@@ -142,7 +142,7 @@ TEST_CASE("damage: rubbish alone gives no sample and no crash, in pieces of any 
   for (char& byte : rubbish) byte = static_cast<char>(random() & 0xFF);
   for (const devices::Protocol& protocol : devices::protocols()) {
     CAPTURE(protocol.name);
-    for (const std::size_t piece : {0, 1, 977}) {
+    for (const std::size_t piece : std::initializer_list<std::size_t>{0, 1, 977}) {
       const auto parser = protocol.make({});
       const auto rows = decode_wire(*parser, protocol, {}, rubbish, piece);
       CHECK(rows.size() <= 4);  // a checksum of 16 bits lets one in 65536 chances pass
@@ -159,7 +159,9 @@ TEST_CASE("damage: a header that claims an absurd length does not hold up the st
                                                    {"evologics", "+++AT:99999:"},
                                                    {"wl_json", "{\"a\":"},
                                                    {"nmea_usbl", "$PSIMSSB,"}};
-  for (const auto& [name, header] : headers) {
+  for (const auto& entry : headers) {
+    const std::string& name = entry.first;
+    const std::string& header = entry.second;
     CAPTURE(name);
     Stream stream{name, name, header + devices::emulate(name, now, {}), {}, true};
     const Told told = decode(stream, stream.bytes);

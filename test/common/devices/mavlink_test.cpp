@@ -78,7 +78,7 @@ TEST_CASE("MAVLink: hardly any byte of a vehicle's log is not understood") {
 
 TEST_CASE("MAVLink: the extra bytes follow from the definitions") {
   // Name, then type and name of each field in wire order, through the same CRC, folded to eight bits.
-  const auto extra = [](std::string definition) {
+  const auto extra = [](const std::string& definition) {
     const std::uint16_t crc = devices::crc16_reflected(devices::as_bytes(definition), 0xFFFF);
     return static_cast<std::uint8_t>((crc & 0xFFU) ^ (crc >> 8));
   };

@@ -66,7 +66,9 @@ std::vector<Row> wanted_frames(const WireRecording& recording) {
 
 int compare(const WireRow& told, const Row& wanted, bool spread_fields) {
   int compared = 0;
-  for (const auto& [name, text] : wanted) {
+  for (const auto& column : wanted) {
+    const std::string& name = column.first;
+    const std::string& text = column.second;
     if (name == "offset") {
       CHECK(told.offset == std::stoull(text));
       ++compared;
@@ -74,10 +76,10 @@ int compare(const WireRow& told, const Row& wanted, bool spread_fields) {
     }
     if (kNotFields.contains(name)) continue;
     if (spread_fields && name == "fields") {
-      for (const auto& [key, value] : spread(text)) {
-        CAPTURE(key);
+      for (const auto& field : spread(text)) {
+        CAPTURE(field.first);
         CAPTURE(told.offset);
-        CHECK_MESSAGE(same(told.at(key), value), told.at(key), " instead of ", value);
+        CHECK_MESSAGE(same(told.at(field.first), field.second), told.at(field.first), " instead of ", field.second);
         ++compared;
       }
       continue;
@@ -185,7 +187,7 @@ TEST_CASE("recordings: the same stream cut into pieces of any size gives the sam
     const auto whole = protocol.make(recording.settings);
     const auto rows = decode_wire(*whole, protocol, recording.settings, bytes);
     CHECK_FALSE(rows.empty());
-    for (const std::size_t piece : {1, 2, 3, 7, 1000}) {
+    for (const std::size_t piece : std::initializer_list<std::size_t>{1, 2, 3, 7, 1000}) {
       CAPTURE(piece);
       const auto parser = protocol.make(recording.settings);
       CHECK((decode_wire(*parser, protocol, recording.settings, bytes, piece) == rows));
