@@ -336,4 +336,54 @@ TEST_CASE("thruster_driver: obeys, goes to zero within half a second, hears an a
   }
 }
 
+TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels, and the middle when commands stop") {
+  const Scratch scratch;
+  Bus bus;
+  link::Server vehicle{"pty:" + scratch.path("tty")};
+  std::ofstream{scratch.path("x.yaml")}
+      << "thruster_driver:\n  protocol: rc_override\n  rate: 20 Hz\n  largest_thrust: 30 N\n"
+      << "  link: serial://" << scratch.path("tty") << "?baud=115200\n  system: 1\n"
+      << "  full_stick: {X: 40 N, Y: 40 N, Z: 40 N, K: 4 N m, M: 4 N m, N: 4 N m}\n";
+  const Background driver{scratch, "driver",
+                          program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
+                              test::file("config/vehicles/bluerov2.yaml") + " --in '" + bus.url + "'"};
+  bus.listen(1.5);
+  (void)vehicle.wait(0.1);
+  std::string bytes;
+  for (int i = 0; i < 20; ++i) {
+    fathom_lcm::wrench_command_t message{};
+    message.utime = now();
+    message.tau[0] = 10.0;
+    message.tau[2] = 5.0;   // down
+    message.tau[5] = -0.4;  // to port
+    message.life = 0.5;
+    bus.publish("WRENCH_COMMAND", message);
+    bus.listen(0.05);
+    bytes += vehicle.wait(0.0);
+  }
+  const auto overrides = [](const std::string& stream) {
+    const devices::Protocol& protocol = devices::protocol("mavlink", "test");
+    const auto parser = protocol.make({});
+    std::vector<test::WireRow> found;
+    for (test::WireRow& row : test::decode_wire(*parser, protocol, {}, stream)) {
+      if (row.at("msgid") == "70") found.push_back(std::move(row));
+    }
+    return found;
+  };
+  const auto obeyed = overrides(bytes);
+  REQUIRE(obeyed.size() > 10);
+  CHECK(obeyed.back().at("f5") == "1600");  // forward: a quarter of 400 us
+  CHECK(obeyed.back().at("f3") == "1450");  // throttle is up
+  CHECK(obeyed.back().at("f4") == "1460");  // yaw
+  CHECK(obeyed.back().at("f6") == "1500");
+  CHECK(bytes.find("\xFD\x09") != std::string::npos);  // a ground station's heartbeat of nine bytes
+  bus.listen(0.7);
+  (void)vehicle.wait(0.0);
+  bus.listen(0.3);
+  const auto stopped = overrides(vehicle.wait(0.1));
+  REQUIRE_FALSE(stopped.empty());
+  CHECK(stopped.back().at("f5") == "1500");
+  CHECK(stopped.back().at("f3") == "1500");
+}
+
 }  // namespace fathom
