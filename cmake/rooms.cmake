@@ -4,6 +4,12 @@
 add_library(fathom_warnings INTERFACE)
 target_compile_options(fathom_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
                        -Wno-missing-field-initializers)  # designated initializers leave the rest at its default on purpose
+if(FATHOM_FUZZ)  # every room is instrumented; clang's own further warnings are no errors here
+  target_compile_options(fathom_warnings INTERFACE -Wno-error)
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+                      -DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
+  add_link_options(-fsanitize=address,undefined)
+endif()
 if(FATHOM_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

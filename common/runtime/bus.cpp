@@ -86,6 +86,7 @@ LiveInput::LiveInput(const std::vector<Url>& urls, const std::vector<Subscriptio
   for (const Subscription& subscription : subscriptions) {
     slots_.push_back({.owner = this, .index = slots_.size(), .capacity = subscription.capacity});
   }
+  if (slots_.empty()) return;  // nothing to hear: a driver that writes to a file needs no bus
   for (const Url& url : urls) {
     buses_.push_back(connect(url));
     for (Slot& slot : slots_) {
@@ -117,17 +118,20 @@ void LiveInput::push(Slot& slot, const lcm::ReceiveBuffer& buffer) {
   }
 }
 
+std::vector<int> LiveInput::descriptors() const {
+  std::vector<int> found;
+  for (const auto& bus : buses_) found.push_back(bus->getFileno());
+  return found;
+}
+
 void LiveInput::wait(int wake, int milliseconds) {
-  if (!queue_.empty()) return;
-  std::vector<pollfd> descriptors{{.fd = wake, .events = POLLIN, .revents = 0}};
-  if (!slots_.empty()) {  // without subscriptions asking for the descriptor would start a receive thread for nothing
-    for (const auto& bus : buses_) descriptors.push_back({.fd = bus->getFileno(), .events = POLLIN, .revents = 0});
-  }
-  poll(descriptors.data(), descriptors.size(), milliseconds);
+  if (pending()) return;
+  std::vector<pollfd> watched{{.fd = wake, .events = POLLIN, .revents = 0}};
+  for (const int each : descriptors()) watched.push_back({.fd = each, .events = POLLIN, .revents = 0});
+  poll(watched.data(), watched.size(), milliseconds);
 }
 
 void LiveInput::drain() {
-  if (slots_.empty()) return;
   for (const auto& bus : buses_) {
     for (std::size_t i = 0; i < kDrainLimit && bus->handleTimeout(0) > 0; ++i) {
       if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));

@@ -66,6 +66,10 @@ class LiveInput {
   LiveInput(const LiveInput&) = delete;
   LiveInput& operator=(const LiveInput&) = delete;
 
+  /// What becomes readable when a message comes. Nothing when no channel is heard.
+  [[nodiscard]] std::vector<int> descriptors() const;
+  /// Messages are here already: do not wait for more.
+  [[nodiscard]] bool pending() const { return !queue_.empty(); }
   /// Returns when a message came, `wake` (a file descriptor) became readable, or the time was up.
   void wait(int wake, int milliseconds);
   /// The next message, nothing when none waits.

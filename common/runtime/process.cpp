@@ -70,6 +70,9 @@ struct Process::State {
   std::vector<Config> sections{};  // handed out by config(), to be checked for unread keys
   std::function<void()> restart{};
   std::function<void()> end{};
+  Wait wait{};
+  std::function<Condition()> condition{};
+  bool ended{false};
   std::optional<StopSignal> stop{};
   std::optional<LiveInput> live{};
   std::optional<Output> out{};
@@ -103,6 +106,10 @@ void Process::add_speech(const std::string& channel, const std::string& type) {
 
 void Process::on_restart(std::function<void()> callback) { state_->restart = std::move(callback); }
 void Process::on_end(std::function<void()> callback) { state_->end = std::move(callback); }
+void Process::waits_with(Wait wait) { state_->wait = std::move(wait); }
+void Process::stop() { state_->ended = true; }
+void Process::on_health(std::function<Condition()> ask) { state_->condition = std::move(ask); }
+void Process::tell_health() { report_health("running", ""); }
 void Process::log_info(const std::string& text) { state_->logger.info(text); }
 void Process::log_warning(const std::string& text) { state_->logger.warn(text); }
 
@@ -203,6 +210,13 @@ void Process::report_health(const std::string& state, const std::string& reason)
     tell(hearing, "dropped", dropped);
     tell(hearing, "rejected", hearing.rejected);
   }
+  if (state_->condition && state == "running") {
+    const Condition condition = state_->condition();
+    if (!condition.unhealthy.empty()) health.state = "unhealthy";
+    for (const std::string& each : {condition.unhealthy, condition.detail}) {
+      if (!each.empty()) health.detail += each + "; ";
+    }
+  }
   const std::chrono::duration<double> elapsed = now - state_->last_health;
   health.busy = elapsed.count() > 0.0 ? std::chrono::duration<double>(state_->busy) / elapsed : 0.0;
   state_->busy = {};
@@ -266,8 +280,14 @@ void Process::run_live() {
   state_->out.emplace(state_->arguments.out);
   state_->live.emplace(state_->arguments.in, subscriptions);
   introduce(wall_clock());
-  while (!state_->stop->raised()) {
-    state_->live->wait(state_->stop->descriptor(), kWaitMs);
+  while (!state_->stop->raised() && !state_->ended) {
+    if (!state_->wait) {
+      state_->live->wait(state_->stop->descriptor(), kWaitMs);
+    } else {
+      std::vector<int> descriptors = state_->live->descriptors();
+      descriptors.push_back(state_->stop->descriptor());
+      state_->wait(descriptors, state_->live->pending() ? 0 : kWaitMs);
+    }
     if (const auto message = state_->live->next()) deliver(message->subscription, message->bytes);
     if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
   }

@@ -59,6 +59,21 @@ class Process {
   /// Called once at the end of the input or at a stop, while publishing is still possible.
   void on_end(std::function<void()> callback);
 
+  /// Waits for something else beside the bus (an instrument): called on a live bus in place of waiting, it returns when
+  /// one of the descriptors is readable, when it has served what it waits for, or after so many milliseconds.
+  using Wait = std::function<void(std::span<const int> descriptors, int milliseconds)>;
+  void waits_with(Wait wait);
+  /// Ends run() as SIGINT would: what the process served has come to its end.
+  void stop();
+  /// What HEALTH says beside its counts: "" when all is well, else why the state is "unhealthy"; and details.
+  struct Condition {
+    std::string unhealthy;
+    std::string detail;
+  };
+  void on_health(std::function<Condition()> ask);
+  /// Says HEALTH now, not at the next full second: the condition has changed.
+  void tell_health();
+
   /// For an operator: a change of state, never per sample.
   void log_info(const std::string& text);
   void log_warning(const std::string& text);

@@ -12,7 +12,7 @@ namespace fathom {
 struct Health {
   Utime utime{};  ///< wall clock
   std::string process;
-  std::string state;        ///< "running", "stopped", "fault"
+  std::string state;        ///< "running", "unhealthy" (detail begins with the reason), "stopped", "fault"
   std::int64_t received{};  ///< delivered to handlers
   std::int64_t published{};
   std::int64_t dropped{};   ///< lost to a full queue

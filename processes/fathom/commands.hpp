@@ -11,5 +11,7 @@ void add_import(CLI::App& app);
 void add_check(CLI::App& app);
 void add_diagnose(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_decode(CLI::App& app);
+void add_emulate(CLI::App& app);
 
 }  // namespace fathom::tool

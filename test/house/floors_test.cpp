@@ -12,19 +12,23 @@
 
 namespace {
 
-const std::map<std::string, int> kFloors{{"base", 0},       {"samples", 1},    {"model", 2},      {"devices", 2},
-                                         {"vision", 2},     {"tables", 2},     {"estimation", 3}, {"identification", 3},
-                                         {"excitation", 3}, {"simulation", 3}, {"diagnosis", 4},  {"report", 4},
-                                         {"runtime", 5},    {"wire", 5}};
+const std::map<std::string, int> kFloors{{"base", 0},           {"samples", 1},    {"model", 2},      {"devices", 2},
+                                         {"vision", 2},         {"tables", 2},     {"link", 3},       {"estimation", 3},
+                                         {"identification", 3}, {"excitation", 3}, {"simulation", 3}, {"diagnosis", 4},
+                                         {"report", 4},         {"runtime", 5},    {"wire", 5},       {"driver", 6}};
 
 // Rooms that see less than their floor allows.
 const std::map<std::string, std::set<std::string>> kNarrow{{"wire", {"samples", "base"}}, {"runtime", {"base"}}};
 
 // Who may include a library. "processes" stands for all of processes/.
 const std::vector<std::pair<std::string, std::set<std::string>>> kLibraries{
-    {"lcm/", {"wire", "runtime"}}, {"fathom_lcm/", {"wire", "runtime", "processes"}},
-    {"opencv2/", {"vision"}},      {"apriltag/", {"vision"}},
-    {"yaml-cpp/", {"base"}},       {"spdlog/", {"runtime"}}};
+    {"lcm/", {"wire", "runtime"}},
+    {"fathom_lcm/", {"wire", "runtime", "driver", "processes"}},
+    {"opencv2/", {"vision"}},
+    {"apriltag/", {"vision"}},
+    {"yaml-cpp/", {"base"}},
+    {"spdlog/", {"runtime"}},
+    {"asio", {"link"}}};
 
 std::string part(const std::string& path, std::size_t number) {
   std::size_t begin = 0;

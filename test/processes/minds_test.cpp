@@ -2,11 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
-#include <set>
-#include <sstream>
 
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
+#include "test/support/channels.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 
@@ -33,29 +32,6 @@ void make_log(const Scratch& scratch, const std::string& name, int seconds) {
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
 }
 
-struct Names {
-  std::set<std::string> hears, says;
-};
-
-Names in_docs(const std::string& process) {
-  Names names;
-  std::ifstream docs{std::string{FATHOM_SOURCE_DIR} + "/docs/messages.md"};
-  for (std::string line; std::getline(docs, line);) {
-    if (!line.starts_with("| ") || line.starts_with("| channel")) continue;
-    std::vector<std::string> cells;
-    std::istringstream row{line};
-    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
-    const std::string channel = cells.at(1).substr(1, cells.at(1).find(' ', 1) - 1);
-    const auto has = [&](std::size_t column) {
-      return cells.at(column).find(process) != std::string::npos ||
-             cells.at(column).find("every process") != std::string::npos;
-    };
-    if (has(4)) names.says.insert(channel);
-    if (has(5)) names.hears.insert(channel);
-  }
-  return names;
-}
-
 }  // namespace
 
 TEST_CASE("minds: each hears and says what docs/messages.md tells") {
@@ -63,12 +39,8 @@ TEST_CASE("minds: each hears and says what docs/messages.md tells") {
     CAPTURE(process);
     const auto ran = shell(program(process) + kConfig + " --interface");
     REQUIRE_MESSAGE(ran.code == 0, ran.text);
-    Names actual;
-    std::istringstream lines{ran.text};
-    for (std::string verb, channel, type; lines >> verb >> channel >> type;) {
-      (verb == "hears" ? actual.hears : actual.says).insert(channel);
-    }
-    const Names stated = in_docs(process);
+    const test::Channels actual = test::channels_of(ran.text);
+    const test::Channels stated = test::channels_in_docs(process);
     CHECK(actual.hears == stated.hears);
     CHECK(actual.says == stated.says);
   }

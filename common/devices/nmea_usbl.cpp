@@ -1,0 +1,149 @@
+#include "common/devices/nmea_usbl.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "common/devices/attitude.hpp"
+#include "common/devices/positions.hpp"
+
+namespace fathom::devices {
+namespace {
+
+// ddmm.mmmm or dddmm.mmmm with its hemisphere, to radians.
+std::optional<double> degrees_minutes(std::string_view text, std::string_view hemisphere, std::size_t degree_digits,
+                                      char positive, char negative) {
+  if (text.size() <= degree_digits || hemisphere.size() != 1) return {};
+  if (hemisphere[0] != positive && hemisphere[0] != negative) return {};
+  const auto degrees = whole(text.substr(0, degree_digits));
+  const auto minutes = number(text.substr(degree_digits));
+  if (!degrees || !minutes || *minutes < 0.0 || *minutes >= 60.0) return {};
+  const double value = (static_cast<double>(*degrees) + *minutes / 60.0) * kRadians;
+  return hemisphere[0] == positive ? value : -value;
+}
+
+}  // namespace
+
+NmeaUsbl::NmeaUsbl(const Settings& settings) : NmeaParser{settings.checksum_required}, from_{settings.transceiver} {}
+
+void NmeaUsbl::needs_origin(bool stated, std::string_view what) {
+  if (!stated) complain("the system says " + std::string{what} + "; state those of the world's origin");
+}
+
+void NmeaUsbl::sentence(const Words& words, Frame& frame) {
+  beacon_ = status_ = error_ = {};
+  time_ = first_ = second_ = depth_ = accuracy_ = std::nullopt;
+  p_WB_.reset();
+  trusted_ = false;
+  if (words[0] == "PSIMSSB") read_psimssb(words);
+  if (words[0] == "PTSAG") read_ptsag(words);
+  if (words[0] == "PSONLLD") read_psonlld(words);
+  if (words[0] == "PSONALL") read_psonall(words);
+  frame.device_time = time_;
+  if (!p_WB_ || (!from_.beacon.empty() && beacon_ != from_.beacon)) return;
+  // The accuracy is the root of the sum of both horizontal variances; zero or less is none.
+  const bool stated = accuracy_ && *accuracy_ > 0.0;
+  const double sigma = stated ? *accuracy_ / std::numbers::sqrt2 : from_.sigma;
+  sample_ = Usbl{.p_WB = *p_WB_, .sigma = Eigen::Vector3d::Constant(sigma), .valid = trusted_};
+  frame.sample = &sample_;
+}
+
+// time, transponder, status, error, coordinates, orientation, filter, X, Y, depth, accuracy
+void NmeaUsbl::read_psimssb(const Words& words) {
+  time_ = time_of_day(words[1]);
+  beacon_ = words[2];
+  status_ = words[3];
+  error_ = words[4];
+  first_ = words.number_at(8);
+  second_ = words.number_at(9);
+  depth_ = words.number_at(10);
+  accuracy_ = words.number_at(11);
+  trusted_ = status_ == "A" && error_.empty();
+  if (!first_ || !second_ || !depth_) return;
+  const double x = *first_;
+  const double y = *second_;
+  const double z = *depth_;
+  const std::string_view coordinates = words[5];
+  const std::string_view orientation = words[6];
+  if (coordinates == "P" && (orientation == "H" || orientation == "N")) {
+    const double bearing = y * kRadians;
+    const auto from = orientation == "H" ? from_head_up : from_north_up;
+    p_WB_ = from(x * std::cos(bearing), x * std::sin(bearing), z, from_);
+  } else if (coordinates == "C") {
+    if (orientation == "H") p_WB_ = from_head_up(y, x, z, from_);
+    if (orientation == "N") p_WB_ = from_north_up(x, y, z, from_);
+    if (orientation == "E") p_WB_ = from_north_up(y, x, z, from_);
+  } else if (coordinates == "U") {
+    if (orientation == "N") p_WB_ = from_grid(x, y, z, from_);
+    if (orientation == "E") p_WB_ = from_grid(y, x, z, from_);
+    needs_origin(from_.northing.has_value() && from_.easting.has_value(), "UTM northing and easting");
+  } else if (coordinates == "R") {
+    if (orientation == "N") p_WB_ = from_degrees(x, y, z, from_);
+    if (orientation == "E") p_WB_ = from_degrees(y, x, z, from_);
+    needs_origin(from_.latitude.has_value(), "latitude and longitude");
+  }
+}
+
+// #frame, time, day, month, year, beacon, latitude, N, longitude, E, validity, depth, valid, depth of the sensor
+void NmeaUsbl::read_ptsag(const Words& words) {
+  const auto clock = time_of_day(words[2]);
+  const auto day = whole(words[3]);
+  const auto month = whole(words[4]);
+  const auto year = whole(words[5]);
+  if (clock && day && month && year) {
+    if (const auto midnight = seconds_since_1970(*year, *month, *day, 0, 0, 0.0)) time_ = *midnight + *clock;
+  }
+  beacon_ = words[6];
+  const auto latitude = degrees_minutes(words[7], words[8], 2, 'N', 'S');
+  const auto longitude = degrees_minutes(words[9], words[10], 3, 'E', 'W');
+  if (latitude) first_ = *latitude / kRadians;
+  if (longitude) second_ = *longitude / kRadians;
+  status_ = words[11];
+  const bool depth_valid = words[13] == "1" || words[13] == "2";
+  if (depth_valid) depth_ = words.number_at(12);
+  trusted_ = !status_.empty();
+  const bool ship = whole(beacon_) == 0;
+  if (ship || !latitude || !longitude || !depth_) return;
+  p_WB_ = from_degrees(*latitude, *longitude, *depth_, from_);
+  needs_origin(from_.latitude.has_value(), "latitude and longitude");
+}
+
+// time, name, A, latitude, longitude, depth, and accuracies whose meaning is not public
+void NmeaUsbl::read_psonlld(const Words& words) {
+  time_ = time_of_day(words[1]);
+  beacon_ = words[2];
+  status_ = words[3];
+  first_ = words.number_at(4);
+  second_ = words.number_at(5);
+  depth_ = words.number_at(6);
+  trusted_ = status_ == "A";
+  if (!first_ || !second_ || !depth_) return;
+  p_WB_ = from_degrees(*first_ * kRadians, *second_ * kRadians, *depth_, from_);
+  needs_origin(from_.latitude.has_value(), "latitude and longitude");
+}
+
+// name, what, time, easting, northing, depth, heading
+void NmeaUsbl::read_psonall(const Words& words) {
+  beacon_ = words[1];
+  time_ = time_of_day(words[3]);
+  first_ = words.number_at(4);
+  second_ = words.number_at(5);
+  depth_ = words.number_at(6);
+  trusted_ = true;
+  if (!first_ || !second_ || !depth_) return;
+  p_WB_ = from_grid(*second_, *first_, *depth_, from_);
+  needs_origin(from_.northing.has_value() && from_.easting.has_value(), "UTM northing and easting");
+}
+
+void NmeaUsbl::describe_values(Fields& fields) const {
+  fields.add("time_s", time_);
+  fields.add("beacon", beacon_);
+  fields.add("status", status_);
+  fields.add("error", error_);
+  fields.add("first", first_);
+  fields.add("second", second_);
+  fields.add("depth_m", depth_);
+  fields.add("accuracy_m", accuracy_);
+}
+
+}  // namespace fathom::devices

@@ -1,0 +1,26 @@
+// SBG Systems Ellipse and Ekinox (protocol sbgECom): frames FF 5A ... 33, little endian.
+#pragma once
+
+#include "common/devices/parser.hpp"
+#include "common/devices/settings.hpp"
+
+namespace fathom::devices {
+
+/// EKF_EULER, EKF_QUAT (attitude) and IMU_DATA (rates and specific force) give samples; other messages are frames only.
+class SbgEcom final : public Parser {
+ public:
+  explicit SbgEcom(const Settings& settings);
+  void describe(Fields& fields) const override;
+
+ private:
+  Look look(Bytes bytes) const override;
+  void take(Frame& frame) override;
+
+  Eigen::Matrix3d R_BS_;
+  std::uint8_t message_{}, class_{};
+  std::uint16_t crc_{};
+  Bytes data_;
+  Ahrs sample_;
+};
+
+}  // namespace fathom::devices

@@ -1,0 +1,269 @@
+#include "common/driver/thruster_driver.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/wrench_command_t.hpp>
+#include <optional>
+#include <vector>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/devices/mavlink.hpp"
+#include "common/devices/thruster_text.hpp"
+#include "common/driver/allocation.hpp"
+#include "common/driver/thruster_gate.hpp"
+#include "common/driver/watch.hpp"
+#include "common/link/link.hpp"
+#include "common/runtime/process.hpp"
+#include "common/wire/channels.hpp"
+#include "common/wire/minds.hpp"
+#include "common/wire/sensors.hpp"
+
+namespace fathom::driver {
+namespace {
+
+constexpr double kStaleVoltage = 5.0;  // s
+constexpr double kHeartbeat = 1.0;     // s between a ground station's signs of life
+constexpr double kFeedback = 1.0;      // s: without newer feedback what was sent is told
+constexpr double kTestLife = 0.5;      // s that one motor test may run on without the next
+
+Utime wall_clock() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double positive(const Config& config, const std::string& key, const std::string& unit) {
+  const double value = config.quantity(key, unit);
+  if (!(value > 0.0)) config.fail(key, "'" + key + "' must be positive");
+  return value;
+}
+
+enum class Way { kDryRun, kText, kMotorTest, kRcOverride };
+
+Way way_of(const Config& config) {
+  const std::string name = config.text("protocol");
+  if (name == "dry_run") return Way::kDryRun;
+  if (name == "text") return Way::kText;
+  if (name == "motor_test") return Way::kMotorTest;
+  if (name == "rc_override") return Way::kRcOverride;
+  config.fail("protocol", "no protocol '" + name + "'; known: rc_override, motor_test, text, dry_run");
+}
+
+class ThrusterDriver final : public devices::Output {
+ public:
+  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle)
+      : process_{process},
+        way_{way_of(config)},
+        allocation_{vehicle, positive(config, "largest_thrust", "N")},
+        gate_{wall_clock()},
+        period_{1.0 / positive(config, "rate", "Hz")},
+        writer_{255, 190} {
+    if (way_ == Way::kDryRun) return;
+    devices::Settings settings;
+    settings.motors = allocation_.count();
+    if (way_ == Way::kText) {
+      parser_ = std::make_unique<devices::ThrusterText>(settings);
+    } else {
+      parser_ = std::make_unique<devices::Mavlink>(settings);
+      target_ = static_cast<std::uint8_t>(std::clamp(config.integer("system"), 1, 255));
+    }
+    if (way_ == Way::kRcOverride) {
+      const Config full = config.section("full_stick");
+      constexpr std::array kAxes{"X", "Y", "Z", "K", "M", "N"};
+      for (std::size_t i = 0; i < 6; ++i) full_stick_[i] = positive(full, kAxes[i], i < 3 ? "N" : "N m");
+    }
+    watch_.emplace(1.0, config.text("protocol"));
+    link_ = std::make_unique<link::Link>(
+        link::Endpoint::parse(config.text("link"), config.where("link")),
+        [this](std::span<const std::uint8_t> bytes, Utime arrival) {
+          arrival_ = arrival;
+          watch_->bytes(bytes.size(), steady_seconds());
+          parser_->feed(bytes, *this);
+        },
+        [this](bool up, const std::string& why) {
+          parser_->restart();
+          watch_->link(up, why, steady_seconds());
+        });
+  }
+
+  void hear(const WrenchCommand& command) { gate_.hear(command, wall_clock()); }
+  void hear(const Operator& order) {
+    gate_.hear(order, wall_clock());
+    if (order.abort) step(steady_seconds());  // at once
+  }
+
+  void wait(std::span<const int> descriptors, int milliseconds) {
+    const double left = std::max(0.0, next_ - steady_seconds());
+    const int limit = std::min(milliseconds, static_cast<int>(std::ceil(1e3 * left)));
+    if (link_) {
+      link_->wait(descriptors, limit);
+    } else {
+      std::vector<pollfd> watched;
+      for (const int each : descriptors) watched.push_back({.fd = each, .events = POLLIN, .revents = 0});
+      poll(watched.data(), watched.size(), limit);
+    }
+    const double now = steady_seconds();
+    if (now < next_) return;
+    next_ = std::max(next_ + period_, now);
+    step(now);
+    say();
+  }
+
+  /// The thrusters stand still before the driver goes.
+  void end() {
+    const Allocated still = allocation_.neutral();
+    for (int i = 0; i < 3 && link_; ++i) {
+      send(still, Vector6d::Zero(), steady_seconds());
+      link_->wait({}, 20);
+    }
+    tell(still, wall_clock());
+  }
+
+  [[nodiscard]] runtime::Process::Condition condition() const {
+    std::string unhealthy;
+    if (watch_) unhealthy = watch_->unhealthy(steady_seconds(), "", parser_->complaint());
+    const std::string_view reason = gate_.reason(wall_clock());
+    std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
+    if (parser_) {
+      detail += ", frames " + std::to_string(parser_->counters().frames) + ", bad checksums " +
+                std::to_string(parser_->counters().bad_checksum);
+    }
+    return {.unhealthy = unhealthy, .detail = detail};
+  }
+
+  void frame(const devices::Parser&, const devices::Frame& frame) override {
+    const double now = steady_seconds();
+    watch_->frame(now);
+    if (const auto* battery = std::get_if<const Battery*>(&frame.sample)) {
+      voltage_ = (*battery)->voltage;
+      voltage_at_ = now;
+      watch_->sample(arrival_, now);
+      Battery sample = **battery;
+      sample.utime = arrival_;
+      process_.publish(wire::kBattery, wire::encode(sample));
+    }
+    if (const auto* thrusters = std::get_if<const Thrusters*>(&frame.sample)) {
+      watch_->sample(arrival_, now);
+      feedback_at_ = now;
+      tell(allocation_.applied((*thrusters)->pwm_us, voltage(now)), arrival_);
+    }
+  }
+
+ private:
+  [[nodiscard]] double voltage(double now) const { return now - voltage_at_ < kStaleVoltage ? voltage_ : 0.0; }
+
+  void step(double now) {
+    const Utime utime = wall_clock();
+    const Vector6d tau = gate_.wrench(utime);
+    const Allocated allocated =
+        gate_.reason(utime).empty() ? allocation_.allocate(tau, voltage(now)) : allocation_.neutral();
+    send(allocated, tau * allocated.scale, now);
+    const bool reported = now - feedback_at_ < kFeedback;  // what the vehicle says it applied counts more
+    if (!reported && way_ != Way::kRcOverride) tell(allocated, utime);
+  }
+
+  void send(const Allocated& allocated, const Vector6d& tau, double now) {
+    if (!link_) return;
+    if (way_ == Way::kText) {
+      link_->send(devices::thruster_sentence(allocated.pwm_us));
+      return;
+    }
+    if (now - heartbeat_at_ >= kHeartbeat) {
+      heartbeat_at_ = now;
+      link_->send(writer_.heartbeat());
+    }
+    if (way_ == Way::kRcOverride) {
+      link_->send(writer_.rc_override(sticks(tau), target_));
+      return;
+    }
+    std::string packets;
+    for (std::size_t i = 0; i < allocated.pwm_us.size(); ++i) {
+      packets += writer_.motor_test(i, allocated.pwm_us[i], kTestLife, target_);
+    }
+    link_->send(packets);
+  }
+
+  // Pilot's channels of ArduSub: pitch, roll, throttle (up), yaw, forward, lateral. It allocates by itself.
+  [[nodiscard]] std::array<std::uint16_t, 8> sticks(const Vector6d& tau) const {
+    constexpr double kMiddle = 1500.0, kThrow = 400.0;
+    const auto stick = [&](Eigen::Index axis, double sign) {
+      const double part = std::clamp(tau(axis) / full_stick_[static_cast<std::size_t>(axis)], -1.0, 1.0);
+      return static_cast<std::uint16_t>(std::lround(kMiddle + sign * kThrow * part));
+    };
+    constexpr std::uint16_t kAlone = 65535;
+    return {stick(4, 1.0), stick(3, 1.0), stick(2, -1.0), stick(5, 1.0), stick(0, 1.0), stick(1, 1.0), kAlone, kAlone};
+  }
+
+  void tell(const Allocated& allocated, Utime utime) {
+    Thrusters sample{.utime = utime, .pwm_us = allocated.pwm_us, .force = allocated.force, .has_tau = true};
+    std::copy(allocated.tau.begin(), allocated.tau.end(), sample.tau.begin());
+    process_.publish(wire::kThrusters, wire::encode(sample));
+  }
+
+  // A change of what the driver does is said at once.
+  void say() {
+    const runtime::Process::Condition now = condition();
+    const std::string kind = now.unhealthy.substr(0, now.unhealthy.find(':')) + std::string{gate_.reason(wall_clock())};
+    if (kind == said_) return;
+    said_ = kind;
+    if (now.unhealthy.empty()) {
+      process_.log_info(now.detail);
+    } else {
+      process_.log_warning(now.unhealthy);
+    }
+    process_.tell_health();
+  }
+
+  runtime::Process& process_;
+  Way way_;
+  Allocation allocation_;
+  ThrusterGate gate_;
+  double period_, next_{};
+  std::uint8_t target_{1};
+  std::array<double, 6> full_stick_{};
+  devices::mavlink::Writer writer_;
+  std::unique_ptr<devices::Parser> parser_;
+  std::optional<Watch> watch_;
+  Utime arrival_{};
+  double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
+  std::string said_{"?"};
+  std::unique_ptr<link::Link> link_;  // last: its handlers use the others
+};
+
+}  // namespace
+
+int thruster_main(int argc, const char* const* argv) {
+  return runtime::main("thruster_driver", argc, argv, [](runtime::Process& process) {
+    const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
+    ThrusterDriver driver{process, process.config(), vehicle};
+    process.publishes<fathom_lcm::thrusters_t>(wire::kThrusters);
+    process.publishes<fathom_lcm::battery_t>(wire::kBattery);
+    process.on_latest<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
+      const auto command = wire::decode(message);
+      if (!command) return process.reject(wire::kWrenchCommand);
+      driver.hear(*command);
+    });
+    process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
+      const auto order = wire::decode(message);
+      if (!order) return process.reject(wire::kOperator);
+      driver.hear(*order);
+    });
+    process.waits_with(
+        [&](std::span<const int> descriptors, int milliseconds) { driver.wait(descriptors, milliseconds); });
+    process.on_health([&] { return driver.condition(); });
+    process.on_end([&] { driver.end(); });
+    process.run();
+  });
+}
+
+}  // namespace fathom::driver

@@ -1,0 +1,42 @@
+// Is the instrument well? Counts what comes and says in one line what an operator should do when it is not.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/base/time.hpp"
+#include "common/devices/parser.hpp"
+
+namespace fathom::driver {
+
+/// Pure: times are passed in, in seconds of any steady clock.
+class Watch {
+ public:
+  /// `period` [s] between samples, as configured; `protocol` for what is said.
+  Watch(double period, std::string protocol) : period_{period}, protocol_{std::move(protocol)} {}
+
+  void link(bool up, const std::string& why, double now);
+  void bytes(std::size_t count, double now);
+  void frame(double now);
+  /// A sample with its utime; counts gaps.
+  void sample(Utime utime, double now);
+
+  /// Why the instrument is not well; empty when it is. `failure` and `complaint` are those of dialogue and parser.
+  [[nodiscard]] std::string unhealthy(double now, const std::string& failure, const std::string& complaint) const;
+  [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
+  /// Longest silence that is not said yet [s].
+  [[nodiscard]] double patience() const;
+
+ private:
+  double period_;
+  std::string protocol_;
+  bool up_{false};
+  std::string why_{"the line is not open yet"};
+  double up_since_{}, last_bytes_{}, last_frame_{}, last_sample_{};
+  std::uint64_t bytes_since_frame_{};
+  std::optional<Utime> last_utime_;
+  std::uint64_t gaps_{};
+};
+
+}  // namespace fathom::driver
