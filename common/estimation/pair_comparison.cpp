@@ -67,11 +67,11 @@ void Comparison::report(const SharedValue& decision, const std::string& signal, 
          .reference = names_.reference,
          .finding = finding,
          .size = decision.pooled.value,
-         .std = decision.pooled.sigma,
          .unit = unit,
          .evidence = text("%.5g +- %.2g (1 sigma)", decision.pooled.value, decision.pooled.sigma) + " " + unit +
                      ", from " + std::to_string(decision.pooled.count) + " recordings" + more,
-         .action = action});
+         .action = action,
+         .std = decision.pooled.sigma});
   }
   for (const std::size_t r : decision.different) {
     result_.findings.push_back({.run = runs_[r],

@@ -17,10 +17,10 @@ struct ConsistencyFinding {
   std::string reference;  ///< e.g. "pose_capture"
   std::string finding;    ///< "delay", "scale", "bias", "sign", "axes", "lever_arm", "noise", "gap", ...
   double size{};
-  double std{};  ///< of the size; 0 where it is a count or was not estimated
   std::string unit;
   std::string evidence;  ///< one sentence with the numbers
   std::string action;    ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
+  double std{};          ///< of the size; 0 where it is a count or was not estimated
 };
 
 /// Open-loop prediction error at one horizon. Axis order u v w p q r; NaN where the axis is not simulated.

@@ -13,8 +13,8 @@ ConsistencyFinding finding(const char* signal, const char* what, double size, do
           .reference = "pose_capture",
           .finding = what,
           .size = size,
-          .std = std,
-          .action = "corrected: as said"};
+          .action = "corrected: as said",
+          .std = std};
 }
 
 }  // namespace
