@@ -38,7 +38,7 @@ struct Instant {
   WrenchColumns momentum = WrenchColumns::Zero(6, static_cast<Eigen::Index>(candidates.inertial().size()));
 
   Instant() {
-    motion.p_WB << 0.4, -0.7, 1.0;
+    motion.p_WB << 0.4, -0.7, 0.2;  // well above the bottom, whose effect is too steep for differences close to it
     motion.R_WB = rotation_from_euler({0.05, -0.1, 0.8});
     motion.nu << 0.4, -0.2, 0.15, 0.1, -0.1, 0.3;
     motion.force = model::ActuatorForces::LinSpaced(base.allocation.cols(), -4.0, 6.0);
@@ -88,7 +88,7 @@ TEST_CASE("live candidates: every form of every effect that the scene admits has
     const auto asked = std::count_if(candidates.forms().begin(), candidates.forms().end(),
                                      [&](const LiveForm& form) { return form.effect == effect; });
     CAPTURE(effect->name());
-    CHECK(asked == admitted);
+    CHECK(asked == (effect->measures() ? 0 : admitted));  // one that only measures adds no wrench
   }
   // Where inputs are the six axes of a wrench, no single thruster can be asked.
   model::Scene wrench = scene_of(instant.vehicle);
