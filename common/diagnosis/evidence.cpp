@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace fathom::diagnosis {
 
@@ -18,7 +19,11 @@ double robust_log_likelihood_ratio(std::span<const double> cost_without, std::sp
   }
   // A likelihood ratio can never exceed what the costs themselves say were every sample independent.
   const double statistic = spread > 0.0 ? 4.0 * sum * sum / spread : 2.0 * sum;
-  return std::min(0.5 * n * std::log1p(statistic / n), sum);
+  // What acts in few windows falls unevenly, and its scatter says nothing against it. So the fall counts at least as
+  // much as it would if each window were a single independent observation of unknown variance.
+  const double after = std::accumulate(cost_with.begin(), cost_with.end(), 0.0);
+  const double single = after > 0.0 ? 0.5 * n * std::log1p(sum / after) : sum;
+  return std::min(std::max(0.5 * n * std::log1p(statistic / n), single), sum);
 }
 
 double log_odds(std::span<const double> cost_without, std::span<const double> cost_with, int parameters, int tried) {

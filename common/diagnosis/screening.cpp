@@ -11,7 +11,7 @@ namespace {
 using identification::ProjectedWindow;
 
 constexpr int kBestStarts = 2;
-constexpr int kNewtonSteps = 4;
+constexpr int kNewtonSteps = 8;
 constexpr double kLinearEnough = 0.03;
 constexpr double kSmallStep = 1e-3;  // of the parameter's sigma or value, for differences
 

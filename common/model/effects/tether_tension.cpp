@@ -3,6 +3,7 @@
 // Revealed by slow excursions to all sides. Confused with current (which follows speed and heading, not place) and W-B.
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/model/effect.hpp"
 
@@ -13,6 +14,8 @@ constexpr std::array kParameters{EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1
                                  EffectParameter{"slack_length", "m", 3.0, 0.0, 500.0},
                                  EffectParameter{"anchor_N", "m", 5.0}, EffectParameter{"anchor_E", "m", 5.0},
                                  EffectParameter{"anchor_D", "m", 3.0}};
+
+constexpr double kStartStiffness = 0.5;  // N/m
 
 class TetherTension final : public Effect {
  public:
@@ -27,17 +30,21 @@ class TetherTension final : public Effect {
     return seen ? std::vector<std::string>{""} : std::vector<std::string>{};
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
-    // Anchors: the middle of the water worked in, and eight directions just outside it; slack: none, or half the way.
+    // Anchors: the middle of the water worked in, and eight directions half way out and just outside it. Slack so that
+    // the tether is taut everywhere, in half of the water, or only far away.
     const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high);
     const double reach = std::max(0.5 * (scene.p_high - scene.p_low).head<2>().norm(), 0.5);
     std::vector<std::vector<double>> starts;
-    for (int k = -1; k < 8; ++k) {
-      const double bearing = 0.25 * 3.14159265358979 * k;
-      const double distance = k < 0 ? 0.0 : 1.2 * reach;
-      for (const double slack : {0.0, 0.5}) {
-        starts.push_back({0.5, slack * std::max(distance, reach), middle.x() + distance * std::cos(bearing),
-                          middle.y() + distance * std::sin(bearing), middle.z()});
-      }
+    const auto add = [&](double bearing, double distance, double slack) {
+      starts.push_back({kStartStiffness, slack, middle.x() + distance * std::cos(bearing),
+                        middle.y() + distance * std::sin(bearing), middle.z()});
+    };
+    for (const double slack : {0.0, 0.4, 0.7}) add(0.0, 0.0, slack * reach);
+    for (int k = 0; k < 8; ++k) {
+      const double bearing = 0.25 * std::numbers::pi * k;
+      add(bearing, 0.5 * reach, 0.7 * reach);
+      add(bearing, 1.2 * reach, 0.0);
+      add(bearing, 1.2 * reach, 1.2 * reach);
     }
     return starts;
   }
