@@ -27,14 +27,31 @@ struct Candidate {
 
 /// Answers in the order of the candidates.
 struct Answers {
-  std::vector<Screened> screened;
-  std::vector<Judged> judged;  ///< by the screening until a fit has told, refusals included
-  std::vector<bool> fitted;    ///< in full
+  std::vector<Screened> near;      ///< by windows so short that the base model cannot go far astray in them
+  std::vector<Screened> screened;  ///< by whole windows; empty until they have been asked
+  std::vector<double> share;       ///< of the error (RMS) that it promises to remove, by whichever promises more
+  std::vector<Judged> judged;      ///< by the screening until a fit has told, refusals included
+  std::vector<bool> fitted;        ///< in full
+  std::vector<std::optional<model::Model>>
+      found;  ///< where a full fit should begin, when known better than by screening
 };
 
-/// Those of `candidates` that `fit` does not hold are asked.
-[[nodiscard]] Answers ask(std::span<const Candidate> candidates, const identification::TrajectoryFit& problem,
-                          const identification::FitResult& fit, const model::Scene& scene, const Settings& settings);
+/// The problem on short windows and its own fit of the model that is asked about. What lacks an effect bends long
+/// trajectories until nothing linear can be said about them; short ones begin anew from what was measured.
+struct NearView {
+  NearView(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings);
+  void fit(const model::Model& model);
+
+  identification::TrajectoryFit problem;
+  identification::FitResult reference;
+};
+
+/// Those of `candidates` that the model does not hold are asked, by short windows.
+[[nodiscard]] Answers ask_near(std::span<const Candidate> candidates, const NearView& near, const model::Scene& scene,
+                               const Settings& settings);
+/// The same candidates are asked by whole windows: what acts slowly shows there alone.
+void ask_whole(Answers& answers, const identification::TrajectoryFit& problem, const identification::FitResult& fit,
+               const model::Scene& scene, int tried, const Settings& settings);
 
 /// The same problem on a spread of windows, made when it is first asked for: enough to tell whether a full fit leads
 /// anywhere. What it is made from must outlive it.
@@ -66,19 +83,19 @@ void look_afar(Answers& answers, Coarse& coarse, const identification::FitResult
 /// flatters: large masses and onsets imitate what the base model can do by itself.
 class Promises {
  public:
-  /// Gain that a full fit may bring.
-  [[nodiscard]] double expected(const Screened& screened) const;
-  /// Notes what a full fit has brought.
-  void kept(const Screened& screened, double gain);
+  /// What may come of a promised share of the error.
+  [[nodiscard]] double expected(const Answers& answers, std::size_t candidate) const;
+  /// Notes the share that a full fit has removed.
+  void kept(const Answers& answers, std::size_t candidate, double share);
   /// Notes that a full fit has refused a form, and why.
-  void refused(const Screened& screened, const Judged& judged);
+  void refused(const Answers& answers, std::size_t candidate);
   /// Forms that full fits have refused again and again, and that promise no more now, keep their refusal.
   void recall(Answers& answers) const;
 
  private:
   struct Refusal {
     int times{};
-    double gain{};
+    double share{};
     Judged judged{};
   };
   std::map<const model::Effect*, double> kept_;
@@ -95,8 +112,8 @@ enum class Which { kAll, kOpen, kFromAfar };
 /// Says of candidates that no full fit has judged that it is so.
 void name_unfitted(Answers& answers);
 
-/// Where the fit of an answer to `problem` begins.
+/// Where the fit of an answer to `problem` begins: the best of what the screenings propose.
 [[nodiscard]] model::Model start_of(const identification::TrajectoryFit& problem, const identification::FitResult& fit,
-                                    const Screened& screened);
+                                    const Answers& answers, std::size_t candidate);
 
 }  // namespace fathom::diagnosis

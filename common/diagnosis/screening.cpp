@@ -174,6 +174,25 @@ Eigen::VectorXd Linearisation::stacked_residual() const {
 
 namespace {
 
+struct Start {
+  double gain;
+  std::vector<double> theta;
+};
+
+/// The start with its amplitudes where the linear picture wants them, inside their limits. `bottom`: squared norm of
+/// what the start changes; `top`: its product with what is unexplained.
+Start with_best_amplitude(const model::Effect& effect, std::vector<double> theta, double bottom, double top) {
+  if (bottom <= 0.0) return {0.0, theta};
+  double share = effect.amplitudes() > 0 ? -top / bottom : 1.0;
+  for (int i = 0; i < effect.amplitudes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double wanted = share * theta[k];
+    if (wanted != 0.0) share *= std::clamp(wanted, effect.parameters()[k].low, effect.parameters()[k].high) / wanted;
+  }
+  for (int i = 0; i < effect.amplitudes(); ++i) theta[static_cast<std::size_t>(i)] *= share;
+  return {-(share * top + 0.5 * share * share * bottom), theta};
+}
+
 /// `refining`: the only start is a point found before, not merely the size of a first step away from nothing.
 Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
                      const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining) {
@@ -186,10 +205,6 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
   const double cost_without = total(base.window_cost());
 
   // Rank the starts by what an amplitude along (start - absent) would gain.
-  struct Start {
-    double gain;
-    std::vector<double> theta;
-  };
   std::vector<Start> ranked;
   for (const auto& start : starts) {
     if (starts.size() == 1) {
@@ -198,9 +213,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     }
     Eigen::MatrixXd direction = candidate.residual(start) - unfitted;
     remove_base(base, direction);
-    const double bottom = direction.squaredNorm();
-    const double top = direction.col(0).dot(without.col(0));
-    ranked.push_back({bottom > 0.0 && top < 0.0 ? 0.5 * top * top / bottom : 0.0, start});
+    ranked.push_back(with_best_amplitude(effect, start, direction.squaredNorm(), direction.col(0).dot(without.col(0))));
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Start& a, const Start& b) { return a.gain > b.gain; });
   if (ranked.size() > kBestStarts) ranked.resize(kBestStarts);
