@@ -140,7 +140,8 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
     throw InputError("--hide " + text + ": no effect '" + name + "'; there are " + list(names));
   }
   Stream stream{seed, "hide." + name};
-  const model::Scene scene = scene_at(occasion, stream);
+  model::Scene scene = scene_at(occasion, stream);
+  if (effect->measures()) scene.position = scene.attitude = false;  // else it would be left to kinematics to find
   const std::vector<std::string> variants = effect->variants(scene);
   std::vector<int> usable;
   for (std::size_t i = 0; i < variants.size(); ++i) {

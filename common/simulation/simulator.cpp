@@ -39,10 +39,15 @@ model::Model truth_of(const Config& config, const model::Vehicle& vehicle, const
   truth.vehicle = &whole;
   for (const model::BaseParameter parameter : model::base_parameters()) {
     const std::string name{model::name(parameter)};
-    double& value = truth.theta[model::index(parameter)];
     if (stated.has(name)) {
-      value = stated.quantity(name, std::string{model::unit(parameter)});
-    } else if (std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
+      truth.theta[model::index(parameter)] = stated.quantity(name, std::string{model::unit(parameter)});
+    }
+  }
+  for (const model::BaseParameter parameter : model::base_parameters()) {
+    const std::string name{model::name(parameter)};
+    const double value = truth.theta[model::index(parameter)];
+    if (!stated.has(name) &&
+        std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
       stated.fail(name, "'" + name +
                             "' is missing: the vehicle file has no mean for it, and the truth moves in all six "
                             "degrees of freedom");
