@@ -50,6 +50,11 @@ std::vector<Operator> Options::schedule() const {
 
 void Options::check() const {
   if (!(setup.duration > 0.0)) throw InputError("--duration: must be positive");
+  for (std::size_t i = 0; i < wait_for.size(); ++i) {
+    if (std::count(wait_for.begin(), wait_for.end(), wait_for[i]) > 1) {
+      throw InputError("--wait-for: " + wait_for[i] + " stands there twice");
+    }
+  }
   if (speed == 0.0 && wait_for.empty()) {
     throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");
   }
