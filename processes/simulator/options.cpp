@@ -14,6 +14,10 @@ void Options::add_to(CLI::App& app) {
                  "an effect in the truth that the others shall find: NAME or NAME=parameter:value,...")
       ->take_all()
       ->expected(1);
+  app.add_option("--fail", setup.fail,
+                 "an instrument that fails: NAME=silent|frozen|nan|delay|jump[,from:S][,to:S][,by:S]")
+      ->take_all()
+      ->expected(1);
   app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
       ->check(CLI::NonNegativeNumber);

@@ -67,9 +67,7 @@ Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, const 
   if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
 }
 
-void Stage::hear(const WrenchCommand& command) {
-  gate_.hear(command, simulator_.now());
-}
+void Stage::hear(const WrenchCommand& command) { gate_.hear(command, simulator_.now()); }
 
 void Stage::hear(const Operator& order) {
   if (own_orders_ > 0 && next_order_ > 0 && order.utime == schedule_[next_order_ - 1].utime) {
