@@ -88,7 +88,7 @@ void Arrangement::arrived(const std::string& channel, std::vector<std::uint8_t> 
 
 void Arrangement::announced(const fathom_lcm::lockstep_t& phase) {
   if (phase.phase < 0) {
-    ended_ = true;
+    ended_ = ended_ || phase.channel.empty();  // else one process ends, and its last words are announced
   } else {
     phases_.push_back(phase);
   }
@@ -113,7 +113,7 @@ void Arrangement::write_complete() {
   }
   if (!ended_) return;
   for (auto& [channel, messages] : waiting_) {
-    while (!messages.empty()) put(channel, utime_);  // said at the end of the run
+    while (is_free_channel(channel) && !messages.empty()) put(channel, utime_);
   }
 }
 

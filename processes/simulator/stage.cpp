@@ -100,7 +100,7 @@ void Stage::hear(const fathom_lcm::health_t& health) {
 }
 
 void Stage::wait(std::span<const int> descriptors, int milliseconds) {
-  if (state_ == State::kRunning) {
+  if (state_ == State::kRunning || state_ == State::kEnding) {
     if (milliseconds == 0) return;  // messages are here already
     if (conductor_) {
       conduct(descriptors, milliseconds);
@@ -159,6 +159,14 @@ void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
     }
     return;
   }
+  if (state_ == State::kEnding) {
+    if (const auto last = conductor_->finish(simulator_.now())) {
+      process_.publish(runtime::kLockstep, *last);
+    } else {
+      process_.stop();
+    }
+    return;
+  }
   if (options_.speed > 0.0) return run(descriptors, milliseconds);
   advance();
 }
@@ -186,7 +194,8 @@ void Stage::publish(const simulation::Sample& sample) {
 
 void Stage::advance() {
   if (seconds_between(options_.setup.origin, simulator_.now()) >= options_.setup.duration - 1e-9) {
-    process_.stop();
+    state_ = State::kEnding;
+    if (!conductor_) process_.stop();
     return;
   }
   const Utime utime = simulator_.now();

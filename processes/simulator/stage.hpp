@@ -40,7 +40,7 @@ class Stage {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class State { kLooking, kGathering, kRunning };
+  enum class State { kLooking, kGathering, kRunning, kEnding };
 
   void run(std::span<const int> descriptors, int milliseconds);
   void conduct(std::span<const int> descriptors, int milliseconds);
