@@ -15,7 +15,9 @@ using identification::TrajectoryFit;
 constexpr std::size_t kCoarseWindows = 60;  // enough to tell whether a form leads anywhere
 constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
 constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
-constexpr double kPromise = 0.5;            // of the smallest reduction: less on the spread of windows promises nothing
+constexpr int kEnoughRefusals = 2;          // by full fits, in the company of different effects
+constexpr double kPromisesMore = 1.25;      // times the gain: then a refused form is asked again
+constexpr double kLeastTrust = 0.01;        // what broke its promise once is still asked last
 
 bool holds(const model::Model& model, const Candidate& candidate) {
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const model::ActiveEffect& active) {
@@ -85,27 +87,37 @@ Answers ask(std::span<const Candidate> candidates, const TrajectoryFit& problem,
   return answers;
 }
 
-void look_afar(Answers& answers, const TrajectoryFit& problem, const FitResult& fit, std::span<const Trial> train,
-               const model::Scene& scene, const Settings& settings, const Progress& progress, double share) {
-  std::optional<TrajectoryFit> coarse;
-  FitResult like, base;
+Coarse::Coarse(const TrajectoryFit& whole, std::span<const Trial> train, const Settings& settings, const FitResult& fit)
+    : whole_{whole}, train_{train}, settings_{settings}, fit_{fit} {}
+
+bool Coarse::useful() const { return whole_.windows().size() > kThinFrom; }
+
+const TrajectoryFit& Coarse::problem() {
+  if (problem_) return *problem_;
+  identification::FitSettings few = settings_.fit;
+  few.most_windows = kCoarseWindows;
+  problem_.emplace(whole_.vehicle(), train_, few);
+  like_.sigma = fit_.sigma;
+  for (const auto& window : problem_->windows()) like_.nu0.push_back(window.window().trial->nu[window.window().start]);
+  reference_ = problem_->fit(fit_.model, &like_);
+  return *problem_;
+}
+
+const FitResult& Coarse::reference() {
+  (void)problem();
+  return reference_;
+}
+
+void look_afar(Answers& answers, Coarse& coarse, const FitResult& fit, const model::Scene& scene,
+               const Progress& progress, double share) {
   for (std::size_t i = 0; i < answers.screened.size(); ++i) {
     Screened& candidate = answers.screened[i];
     for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
-      if (!coarse) {
-        identification::FitSettings few = settings.fit;
-        few.most_windows = kCoarseWindows;
-        coarse.emplace(problem.vehicle(), train, few);
-        like.sigma = fit.sigma;
-        for (const auto& window : coarse->windows())
-          like.nu0.push_back(window.window().trial->nu[window.window().start]);
-        base = coarse->fit(fit.model, &like);
-      }
       progress("looking further at " + std::string(candidate.effect->name()), share);
       model::Model model = fit.model;
       model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
-      const FitResult far = coarse->fit(model, &like);
-      const double gain = (base.cost - far.cost) / base.cost * fit.cost;
+      const FitResult far = coarse.problem().fit(model, &coarse.reference());
+      const double gain = fit.cost * (1.0 - far.cost / coarse.reference().cost);
       if (gain <= candidate.gain) continue;
       candidate.gain = gain;
       candidate.start = far.model;
@@ -114,11 +126,46 @@ void look_afar(Answers& answers, const TrajectoryFit& problem, const FitResult& 
   }
 }
 
-std::vector<std::size_t> worth_fitting(const Answers& answers, const Settings& settings) {
+double Promises::expected(const Screened& screened) const {
+  const auto place = kept_.find(screened.effect);
+  return screened.gain * (place == kept_.end() || screened.start ? 1.0 : place->second);
+}
+
+void Promises::kept(const Screened& screened, double gain) {
+  if (screened.gain > 0.0) kept_[screened.effect] = std::clamp(gain / screened.gain, kLeastTrust, 1.0);
+}
+
+void Promises::refused(const Screened& screened, const Judged& judged) {
+  Refusal& refusal = refused_[{screened.effect, screened.variant}];
+  ++refusal.times;
+  refusal.gain = std::max(refusal.gain, screened.gain);
+  refusal.judged = judged;
+}
+
+void Promises::recall(Answers& answers) const {
+  for (std::size_t i = 0; i < answers.screened.size(); ++i) {
+    const Screened& screened = answers.screened[i];
+    const auto known = refused_.find({screened.effect, screened.variant});
+    if (known == refused_.end() || known->second.times < kEnoughRefusals) continue;
+    if (screened.gain > kPromisesMore * known->second.gain) continue;
+    answers.judged[i] = known->second.judged;
+    answers.fitted[i] = true;
+  }
+}
+
+std::vector<std::size_t> worth_fitting(const Answers& answers, const Promises& promises, const Settings& settings,
+                                       Which which) {
   const std::vector<Screened>& screened = answers.screened;
   std::vector<std::size_t> order;
+  std::map<const model::Effect*, int> fitted;
   for (std::size_t i = 0; i < screened.size(); ++i) {
+    if (answers.fitted[i]) ++fitted[screened[i].effect];
+  }
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    if (answers.fitted[i] || (fitted[screened[i].effect] >= kCareful && !screened[i].start)) continue;
     if (answers.judged[i].error_reduction < settings.smallest_reduction && !screened[i].start) continue;
+    if (which == Which::kOpen && !answers.judged[i].reason.empty()) continue;
+    if (which == Which::kFromAfar && !screened[i].start) continue;
     const auto same = std::find_if(order.begin(), order.end(),
                                    [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
     if (same == order.end()) {
@@ -127,16 +174,26 @@ std::vector<std::size_t> worth_fitting(const Answers& answers, const Settings& s
       *same = i;
     }
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return promises.expected(screened[a]) > promises.expected(screened[b]);
+  });
   return order;
 }
 
-model::Model start_of(const FitResult& fit, const Screened& screened) {
+void name_unfitted(Answers& answers) {
+  for (std::size_t i = 0; i < answers.judged.size(); ++i) {
+    if (answers.judged[i].reason.empty() && !answers.fitted[i])
+      answers.judged[i].reason = "looked at only roughly: others promise more";
+  }
+}
+
+model::Model start_of(const TrajectoryFit& problem, const FitResult& fit, const Screened& screened) {
   if (screened.start) return *screened.start;
-  model::Model model = fit.model;
-  model.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
-  return model;
+  const model::ActiveEffect effect{screened.effect, screened.variant, screened.variant_name, screened.theta};
+  model::Model still = fit.model, moved = screened.base;
+  still.add(effect);
+  moved.add(effect);
+  return problem.cost(moved, fit) < problem.cost(still, fit) ? moved : still;
 }
 
 }  // namespace fathom::diagnosis

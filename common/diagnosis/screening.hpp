@@ -53,6 +53,7 @@ struct Screened {
   int variant{};
   std::string variant_name;
   std::vector<double> theta;          ///< best values found
+  model::Model base;                  ///< the fit's model after the step that its parameters take beside the candidate
   double gain{};                      ///< fall of the cost
   std::optional<model::Model> start;  ///< where a full fit should begin, when not at `theta` beside the base model
   std::vector<double> window_cost;    ///< cost per window with the candidate

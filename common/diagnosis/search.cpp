@@ -12,12 +12,14 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 6;         // candidates per round that earn a full fit
-constexpr std::size_t kManyWindows = 120;  // full fits are dear from here: those that screening finds hopeless are left
-constexpr double kHopelessOdds = -5.0;     // log odds by the screening
-constexpr double kAsGood = 0.9;            // of the gain: with fewer numbers, that is the better explanation
-constexpr double kHopeless = 1.0 / 3.0;    // of the best gain so far: screening does not err by more
-constexpr double kQuickTolerance = 1e-3;   // relative decrease of the cost; a tenth of the smallest gain that counts
+constexpr std::size_t kRefits = 6;       // candidates per round that earn a full fit
+constexpr std::size_t kMostRefits = 16;  // while no winner is found and the screening still speaks for some
+constexpr double kAsGood = 0.9;          // of the gain: with fewer numbers, that is the better explanation
+constexpr double kHopeless = 1.0 / 3.0;  // of the best gain so far: screening does not err by more
+constexpr double kClearlyLess = 0.6;     // of the best gain so far, on a spread of windows
+constexpr const char* kWeaker = "weaker than the accepted effects";
+constexpr double kRestart = 0.1;          // of the screened numbers: where a fit that went astray begins again
+constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
 /// The candidate that gains most and that nothing speaks against.
 struct Winner {
@@ -35,33 +37,97 @@ bool better(const Answers& answers, std::size_t place, const FitResult& fit, con
   return numbers < others ? gain > kAsGood * other : kAsGood * gain > other;
 }
 
-/// Fits the most promising candidates in full, and fills in what the fits say of them. `only_far`: those that have been
-/// found from afar since.
-std::optional<Winner> fit_best(Answers& answers, const TrajectoryFit& problem, const FitResult& reference,
-                               const Settings& settings, int tried, const Progress& progress, double share,
-                               bool only_far = false) {
-  std::optional<Winner> best;
-  std::size_t fitted = 0;
-  std::optional<CrossValidation> checked;
-  for (const std::size_t i : worth_fitting(answers, settings)) {
-    const Screened& screened = answers.screened[i];
-    if (answers.fitted[i] || (only_far && !screened.start)) continue;
-    const bool dear = problem.windows().size() > kManyWindows && !screened.start;
-    if (dear && answers.judged[i].log_odds < kHopelessOdds) continue;
-    if (fitted++ >= kRefits) break;
-    answers.fitted[i] = true;
-    if (best && screened.gain < kHopeless * (reference.cost - best->fit.cost)) break;  // may come back next round
-    progress("fitting " + std::string(screened.effect->name()) + " " + screened.variant_name, share);
-    FitResult fit = problem.fit(start_of(reference, screened), &reference, kQuickTolerance);
-    Judged& judged = answers.judged[i];
-    if (!checked) checked.emplace(problem, reference);
-    judge_by_fit(judged, problem, reference, *checked, fit, tried);
-    judged.reason = refusal(judged, settings, &fit.model);
-    if (judged.reason.empty() && (!best || better(answers, i, fit, *best, reference.cost)))
-      best = Winner{i, std::move(fit)};
-  }
-  return best;
+/// A model with the effect never explains less than the same model without it; a fit that says so has gone astray, and
+/// begins again nearer to absence.
+FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, const Screened& screened) {
+  FitResult fit = problem.fit(start_of(problem, reference, screened), &reference, kQuickTolerance);
+  if (fit.cost <= reference.cost) return fit;
+  Screened nearer = screened;
+  nearer.start.reset();
+  for (double& number : nearer.theta) number *= kRestart;
+  FitResult again = problem.fit(start_of(problem, reference, nearer), &reference, kQuickTolerance);
+  return again.cost < fit.cost ? again : fit;
 }
+
+/// One round's full fits: the most promising candidates, most promising first.
+class Round {
+ public:
+  Round(Answers& answers, Promises& promises, const TrajectoryFit& problem, const FitResult& reference,
+        std::span<const Trial> train, const Settings& settings, int tried, const Progress& progress, double share)
+      : answers_{answers},
+        promises_{promises},
+        problem_{problem},
+        reference_{reference},
+        settings_{settings},
+        tried_{tried},
+        progress_{progress},
+        share_{share},
+        coarse_{problem, train, settings, reference} {}
+
+  std::optional<Winner> fit_best(bool from_afar = false) {
+    std::optional<Winner> best;
+    for (std::size_t fits = 0; fits < kMostRefits; ++fits) {
+      if (best && fits >= kRefits) break;
+      const Which which = from_afar ? Which::kFromAfar : fits < kRefits ? Which::kAll : Which::kOpen;
+      const std::vector<std::size_t> order = worth_fitting(answers_, promises_, settings_, which);
+      if (order.empty()) break;
+      const std::size_t next = order.front();
+      if (best && promises_.expected(answers_.screened[next]) < kHopeless * (reference_.cost - best->fit.cost)) break;
+      std::optional<FitResult> fit = fit_in_full(next, best ? reference_.cost - best->fit.cost : 0.0);
+      if (answers_.judged[next].reason.empty() && (!best || better(answers_, next, *fit, *best, reference_.cost)))
+        best = Winner{next, std::move(*fit)};
+    }
+    return best;
+  }
+
+  [[nodiscard]] Coarse& coarse() { return coarse_; }
+
+ private:
+  /// Empty when a spread of windows already tells that it would be in vain, or gain far less than `best_gain`.
+  std::optional<FitResult> fit_in_full(std::size_t i, double best_gain) {
+    Screened& screened = answers_.screened[i];
+    Judged& judged = answers_.judged[i];
+    progress_("fitting " + std::string(screened.effect->name()) + " " + screened.variant_name, share_);
+    answers_.fitted[i] = true;
+    Screened start = screened;
+    if (coarse_.useful() && !screened.start) {
+      const FitResult rough = fit_with(coarse_.problem(), coarse_.reference(), screened);
+      const double gain = reference_.cost * (1.0 - rough.cost / coarse_.reference().cost);
+      const bool vain = reduction(coarse_.reference().cost, rough.cost) < kPromise * settings_.smallest_reduction;
+      if (vain || gain < kClearlyLess * best_gain) {
+        promises_.kept(screened, gain);
+        judge_by_odds(judged, coarse_.reference(), rough, tried_);
+        judged.reason = refusal(judged, settings_);
+        if (vain) promises_.refused(screened, judged);
+        if (judged.reason.empty()) judged.reason = kWeaker;
+        return std::nullopt;
+      }
+      start.start = rough.model;
+    }
+    FitResult fit = fit_with(problem_, reference_, start);
+    promises_.kept(screened, reference_.cost - fit.cost);
+    judge_by_odds(judged, reference_, fit, tried_);
+    judged.reason = refusal(judged, settings_, &fit.model);
+    if (judged.reason.empty()) {
+      if (!checked_) checked_.emplace(problem_, reference_);
+      judge_by_data_left_out(judged, problem_, reference_, *checked_, fit);
+      judged.reason = refusal(judged, settings_, &fit.model);
+    }
+    if (!judged.reason.empty()) promises_.refused(screened, judged);
+    return fit;
+  }
+
+  Answers& answers_;
+  Promises& promises_;
+  const TrajectoryFit& problem_;
+  const FitResult& reference_;
+  const Settings& settings_;
+  int tried_;
+  const Progress& progress_;
+  double share_;
+  Coarse coarse_;
+  std::optional<CrossValidation> checked_;  // of the reference, made when the first fit is judged
+};
 
 /// Drops every accepted effect that the others have made superfluous; fills in the final odds of those that stay.
 void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried,
@@ -106,15 +172,18 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   const std::vector<Candidate> candidates = all_candidates(scene);
   const int tried = static_cast<int>(candidates.size());
   result.after = result.before;
+  Promises promises;
 
   for (int round = 0; round < settings.most_effects; ++round) {
     const double share = 0.2 + 0.6 * round / settings.most_effects;
     progress("round " + std::to_string(round + 1) + ": asking " + std::to_string(tried) + " candidates", share);
     Answers answers = ask(candidates, problem, result.after, scene, settings);
-    std::optional<Winner> winner = fit_best(answers, problem, result.after, settings, tried, progress, share);
+    promises.recall(answers);
+    Round fits{answers, promises, problem, result.after, train, settings, tried, progress, share};
+    std::optional<Winner> winner = fits.fit_best();
     if (!winner) {
-      look_afar(answers, problem, result.after, train, scene, settings, progress, share);
-      winner = fit_best(answers, problem, result.after, settings, tried, progress, share, true);
+      look_afar(answers, fits.coarse(), result.after, scene, progress, share);
+      winner = fits.fit_best(true);
     }
     if (winner) {
       Judged accepted = answers.judged[winner->place];
@@ -122,6 +191,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       result.accepted.push_back(accepted);
       result.after = problem.fit(winner->fit.model, &winner->fit);
     }
+    name_unfitted(answers);
     result.refused = best_of_each_effect(answers.judged, result.accepted);
     if (!winner) break;
   }
