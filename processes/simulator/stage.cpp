@@ -114,15 +114,15 @@ void Stage::wait(std::span<const int> descriptors, int milliseconds) {
   if (state_ == State::kLooking) {
     if (seconds(now - began_) < kLook) return;
     state_ = State::kGathering;
-    last_answer_ = now;
+    last_complaint_ = now;
   }
   const std::vector<std::string> absent = conductor_ ? conductor_->absent() : std::vector<std::string>{};
   if (absent.empty()) {
     state_ = State::kRunning;
     first_tick_ = last_answer_ = Clock::now();
     advance();
-  } else if (seconds(now - last_answer_) > kComplain) {
-    last_answer_ = now;
+  } else if (seconds(now - last_complaint_) > kComplain) {  // others keep saying hello meanwhile
+    last_complaint_ = now;
     std::string names;
     for (const std::string& each : absent) names += (names.empty() ? "" : ", ") + each;
     process_.log_warning("waits for " + names + "; start them with --lockstep");

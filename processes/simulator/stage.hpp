@@ -60,7 +60,7 @@ class Stage {
   driver::ThrusterGate gate_;
   std::optional<runtime::Conductor> conductor_;
   State state_{State::kLooking};
-  Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{};
+  Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{}, last_complaint_{};
   int introductions_{};
   std::int64_t commands_{};
   std::vector<std::string> said_;

@@ -203,6 +203,9 @@ TEST_CASE("simulator: a follower that restarts, a stranger, and words that do no
         " --lockstep) &\n" + simulator("--duration 20 --speed 1 --wait-for test_pilot") + "\necho ended with \\$?");
     CHECK_MESSAGE(restarted.says("test_pilot was started anew in the middle of the run"), restarted.text);
     CHECK_MESSAGE(restarted.says("ended with 1"), restarted.text);
+    const auto alone = on_private_network("timeout 8 " + pilot() + " --lockstep &\ntimeout 7 " +
+                                          simulator("--duration 20 --speed 0 --wait-for test_pilot,estimator"));
+    CHECK_MESSAGE(alone.says("waits for estimator; start them with --lockstep"), alone.text);
     const auto stranger =
         on_private_network("timeout 5 " + pilot() + " --lockstep &\n" +
                            simulator("--duration 20 --speed 1 --wait-for estimator") + "\necho ended with \\$?");
