@@ -36,9 +36,10 @@ install_missing() {
   rm -f "$log"
 }
 
-# build PRESET [TARGET]: configures where needed and compiles all or one target; ninja shows how far it is.
+# build PRESET [TARGET...]: configures where needed and compiles all or some targets; ninja shows how far it is.
 build() {
-  local log launcher=() target=(${2:+--target "$2"})
+  local log launcher=() target=()
+  [ $# -lt 2 ] || target=(--target "${@:2}")
   log=$(mktemp)
   command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   say "building (preset $1)"

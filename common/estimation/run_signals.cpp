@@ -236,16 +236,7 @@ void Reader::clean(const std::string& signal, Series& series, double spike_floor
 RunSignals Reader::read() {
   RunSignals run;
   run.name = recording_.name;
-  origin_ = std::numeric_limits<Utime>::max();
-  const auto earliest = [&](const auto& stream) {
-    if (!stream.empty()) origin_ = std::min(origin_, stream.front().utime);
-  };
-  earliest(recording_.pose_capture);
-  earliest(recording_.ahrs);
-  earliest(recording_.dvl);
-  earliest(recording_.depth);
-  earliest(recording_.thrusters);
-  if (origin_ == std::numeric_limits<Utime>::max()) origin_ = 0;
+  origin_ = first_stamp(recording_);
   run.origin = origin_;
   read_pose(run.pose);
   const auto push = [](Series& series, double t, const Eigen::Vector3d& x) {
@@ -287,6 +278,19 @@ RunSignals Reader::read() {
 
 RunSignals read_signals(const Recording& recording, std::vector<ConsistencyFinding>& findings) {
   return Reader(recording, findings).read();
+}
+
+Utime first_stamp(const Recording& recording) {
+  Utime first = std::numeric_limits<Utime>::max();
+  const auto earliest = [&](const auto& stream) {
+    if (!stream.empty()) first = std::min(first, stream.front().utime);
+  };
+  earliest(recording.pose_capture);
+  earliest(recording.ahrs);
+  earliest(recording.dvl);
+  earliest(recording.depth);
+  earliest(recording.thrusters);
+  return first == std::numeric_limits<Utime>::max() ? 0 : first;
 }
 
 }  // namespace fathom::estimation

@@ -21,6 +21,8 @@ struct RunSignals {
   Series depth;           ///< (0, 0, z) m
 };
 
+/// Of the streams that make a trial; zero when all are empty.
+[[nodiscard]] Utime first_stamp(const Recording& recording);
 /// Reads all streams; appends what it refuses to believe to `findings`.
 [[nodiscard]] RunSignals read_signals(const Recording& recording, std::vector<ConsistencyFinding>& findings);
 

@@ -10,6 +10,7 @@
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
 #include "common/estimation/reconstruct.hpp"
+#include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
@@ -47,16 +48,21 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);
   estimation::check_thrusters(recordings, vehicle, consistency);
 
-  std::vector<Trial> train, validate;
+  std::vector<Trial> trials;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     progress.show("reconstructing " + recordings[i].name, kCheckShare);
-    Trial trial = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
+    trials.push_back(estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle));
+  }
+  if (estimation::share_clock(recordings, trials))
+    notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
+  std::vector<Trial> train, validate;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
     if (options.validate.empty()) {
-      auto [first, last] = estimation::split(trial, kHeldOut);
+      auto [first, last] = estimation::split(trials[i], kHeldOut);
       train.push_back(std::move(first));
       validate.push_back(std::move(last));
     } else {
-      (i < options.train.size() ? train : validate).push_back(std::move(trial));
+      (i < options.train.size() ? train : validate).push_back(std::move(trials[i]));
     }
   }
   if (options.validate.empty()) {
