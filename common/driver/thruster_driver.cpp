@@ -17,10 +17,10 @@
 #include "common/base/error.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
-#include "common/driver/allocation.hpp"
 #include "common/driver/thruster_gate.hpp"
 #include "common/driver/watch.hpp"
 #include "common/link/link.hpp"
+#include "common/model/thruster_allocation.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
@@ -68,6 +68,9 @@ class ThrusterDriver final : public devices::Output {
         gate_{wall_clock()},
         period_{1.0 / positive(config, "rate", "Hz")},
         writer_{255, 190} {
+    if (vehicle.curve.empty()) {
+      throw InputError("vehicle " + vehicle.name + ": a 'thrust_curve' is needed to drive it; add it to its file");
+    }
     if (way_ == Way::kDryRun) return;
     devices::Settings settings;
     settings.motors = allocation_.count();
@@ -121,7 +124,7 @@ class ThrusterDriver final : public devices::Output {
 
   /// The thrusters stand still before the driver goes.
   void end() {
-    const Allocated still = allocation_.neutral();
+    const model::Allocated still = allocation_.neutral();
     for (int i = 0; i < 3 && link_; ++i) {
       send(still, Vector6d::Zero(), steady_seconds());
       link_->wait({}, 20);
@@ -165,14 +168,14 @@ class ThrusterDriver final : public devices::Output {
   void step(double now) {
     const Utime utime = wall_clock();
     const Vector6d tau = gate_.wrench(utime);
-    const Allocated allocated =
+    const model::Allocated allocated =
         gate_.reason(utime).empty() ? allocation_.allocate(tau, voltage(now)) : allocation_.neutral();
     send(allocated, tau * allocated.scale, now);
     const bool reported = now - feedback_at_ < kFeedback;  // what the vehicle says it applied counts more
     if (!reported && way_ != Way::kRcOverride) tell(allocated, utime);
   }
 
-  void send(const Allocated& allocated, const Vector6d& tau, double now) {
+  void send(const model::Allocated& allocated, const Vector6d& tau, double now) {
     if (!link_) return;
     if (way_ == Way::kText) {
       link_->send(devices::thruster_sentence(allocated.pwm_us));
@@ -204,7 +207,7 @@ class ThrusterDriver final : public devices::Output {
     return {stick(4, 1.0), stick(3, 1.0), stick(2, -1.0), stick(5, 1.0), stick(0, 1.0), stick(1, 1.0), kAlone, kAlone};
   }
 
-  void tell(const Allocated& allocated, Utime utime) {
+  void tell(const model::Allocated& allocated, Utime utime) {
     Thrusters sample{.utime = utime, .pwm_us = allocated.pwm_us, .force = allocated.force, .has_tau = true};
     std::copy(allocated.tau.begin(), allocated.tau.end(), sample.tau.begin());
     process_.publish(wire::kThrusters, wire::encode(sample));
@@ -226,7 +229,7 @@ class ThrusterDriver final : public devices::Output {
 
   runtime::Process& process_;
   Way way_;
-  Allocation allocation_;
+  model::ThrusterAllocation allocation_;
   ThrusterGate gate_;
   double period_, next_{};
   std::uint8_t target_{1};

@@ -53,6 +53,11 @@ void read_body(const Config& config, Vehicle& vehicle) {
   if (config.has("mass")) vehicle.mass = positive(config, "mass", "kg");
   if (config.has("buoyancy")) vehicle.buoyancy = positive(config, "buoyancy", "N");
   if (config.has("nominal_voltage")) vehicle.nominal_voltage = positive(config, "nominal_voltage", "V");
+  if (config.has("largest_thrust")) vehicle.largest_thrust = positive(config, "largest_thrust", "N");
+  if (config.has("hull")) {
+    vehicle.hull = config.vector3("hull", "m");
+    if (vehicle.hull.minCoeff() <= 0.0) config.fail("hull", "'hull' must be positive along every axis");
+  }
   if (!config.has("inertia")) return;
   vehicle.inertia = config.vector3("inertia", "kg m^2");
   const Eigen::Vector3d& inertia = vehicle.inertia;
@@ -250,6 +255,18 @@ Vehicle Vehicle::load(const std::string& path) {
     if (config.has("thrust_curve")) vehicle.curve = read_curve(config.section("thrust_curve"));
   }
   read_parameters(config, vehicle);
+  if (config.has("sensors")) {
+    const Config sensors = config.section("sensors");
+    vehicle.mounts = Mounts::from(sensors);
+    for (const LoadCellMount& cell : vehicle.mounts.loads) {
+      const bool known = std::any_of(vehicle.thrusters.begin(), vehicle.thrusters.end(),
+                                     [&](const Thruster& thruster) { return thruster.name == cell.of; });
+      if (cell.of != "tether" && !known) {
+        sensors.fail("loads", "load cell '" + cell.name + "': 'of' must be tether or the name of a thruster, not '" +
+                                  cell.of + "'");
+      }
+    }
+  }
   config.finish();
   return vehicle;
 }

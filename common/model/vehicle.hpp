@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/spatial.hpp"
+#include "common/model/mounts.hpp"
 
 namespace fathom::model {
 
@@ -49,12 +50,15 @@ struct Vehicle {
   double buoyancy{};                                 ///< N; 0 when unknown
   double water_density{};                            ///< kg/m^3
   double nominal_voltage{};                          ///< V; 0 when unknown
+  double largest_thrust{};                           ///< N, of one thruster, either way; 0 when not stated
+  Eigen::Vector3d hull{Eigen::Vector3d::Zero()};     ///< m, length, width, height about Bo; 0 when unknown
   std::vector<Thruster> thrusters;
   ThrustCurve curve;
   std::vector<std::string>
       parameters;             ///< base parameters that this vehicle enables, e.g. "m_X", "X_u", "X_u|u|", "W-B", "G_z"
   std::vector<Prior> priors;  ///< one per parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> allocation;  ///< tau = allocation * force; 6 x N
+  Mounts mounts{};                                      ///< where the instruments sit
 
   /// False for a vehicle that is driven by a body wrench (no thrusters in its file).
   [[nodiscard]] bool has_thrusters() const { return !thrusters.empty(); }

@@ -1,10 +1,7 @@
-// What reaches the thrusters: allocation by the vehicle file, and the gate that lets a command pass.
+// The gate that lets a command pass to the thrusters.
 #include <doctest/doctest.h>
 
-#include "common/base/error.hpp"
-#include "common/driver/allocation.hpp"
 #include "common/driver/thruster_gate.hpp"
-#include "test/support/scratch.hpp"
 
 using namespace fathom;
 using namespace fathom::driver;
@@ -12,11 +9,6 @@ using namespace fathom::driver;
 namespace {
 
 constexpr Utime kStart = 1'700'000'000'000'000;
-constexpr double kCurve = 1e-9;  // the curve is piecewise linear in both directions
-
-model::Vehicle vehicle(const std::string& name) {
-  return model::Vehicle::load(std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/" + name + ".yaml");
-}
 
 Utime at(double seconds) { return utime_after(kStart, seconds); }
 
@@ -27,63 +19,6 @@ WrenchCommand surge(double seconds) {
 }
 
 }  // namespace
-
-TEST_CASE("allocation: every controlled degree of freedom gets what was asked, alone and together") {
-  for (const char* name : {"bluerov2", "beluga"}) {
-    const model::Vehicle subject = vehicle(name);
-    const Allocation allocation{subject, 100.0};
-    Vector6d tau = Vector6d::Zero();
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (!subject.dof[i]) continue;
-      const double share = i < 3 ? 4.0 : 0.3;
-      tau(static_cast<Eigen::Index>(i)) = share;
-      const Allocated result = allocation.allocate(tau, subject.curve.voltage);
-      CAPTURE(name);
-      CAPTURE(i);
-      CHECK(result.scale == 1.0);
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (!subject.dof[k]) continue;
-        CHECK(std::abs(result.tau(static_cast<Eigen::Index>(k)) - tau(static_cast<Eigen::Index>(k))) < 1e-6);
-      }
-    }
-  }
-}
-
-TEST_CASE("allocation: surge of the BlueROV2 by hand") {
-  const Allocation allocation{vehicle("bluerov2"), 100.0};
-  Vector6d tau = Vector6d::Zero();
-  tau(0) = 4.0 * 0.7071 * 8.1;  // four thrusters at 45 degrees; 8.1 N is a corner of the curve, at 1600 us
-  const Allocated result = allocation.allocate(tau, 16.0);
-  for (std::size_t i = 0; i < 4; ++i) CHECK(result.pwm_us[i] == doctest::Approx(1600.0).epsilon(1e-3));
-  for (std::size_t i = 4; i < 6; ++i)
-    CHECK(result.pwm_us[i] == 1500.0);  // no force is neutral, not an edge of the plateau
-}
-
-TEST_CASE("allocation: beyond the limit all thrusters shrink alike and the direction stays") {
-  const Allocation allocation{vehicle("bluerov2"), 5.0};
-  Vector6d tau = Vector6d::Zero();
-  tau(0) = 100.0;
-  tau(5) = 5.0;
-  const Allocated result = allocation.allocate(tau, 16.0);
-  CHECK(result.scale < 0.3);
-  for (const Eigen::Index axis : {0, 1, 2, 3, 5}) {  // pitch is not controlled
-    CHECK(std::abs(result.tau(axis) - result.scale * tau(axis)) < 1e-6);
-  }
-  for (const double force : result.force) CHECK(std::abs(force) <= 5.0 + kCurve);
-}
-
-TEST_CASE("allocation: what the vehicle reports gives the wrench that it felt") {
-  const Allocation allocation{vehicle("bluerov2"), 100.0};
-  Vector6d tau = Vector6d::Zero();
-  tau << 5.0, -3.0, 4.0, 0.1, 0.0, 0.5;
-  const Allocated sent = allocation.allocate(tau, 16.0);
-  const Allocated told = allocation.applied(sent.pwm_us, 16.0);
-  CHECK((told.tau - sent.tau).norm() < kCurve);
-  CHECK(allocation.neutral().tau.norm() == 0.0);
-  model::Vehicle bare = vehicle("bluerov2");
-  bare.thrusters.clear();
-  CHECK(test::complaint_of<InputError>([&] { Allocation none(bare, 1.0); }).find("thrusters") != std::string::npos);
-}
 
 TEST_CASE("gate: no command, no thrust; a command is obeyed until half a second after the last") {
   ThrusterGate gate{at(0.0)};

@@ -1,0 +1,51 @@
+// The place of a dive as config/sites/*.yaml describes it: water, boundaries, tags, transponders. Axes of W: north,
+// east, down from the site's origin, which the file chooses; the surface need not be at z = 0.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fathom::model {
+
+/// A fiducial tag. Frame T: origin in its middle, x to the right and y down as one reads it, z into it.
+struct Tag {
+  int id{};
+  double size{};                                  ///< m, edge of the black square
+  Eigen::Vector3d p_WT{Eigen::Vector3d::Zero()};  ///< m
+  Eigen::Matrix3d R_WT{Eigen::Matrix3d::Identity()};
+};
+
+/// Something that answers an acoustic ping.
+struct Transponder {
+  std::string name;
+  Eigen::Vector3d p_W{Eigen::Vector3d::Zero()};  ///< m
+};
+
+struct Site {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  std::string name;
+  double water_density{};              ///< kg/m^3
+  double gravity{};                    ///< m/s^2
+  double sound_speed{};                ///< m/s
+  double surface{};                    ///< m, z of the water's surface
+  double floor{};                      ///< m, z of the bottom
+  double north{kNone}, south{-kNone};  ///< m, x of the walls; infinite where there is none
+  double east{kNone}, west{-kNone};    ///< m, y of the walls
+  double declination{};                ///< rad, heading of magnetic north in W
+  std::vector<Tag> tags;
+  std::vector<Transponder> transponders;         ///< order of RANGES
+  std::optional<Eigen::Vector3d> transceiver;    ///< m, of the USBL, in W
+  std::optional<Eigen::Vector3d> tether_anchor;  ///< m, in W
+
+  /// InputError with file and line when anything is missing, unknown, or in a wrong unit.
+  [[nodiscard]] static Site load(const std::string& path);
+  /// The tag of that number, or nullptr.
+  [[nodiscard]] const Tag* tag(int id) const;
+  [[nodiscard]] double depth() const { return floor - surface; }
+};
+
+}  // namespace fathom::model
