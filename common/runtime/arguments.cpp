@@ -17,7 +17,8 @@ std::string default_bus() {
 
 }  // namespace
 
-std::optional<Arguments> Arguments::parse(const std::string& name, int argc, const char* const* argv) {
+std::optional<Arguments> Arguments::parse(const std::string& name, int argc, const char* const* argv,
+                                          const MoreOptions& more) {
   Arguments arguments;
   std::vector<std::string> in;
   std::string out;
@@ -31,6 +32,9 @@ std::optional<Arguments> Arguments::parse(const std::string& name, int argc, con
   app.add_option("--log-level", arguments.log_level, "what to print on stderr")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
   app.add_flag("--interface", arguments.interface_only, "print channels and types, then exit");
+  app.add_flag("--lockstep", arguments.lockstep,
+               "go on only when the simulator says so (it is started with --wait-for)");
+  if (more) more(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {
@@ -46,6 +50,10 @@ std::optional<Arguments> Arguments::parse(const std::string& name, int argc, con
     if (arguments.in.back().live() != arguments.in.front().live()) {
       throw InputError("--in " + text + ": logs and live buses do not mix; replay the log with lcm-logplayer");
     }
+  }
+  if (arguments.lockstep && !arguments.in.front().live()) {
+    throw InputError(
+        "--lockstep: only a live bus has a simulator to wait for; a log is read as fast as possible anyway");
   }
   if (out.empty() && !arguments.in.front().live() && !arguments.interface_only) {
     throw InputError("--in " + in.front() + ": say where the results go with --out file://RESULT.lcmlog");

@@ -1,13 +1,21 @@
 // The command line that every process understands.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/runtime/bus.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace fathom::runtime {
+
+/// Adds a process's own options to the common ones.
+using MoreOptions = std::function<void(CLI::App&)>;
 
 struct Arguments {
   std::vector<std::string> config;  ///< paths
@@ -15,9 +23,11 @@ struct Arguments {
   Url out;
   std::string log_level{"info"};
   bool interface_only{false};
+  bool lockstep{false};
 
   /// Nothing when help or version was asked for and printed. InputError for anything else than a good command line.
-  [[nodiscard]] static std::optional<Arguments> parse(const std::string& name, int argc, const char* const* argv);
+  [[nodiscard]] static std::optional<Arguments> parse(const std::string& name, int argc, const char* const* argv,
+                                                      const MoreOptions& more = {});
 };
 
 }  // namespace fathom::runtime

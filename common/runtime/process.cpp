@@ -9,6 +9,7 @@
 #include <fathom_lcm/process_info_t.hpp>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -17,6 +18,7 @@
 #include "common/base/error.hpp"
 #include "common/runtime/arguments.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/lockstep.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -76,6 +78,7 @@ struct Process::State {
   std::optional<StopSignal> stop{};
   std::optional<LiveInput> live{};
   std::optional<Output> out{};
+  std::optional<Follower> follower{};
   bool introduced{false};
   std::int64_t received{};
   std::int64_t published{};
@@ -151,6 +154,7 @@ void Process::send(const std::string& channel, const std::string& type, Utime ut
   if (!state_->out) throw std::logic_error("publish before run()");
   state_->out->write(channel, buffer_, utime);
   ++state_->published;
+  if (state_->follower) state_->follower->said(channel);
 }
 
 // Channels are judged one by one: an operator's clock may differ from a replayed log's. After a jump all begin anew, so
@@ -242,7 +246,9 @@ void Process::run() {
   state_->stop.emplace();
   state_->last_health = Clock::now();
   try {
-    if (state_->arguments.in.front().live()) {
+    if (state_->arguments.lockstep) {
+      run_lockstep();
+    } else if (state_->arguments.in.front().live()) {
       run_live();
     } else {
       run_logs();
@@ -293,9 +299,56 @@ void Process::run_live() {
   }
 }
 
-int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup) {
+// As run_live(), but messages wait until the simulator announces the phase that they belong to.
+void Process::run_lockstep() {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();  // even "latest" channels keep every message
+  std::vector<Subscription> subscriptions;
+  std::vector<std::string> heard;
+  for (const Hearing& hearing : state_->hearings) {
+    subscriptions.push_back({hearing.channel, kAll});
+    heard.push_back(hearing.channel);
+  }
+  subscriptions.push_back({kLockstep, kAll});
+  state_->follower.emplace(state_->name, heard);
+  Follower& follower = *state_->follower;
+  state_->out.emplace(state_->arguments.out);
+  state_->live.emplace(state_->arguments.in, subscriptions);
+  const auto tell = [&](const fathom_lcm::lockstep_ack_t& ack) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(ack.getEncodedSize()));
+    ack.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    state_->out->write(kLockstepAck, bytes, ack.utime);
+  };
+  introduce(wall_clock());
+  auto last_hello = Clock::now();
+  tell(follower.hello());
+  while (!state_->stop->raised() && !state_->ended && !follower.ended()) {
+    state_->live->wait(state_->stop->descriptor(), kWaitMs);
+    while (auto message = state_->live->next()) {
+      if (message->subscription < heard.size()) {
+        follower.arrived(message->subscription, std::move(message->bytes));
+        continue;
+      }
+      fathom_lcm::lockstep_t phase{};
+      const int length = static_cast<int>(message->bytes.size());
+      if (phase.decode(message->bytes.data(), 0, length) == length) follower.announced(phase);
+    }
+    while (const auto phase = follower.next()) {
+      for (const Follower::Message& message : *phase) deliver(message.hearing, message.bytes);
+      tell(follower.answer());
+    }
+    const auto now = Clock::now();
+    if (!follower.started() && now - last_hello >= std::chrono::milliseconds{200}) {
+      last_hello = now;
+      tell(follower.hello());
+    }
+    if (now - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
+  }
+}
+
+int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
+         const std::function<void(CLI::App&)>& more) {
   try {
-    auto arguments = Arguments::parse(name, argc, argv);
+    auto arguments = Arguments::parse(name, argc, argv, more);
     if (!arguments) return 0;
     Process process{name, std::move(*arguments)};
     setup(process);

@@ -12,6 +12,10 @@
 #include "common/base/config.hpp"
 #include "common/base/time.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace fathom::runtime {
 
 struct Arguments;
@@ -105,6 +109,7 @@ class Process {
   void deliver(std::size_t hearing, std::span<const std::uint8_t> bytes);
   void run_logs();
   void run_live();
+  void run_lockstep();
   void introduce(Utime utime);
   void report_health(const std::string& state, const std::string& reason);
   [[nodiscard]] std::string interface_text() const;
@@ -116,6 +121,8 @@ class Process {
 
 /// The main() of every process: reads the arguments, calls setup (which ends with run()), turns every exception into
 /// one critical line and exit code 1.
-int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup);
+/// `more` adds options of this process alone; what they set is ready when setup is called.
+int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
+         const std::function<void(CLI::App&)>& more = {});
 
 }  // namespace fathom::runtime

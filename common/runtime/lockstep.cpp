@@ -1,0 +1,184 @@
+#include "common/runtime/lockstep.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/error.hpp"
+
+namespace fathom::runtime {
+namespace {
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& each : names) text += (text.empty() ? "" : ", ") + each;
+  return text;
+}
+
+}  // namespace
+
+bool is_free_channel(const std::string& channel) {
+  return channel == "OPERATOR" || channel == "HEALTH" || channel == "PROCESS_INFO";
+}
+
+Follower::Follower(std::string name, std::vector<std::string> heard)
+    : name_{std::move(name)}, heard_{std::move(heard)}, waiting_(heard_.size()) {}
+
+bool Follower::heard(const std::string& channel) const {
+  return std::find(heard_.begin(), heard_.end(), channel) != heard_.end();
+}
+
+void Follower::arrived(std::size_t hearing, std::vector<std::uint8_t> bytes) {
+  waiting_[hearing].push_back(std::move(bytes));
+}
+
+void Follower::announced(const fathom_lcm::lockstep_t& phase) {
+  started_ = true;
+  if (phase.phase < 0) {
+    ended_ = true;
+  } else if (std::any_of(phase.channel.begin(), phase.channel.end(), [&](const auto& each) { return heard(each); })) {
+    phases_.push_back(phase);
+  }
+}
+
+std::optional<std::vector<Follower::Message>> Follower::next() {
+  if (phases_.empty()) return {};
+  const fathom_lcm::lockstep_t& phase = phases_.front();
+  std::vector<std::size_t> order, wanted(heard_.size(), 0);
+  for (const std::string& channel : phase.channel) {
+    const auto found = std::find(heard_.begin(), heard_.end(), channel);
+    if (found == heard_.end()) continue;
+    order.push_back(static_cast<std::size_t>(found - heard_.begin()));
+    ++wanted[order.back()];
+  }
+  for (std::size_t i = 0; i < heard_.size(); ++i) {
+    if (waiting_[i].size() < wanted[i]) return {};
+  }
+  std::vector<Message> messages;
+  const auto take = [&](std::size_t hearing) {
+    messages.push_back({hearing, std::move(waiting_[hearing].front())});
+    waiting_[hearing].pop_front();
+  };
+  // What came from outside of lockstep, an operator's word, goes first; the conductor's own keeps its place.
+  for (std::size_t i = 0; i < heard_.size() && phase.phase == 0; ++i) {
+    while (is_free_channel(heard_[i]) && waiting_[i].size() > wanted[i]) take(i);
+  }
+  for (const std::size_t each : order) take(each);
+  answer_ = {};
+  answer_.utime = phase.utime;
+  answer_.process = name_;
+  answer_.tick = phase.tick;
+  answer_.phase = phase.phase;
+  phases_.pop_front();
+  return messages;
+}
+
+void Follower::said(const std::string& channel) {
+  if (!is_free_channel(channel)) answer_.said.push_back(channel);
+}
+
+fathom_lcm::lockstep_ack_t Follower::answer() {
+  answer_.n_said = static_cast<std::int32_t>(answer_.said.size());
+  answer_.n_heard = 0;
+  return answer_;
+}
+
+fathom_lcm::lockstep_ack_t Follower::hello() const {
+  fathom_lcm::lockstep_ack_t ack{};
+  ack.process = name_;
+  ack.tick = -1;
+  ack.n_heard = static_cast<std::int32_t>(heard_.size());
+  ack.heard = heard_;
+  return ack;
+}
+
+Conductor::Conductor(std::vector<std::string> names) : names_{std::move(names)} { phase_.tick = -1; }
+
+std::vector<std::string> Conductor::absent() const {
+  std::vector<std::string> missing;
+  for (const std::string& name : names_) {
+    if (!heard_.contains(name)) missing.push_back(name);
+  }
+  return missing;
+}
+
+void Conductor::hear(const fathom_lcm::lockstep_ack_t& ack) {
+  if (std::find(names_.begin(), names_.end(), ack.process) == names_.end()) {
+    throw InputError("lockstep: " + ack.process + " follows but nobody waits for it; name it with --wait-for");
+  }
+  if (ack.tick < 0) {
+    if (phase_.tick >= 0) {
+      // Hellos overlap with the first intervals; a process that answered once and says hello again has restarted.
+      if (said_.contains(ack.process)) {
+        throw InputError("lockstep: " + ack.process +
+                         " was started anew in the middle of the run; begin the run again");
+      }
+      return;
+    }
+    heard_[ack.process] = ack.heard;
+    return;
+  }
+  if (ack.tick != phase_.tick || ack.phase != phase_.phase) return;
+  const auto asked = std::find(waiting_for_.begin(), waiting_for_.end(), ack.process);
+  if (asked == waiting_for_.end()) {
+    throw InputError("lockstep: two processes answer as " + ack.process + "; stop one of them");
+  }
+  waiting_for_.erase(asked);
+  said_[ack.process] = ack.said;
+  for (const std::string& channel : ack.said) ++total_[channel];
+  answered_ = waiting_for_.empty();
+}
+
+// Who hears a channel of the phase must answer.
+void Conductor::call() {
+  waiting_for_.clear();
+  answered_ = false;
+  for (const std::string& name : names_) {
+    const std::vector<std::string>& heard = heard_[name];
+    const bool concerned = std::any_of(phase_.channel.begin(), phase_.channel.end(), [&](const std::string& channel) {
+      return std::find(heard.begin(), heard.end(), channel) != heard.end();
+    });
+    if (concerned) waiting_for_.push_back(name);
+  }
+  phase_.n_messages = static_cast<std::int32_t>(phase_.channel.size());
+}
+
+fathom_lcm::lockstep_t Conductor::begin(Utime utime, std::vector<std::string> channels) {
+  phase_.utime = utime;
+  ++phase_.tick;
+  phase_.phase = 0;
+  phase_.channel = std::move(channels);
+  call();
+  return phase_;
+}
+
+std::optional<fathom_lcm::lockstep_t> Conductor::next() {
+  if (!answered_) return {};
+  answered_ = false;
+  phase_.channel.clear();
+  for (const std::string& name : names_) {
+    std::vector<std::string>& said = said_[name];
+    phase_.channel.insert(phase_.channel.end(), said.begin(), said.end());
+    said.clear();
+  }
+  ++phase_.phase;
+  call();
+  if (waiting_for_.empty()) return {};
+  return phase_;
+}
+
+std::int64_t Conductor::said(const std::string& channel) const {
+  const auto found = total_.find(channel);
+  return found == total_.end() ? 0 : found->second;
+}
+
+std::string Conductor::waiting_for() const { return list(waiting_for_); }
+
+fathom_lcm::lockstep_t Conductor::end(Utime utime) const {
+  fathom_lcm::lockstep_t last{};
+  last.utime = utime;
+  last.tick = phase_.tick + 1;
+  last.phase = -1;
+  return last;
+}
+
+}  // namespace fathom::runtime

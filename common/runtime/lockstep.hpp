@@ -1,0 +1,95 @@
+// Lockstep: virtual time as fast as the machine allows, and the same messages in the same order at every speed. The
+// simulator conducts, all others follow; no mind knows of it. docs/decisions/011-lockstep.md tells why it is built so.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <fathom_lcm/lockstep_ack_t.hpp>
+#include <fathom_lcm/lockstep_t.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+
+namespace fathom::runtime {
+
+inline constexpr char kLockstep[] = "LOCKSTEP";
+inline constexpr char kLockstepAck[] = "LOCKSTEP_ACK";
+
+/// Channels that come when they come: no phase waits for them, and nobody lists what he says there.
+[[nodiscard]] bool is_free_channel(const std::string& channel);
+
+/// A process's side: keeps messages until their phase is announced.
+class Follower {
+ public:
+  struct Message {
+    std::size_t hearing{};
+    std::vector<std::uint8_t> bytes;
+  };
+
+  /// `heard`: channels in the order of the process's hearings.
+  Follower(std::string name, std::vector<std::string> heard);
+
+  void arrived(std::size_t hearing, std::vector<std::uint8_t> bytes);
+  void announced(const fathom_lcm::lockstep_t& phase);
+  /// The messages of the next phase, in order, once all of them are here; nothing before. An empty list never comes.
+  [[nodiscard]] std::optional<std::vector<Message>> next();
+  /// Counts a message that was said in the phase that next() gave.
+  void said(const std::string& channel);
+  /// The answer to that phase.
+  [[nodiscard]] fathom_lcm::lockstep_ack_t answer();
+  /// What is said until the first phase comes.
+  [[nodiscard]] fathom_lcm::lockstep_ack_t hello() const;
+  [[nodiscard]] bool started() const { return started_; }
+  [[nodiscard]] bool ended() const { return ended_ && phases_.empty(); }
+
+ private:
+  [[nodiscard]] bool heard(const std::string& channel) const;
+
+  std::string name_;
+  std::vector<std::string> heard_;
+  std::vector<std::deque<std::vector<std::uint8_t>>> waiting_;  ///< per hearing
+  std::deque<fathom_lcm::lockstep_t> phases_;
+  fathom_lcm::lockstep_ack_t answer_{};
+  bool started_{false}, ended_{false};
+};
+
+/// The simulator's side: who has to answer, and when a control interval is over.
+class Conductor {
+ public:
+  /// `names`: the processes to wait for; what they say in one phase is handled in this order.
+  explicit Conductor(std::vector<std::string> names);
+
+  /// InputError when a stranger answers, or somebody who has already begun says hello again.
+  void hear(const fathom_lcm::lockstep_ack_t& ack);
+  /// Those who have not said hello yet.
+  [[nodiscard]] std::vector<std::string> absent() const;
+  /// Begins a control interval with what the simulator said in it. To be published.
+  [[nodiscard]] fathom_lcm::lockstep_t begin(Utime utime, std::vector<std::string> channels);
+  /// The phase to be published next; nothing while answers are missing or when the interval is over.
+  [[nodiscard]] std::optional<fathom_lcm::lockstep_t> next();
+  /// Nobody has anything left to handle.
+  [[nodiscard]] bool over() const { return waiting_for_.empty() && !answered_; }
+  /// Messages that were said on a channel by all since the start.
+  [[nodiscard]] std::int64_t said(const std::string& channel) const;
+  /// Who has not answered yet, for an operator.
+  [[nodiscard]] std::string waiting_for() const;
+  [[nodiscard]] fathom_lcm::lockstep_t end(Utime utime) const;
+
+ private:
+  void call();
+
+  std::vector<std::string> names_;
+  std::map<std::string, std::vector<std::string>> heard_;  ///< by process
+  std::map<std::string, std::vector<std::string>> said_;   ///< in this phase, by process
+  std::map<std::string, std::int64_t> total_;
+  std::vector<std::string> waiting_for_;
+  fathom_lcm::lockstep_t phase_{};
+  bool answered_{false};  ///< all have answered a phase and next() has not been asked yet
+};
+
+}  // namespace fathom::runtime

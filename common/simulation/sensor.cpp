@@ -1,0 +1,52 @@
+#include "common/simulation/sensor.hpp"
+
+#include <cmath>
+
+#include "common/base/config.hpp"
+
+namespace fathom::simulation {
+
+double probability(const Config& config, const std::string& key) {
+  const double value = config.quantity(key, "");
+  if (value < 0.0 || value > 1.0) config.fail(key, "'" + key + "' is a probability: 0 to 1");
+  return value;
+}
+
+Timing::Timing(const Config& config, const std::string& name, std::uint64_t seed)
+    : rate_{config.positive("rate", "Hz")},
+      latency_{utime_after(0, config.not_negative("latency", "s"))},
+      stream_{seed, name + ".timing"} {
+  if (!config.has("drop_out")) return;
+  drop_out_ = probability(config, "drop_out");
+  drop_out_length_ = config.positive("drop_out_length", "s");
+}
+
+Utime Timing::taken(Utime start, std::int64_t count) const {
+  return utime_after(start, static_cast<double>(count) / rate_);
+}
+
+bool Timing::works(Utime utime) {
+  if (drop_out_ <= 0.0) return true;
+  const bool begins = stream_.chance(drop_out_);
+  const double length = -drop_out_length_ * std::log(1.0 - stream_.uniform());
+  if (utime < silent_until_) return false;
+  if (begins) silent_until_ = utime_after(utime, length);
+  return !begins;
+}
+
+const std::vector<SensorKind>& sensor_kinds() {
+  static const std::vector<SensorKind> kKinds{{"battery", make_battery},
+                                              {"loads", make_loads},
+                                              {"ahrs", make_ahrs},
+                                              {"dvl", make_dvl},
+                                              {"depth", make_depth},
+                                              {"usbl", make_usbl},
+                                              {"ranges", make_ranges},
+                                              {"pose_capture", make_pose_capture},
+                                              {"tag_pose", make_tag_pose},
+                                              {"optical_flow", make_optical_flow},
+                                              {"laser_range", make_laser_range}};
+  return kKinds;
+}
+
+}  // namespace fathom::simulation

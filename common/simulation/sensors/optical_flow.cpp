@@ -1,0 +1,84 @@
+// Optical flow of the scene below between two pictures, the camera's rotation taken out: with z_C the distance to floor
+// or wall along the camera's axis, flow_C = -(v_C)_xy / z_C [rad/s], mean of both pictures. White noise by the
+// features' error in pixels; too near or too far there are none. The rotation is taken out with the rates that AHRS
+// tells, so their error remains. Not modelled: tilt of the floor in the picture, features that stick to the lens, the
+// own shadow.
+#include <cmath>
+#include <optional>
+
+#include "common/base/config.hpp"
+#include "common/simulation/boundaries.hpp"
+#include "common/simulation/camera_view.hpp"
+#include "common/simulation/sensor.hpp"
+
+namespace fathom::simulation {
+namespace {
+
+constexpr int kTracks = 80;  // features that agree at a good distance
+
+class OpticalFlowSensor final : public Sensor {
+ public:
+  OpticalFlowSensor(const Config& config, const Surroundings& around)
+      : camera_{around.vehicle->mounts.cameras.front()},
+        site_{around.site},
+        latest_{around.latest},
+        period_{1.0 / config.positive("rate", "Hz")},
+        noise_{config.not_negative("noise", "")},
+        nearest_{config.not_negative("nearest", "m")},
+        farthest_{config.positive("farthest", "m")},
+        outlier_{probability(config, "outlier")},
+        stream_{around.seed, "optical_flow"} {}
+
+  void measure(const Moment& moment, std::vector<Sample>& samples) override {
+    const double sigma = noise_ / (camera_.focal * period_);
+    Eigen::Vector2d noise;
+    for (double& each : noise) each = sigma * stream_.normal();
+    if (stream_.chance(outlier_)) noise *= 20.0;
+    const CameraView view{camera_, moment};
+    const double distance = distance_along(*site_, view.p_WC, view.R_WC.col(2));
+    std::optional<Picture> now;
+    if (distance >= nearest_ && distance <= farthest_) {
+      const Eigen::Vector3d w = moment.nu.tail<3>();
+      const Eigen::Matrix3d R_CB = camera_.mount.R_BS.transpose();
+      const Eigen::Vector3d v_C = R_CB * (moment.nu.head<3>() + w.cross(camera_.mount.p_BS));
+      now = Picture{moment.utime, -v_C.head<2>() / distance};
+      // What is left of the rotation where rates are known with an error: flow of a turning camera, x' = -w x ray.
+      if (latest_->has_rates) {
+        const Eigen::Vector3d wrong = R_CB * (latest_->w_WB_B - w);
+        now->flow += Eigen::Vector2d{wrong.y(), -wrong.x()};
+      }
+    }
+    if (now && before_ && seconds_between(before_->utime, now->utime) < 1.5 * period_) {
+      const double interval = seconds_between(before_->utime, now->utime);
+      samples.emplace_back(OpticalFlow{.utime = before_->utime + (now->utime - before_->utime) / 2,
+                                       .camera = camera_.name,
+                                       .interval = interval,
+                                       .flow_C = 0.5 * (before_->flow + now->flow) + noise,
+                                       .sigma = sigma,
+                                       .n_tracks = kTracks});
+    }
+    before_ = now;
+  }
+
+ private:
+  struct Picture {
+    Utime utime{};
+    Eigen::Vector2d flow;
+  };
+
+  model::CameraMount camera_;
+  const model::Site* site_;
+  const Ahrs* latest_;
+  double period_, noise_, nearest_, farthest_, outlier_;
+  Stream stream_;
+  std::optional<Picture> before_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_optical_flow(const Config& config, const Surroundings& around) {
+  if (around.vehicle->mounts.cameras.empty()) config.fail("rate", "the vehicle file has no sensors.cameras");
+  return std::make_unique<OpticalFlowSensor>(config, around);
+}
+
+}  // namespace fathom::simulation

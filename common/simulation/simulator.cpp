@@ -1,0 +1,282 @@
+#include "common/simulation/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/simulation/hidden.hpp"
+
+namespace fathom::simulation {
+namespace {
+
+constexpr double kFaultMemory = 1.6;  // s: longer than the registry's longest latency
+constexpr Utime kFinest = 100;        // us: what step and interval are multiples of
+
+Utime microseconds(const Config& config, const std::string& key) {
+  const Utime value = utime_after(0, config.positive(key, "s"));
+  if (value <= 0 || value % kFinest != 0) config.fail(key, "'" + key + "' must be a multiple of 0.1 ms");
+  return value;
+}
+
+Utime interval_of(const Config& config) {
+  const Utime step = microseconds(config, "step"), interval = microseconds(config, "interval");
+  if (interval % step != 0) config.fail("interval", "'interval' must be a multiple of 'step'");
+  return interval;
+}
+
+double limit_of(const Config& config, const model::Vehicle& vehicle) {
+  if (config.has("largest_thrust")) return config.positive("largest_thrust", "N");
+  if (vehicle.largest_thrust > 0.0) return vehicle.largest_thrust;
+  if (!vehicle.curve.empty()) return model::Site::kNone;  // the curve's ends are the limits
+  config.fail("largest_thrust", "state 'largest_thrust' here or in the vehicle file: it has no thrust curve either");
+}
+
+// Base parameters of the truth: those stated, else the vehicle file's means.
+model::Model truth_of(const Config& config, const model::Vehicle& vehicle, const model::Vehicle& whole) {
+  const Config stated = config.section("truth");
+  model::Model truth = model::nominal_model(vehicle, false);
+  truth.vehicle = &whole;
+  for (const model::BaseParameter parameter : model::base_parameters()) {
+    const std::string name{model::name(parameter)};
+    if (stated.has(name)) {
+      truth.theta[model::index(parameter)] = stated.quantity(name, std::string{model::unit(parameter)});
+    }
+  }
+  for (const model::BaseParameter parameter : model::base_parameters()) {
+    const std::string name{model::name(parameter)};
+    const double value = truth.theta[model::index(parameter)];
+    if (!stated.has(name) &&
+        std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
+      stated.fail(name, "'" + name +
+                            "' is missing: the vehicle file has no mean for it, and the truth moves in all six "
+                            "degrees of freedom");
+    }
+    const int sign = model::sign_constraint(parameter);
+    if (sign > 0 && value <= 0.0) stated.fail(name, "'" + name + "' must be positive");
+    if (sign < 0 && value > 0.0) stated.fail(name, "'" + name + "' must not be positive: drag opposes motion");
+  }
+  return truth;
+}
+
+BatteryTruth battery_of(const Config& config) {
+  if (!config.has("battery")) return {};
+  const Config battery = config.section("battery");
+  return {.full = battery.positive("full", "V"),
+          .fall = battery.not_negative("fall", "V/s"),
+          .sag = battery.not_negative("sag", "V"),
+          .lowest = battery.positive("lowest", "V")};
+}
+
+StartPose start_of(const Config& config, const model::Site& site, const Eigen::Vector3d& hull) {
+  const Config starts = config.section("start");
+  if (!starts.has(site.name)) {
+    starts.fail(site.name, "no start is stated for the site '" + site.name + "': add '" + site.name +
+                               ": {position: ..., heading: ...}'");
+  }
+  for (const std::string& other : starts.keys()) {  // read all, so that a start for another site is no unknown key
+    const Config start = starts.section(other);
+    static_cast<void>(start.vector3("position", "m"));
+    static_cast<void>(start.quantity("heading", "rad"));
+  }
+  const Config start = starts.section(site.name);
+  const StartPose pose{.p_WB = start.vector3("position", "m"), .heading = start.quantity("heading", "rad")};
+  const double reach = 0.5 * hull.norm();
+  for (const Plane& plane : solid_planes(site)) {
+    if (plane.n.dot(pose.p_WB) - plane.offset < reach) {
+      start.fail("position", "'position' leaves no room between the hull and the boundaries of " + site.name);
+    }
+  }
+  return pose;
+}
+
+bool carried_at(const Config& sensor, const model::Site& site) {
+  if (!sensor.has("sites")) return true;
+  const std::vector<std::string> sites = sensor.texts("sites");
+  return std::find(sites.begin(), sites.end(), site.name) != sites.end();
+}
+
+}  // namespace
+
+struct Simulator::Slot {
+  std::string name;
+  Timing timing;
+  std::unique_ptr<Sensor> sensor;
+  std::int64_t count{};
+};
+
+struct Simulator::Pending {
+  Utime due{};
+  std::uint64_t order{};
+  Sample sample;
+};
+
+// Velocities of the past at the body's steps, so that a fault of a sensor can look back.
+struct Simulator::Faults {
+  std::vector<model::ActiveEffect> effects;
+  double dt{};
+  model::VelocityTrace past, scratch;
+  Eigen::Index next{0};
+
+  void remember(const Vector6d& nu) {
+    past.col(next) = nu;
+    next = (next + 1) % past.cols();
+  }
+  /// The newest column of the past is what is true now, unless `nu` is a little newer.
+  Vector6d seen(const Vector6d& nu) {
+    const Eigen::Index count = past.cols();
+    for (Eigen::Index i = 0; i < count; ++i) scratch.col(i) = past.col((next + i) % count);
+    scratch.col(count - 1) = nu;
+    model::VelocityView view{scratch};
+    for (const model::ActiveEffect& each : effects) each.effect->measure(view, dt, each.theta, each.variant);
+    return scratch.col(count - 1);
+  }
+};
+
+Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, const Config& config, const Setup& setup)
+    : vehicle_{vehicle},
+      whole_{vehicle},
+      site_{site},
+      origin_{setup.origin},
+      interval_{interval_of(config)},
+      allocation_{vehicle, limit_of(config, vehicle)} {
+  whole_.dof.fill(true);
+  if (vehicle.hull.isZero()) throw InputError("vehicle " + vehicle.name + ": its file must state 'hull' for contacts");
+  model::Model truth = truth_of(config, vehicle_, whole_);
+  const StartPose start = start_of(config, site_, vehicle.hull);
+  const BatteryTruth battery = battery_of(config);
+  faults_ = std::make_unique<Faults>();
+  const Occasion occasion{.vehicle = &vehicle_,
+                          .site = &site_,
+                          .start = start.p_WB,
+                          .duration = setup.duration,
+                          .righting = std::abs(truth.theta[model::index(model::BaseParameter::G_z)]),
+                          .voltage = battery.full};
+  for (const std::string& text : setup.hide) {
+    model::ActiveEffect effect = hidden_effect(text, occasion, setup.seed);
+    if (effect.effect->measures()) {
+      faults_->effects.push_back(std::move(effect));
+    } else {
+      truth.add(std::move(effect));
+    }
+  }
+  const Utime step = microseconds(config, "step");
+  faults_->dt = static_cast<double>(step) * 1e-6;
+  faults_->past.setZero(6, static_cast<Eigen::Index>(kFaultMemory / faults_->dt));
+  faults_->scratch = faults_->past;
+  const double mass = truth.theta.head<3>().minCoeff();
+  const double weight = vehicle.mass > 0.0 ? vehicle.mass * site.gravity : mass * site.gravity;
+  body_ =
+      std::make_unique<Body>(std::move(truth), Hull{site_, vehicle.hull, mass, weight}, battery, start, origin_, step);
+  told_voltage_ = battery.full;
+  truth_period_ = utime_after(0, 1.0 / config.positive("truth_rate", "Hz"));
+  next_truth_ = origin_;
+  const Config sensors = config.section("sensors");
+  for (const SensorKind& kind : sensor_kinds()) {
+    if (!sensors.has(kind.name)) continue;
+    const Config one = sensors.section(kind.name);
+    Timing timing{one, kind.name, setup.seed};
+    auto sensor = kind.make(one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_});
+    if (!carried_at(one, site_)) sensor.reset();
+    if (sensor) slots_.push_back({kind.name, std::move(timing), std::move(sensor)});
+  }
+}
+
+Simulator::~Simulator() = default;
+
+void Simulator::command(const WrenchCommand& command) { heard_ = command; }
+
+Utime Simulator::now() const { return body_->now(); }
+Moment Simulator::moment() const { return body_->at(body_->now()); }
+const ContactCounts& Simulator::contacts() const { return body_->contacts(); }
+
+std::vector<std::string> Simulator::sensors() const {
+  std::vector<std::string> names;
+  names.reserve(slots_.size());
+  for (const Slot& slot : slots_) names.push_back(slot.name);
+  return names;
+}
+
+// What the thrusters' driver would send now, and what the propellers make of it at the true voltage.
+void Simulator::actuate() {
+  const Utime utime = now();
+  const bool alive = acting_ && seconds_between(acting_->utime, utime) <= acting_->life && acting_->tau.allFinite();
+  const model::Allocated sent = alive ? allocation_.allocate(acting_->tau, told_voltage_) : allocation_.neutral();
+  complaint_ = allocation_.complaint(sent);
+  scale_ = sent.scale;
+  Thrusters told{.utime = utime, .pwm_us = sent.pwm_us, .force = sent.force, .has_tau = true};
+  std::copy(sent.tau.begin(), sent.tau.end(), told.tau.begin());
+  pending_.push_back({utime, order_++, std::move(told)});
+  const double volts = body_->voltage();
+  model::ActuatorForces force(static_cast<Eigen::Index>(sent.force.size()));
+  for (std::size_t i = 0; i < sent.force.size(); ++i) {
+    force[static_cast<Eigen::Index>(i)] = sent.pwm_us.empty()
+                                              ? sent.force[i]
+                                              : vehicle_.curve.force_at(sent.pwm_us[i], vehicle_.thrusters[i].pwm_sign,
+                                                                        volts > 0.0 ? volts : vehicle_.curve.voltage);
+  }
+  body_->drive(force);
+}
+
+void Simulator::take(Slot& slot, Utime until) {
+  for (Utime utime = slot.timing.taken(origin_, slot.count); utime <= until;
+       utime = slot.timing.taken(origin_, ++slot.count)) {
+    if (!slot.timing.works(utime)) continue;
+    Moment moment = body_->at(utime);
+    if (!faults_->effects.empty()) moment.nu_seen = faults_->seen(moment.nu);
+    taken_.clear();
+    slot.sensor->measure(moment, taken_);
+    for (Sample& sample : taken_) {
+      if (const auto* ahrs = std::get_if<Ahrs>(&sample)) latest_ = *ahrs;
+      if (const auto* battery = std::get_if<Battery>(&sample)) told_voltage_ = battery->voltage;
+      pending_.push_back({utime + slot.timing.latency(), order_++, std::move(sample)});
+    }
+  }
+}
+
+void Simulator::deliver(Utime until) {
+  out_.clear();
+  std::sort(pending_.begin(), pending_.end(),
+            [](const Pending& a, const Pending& b) { return a.due != b.due ? a.due < b.due : a.order < b.order; });
+  std::size_t due = 0;
+  while (due < pending_.size() && pending_[due].due <= until) out_.push_back(std::move(pending_[due++].sample));
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(due));
+}
+
+const std::vector<Sample>& Simulator::step() {
+  actuate();
+  const Utime end = now() + interval_;
+  if (now() == origin_) {
+    for (Slot& slot : slots_) take(slot, origin_);
+  }
+  while (now() < end) {
+    body_->step();
+    if (!faults_->effects.empty()) faults_->remember(body_->at(now()).nu);
+    for (Slot& slot : slots_) take(slot, now());
+    for (; next_truth_ <= now(); next_truth_ += truth_period_) {
+      const Moment moment = body_->at(std::max(next_truth_, now() - body_->step_length()));
+      pending_.push_back({moment.utime, order_++,
+                          Truth{.utime = moment.utime,
+                                .p_WB = moment.p_WB,
+                                .q_WB = moment.q_WB,
+                                .nu = moment.nu,
+                                .nu_dot = moment.nu_dot,
+                                .v_WF = moment.v_WF,
+                                .tau_felt = moment.tau_felt}});
+    }
+  }
+  deliver(end);
+  acting_ = heard_;
+  return out_;
+}
+
+Secrets Simulator::secrets() const {
+  Secrets secrets{.theta = body_->model().theta, .effects = body_->model().effects, .contacts = body_->contacts()};
+  secrets.effects.insert(secrets.effects.end(), faults_->effects.begin(), faults_->effects.end());
+  for (const Slot& slot : slots_) {
+    for (const auto& [name, value] : slot.sensor->drawn()) secrets.drawn.emplace_back(slot.name + "." + name, value);
+  }
+  return secrets;
+}
+
+}  // namespace fathom::simulation

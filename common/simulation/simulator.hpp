@@ -1,0 +1,93 @@
+// A vehicle in water at a site: commands in, what its instruments and its thrusters' driver would say out. Stands in
+// for every driver. All times are virtual and begin at Setup::origin; the same inputs give the same bits.
+//
+//   Simulator simulator{vehicle, site, config.section("simulator"), {.seed = 7}};
+//   for (;;) {
+//     for (const Sample& sample : simulator.step()) std::visit(..., sample);   // one control interval
+//     simulator.command(...);                                                   // acts from the end of the next step
+//     on
+//   }
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/thruster_allocation.hpp"
+#include "common/samples/commands.hpp"
+#include "common/simulation/body.hpp"
+#include "common/simulation/sensor.hpp"
+
+namespace fathom::simulation {
+
+struct Setup {
+  std::uint64_t seed{1};
+  std::vector<std::string> hide{};      ///< as hidden_effect() reads them
+  double duration{330.0};               ///< s, planned: only moments of hidden effects depend on it
+  Utime origin{1'700'000'000'000'000};  ///< us, of the run's start
+};
+
+/// Everything that is hidden from the other processes.
+struct Secrets {
+  model::BaseTheta theta;
+  std::vector<model::ActiveEffect> effects;
+  std::vector<std::pair<std::string, double>> drawn;  ///< "sensor.number"
+  ContactCounts contacts;
+};
+
+class Simulator {
+ public:
+  /// `config`: the section `simulator` of config/simulation/*.yaml. InputError names file and line.
+  Simulator(const model::Vehicle& vehicle, const model::Site& site, const Config& config, const Setup& setup);
+  ~Simulator();
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
+  /// Heard now, acts from the end of the next step on: a command that answers the samples of one step acts one control
+  /// interval after they came out, whether the answer took no time or nearly the whole interval. The last one counts.
+  void command(const WrenchCommand& command);
+  /// Advances by one control interval. The samples that have come out by its end, in the order of their arrival; valid
+  /// until the next call.
+  const std::vector<Sample>& step();
+
+  [[nodiscard]] Utime now() const;
+  [[nodiscard]] Utime interval() const { return interval_; }  ///< us
+  [[nodiscard]] Moment moment() const;                        ///< the truth now
+  [[nodiscard]] Secrets secrets() const;
+  [[nodiscard]] const ContactCounts& contacts() const;
+  /// Names of the instruments that are carried here.
+  [[nodiscard]] std::vector<std::string> sensors() const;
+  /// One line about a command that the thrusters cannot follow; empty when they can. Of the last step.
+  [[nodiscard]] const std::string& complaint() const { return complaint_; }
+  /// < 1: a thruster was at its limit in the last step.
+  [[nodiscard]] double scale() const { return scale_; }
+
+ private:
+  struct Slot;
+  struct Pending;
+  struct Faults;
+  void actuate();
+  void take(Slot& slot, Utime until);
+  void deliver(Utime until);
+
+  model::Vehicle vehicle_;  ///< as the others know it
+  model::Vehicle whole_;    ///< with all six degrees of freedom
+  model::Site site_;
+  Utime origin_, interval_;
+  model::ThrusterAllocation allocation_;
+  std::unique_ptr<Body> body_;
+  std::unique_ptr<Faults> faults_;  ///< hidden effects that alter what sensors say
+  Ahrs latest_{};                   ///< newest AHRS sample taken
+  double told_voltage_{};           ///< V, newest BATTERY sample taken
+  Utime truth_period_{}, next_truth_{};
+  std::vector<Slot> slots_;
+  std::vector<Pending> pending_;
+  std::vector<Sample> taken_, out_;
+  std::uint64_t order_{};
+  std::optional<WrenchCommand> heard_, acting_;
+  std::string complaint_;
+  double scale_{1.0};
+};
+
+}  // namespace fathom::simulation

@@ -1,0 +1,60 @@
+#include "processes/simulator/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+
+#include "common/base/error.hpp"
+
+namespace fathom::simulator {
+
+void Options::add_to(CLI::App& app) {
+  app.add_option("--seed", setup.seed, "of every random number (1)");
+  app.add_option("--hide", setup.hide,
+                 "an effect in the truth that the others shall find: NAME or NAME=parameter:value,...")
+      ->take_all()
+      ->expected(1);
+  app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
+  app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wait-for", wait_for, "processes started with --lockstep: wait for each of them")->delimiter(',');
+  app.add_option("--order", orders, "the operator's word at a virtual time: SECONDS=enable, abort, hold, identify")
+      ->take_all()
+      ->expected(1);
+  app.add_option("--out-dir", out_dir, "where truth.json is written");
+}
+
+std::vector<Operator> Options::schedule() const {
+  std::vector<Operator> schedule;
+  for (const std::string& text : orders) {
+    const auto equals = text.find('=');
+    double seconds{};
+    const char* end = text.data() + std::min(equals, text.size());
+    const auto [stop, error] = std::from_chars(text.data(), end, seconds);
+    const std::string word = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const bool known = word == "enable" || word == "abort" || word == "hold" || word == "identify";
+    if (error != std::errc{} || stop != end || !(seconds >= 0.0) || !known) {
+      throw InputError("--order " + text + ": write SECONDS=WORD, WORD one of enable, abort, hold, identify");
+    }
+    schedule.push_back({.utime = utime_after(setup.origin, seconds),
+                        .abort = word == "abort",
+                        .enable = word == "enable" || word == "identify",
+                        .order = word == "abort"    ? ""
+                                 : word == "enable" ? "identify"
+                                                    : word,
+                        .token = token,
+                        .sequence = utime_after(setup.origin, seconds)});
+  }
+  std::stable_sort(schedule.begin(), schedule.end(),
+                   [](const Operator& a, const Operator& b) { return a.utime < b.utime; });
+  return schedule;
+}
+
+void Options::check() const {
+  if (!(setup.duration > 0.0)) throw InputError("--duration: must be positive");
+  if (speed == 0.0 && wait_for.empty()) {
+    throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");
+  }
+}
+
+}  // namespace fathom::simulator

@@ -1,0 +1,32 @@
+// The simulator's own part of the command line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/samples/commands.hpp"
+#include "common/simulation/simulator.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace fathom::simulator {
+
+struct Options {
+  simulation::Setup setup;
+  double speed{1.0};                  ///< of virtual time over the wall's; 0: as fast as the followers answer
+  std::vector<std::string> wait_for;  ///< lockstep with these processes; empty: none is waited for
+  std::vector<std::string> orders;    ///< "TIME=WORD"
+  std::string out_dir;                ///< of truth.json; empty: not written
+  std::string token{};                ///< with which its own orders and those of others are believed
+
+  void add_to(CLI::App& app);
+  /// The operator's orders in the order of their times (their utime). InputError for a bad one.
+  [[nodiscard]] std::vector<Operator> schedule() const;
+  /// InputError for words that do not go together.
+  void check() const;
+};
+
+}  // namespace fathom::simulator

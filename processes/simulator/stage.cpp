@@ -1,0 +1,229 @@
+#include "processes/simulator/stage.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fathom_lcm/ahrs_t.hpp>
+#include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/depth_t.hpp>
+#include <fathom_lcm/dvl_t.hpp>
+#include <fathom_lcm/laser_range_t.hpp>
+#include <fathom_lcm/loads_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/optical_flow_t.hpp>
+#include <fathom_lcm/pose_capture_t.hpp>
+#include <fathom_lcm/ranges_t.hpp>
+#include <fathom_lcm/tag_pose_t.hpp>
+#include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/truth_t.hpp>
+#include <fathom_lcm/usbl_t.hpp>
+
+#include "common/base/error.hpp"
+#include "common/wire/channels.hpp"
+#include "common/wire/minds.hpp"
+#include "common/wire/sensors.hpp"
+
+namespace fathom::simulator {
+namespace {
+
+constexpr double kLook = 0.3;       // s in which another simulator answers
+constexpr double kPatience = 60.0;  // s without an answer: a diagnoser may think for some
+constexpr double kComplain = 5.0;   // s between two lines about who is missing
+constexpr double kTooLate = 0.5;    // intervals behind the wall's clock that count as late
+
+const char* channel_of(const Thrusters&) { return wire::kThrusters; }
+const char* channel_of(const Battery&) { return wire::kBattery; }
+const char* channel_of(const Loads&) { return wire::kLoads; }
+const char* channel_of(const Ahrs&) { return wire::kAhrs; }
+const char* channel_of(const Dvl&) { return wire::kDvl; }
+const char* channel_of(const Depth&) { return wire::kDepth; }
+const char* channel_of(const Usbl&) { return wire::kUsbl; }
+const char* channel_of(const Ranges&) { return wire::kRanges; }
+const char* channel_of(const PoseCapture&) { return wire::kPoseCapture; }
+const char* channel_of(const TagPose&) { return wire::kTagPose; }
+const char* channel_of(const OpticalFlow&) { return wire::kOpticalFlow; }
+const char* channel_of(const LaserRange&) { return wire::kLaserRange; }
+const char* channel_of(const Truth&) { return wire::kTruth; }
+
+void poll_for(std::span<const int> descriptors, int milliseconds) {
+  std::vector<pollfd> watched;
+  watched.reserve(descriptors.size());
+  for (const int each : descriptors) watched.push_back({.fd = each, .events = POLLIN, .revents = 0});
+  poll(watched.data(), watched.size(), milliseconds);
+}
+
+double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace
+
+Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, const Options& options)
+    : process_{process}, simulator_{simulator}, options_{options}, schedule_{options.schedule()}, gate_{options.token} {
+  if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
+}
+
+void Stage::hear(const WrenchCommand& command) { gate_.hear(command, simulator_.now()); }
+
+void Stage::hear(const Operator& order) {
+  if (own_orders_ > 0 && next_order_ > 0 && order.utime == schedule_[next_order_ - 1].utime) {
+    --own_orders_;
+    return;
+  }
+  gate_.hear(order, simulator_.now());
+}
+
+void Stage::hear(const fathom_lcm::lockstep_ack_t& ack) {
+  if (!conductor_) return;
+  conductor_->hear(ack);
+  last_answer_ = Clock::now();
+}
+
+void Stage::hear(const fathom_lcm::process_info_t& info) {
+  if (info.process != "simulator") return;
+  if (++introductions_ == 1) return;  // our own
+  if (state_ == State::kLooking) {
+    throw InputError(
+        "a second simulator was started on this bus at the same time; start one, or give each its own --in");
+  }
+  process_.tell_health();  // the newcomer hears that the bus is taken
+}
+
+void Stage::hear(const fathom_lcm::health_t& health) {
+  const bool alive = health.state == "running" || health.state == "unhealthy";
+  if (state_ != State::kLooking || health.process != "simulator" || !alive) return;
+  throw InputError("another simulator is already running on this bus; stop it, or give each its own --in");
+}
+
+void Stage::wait(std::span<const int> descriptors, int milliseconds) {
+  if (state_ == State::kRunning) {
+    if (milliseconds == 0) return;  // messages are here already
+    if (conductor_) {
+      conduct(descriptors, milliseconds);
+    } else {
+      run(descriptors, milliseconds);
+    }
+    return;
+  }
+  poll_for(descriptors, std::min(milliseconds, 10));
+  const auto now = Clock::now();
+  if (state_ == State::kLooking) {
+    if (seconds(now - began_) < kLook) return;
+    state_ = State::kGathering;
+    last_answer_ = now;
+  }
+  const std::vector<std::string> absent = conductor_ ? conductor_->absent() : std::vector<std::string>{};
+  if (absent.empty()) {
+    state_ = State::kRunning;
+    first_tick_ = last_answer_ = Clock::now();
+    advance();
+  } else if (seconds(now - last_answer_) > kComplain) {
+    last_answer_ = now;
+    std::string names;
+    for (const std::string& each : absent) names += (names.empty() ? "" : ", ") + each;
+    process_.log_warning("waits for " + names + "; start them with --lockstep");
+  }
+}
+
+Stage::Clock::time_point Stage::due() const {
+  if (options_.speed <= 0.0) return first_tick_;
+  const double elapsed = seconds_between(options_.setup.origin, simulator_.now()) / options_.speed;
+  return first_tick_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(elapsed));
+}
+
+void Stage::run(std::span<const int> descriptors, int milliseconds) {
+  const double left = seconds(due() - Clock::now());
+  // Sleeping is for whole milliseconds; what is left of the last one is waited out with open eyes.
+  if (left > 1e-3) return poll_for(descriptors, std::min(milliseconds, static_cast<int>(left * 1e3)));
+  if (left > 0.0) return;
+  if (-left > kTooLate * static_cast<double>(simulator_.interval()) * 1e-6 / options_.speed) ++late_;
+  advance();
+}
+
+// An interval is over when nobody has anything left to handle and what was said to us is here.
+bool Stage::interval_over() const { return conductor_->over() && commands_ >= conductor_->said(wire::kWrenchCommand); }
+
+void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
+  if (const auto phase = conductor_->next()) {
+    process_.publish(runtime::kLockstep, *phase);
+    return;
+  }
+  if (!interval_over()) {
+    poll_for(descriptors, milliseconds);
+    if (seconds(Clock::now() - last_answer_) > kPatience) {
+      throw InputError("lockstep: no answer from " + conductor_->waiting_for() + " for a minute; see what it says");
+    }
+    return;
+  }
+  if (options_.speed > 0.0) return run(descriptors, milliseconds);
+  advance();
+}
+
+void Stage::give_orders() {
+  while (next_order_ < schedule_.size() && schedule_[next_order_].utime <= simulator_.now()) {
+    Operator order = schedule_[next_order_++];
+    order.utime = schedule_[next_order_ - 1].utime = simulator_.now();
+    gate_.hear(order, simulator_.now());
+    ++own_orders_;
+    process_.publish(wire::kOperator, wire::encode(order));
+    said_.emplace_back(wire::kOperator);
+    process_.log_info("operator: " + (order.abort ? std::string{"abort"} : order.order));
+  }
+}
+
+void Stage::publish(const simulation::Sample& sample) {
+  std::visit(
+      [&](const auto& one) {
+        process_.publish(channel_of(one), wire::encode(one));
+        if (conductor_) said_.emplace_back(channel_of(one));
+      },
+      sample);
+}
+
+void Stage::advance() {
+  if (seconds_between(options_.setup.origin, simulator_.now()) >= options_.setup.duration - 1e-9) {
+    process_.stop();
+    return;
+  }
+  const Utime utime = simulator_.now();
+  simulator_.command(
+      {.utime = utime, .tau = gate_.wrench(utime), .life = 2.0 * static_cast<double>(simulator_.interval()) * 1e-6});
+  const std::vector<simulation::Sample>& samples = simulator_.step();
+  said_.clear();
+  give_orders();
+  for (const simulation::Sample& sample : samples) publish(sample);
+  if (conductor_) process_.publish(runtime::kLockstep, conductor_->begin(simulator_.now(), said_));
+  tell_changes();
+}
+
+runtime::Process::Condition Stage::condition() const {
+  const simulation::ContactCounts& contacts = simulator_.contacts();
+  const std::string_view reason = gate_.reason(simulator_.now());
+  char text[160];
+  std::snprintf(text, sizeof text, "t %.1f s, contacts: walls %d, floor %d, surface %d, %s%s",
+                seconds_between(options_.setup.origin, simulator_.now()), contacts.walls, contacts.floor,
+                contacts.surface,
+                reason.empty() ? "thrust as commanded" : "zero thrust: ", std::string{reason}.c_str());
+  std::string unhealthy = simulator_.complaint();
+  if (unhealthy.empty() && late_ > 0) {
+    unhealthy = std::to_string(late_) + " control intervals came late; lower --speed";
+  }
+  return {.unhealthy = unhealthy, .detail = text};
+}
+
+// A change of what reaches the thrusters is said at once.
+void Stage::tell_changes() {
+  const std::string kind = std::string{gate_.reason(simulator_.now())} + "|" + simulator_.complaint();
+  if (kind == told_) return;
+  told_ = kind;
+  if (!simulator_.complaint().empty()) process_.log_warning(simulator_.complaint());
+  process_.tell_health();
+}
+
+void Stage::end() {
+  if (conductor_ && state_ == State::kRunning) {
+    process_.publish(runtime::kLockstep, conductor_->end(simulator_.now()));
+  }
+}
+
+}  // namespace fathom::simulator

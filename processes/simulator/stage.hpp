@@ -1,0 +1,71 @@
+// The simulator on the bus: looks whether it is alone, gathers its followers, and hands out one control interval after
+// the other, at the wall's pace, faster, or as fast as they are answered.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/lockstep_ack_t.hpp>
+#include <fathom_lcm/process_info_t.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/driver/thruster_gate.hpp"
+#include "common/runtime/lockstep.hpp"
+#include "common/runtime/process.hpp"
+#include "common/simulation/simulator.hpp"
+#include "processes/simulator/options.hpp"
+
+namespace fathom::simulator {
+
+class Stage {
+ public:
+  Stage(runtime::Process& process, simulation::Simulator& simulator, const Options& options);
+
+  /// A command has arrived, good or not.
+  void count_command() { ++commands_; }
+  void hear(const WrenchCommand& command);
+  void hear(const Operator& order);
+  void hear(const fathom_lcm::lockstep_ack_t& ack);
+  /// Another simulator on the same bus is refused: the newcomer goes.
+  void hear(const fathom_lcm::process_info_t& info);
+  void hear(const fathom_lcm::health_t& health);
+
+  /// In place of the runtime's waiting.
+  void wait(std::span<const int> descriptors, int milliseconds);
+  [[nodiscard]] runtime::Process::Condition condition() const;
+  void end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  enum class State { kLooking, kGathering, kRunning };
+
+  void run(std::span<const int> descriptors, int milliseconds);
+  void conduct(std::span<const int> descriptors, int milliseconds);
+  void advance();
+  void give_orders();
+  void publish(const simulation::Sample& sample);
+  void tell_changes();
+  [[nodiscard]] bool interval_over() const;
+  [[nodiscard]] Clock::time_point due() const;
+
+  runtime::Process& process_;
+  simulation::Simulator& simulator_;
+  Options options_;
+  std::vector<Operator> schedule_;
+  std::size_t next_order_{};
+  int own_orders_{};  ///< said by ourselves and still to come back
+  driver::ThrusterGate gate_;
+  std::optional<runtime::Conductor> conductor_;
+  State state_{State::kLooking};
+  Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{};
+  int introductions_{};
+  std::int64_t commands_{};
+  std::vector<std::string> said_;
+  std::int64_t late_{};
+  std::string told_{"?"};
+};
+
+}  // namespace fathom::simulator

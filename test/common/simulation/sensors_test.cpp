@@ -1,0 +1,394 @@
+// What each instrument says against numbers worked out by hand and against its settings, over many seeds.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "common/base/statistics.hpp"
+#include "test/support/dive_site.hpp"
+#include "test/support/timing.hpp"
+
+using namespace fathom;
+using namespace fathom::simulation;
+
+namespace {
+
+constexpr double kExact = 1e-9;
+// A sample standard deviation of n numbers scatters by 1/sqrt(2 n); four of that is met by all but 6 in 100 000.
+double four_sigma(std::size_t n) { return 4.0 / std::sqrt(2.0 * static_cast<double>(n)); }
+
+struct Moments {
+  double sum{}, squares{};
+  std::size_t n{};
+  void add(double x) {
+    sum += x;
+    squares += x * x;
+    ++n;
+  }
+  [[nodiscard]] double mean() const { return sum / static_cast<double>(n); }
+  [[nodiscard]] double sigma() const { return std::sqrt(squares / static_cast<double>(n) - mean() * mean()); }
+};
+
+void check_sigma(const Moments& moments, double wanted) {
+  CAPTURE(moments.n);
+  CHECK(moments.sigma() == doctest::Approx(wanted).epsilon(four_sigma(moments.n)));
+}
+void check_mean(const Moments& moments, double wanted, double sigma) {
+  CHECK(std::abs(moments.mean() - wanted) < 4.0 * sigma / std::sqrt(static_cast<double>(moments.n)));
+}
+
+const model::Vehicle& lbv() {
+  static const model::Vehicle kVehicle = test::vehicle_of_file("seabotix_lbv150");
+  return kVehicle;
+}
+
+/// An instrument alone, with its section's text.
+struct Bench {
+  model::Vehicle vehicle;
+  model::Site site;
+  Ahrs latest{};
+  std::unique_ptr<Sensor> sensor;
+  std::vector<Sample> samples;
+
+  Bench(MakeSensor make, const std::string& text, const std::string& place, std::uint64_t seed = 1,
+        const std::function<void(model::Vehicle&)>& change = {})
+      : vehicle{lbv()}, site{test::site_of_file(place)} {
+    if (change) change(vehicle);
+    const Config config = Config::parse("rate: 100 Hz\nlatency: 0 s\n" + text, "bench.yaml");
+    sensor = make(config, {.vehicle = &vehicle, .site = &site, .seed = seed, .latest = &latest});
+  }
+  /// Attitude and rates as a perfect AHRS tells them, then the measurement.
+  const std::vector<Sample>& measure(const Moment& moment) {
+    latest = {.utime = moment.utime,
+              .w_WB_B = moment.nu.tail<3>(),
+              .q_WB = moment.q_WB,
+              .has_rates = true,
+              .has_specific_force = true,
+              .has_attitude = true};
+    samples.clear();
+    sensor->measure(moment, samples);
+    return samples;
+  }
+};
+
+Moment moment_at(const Eigen::Vector3d& p, const Eigen::Vector3d& euler = Eigen::Vector3d::Zero(),
+                 const Vector6d& nu = Vector6d::Zero(), const Vector6d& nu_dot = Vector6d::Zero()) {
+  Moment moment{.utime = 1'700'000'000'000'000, .p_WB = p};
+  moment.R_WB = rotation_from_euler(euler);
+  moment.q_WB = Eigen::Quaterniond{moment.R_WB};
+  moment.nu = moment.nu_seen = nu;
+  moment.nu_dot = nu_dot;
+  return moment;
+}
+
+const std::string kPerfectAhrs =
+    "gyro_noise: 0 rad/s\ngyro_bias: 0 rad/s\ngyro_bias_walk: 0 rad/s\nforce_noise: 0 m/s^2\nforce_bias: 0 m/s^2\n"
+    "misalignment: 0 rad\ntilt_noise: 0 rad\ntilt_wander: 0 rad\nheading_noise: 0 rad\nheading_wander: 0 rad\n"
+    "wander_time: 1 s\nheading: true\n";
+
+}  // namespace
+
+TEST_CASE("ahrs: at rest and level the accelerometer reads 0 0 -g; nose up it reads g ahead") {
+  Bench bench{make_ahrs, kPerfectAhrs, "tank"};
+  Eigen::Vector3d f = std::get<Ahrs>(bench.measure(moment_at({0, 0, 0.5})).front()).f_B;
+  CHECK((f - Eigen::Vector3d{0.0, 0.0, -9.81}).norm() < kExact);
+  f = std::get<Ahrs>(bench.measure(moment_at({0, 0, 0.5}, {0.0, 0.5 * 3.14159265358979, 0.0})).front()).f_B;
+  CHECK((f - Eigen::Vector3d{9.81, 0.0, 0.0}).norm() < 1e-6);
+}
+
+TEST_CASE("ahrs: specific force at its own place, by hand") {
+  Bench bench{make_ahrs, kPerfectAhrs, "tank", 1, [](model::Vehicle& vehicle) {
+                vehicle.mounts.ahrs->p_BS = {0.3, 0.0, 0.0};
+              }};
+  Vector6d nu = Vector6d::Zero(), nu_dot = Vector6d::Zero();
+  nu[0] = 0.5;      // ahead
+  nu[5] = 1.0;      // turning to starboard: w x v = 0.5 to starboard, centripetal 0.3 backward
+  nu_dot[5] = 2.0;  // and faster: 0.6 to starboard at the arm's end
+  nu_dot[0] = 0.1;
+  const auto sample =
+      std::get<Ahrs>(bench.measure(moment_at({0, 0, 0.5}, Eigen::Vector3d::Zero(), nu, nu_dot)).front());
+  CHECK((sample.f_B - Eigen::Vector3d{0.1 - 0.3, 0.5 + 0.6, -9.81}).norm() < kExact);
+  CHECK((sample.w_WB_B - Eigen::Vector3d{0.0, 0.0, 1.0}).norm() < kExact);
+}
+
+TEST_CASE("ahrs: magnetic heading differs by the site's declination") {
+  std::string text = kPerfectAhrs;
+  text.replace(text.find("heading: true"), 13, "heading: magnetic");
+  Bench bench{make_ahrs, text, "deep"};
+  const auto sample = std::get<Ahrs>(bench.measure(moment_at({0, 0, 5}, {0.0, 0.0, 1.0})).front());
+  const double heading = euler_from_rotation(sample.q_WB.toRotationMatrix()).z();
+  CHECK(std::abs(heading - (1.0 - 4.2 * 3.14159265358979 / 180.0)) < kExact);
+}
+
+TEST_CASE("ahrs: noise, bias and wander are as stated") {
+  Moments gyro, force, bias, tilt;
+  const Moment moment = moment_at({0, 0, 0.5});
+  for (unsigned seed = 1; seed <= test::seeds(120); ++seed) {
+    Bench bench{make_ahrs,
+                "gyro_noise: 0.01 rad/s\ngyro_bias: 0.1 rad/s\ngyro_bias_walk: 0 rad/s\nforce_noise: 0.02 m/s^2\n"
+                "force_bias: 0 m/s^2\nmisalignment: 0 rad\ntilt_noise: 0.003 rad\ntilt_wander: 0.004 rad\n"
+                "heading_noise: 0 rad\nheading_wander: 0 rad\nwander_time: 0.01 s\nheading: true\n",
+                "tank", seed};
+    const double drawn = bench.sensor->drawn().front().second;
+    bias.add(drawn);
+    for (int i = 0; i < 50; ++i) {
+      const auto sample = std::get<Ahrs>(bench.measure(moment).front());
+      gyro.add(sample.w_WB_B.x() - drawn);
+      force.add(sample.f_B.z() + 9.81);
+      tilt.add(rotation_vector_from_quaternion(sample.q_WB).x());
+    }
+  }
+  check_sigma(gyro, 0.01);
+  check_mean(gyro, 0.0, 0.01);
+  check_sigma(force, 0.02);
+  check_sigma(bias, 0.1);
+  // Wander of 4 mrad that forgets within a sample, and 3 mrad of noise: 5 mrad. Its samples hang together a little.
+  CHECK(tilt.sigma() == doctest::Approx(0.005).epsilon(2.0 * four_sigma(tilt.n)));
+}
+
+TEST_CASE("depth: the port's depth less its lever arm, tilted or not; noise and offset as stated") {
+  Bench exact{make_depth, "noise: 0 m\noffset: 0 m\nresolution: 0 m\n", "tank"};
+  CHECK(std::abs(std::get<Depth>(exact.measure(moment_at({0, 0, 0.7}, {0.2, -0.3, 1.0})).front()).z - 0.7) < kExact);
+  Moments all, within;
+  for (unsigned seed = 1; seed <= test::seeds(300); ++seed) {
+    Bench bench{make_depth, "noise: 4 mm\noffset: 10 mm\nresolution: 0 m\n", "tank", seed};
+    const double offset = bench.sensor->drawn().front().second;
+    all.add(offset);
+    for (int i = 0; i < 20; ++i) {
+      within.add(std::get<Depth>(bench.measure(moment_at({0, 0, 0.7})).front()).z - 0.7 - offset);
+    }
+  }
+  check_sigma(all, 0.010);
+  check_sigma(within, 0.004);
+  check_mean(within, 0.0, 0.004);
+}
+
+TEST_CASE("dvl: the velocity of Bo in B whatever its mounting, and the altitude of the instrument") {
+  Bench bench{make_dvl,
+              "beam_noise: 0 m/s\nscale_error: 0\nbias: 0 m/s\nbeam_loss: 0\nnearest: 0.3 m\nfarthest: 80 m\n", "deep"};
+  Vector6d nu;
+  nu << 0.4, -0.2, 0.1, 0.05, -0.04, 0.6;
+  const auto sample = std::get<Dvl>(bench.measure(moment_at({0, 0, 30}, Eigen::Vector3d::Zero(), nu)).front());
+  CHECK(sample.valid);
+  CHECK((sample.v_WB_B - nu.head<3>()).norm() < kExact);
+  CHECK(std::abs(sample.altitude - (60.0 - 30.14)) < 1e-6);
+  CHECK_FALSE(std::get<Dvl>(bench.measure(moment_at({0, 0, 59.7})).front()).valid);  // too near
+}
+
+TEST_CASE("dvl: noise follows from the beams' and their angle; lost beams are survived until two are gone") {
+  // Four beams at 30 degrees: along x two beams with slope sin 30 each see it, sigma / (sqrt(2) sin 30).
+  Moments x, z, scale;
+  std::size_t valid = 0, count = 0;
+  for (unsigned seed = 1; seed <= test::seeds(200); ++seed) {
+    Bench bench{make_dvl,
+                "beam_noise: 10 mm/s\nscale_error: 1 %\nbias: 0 m/s\nbeam_loss: 0\nnearest: 0.3 m\nfarthest: 80 m\n",
+                "deep", seed};
+    scale.add(bench.sensor->drawn().front().second);
+    Bench lossy{make_dvl,
+                "beam_noise: 0 m/s\nscale_error: 0\nbias: 0 m/s\nbeam_loss: 20 %\nnearest: 0.3 m\nfarthest: 80 m\n",
+                "deep", seed};
+    for (int i = 0; i < 30; ++i) {
+      const Eigen::Vector3d v = std::get<Dvl>(bench.measure(moment_at({0, 0, 30})).front()).v_WB_B;
+      x.add(v.x());
+      z.add(v.z());
+      valid += std::get<Dvl>(lossy.measure(moment_at({0, 0, 30})).front()).valid ? 1 : 0;
+      ++count;
+    }
+  }
+  check_sigma(x, 0.010 / (std::sqrt(2.0) * 0.5));
+  check_sigma(z, 0.010 / (2.0 * std::cos(3.14159265358979 / 6.0)));
+  check_sigma(scale, 0.01);
+  const double wanted = 0.8 * 0.8 * 0.8 * 0.8 + 4.0 * 0.2 * 0.8 * 0.8 * 0.8;  // at most one of four is lost
+  const double share = static_cast<double>(valid) / static_cast<double>(count);
+  CHECK(std::abs(share - wanted) < 4.0 * std::sqrt(wanted * (1.0 - wanted) / static_cast<double>(count)));
+}
+
+TEST_CASE("usbl: range and bearing noise across and along the line of sight, outliers, lever arm") {
+  const Eigen::Vector3d p{30.0, 40.0, 2.0};  // 50 m away at the transceiver's depth
+  Bench exact{make_usbl,
+              "range_noise: 0 m\nbearing_noise: 0 rad\nbearing_offset: 0 rad\noutlier: 0\noutlier_size: 0 m\n"
+              "farthest: 100 m\n",
+              "deep"};
+  const auto still = std::get<Usbl>(exact.measure(moment_at(p, {0.1, -0.2, 0.7})).front());
+  CHECK((still.p_WB - p).norm() < kExact);
+  CHECK(exact.measure(moment_at({200, 0, 2})).empty());
+  Moments along, across;
+  std::size_t wild = 0, count = 0;
+  for (unsigned seed = 1; seed <= test::seeds(200); ++seed) {
+    const std::string text = "range_noise: 0.1 m\nbearing_noise: 0.01 rad\nbearing_offset: 0 rad\nfarthest: 100 m\n";
+    Bench bench{make_usbl, text + "outlier: 0\noutlier_size: 0 m\n", "deep", seed};
+    Bench stray{make_usbl, text + "outlier: 10 %\noutlier_size: 100 m\n", "deep", seed};
+    for (int i = 0; i < 20; ++i) {
+      const auto sample = std::get<Usbl>(bench.measure(moment_at(p)).front());
+      const Eigen::Vector3d error = sample.p_WB - p;
+      along.add(error.x() * 0.6 + error.y() * 0.8);
+      across.add(-error.x() * 0.8 + error.y() * 0.6);
+      // sigma_x^2 = (0.1 0.6)^2 + (0.5 0.8)^2
+      CHECK(sample.sigma.x() == doctest::Approx(std::sqrt(0.0036 + 0.16)).epsilon(0.05));
+      wild += (std::get<Usbl>(stray.measure(moment_at(p)).front()).p_WB - p).norm() > 5.0 ? 1 : 0;
+      ++count;
+    }
+  }
+  check_sigma(along, 0.1);
+  // The responder sits 15 cm above Bo, so bearings act on 50.0 m.
+  check_sigma(across, 0.01 * 50.0);
+  CHECK(static_cast<double>(wild) / static_cast<double>(count) == doctest::Approx(0.1).epsilon(0.3));
+}
+
+TEST_CASE("ranges: to each transponder from the transducer, late echoes only longer") {
+  Bench exact{make_ranges, "noise: 0 m\nscale_error: 0\nloss: 0\noutlier: 0\noutlier_size: 0 m\nfarthest: 300 m\n",
+              "deep", 1, [](model::Vehicle& vehicle) {
+                vehicle.mounts.ranges->p_BS = {0.0, 0.0, -2.0};
+              }};
+  const auto sample = std::get<Ranges>(exact.measure(moment_at({40.0, 0.0, 30.0})).front());
+  REQUIRE(sample.range.size() == 5);
+  CHECK(std::abs(sample.range[0] - 30.0) < kExact);  // straight above "north", transducer 2 m above Bo
+  CHECK(std::abs(sample.range[2] - std::hypot(80.0, 30.0)) < kExact);
+  Bench lossy{make_ranges, "noise: 0 m\nscale_error: 0\nloss: 1\noutlier: 0\noutlier_size: 0 m\nfarthest: 300 m\n",
+              "deep"};
+  CHECK(std::get<Ranges>(lossy.measure(moment_at({0, 0, 30})).front()).valid == std::vector<std::uint8_t>(5, 0));
+  Bench late{make_ranges, "noise: 0 m\nscale_error: 0\nloss: 0\noutlier: 1\noutlier_size: 9 m\nfarthest: 300 m\n",
+             "deep", 1, [](model::Vehicle& vehicle) {
+               vehicle.mounts.ranges->p_BS = {0.0, 0.0, -2.0};
+             }};
+  for (int i = 0; i < 50; ++i) {
+    const double range = std::get<Ranges>(late.measure(moment_at({40.0, 0.0, 30.0})).front()).range[0];
+    CHECK(range >= 30.0);
+    CHECK(range <= 39.0);
+  }
+}
+
+TEST_CASE("tags: only those whole in the picture, where they are, from every attitude of the camera") {
+  const std::string text =
+      "corner_noise: 1e-9\nscale_error: 0\nloss: 0\noutlier: 0\noutlier_size: 0 m\nfarthest: 3 m\n";
+  Bench bench{make_tag_pose, text, "tank"};
+  const Moment level = moment_at({0.0, 0.0, 0.75});
+  const auto& camera = bench.vehicle.mounts.cameras.front();
+  // The picture shows 2 x 0.63 m x 320/540 = 0.747 m to the sides and 0.56 m ahead and astern of x = 0.1 m. Tags lie
+  // every 0.45 m from the middle on: one row ahead (x = 0.45 m does not fit: 0.35 + 0.075 > 0.28), only the middle one
+  // is whole.
+  REQUIRE(bench.measure(level).size() == 1);
+  CHECK(std::get<TagPose>(bench.samples.front()).tag == 4 * 5 + 2);
+  for (const Eigen::Vector3d& euler : {Eigen::Vector3d{0.1, -0.15, 0.4}, Eigen::Vector3d{-0.2, 0.1, 2.0}}) {
+    const Moment moment = moment_at({0.3, -0.2, 0.4}, euler);
+    CHECK(bench.measure(moment).size() >= 2);
+    for (const Sample& sample : bench.samples) {
+      const auto& seen = std::get<TagPose>(sample);
+      const model::Tag& tag = *bench.site.tag(seen.tag);
+      const Eigen::Vector3d p_B = camera.mount.p_BS + camera.mount.R_BS * seen.p_CT;
+      CHECK((moment.p_WB + moment.R_WB * p_B - tag.p_WT).norm() < 1e-6);
+      CHECK((moment.R_WB * camera.mount.R_BS * seen.q_CT.toRotationMatrix() - tag.R_WT).norm() < 1e-6);
+    }
+  }
+  CHECK(bench.measure(moment_at({0, 0, 0.75}, {2.5, 0.0, 0.0})).empty());  // looks up
+  CHECK(bench.measure(moment_at({2.45, 0, 0.75})).empty());                // beyond the poster
+}
+
+TEST_CASE("tags: errors follow from the corners' pixels") {
+  Moments across, along;
+  for (unsigned seed = 1; seed <= test::seeds(300); ++seed) {
+    Bench bench{make_tag_pose,
+                "corner_noise: 0.5\nscale_error: 0\nloss: 0\noutlier: 0\noutlier_size: 0 m\nfarthest: 3 m\n", "tank",
+                seed};
+    for (int i = 0; i < 10; ++i) {
+      const auto sample = std::get<TagPose>(bench.measure(moment_at({-0.1, 0.0, 0.75})).front());
+      across.add(sample.p_CT.x());
+      along.add(sample.p_CT.z() - 0.63);
+    }
+  }
+  check_sigma(across, 0.5 * 0.63 * 0.5 / 540.0);
+  check_sigma(along, 0.63 * 0.5 / (std::sqrt(2.0) * 540.0 * 0.15 / 0.63));
+}
+
+TEST_CASE("optical flow: the scene moves against the camera, over its distance, with the lever arm's speed") {
+  Bench bench{make_optical_flow, "noise: 0\nnearest: 0.1 m\nfarthest: 3 m\noutlier: 0\n", "tank"};
+  Vector6d nu = Vector6d::Zero();
+  nu[0] = 0.3;
+  nu[1] = -0.1;
+  nu[5] = 0.5;  // the camera sits 0.10 m ahead of Bo: 0.05 m/s to starboard
+  Moment moment = moment_at({0, 0, 0.75}, Eigen::Vector3d::Zero(), nu);
+  CHECK(bench.measure(moment).empty());  // one picture is no motion
+  const Utime first = moment.utime;
+  moment.utime += 10'000;
+  const auto sample = std::get<OpticalFlow>(bench.measure(moment).front());
+  CHECK(sample.utime == first + 5'000);
+  CHECK(sample.interval == doctest::Approx(0.01));
+  // Camera x to starboard, y astern; 0.63 m above the floor.
+  CHECK(std::abs(sample.flow_C.x() - 0.05 / 0.63) < kExact);
+  CHECK(std::abs(sample.flow_C.y() - 0.3 / 0.63) < kExact);
+}
+
+TEST_CASE("laser: the dot on the floor, tilted or not; triangulation's error grows with the square") {
+  Bench bench{make_laser_range, "dot_noise: 0\nscale_error: 0\nfarthest: 3 m\noutlier: 0\n", "tank"};
+  const auto level = std::get<LaserRange>(bench.measure(moment_at({0, 0, 0.75})).front());
+  CHECK((level.p_CL - Eigen::Vector3d{0.06, 0.0, 0.63}).norm() < kExact);
+  const Moment tilted = moment_at({0.2, 0.1, 0.6}, {0.1, 0.2, 0.5});
+  const auto dot = std::get<LaserRange>(bench.measure(tilted).front());
+  const auto& mount = bench.vehicle.mounts.cameras.front().mount;
+  CHECK(std::abs((tilted.p_WB + tilted.R_WB * (mount.p_BS + mount.R_BS * dot.p_CL)).z() - 1.5) < kExact);
+  Moments z;
+  for (unsigned seed = 1; seed <= test::seeds(300); ++seed) {
+    Bench noisy{make_laser_range, "dot_noise: 0.3\nscale_error: 0\nfarthest: 3 m\noutlier: 0\n", "tank", seed};
+    for (int i = 0; i < 10; ++i) {
+      z.add(std::get<LaserRange>(noisy.measure(moment_at({0, 0, 0.75})).front()).p_CL.z() - 0.63);
+    }
+  }
+  check_sigma(z, 0.63 * 0.63 * 0.3 / (540.0 * 0.06));
+}
+
+TEST_CASE("loads: the tether's pull along each cell's axis") {
+  Bench bench{make_loads, "noise: 0 N\nzero_error: 0 N\n", "tank"};
+  Moment moment = moment_at({0, 0, 0.5});
+  moment.tether_B = {1.0, -2.0, 3.0};
+  CHECK(std::get<Loads>(bench.measure(moment).front()).load == std::vector<double>{1.0, -2.0, 3.0});
+}
+
+TEST_CASE("tether: hidden, its pull is what the load cells show") {
+  auto simulator =
+      test::make_simulator("seabotix_lbv150", "tank",
+                           {.hide = {"tether_tension=stiffness:2,slack_length:1,anchor_N:-2,anchor_E:0,anchor_D:0.75"}},
+                           {{"noise: 0.05 N, zero_error: 0.02 N", "noise: 0 N, zero_error: 0 N"}});
+  const auto loads = test::run<Loads>(*simulator, 0.1);
+  CHECK(loads.front().load[0] == doctest::Approx(-2.0).epsilon(1e-3));  // 2 m away, 1 m slack, 2 N/m, straight astern
+}
+
+TEST_CASE("drop-outs: their share of time is as stated") {
+  // Begins with 1 % per sample at 100 Hz and lasts 0.5 s on average: 1 s of work, then 0.5 s of silence.
+  auto simulator = test::make_simulator("seabotix_lbv150", "tank", {.seed = 9},
+                                        {{"      latency: 6 ms",
+                                          "      latency: 0 ms\n      drop_out: 1 %\n      "
+                                          "drop_out_length: 0.5 s"}});
+  const double seconds = 400.0;
+  const auto ahrs = test::run<Ahrs>(*simulator, seconds);
+  const double share = static_cast<double>(ahrs.size()) / (100.0 * seconds);
+  CHECK(std::abs(share - 2.0 / 3.0) < 0.06);  // about 270 drop-outs: 4 sigma of their total length
+}
+
+TEST_CASE("sensor faults: a hidden latency of the rates reaches the gyro") {
+  const test::Changes quiet{{"gyro_noise: 0.2", "gyro_noise: 0"},
+                            {"gyro_bias: 0.02", "gyro_bias: 0"},
+                            {"gyro_bias_walk: 0.001", "gyro_bias_walk: 0"},
+                            {"misalignment: 0.2", "misalignment: 0"}};
+  auto simulator =
+      test::make_simulator("seabotix_lbv150", "deep", {.hide = {"sensor_latency=variant:rates,latency:0.2"}}, quiet);
+  std::vector<Ahrs> ahrs;
+  std::vector<Truth> truth;
+  Vector6d tau = Vector6d::Zero();
+  tau[5] = 0.5;
+  for (int tick = 0; tick < 200; ++tick) {
+    simulator->command({.utime = simulator->now(), .tau = tau, .life = 1.0});
+    for (const Sample& sample : simulator->step()) {
+      if (const auto* a = std::get_if<Ahrs>(&sample)) ahrs.push_back(*a);
+      if (const auto* t = std::get_if<Truth>(&sample)) truth.push_back(*t);
+    }
+  }
+  int compared = 0;
+  for (const Truth& t : truth) {
+    for (const Ahrs& a : ahrs) {
+      if (a.utime != t.utime + 200'000) continue;
+      CHECK(std::abs(a.w_WB_B.z() - t.nu[5]) < 1e-5);
+      ++compared;
+    }
+  }
+  CHECK(compared > 50);
+}
