@@ -38,7 +38,8 @@ void ThrusterGate::hear(const Operator& order, Utime now) {
   }
   sequence_ = order.sequence;
   if (!order.enable) return;
-  if (!armed_) command_.reset();  // what was asked before is not taken up
+  // What was asked before is not taken up; and a commander that has died makes room for its successor.
+  if (!armed_ || seconds_between(heard_, now) > kPause) command_.reset();
   armed_ = true;
   aborted_ = false;
   contested_.reset();

@@ -21,6 +21,10 @@
 namespace fathom {
 class Config;
 }
+namespace fathom::model {
+struct Mounts;
+struct Site;
+}  // namespace fathom::model
 
 namespace fathom::estimation {
 
@@ -56,6 +60,7 @@ struct NavigatorSettings {
 
 /// Where things are: on the vehicle and at the site.
 struct NavigatorPlaces {
+  [[nodiscard]] static NavigatorPlaces of(const model::Mounts& mounts, const model::Site& site);
   std::map<std::string, CameraMount> cameras{};
   std::map<int, Eigen::Vector3d> tags{};          ///< m, p_WT
   std::optional<double> floor{};                  ///< m, z of a level floor

@@ -1,6 +1,8 @@
 // The section `estimator` of a trial's pipeline, with one section for each aid that is used.
 #include "common/base/config.hpp"
 #include "common/estimation/navigator.hpp"
+#include "common/model/mounts.hpp"
+#include "common/model/site.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -45,6 +47,17 @@ NavigatorSettings NavigatorSettings::from(const Config& config) {
     config.fail("gains", "the paper publishes gains for tags, flow and laser alone; use gains: computed");
   }
   return s;
+}
+
+NavigatorPlaces NavigatorPlaces::of(const model::Mounts& mounts, const model::Site& site) {
+  NavigatorPlaces places;
+  for (const model::CameraMount& camera : mounts.cameras) {
+    places.cameras[camera.name] = {.p_BC = camera.mount.p_BS, .R_BC = camera.mount.R_BS};
+  }
+  for (const model::Tag& tag : site.tags) places.tags[tag.id] = tag.p_WT;
+  places.floor = site.floor;
+  if (mounts.ahrs) places.p_BI = mounts.ahrs->p_BS;
+  return places;
 }
 
 }  // namespace fathom::estimation
