@@ -305,6 +305,15 @@ void Navigator::say(const Node& node) {
   state.p_WB = memory.filter.position();
   state.nu << R_WB.transpose() * memory.filter.velocity(), node.input.w_B;
   state.covariance = memory.filter.covariance_body(R_WB);
+  // What the source that it rests on is off by all the time.
+  const auto systematic = [&](Source source) {
+    const double s = memory.tracks[slot(source)].last ? aid(source).systematic : 0.0;
+    return s * s;
+  };
+  const double across = std::max(systematic(Source::kTagPose), systematic(Source::kUsbl));
+  const double down = std::max({across, systematic(Source::kLaserRange), systematic(Source::kDepth)});
+  const double speed = std::max(systematic(Source::kOpticalFlow), systematic(Source::kDvl));
+  state.covariance.diagonal() += (Vector6d{} << across, across, down, speed, speed, speed).finished();
   const Vector6d sigma = state.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   state.sigma << sigma.head<3>(), Eigen::Vector3d::Constant(settings_.attitude_noise), sigma.tail<3>(),
       Eigen::Vector3d::Constant(settings_.rate_noise);

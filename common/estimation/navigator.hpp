@@ -35,9 +35,10 @@ struct AidSettings {
   double vertical_cutoff{};  ///< rad/s
   double damping{1.0};
   double vertical_damping{1.0};
-  double noise{};    ///< m or m/s; what the sample itself states is added
-  double delay{};    ///< s after its time that it counts: at least its latency and the channel's jitter
-  double max_age{};  ///< s; older than that it is said to be silent
+  double noise{};       ///< m or m/s; what the sample itself states is added
+  double systematic{};  ///< m or m/s that no averaging removes: part of what is stated, not of the gains
+  double delay{};       ///< s after its time that it counts: at least its latency and the channel's jitter
+  double max_age{};     ///< s; older than that it is said to be silent
 };
 
 struct NavigatorSettings {

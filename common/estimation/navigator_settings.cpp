@@ -15,6 +15,7 @@ AidSettings aid_from(const Config& config, const std::string& key, bool velocity
   aid.delay = section.not_negative("delay", "s");
   aid.max_age = section.positive("max_age", "s");
   aid.noise = section.not_negative("noise", velocity ? "m/s" : "m");
+  if (section.has("systematic")) aid.systematic = section.not_negative("systematic", velocity ? "m/s" : "m");
   if (!vertical_alone) aid.cutoff = section.positive("cutoff", "rad/s");
   if (key != "flow") aid.vertical_cutoff = section.positive("vertical_cutoff", "rad/s");
   if (velocity) aid.damping = section.positive("damping", "");

@@ -165,7 +165,8 @@ void Identifier::use(const MotionSample& sample) {
 }
 
 ModelEstimate Identifier::model() const {
-  const RecursiveReport report = estimator_.report();
+  RecursiveReport report = estimator_.report();
+  add_scale(report);
   ModelEstimate estimate;
   estimate.utime = model_utime_;
   estimate.updates = estimator_.state().updates;

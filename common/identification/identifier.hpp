@@ -38,10 +38,12 @@ struct IdentifierSettings {
   bool from_zero{false};         ///< begins with all parameters zero and one sigma, as the paper does
   double zero_sigma{10.0};       ///< of every parameter in its own unit (the paper's P_0 = sigma^2 I)
   double residual_memory{30.0};  ///< s over which MODEL's residual statistics look back
-  double freeze_delay{0.5};      ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
+  double velocity_scale{0.0};  ///< share by which u v w may be off in proportion: no residual shows it, intervals must
+  double freeze_delay{0.5};    ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
-  /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, freeze_delay.
+  /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
+  /// freeze_delay.
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -101,6 +103,7 @@ class Identifier {
   void remember(const RowBlock& block);
   void decide(Utime first);
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
+  void add_scale(RecursiveReport& report) const;
   void release();
   void use(const MotionSample& sample);
   [[nodiscard]] int column(std::string_view parameter) const;

@@ -69,6 +69,21 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
   }
 }
 
+// Velocities that are all off by the same share s explain every force as well with masses and linear drag divided by
+// 1 + s, quadratic drag by its square: a direction in which data say nothing, known beforehand to `velocity_scale`.
+void Identifier::add_scale(RecursiveReport& report) const {
+  if (settings_.velocity_scale <= 0.0) return;
+  ParameterVector along = ParameterVector::Zero(report.estimate.size());
+  for (Eigen::Index i = 0; i < along.size(); ++i) {
+    const model::BaseParameter parameter = parameters_[static_cast<std::size_t>(i)];
+    if (model::axis(parameter) > 2 || model::index(parameter) >= model::index(model::BaseParameter::W_B)) continue;
+    const bool quadratic = model::index(parameter) >= model::index(model::BaseParameter::X_uu);
+    along(i) = settings_.velocity_scale * (quadratic ? 2.0 : 1.0) * report.estimate(i);
+  }
+  report.covariance += along * along.transpose();
+  report.sigma = report.covariance.diagonal().cwiseSqrt();
+}
+
 void Identifier::remember(const RowBlock& block) {
   const double keep = std::exp(-settings_.stride / settings_.residual_memory);
   for (const Row& row : block.view()) {

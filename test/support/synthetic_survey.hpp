@@ -62,13 +62,13 @@ inline estimation::NavigatorSettings survey_settings(bool shallow) {
   s.largest_position_sigma = 0.5;
   s.largest_velocity_sigma = 0.2;
   if (shallow) {
-    s.tags = {true, 4.0, 4.0, 1.0, 1.0, 0.008, 0.06, 1.0};
-    s.flow = {true, 4.0, 0.0, 3.0, 1.0, 0.002, 0.06, 1.0};
-    s.laser = {true, 0.0, 2.0, 1.0, 1.0, 0.0, 0.06, 1.0};
+    s.tags = {true, 4.0, 4.0, 1.0, 1.0, 0.008, 0.0, 0.06, 1.0};
+    s.flow = {true, 4.0, 0.0, 3.0, 1.0, 0.002, 0.0, 0.06, 1.0};
+    s.laser = {true, 0.0, 2.0, 1.0, 1.0, 0.0, 0.0, 0.06, 1.0};
   } else {
-    s.usbl = {true, 0.1, 0.1, 1.0, 1.0, 0.0, 0.8, 5.0};
-    s.dvl = {true, 2.0, 2.0, 1.0, 1.0, 0.006, 0.25, 1.0};
-    s.depth = {true, 0.0, 2.0, 1.0, 1.0, 0.01, 0.02, 1.0};
+    s.usbl = {true, 0.1, 0.1, 1.0, 1.0, 0.0, 0.0, 0.8, 5.0};
+    s.dvl = {true, 2.0, 2.0, 1.0, 1.0, 0.006, 0.0, 0.25, 1.0};
+    s.depth = {true, 0.0, 2.0, 1.0, 1.0, 0.01, 0.0, 0.02, 1.0};
   }
   return s;
 }
