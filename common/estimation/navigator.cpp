@@ -311,7 +311,9 @@ void Navigator::say(const Node& node) {
     return s * s;
   };
   const double across = std::max(systematic(Source::kTagPose), systematic(Source::kUsbl));
-  const double down = std::max({across, systematic(Source::kLaserRange), systematic(Source::kDepth)});
+  // Depth from pressure takes the vertical from the fixes.
+  const double depth = systematic(Source::kDepth);
+  const double down = depth > 0.0 ? depth : std::max(across, systematic(Source::kLaserRange));
   const double speed = std::max(systematic(Source::kOpticalFlow), systematic(Source::kDvl));
   state.covariance.diagonal() += (Vector6d{} << across, across, down, speed, speed, speed).finished();
   const Vector6d sigma = state.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

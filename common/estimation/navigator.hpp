@@ -111,6 +111,7 @@ class Navigator {
   /// What is remembered of one source.
   struct Track {
     std::optional<Utime> last;
+    int accepted{};
     int refused{};
     int repeated{};
     bool moving{};  // when the repetition began
@@ -147,6 +148,8 @@ class Navigator {
   void use_laser(Memory& memory, const Measurement& m, const Input& input) const;
   [[nodiscard]] AxisGains gains(Source source, double interval, bool velocity_is_measured_vertically) const;
   [[nodiscard]] bool passes(Track& track, double worst) const;
+  /// True when so many were refused in a row that the estimate must be the one that is wrong.
+  [[nodiscard]] static bool outvoted(const Track& track);
   [[nodiscard]] bool frozen(Memory& memory, const Measurement& m, const Input& input) const;
   [[nodiscard]] const AidSettings& aid(Source source) const;
   void say(const Node& node);

@@ -10,6 +10,7 @@ namespace fathom::estimation {
 namespace {
 
 constexpr int kPatience = 8;              // refused in a row before the estimate is taken to be the one that is wrong
+constexpr int kWitness = 3;               // accepted samples that make a source trusted
 constexpr double kMoving = 0.01;          // m/s
 constexpr double kLongestInterval = 1.0;  // s for gains: beyond, they are as good as one
 constexpr double kStartSigma = 0.5;       // m/s: what vehicles of this size do
@@ -183,9 +184,13 @@ AxisGains Navigator::gains(Source source, double interval, bool) const {
   return k;
 }
 
+// A source that has hardly been heard, perhaps beginning with a wild sample, is no witness against its next ones.
+bool Navigator::outvoted(const Track& track) { return track.refused > (track.accepted < kWitness ? 1 : kPatience); }
+
 bool Navigator::passes(Track& track, double worst) const {
   if (worst <= settings_.gate) {
     track.refused = 0;
+    ++track.accepted;
     return true;
   }
   ++track.rejected[kGated];
@@ -210,7 +215,7 @@ void Navigator::use_position(Memory& memory, const Measurement& m, const Eigen::
     worst = std::max(worst, std::abs(innovation[i]) / spread);
   }
   if (!passes(track, worst)) {
-    if (track.refused <= kPatience) return;
+    if (!outvoted(track)) return;
     memory.filter.set_position(p_WB, axes, variance);
     track.refused = 0;
     track.last = m.utime;
@@ -237,7 +242,7 @@ void Navigator::use_velocity(Memory& memory, const Measurement& m, const Eigen::
     worst = std::max(worst, std::abs(innovation[i]) / spread);
   }
   if (!passes(track, worst)) {
-    if (track.refused <= kPatience) return;
+    if (!outvoted(track)) return;
     memory.filter.set_velocity(memory.filter.velocity() + R_WB * innovation, axes, variance);
     track.refused = 0;
     track.last = m.utime;

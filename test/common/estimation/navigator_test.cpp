@@ -263,6 +263,19 @@ TEST_CASE("navigator: an attitude sensor that froze gives no state, and what com
   CHECK(judge(states, 1, 14.0).worst_position < 0.05);
 }
 
+TEST_CASE("navigator: a first fix that is wild is outvoted by the next two") {
+  bool first = true;
+  const auto spoil = [&](test::SurveySample& s, double) {
+    if (auto* usbl = std::get_if<Usbl>(&s); usbl != nullptr && first) {
+      usbl->p_WB.x() += 12.0;
+      first = false;
+    }
+    return true;
+  };
+  const auto states = run({.duration = 20.0, .shallow = false, .spoil = spoil}, test::survey_settings(false));
+  CHECK(judge(states, 1, 5.0).worst_position < 0.4);
+}
+
 TEST_CASE("navigator: clocks that jump forward or back make no state wrong") {
   auto arrivals = test::synthetic_survey({.duration = 20.0});
   for (auto& arrival : arrivals) {  // a camera whose clock is an hour ahead for a while
