@@ -136,6 +136,7 @@ class ThrusterDriver final : public devices::Output {
   [[nodiscard]] runtime::Process::Condition condition() const {
     std::string unhealthy;
     if (watch_) unhealthy = watch_->unhealthy(steady_seconds(), "", parser_->complaint());
+    if (unhealthy.empty()) unhealthy = lacking_;
     const std::string_view reason = gate_.reason(wall_clock());
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {
@@ -174,6 +175,7 @@ class ThrusterDriver final : public devices::Output {
     const Vector6d tau = gate_.wrench(utime);
     const model::Allocated allocated =
         gate_.reason(utime).empty() ? allocation_.allocate(tau, voltage(now)) : allocation_.neutral();
+    lacking_ = allocation_.complaint(allocated);
     send(allocated, tau * allocated.scale, now);
     const bool reported = now - feedback_at_ < kFeedback;  // what the vehicle says it applied counts more
     if (!reported && way_ != Way::kRcOverride) tell(allocated, utime);
@@ -243,6 +245,7 @@ class ThrusterDriver final : public devices::Output {
   std::optional<Watch> watch_;
   Utime arrival_{};
   double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
+  std::string lacking_;  ///< what was commanded and the thrusters cannot give
   std::string said_{"?"};
   std::unique_ptr<link::Link> link_;  // last: its handlers use the others
 };

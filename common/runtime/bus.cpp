@@ -84,7 +84,10 @@ std::vector<std::string> MergedLogs::warnings() const {
 LiveInput::LiveInput(const std::vector<Url>& urls, const std::vector<Subscription>& subscriptions) {
   slots_.reserve(subscriptions.size());
   for (const Subscription& subscription : subscriptions) {
-    slots_.push_back({.owner = this, .index = slots_.size(), .capacity = subscription.capacity});
+    slots_.push_back({.owner = this,
+                      .index = slots_.size(),
+                      .capacity = subscription.capacity,
+                      .many = subscription.channel.find('*') != std::string::npos});
   }
   if (slots_.empty()) return;  // nothing to hear: a driver that writes to a file needs no bus
   for (const Url& url : urls) {
@@ -99,17 +102,18 @@ LiveInput::LiveInput(const std::vector<Url>& urls, const std::vector<Subscriptio
 
 LiveInput::~LiveInput() = default;
 
-void LiveInput::receive(const lcm::ReceiveBuffer* buffer, const std::string&, Slot* slot) {
+void LiveInput::receive(const lcm::ReceiveBuffer* buffer, const std::string& channel, Slot* slot) {
   try {
-    slot->owner->push(*slot, *buffer);
+    slot->owner->push(*slot, *buffer, channel);
   } catch (...) {
     slot->owner->failure_ = std::current_exception();
   }
 }
 
-void LiveInput::push(Slot& slot, const lcm::ReceiveBuffer& buffer) {
+void LiveInput::push(Slot& slot, const lcm::ReceiveBuffer& buffer, const std::string& channel) {
   const auto* data = static_cast<const std::uint8_t*>(buffer.data);
-  queue_.push_back({.subscription = slot.index, .bytes = {data, data + buffer.data_size}});
+  queue_.push_back(
+      {.subscription = slot.index, .bytes = {data, data + buffer.data_size}, .channel = slot.many ? channel : ""});
   if (slot.waiting < slot.capacity) {
     ++slot.waiting;
   } else {

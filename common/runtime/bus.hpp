@@ -59,6 +59,7 @@ class LiveInput {
   struct Message {
     std::size_t subscription{};
     std::vector<std::uint8_t> bytes;
+    std::string channel{};  ///< of a subscription to many channels
   };
 
   LiveInput(const std::vector<Url>& urls, const std::vector<Subscription>& subscriptions);
@@ -81,12 +82,13 @@ class LiveInput {
     LiveInput* owner{};
     std::size_t index{};
     std::size_t capacity{};
+    bool many{false};          ///< channels: the message must say which
     std::size_t waiting{};     ///< messages that will be delivered
     std::size_t superseded{};  ///< messages in the queue, the oldest ones, that will not
     std::uint64_t dropped{};
   };
   static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel, Slot* slot);
-  void push(Slot& slot, const lcm::ReceiveBuffer& buffer);
+  void push(Slot& slot, const lcm::ReceiveBuffer& buffer, const std::string& channel);
   void drain();
 
   std::vector<Slot> slots_;  ///< never resized once liblcm holds their addresses

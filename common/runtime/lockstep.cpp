@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/runtime/recorder.hpp"
 
 namespace fathom::runtime {
 namespace {
@@ -115,6 +116,11 @@ void Conductor::hear(const fathom_lcm::lockstep_ack_t& ack) {
       return;
     }
     heard_[ack.process] = ack.heard;
+    if (ack.heard == std::vector<std::string>{kEveryChannel}) recorded_[ack.process] = -1;
+    return;
+  }
+  if (const auto recorder = recorded_.find(ack.process); recorder != recorded_.end()) {
+    recorder->second = ack.tick;
     return;
   }
   if (ack.tick != phase_.tick || ack.phase != phase_.phase) return;
@@ -162,8 +168,15 @@ std::optional<fathom_lcm::lockstep_t> Conductor::next() {
   }
   ++phase_.phase;
   call();
-  if (waiting_for_.empty()) return {};
+  if (waiting_for_.empty() && (recorded_.empty() || phase_.channel.empty())) return {};
   return phase_;
+}
+
+// A recorder is not waited for in each interval, but it must not fall behind what the bus can hold.
+bool Conductor::over() const {
+  return waiting_for_.empty() && !answered_ && std::all_of(recorded_.begin(), recorded_.end(), [&](const auto& each) {
+           return each.second + kRecorderBehind > phase_.tick;
+         });
 }
 
 std::int64_t Conductor::said(const std::string& channel) const {
@@ -171,7 +184,10 @@ std::int64_t Conductor::said(const std::string& channel) const {
   return found == total_.end() ? 0 : found->second;
 }
 
-std::string Conductor::waiting_for() const { return list(waiting_for_); }
+std::string Conductor::waiting_for() const {
+  if (!waiting_for_.empty()) return list(waiting_for_);
+  return recorded_.empty() ? "anybody" : recorded_.begin()->first;
+}
 
 fathom_lcm::lockstep_t Conductor::end(Utime utime) const {
   fathom_lcm::lockstep_t last{};

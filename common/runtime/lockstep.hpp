@@ -61,6 +61,9 @@ class Follower {
 /// The simulator's side: who has to answer, and when a control interval is over.
 class Conductor {
  public:
+  static constexpr std::int64_t kRecorderEvery = 8;    ///< intervals after which a recorder tells how far it is
+  static constexpr std::int64_t kRecorderBehind = 64;  ///< intervals that it may be behind
+
   /// `names`: the processes to wait for; what they say in one phase is handled in this order.
   explicit Conductor(std::vector<std::string> names);
 
@@ -73,7 +76,7 @@ class Conductor {
   /// The phase to be published next; nothing while answers are missing or when the interval is over.
   [[nodiscard]] std::optional<fathom_lcm::lockstep_t> next();
   /// Nobody has anything left to handle.
-  [[nodiscard]] bool over() const { return waiting_for_.empty() && !answered_; }
+  [[nodiscard]] bool over() const;
   /// Messages that were said on a channel by all since the start.
   [[nodiscard]] std::int64_t said(const std::string& channel) const;
   /// Who has not answered yet, for an operator.
@@ -87,6 +90,7 @@ class Conductor {
   std::map<std::string, std::vector<std::string>> heard_;  ///< by process
   std::map<std::string, std::vector<std::string>> said_;   ///< in this phase, by process
   std::map<std::string, std::int64_t> total_;
+  std::map<std::string, std::int64_t> recorded_;  ///< newest interval that a recorder has written, by its name
   std::vector<std::string> waiting_for_;
   fathom_lcm::lockstep_t phase_{};
   bool answered_{false};  ///< all have answered a phase and next() has not been asked yet

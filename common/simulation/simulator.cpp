@@ -103,6 +103,7 @@ struct Simulator::Slot {
   Timing timing;
   std::unique_ptr<Sensor> sensor;
   std::int64_t count{};
+  std::vector<Sample> held{};  ///< what it said last, for one that freezes
 };
 
 struct Simulator::Pending {
@@ -171,6 +172,7 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
   told_voltage_ = battery.full;
   truth_period_ = utime_after(0, 1.0 / config.positive("truth_rate", "Hz"));
   next_truth_ = origin_;
+  for (const std::string& text : setup.fail) failures_.push_back(Failure::parse(text));
   const Config sensors = config.section("sensors");
   for (const SensorKind& kind : sensor_kinds()) {
     if (!sensors.has(kind.name)) continue;
@@ -179,6 +181,11 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
     auto sensor = kind.make(one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_});
     if (!carried_at(one, site_)) sensor.reset();
     if (sensor) slots_.push_back({kind.name, std::move(timing), std::move(sensor)});
+  }
+  for (const Failure& failure : failures_) {
+    if (std::none_of(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.name == failure.sensor; })) {
+      throw InputError("--fail " + failure.sensor + ": this instrument is not carried at " + site_.name);
+    }
   }
 }
 
@@ -226,12 +233,27 @@ void Simulator::take(Slot& slot, Utime until) {
     if (!faults_->effects.empty()) moment.nu_seen = faults_->seen(moment.nu);
     taken_.clear();
     slot.sensor->measure(moment, taken_);
-    for (Sample& sample : taken_) {
+    for (const Sample& sample : taken_) {
       if (const auto* ahrs = std::get_if<Ahrs>(&sample)) latest_ = *ahrs;
       if (const auto* battery = std::get_if<Battery>(&sample)) told_voltage_ = battery->voltage;
-      pending_.push_back({utime + slot.timing.latency(), order_++, std::move(sample)});
     }
+    const Utime due = utime + slot.timing.latency() + (failures_.empty() ? 0 : spoil(slot, utime));
+    for (Sample& sample : taken_) pending_.push_back({due, order_++, std::move(sample)});
   }
+}
+
+// Failures of this instrument, applied to what it just said; what they add to its latency.
+Utime Simulator::spoil(Slot& slot, Utime utime) {
+  Utime later = 0;
+  bool frozen = false;
+  for (const Failure& failure : failures_) {
+    if (failure.sensor != slot.name || !failure.acts(seconds_between(origin_, utime))) continue;
+    simulation::fail(failure, utime, taken_, slot.held);
+    frozen = frozen || failure.kind == Failure::Kind::kFrozen;
+    if (failure.kind == Failure::Kind::kDelay) later += utime_after(0, failure.by);
+  }
+  if (!frozen && !taken_.empty()) slot.held = taken_;
+  return later;
 }
 
 void Simulator::deliver(Utime until) {

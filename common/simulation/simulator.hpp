@@ -17,6 +17,7 @@
 #include "common/model/thruster_allocation.hpp"
 #include "common/samples/commands.hpp"
 #include "common/simulation/body.hpp"
+#include "common/simulation/failure.hpp"
 #include "common/simulation/sensor.hpp"
 
 namespace fathom::simulation {
@@ -24,6 +25,7 @@ namespace fathom::simulation {
 struct Setup {
   std::uint64_t seed{1};
   std::vector<std::string> hide{};      ///< as hidden_effect() reads them
+  std::vector<std::string> fail{};      ///< as Failure::parse() reads them
   double duration{330.0};               ///< s, planned: only moments of hidden effects depend on it
   Utime origin{1'700'000'000'000'000};  ///< us, of the run's start
 };
@@ -69,6 +71,7 @@ class Simulator {
   struct Faults;
   void actuate();
   void take(Slot& slot, Utime until);
+  [[nodiscard]] Utime spoil(Slot& slot, Utime utime);
   void deliver(Utime until);
 
   model::Vehicle vehicle_;  ///< as the others know it
@@ -83,6 +86,7 @@ class Simulator {
   Utime truth_period_{}, next_truth_{};
   std::vector<Slot> slots_;
   std::vector<Pending> pending_;
+  std::vector<Failure> failures_;
   std::vector<Sample> taken_, out_;
   std::uint64_t order_{};
   std::optional<WrenchCommand> heard_, acting_;

@@ -33,6 +33,13 @@ void hear(runtime::Process& process, auto& estimator, const std::string& channel
   });
 }
 
+/// A channel that the chosen filter has no use for. It is heard all the same: what a process hears shall not depend on
+/// its configuration.
+template <class Message>
+void ignore(runtime::Process& process, const std::string& channel) {
+  process.on<Message>(channel, [](const Message&) {});
+}
+
 void tell_refused(runtime::Process& process, const std::map<std::string, std::int64_t>& rejected) {
   for (const auto& [reason, count] : rejected) {
     process.log_info(std::to_string(count) + " samples not used: " + reason);
@@ -46,6 +53,10 @@ void run_recorded(runtime::Process& process) {
   hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
   hear<fathom_lcm::dvl_t>(process, estimator, wire::kDvl);
   hear<fathom_lcm::depth_t>(process, estimator, wire::kDepth);
+  ignore<fathom_lcm::usbl_t>(process, wire::kUsbl);
+  ignore<fathom_lcm::tag_pose_t>(process, wire::kTagPose);
+  ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
+  ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
@@ -66,6 +77,7 @@ void run_trial(runtime::Process& process) {
   hear<fathom_lcm::dvl_t>(process, navigator, wire::kDvl);
   hear<fathom_lcm::usbl_t>(process, navigator, wire::kUsbl);
   hear<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
+  ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   process.on_health([&]() -> runtime::Process::Condition {
     std::string detail;
     for (const auto& [reason, count] : navigator.rejected()) {

@@ -14,6 +14,10 @@ void Options::add_to(CLI::App& app) {
                  "an effect in the truth that the others shall find: NAME or NAME=parameter:value,...")
       ->take_all()
       ->expected(1);
+  app.add_option("--fail", setup.fail,
+                 "an instrument that fails: NAME=silent|frozen|nan|delay|jump[,from:S][,to:S][,by:S]")
+      ->take_all()
+      ->expected(1);
   app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
       ->check(CLI::NonNegativeNumber);
@@ -52,6 +56,11 @@ std::vector<Operator> Options::schedule() const {
 
 void Options::check() const {
   if (!(setup.duration > 0.0)) throw InputError("--duration: must be positive");
+  for (std::size_t i = 0; i < wait_for.size(); ++i) {
+    if (std::count(wait_for.begin(), wait_for.end(), wait_for[i]) > 1) {
+      throw InputError("--wait-for: " + wait_for[i] + " stands there twice");
+    }
+  }
   if (speed == 0.0 && wait_for.empty()) {
     throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");
   }

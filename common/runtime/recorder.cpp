@@ -1,0 +1,139 @@
+#include "common/runtime/recorder.hpp"
+
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/runtime/arguments.hpp"
+#include "common/runtime/bus.hpp"
+#include "common/runtime/lockstep.hpp"
+#include "common/runtime/stop_signal.hpp"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr int kWaitMs = 50;
+
+bool is_machinery(const std::string& channel) { return channel == kLockstepAck || channel == "LCM_SELF_TEST"; }
+
+void run(const Arguments& arguments, const std::string& path) {
+  StopSignal stop;
+  Output log{Url::parse("file://" + path, "--file")};
+  Output bus{arguments.out};
+  LiveInput live{arguments.in, {{kEveryChannel, std::numeric_limits<std::size_t>::max()}}};
+  Arrangement arrangement{[&](const std::string& channel, std::vector<std::uint8_t>& bytes, Utime utime) {
+    log.write(channel, bytes, utime);
+  }};
+  Utime newest = 0;  // virtual
+  const auto tell = [&](std::int64_t tick) {
+    fathom_lcm::lockstep_ack_t ack{};
+    ack.utime = newest;
+    ack.process = "recorder";
+    ack.tick = tick;
+    if (tick < 0) {
+      ack.n_heard = 1;
+      ack.heard = {kEveryChannel};
+    }
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(ack.getEncodedSize()));
+    ack.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    bus.write(kLockstepAck, bytes, newest);
+  };
+  tell(-1);
+  auto last_hello = std::chrono::steady_clock::now();
+  std::int64_t told = -1;
+  bool started = false;
+  while (!stop.raised() && !arrangement.ended()) {
+    live.wait(stop.descriptor(), kWaitMs);
+    while (auto message = live.next()) {
+      if (is_machinery(message->channel)) continue;
+      if (message->channel != kLockstep) {
+        arrangement.arrived(message->channel, std::move(message->bytes));
+        continue;
+      }
+      fathom_lcm::lockstep_t phase{};
+      const int length = static_cast<int>(message->bytes.size());
+      if (phase.decode(message->bytes.data(), 0, length) != length) continue;
+      started = true;
+      newest = phase.utime;
+      arrangement.announced(phase);
+    }
+    if (arrangement.tick() >= told + Conductor::kRecorderEvery) tell(told = arrangement.tick());
+    const auto now = std::chrono::steady_clock::now();
+    if (!started && now - last_hello >= std::chrono::milliseconds{200}) {
+      last_hello = now;
+      tell(-1);
+    }
+  }
+  log.finish();
+}
+
+}  // namespace
+
+void Arrangement::put(const std::string& channel, Utime utime) {
+  auto& waiting = waiting_[channel];
+  write_(channel, waiting.front(), utime);
+  waiting.pop_front();
+  ++count_;
+}
+
+void Arrangement::arrived(const std::string& channel, std::vector<std::uint8_t> bytes) {
+  waiting_[channel].push_back(std::move(bytes));
+  write_complete();
+}
+
+void Arrangement::announced(const fathom_lcm::lockstep_t& phase) {
+  if (phase.phase < 0) {
+    ended_ = true;
+  } else {
+    phases_.push_back(phase);
+  }
+  write_complete();
+}
+
+void Arrangement::write_complete() {
+  while (!phases_.empty()) {
+    const fathom_lcm::lockstep_t& phase = phases_.front();
+    std::map<std::string, std::size_t> wanted;
+    for (const std::string& channel : phase.channel) ++wanted[channel];
+    for (const auto& [channel, count] : wanted) {
+      if (waiting_[channel].size() < count) return;
+    }
+    utime_ = phase.utime;
+    for (auto& [channel, messages] : waiting_) {  // from outside of lockstep: an operator, health
+      while (phase.phase == 0 && is_free_channel(channel) && messages.size() > wanted[channel]) put(channel, utime_);
+    }
+    for (const std::string& channel : phase.channel) put(channel, utime_);
+    if (phase.phase == 0) tick_ = phase.tick;
+    phases_.pop_front();
+  }
+  if (!ended_) return;
+  for (auto& [channel, messages] : waiting_) {
+    while (!messages.empty()) put(channel, utime_);  // said at the end of the run
+  }
+}
+
+int recorder_main(int argc, const char* const* argv) {
+  spdlog::logger logger{"recorder", std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
+  logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
+  try {
+    std::string path;
+    const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
+      app.add_option("--file", path, "the log to be written")->required();
+    });
+    if (!arguments) return 0;
+    if (!arguments->in.front().live()) throw InputError("--in: a recorder hears a live bus");
+    if (!arguments->lockstep) throw InputError("--lockstep is missing: in real time lcm-logger records");
+    run(*arguments, path);
+    return 0;
+  } catch (const std::exception& error) {
+    logger.critical(error.what());
+    return 1;
+  }
+}
+
+}  // namespace fathom::runtime

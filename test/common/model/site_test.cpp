@@ -1,0 +1,104 @@
+// Sites and mounts: what the repository's files say, and what is refused.
+#include "common/model/site.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/model/mounts.hpp"
+#include "common/model/vehicle.hpp"
+#include "test/support/scratch.hpp"
+
+using namespace fathom;
+using namespace fathom::model;
+
+namespace {
+
+const std::string kSites = std::string{FATHOM_SOURCE_DIR} + "/config/sites/";
+constexpr double kExact = 1e-12;
+
+std::string complaint(const std::string& from, const std::string& to) {
+  const test::Scratch scratch;
+  std::string text = test::read_bytes(kSites + "tank.yaml");
+  REQUIRE(text.find(from) != std::string::npos);
+  text.replace(text.find(from), from.size(), to);
+  test::write_bytes(scratch.path("site.yaml"), text);
+  return test::complaint_of<InputError>([&] { static_cast<void>(Site::load(scratch.path("site.yaml"))); });
+}
+
+std::string mount_complaint(const std::string& text) {
+  return test::complaint_of<InputError>([&] {
+    const Config config = Config::parse(text, "v.yaml");
+    static_cast<void>(Mounts::from(config));
+    config.finish();
+  });
+}
+
+}  // namespace
+
+TEST_CASE("site: the paper's tank, its poster on the floor readable from above with north on top") {
+  const Site tank = Site::load(kSites + "tank.yaml");
+  CHECK(tank.north - tank.south == 5.0);
+  CHECK(tank.east - tank.west == 3.0);
+  CHECK(tank.depth() == 1.5);
+  CHECK_FALSE(tank.transceiver);
+  REQUIRE(tank.tags.size() == 45);
+  // The first is at the top left: north-west. Numbers rise to the east, then to the south.
+  CHECK((tank.tag(0)->p_WT - Eigen::Vector3d{1.8, -0.9, 1.5}).norm() < kExact);
+  CHECK((tank.tag(1)->p_WT - Eigen::Vector3d{1.8, -0.45, 1.5}).norm() < kExact);
+  CHECK((tank.tag(5)->p_WT - Eigen::Vector3d{1.35, -0.9, 1.5}).norm() < kExact);
+  CHECK((tank.tag(0)->R_WT.col(0) - Eigen::Vector3d::UnitY()).norm() < kExact);  // x: east
+  CHECK((tank.tag(0)->R_WT.col(1) + Eigen::Vector3d::UnitX()).norm() < kExact);  // y: south
+  CHECK((tank.tag(0)->R_WT.col(2) - Eigen::Vector3d::UnitZ()).norm() < kExact);  // z: into the floor
+  CHECK(tank.tag(45) == nullptr);
+}
+
+TEST_CASE("site: open water has no walls, a transceiver and transponders") {
+  const Site deep = Site::load(kSites + "deep.yaml");
+  CHECK(std::isinf(deep.north));
+  CHECK(std::isinf(deep.west));
+  CHECK(deep.tags.empty());
+  REQUIRE(deep.transceiver);
+  CHECK(deep.transponders.size() == 5);
+  CHECK(deep.depth() == 60.0);
+}
+
+TEST_CASE("site: bad lines are refused with their number") {
+  CHECK(complaint("floor: 1.5 m}", "floor: -1.5 m}").find("site.yaml:4: 'floor' must lie below the surface") !=
+        std::string::npos);
+  CHECK(complaint("north: 2.5 m", "north: -3 m").find("the north wall must lie north of the south wall") !=
+        std::string::npos);
+  CHECK(complaint("density: 998 kg/m^3", "density: 998").find("density") != std::string::npos);
+  CHECK(complaint("pitch: 0.45 m", "pitch: 0.1 m").find("the tags overlap") != std::string::npos);
+  CHECK(complaint("declination", "declinatoin").find("did you mean 'declination'") != std::string::npos);
+  CHECK(complaint("rows: 9", "rows: 0").find("'rows' must be positive") != std::string::npos);
+  CHECK(complaint("poster:", "tags: [{id: 3, size: 0.1 m, position: 0 0 1 m, rotation: 0 0 0 deg}]\nposter:")
+            .find("two tags have the number 3") != std::string::npos);
+}
+
+TEST_CASE("mounts: a camera that looks down with the picture's top ahead; a velocity log turned by 45 degrees") {
+  const Vehicle vehicle = Vehicle::load(std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/seabotix_lbv150.yaml");
+  const CameraMount* camera = vehicle.mounts.camera("down");
+  REQUIRE(camera != nullptr);
+  CHECK((camera->mount.R_BS.col(0) - Eigen::Vector3d::UnitY()).norm() < kExact);
+  CHECK((camera->mount.R_BS.col(1) + Eigen::Vector3d::UnitX()).norm() < kExact);
+  CHECK((camera->mount.R_BS.col(2) - Eigen::Vector3d::UnitZ()).norm() < kExact);
+  CHECK(std::abs(vehicle.mounts.dvl->mount.R_BS(0, 0) - std::sqrt(0.5)) < kExact);
+  CHECK(vehicle.mounts.loads.size() == 3);
+  CHECK(vehicle.mounts.camera("up") == nullptr);
+}
+
+TEST_CASE("mounts: bad lines are refused with their number") {
+  const std::string camera = "cameras: [{name: a, position: 0 0 0 m, width: 640, height: 480, focal: 500}]\n";
+  CHECK(mount_complaint(camera + "laser: {camera: b, emitter: 0 0 0 m, axis: 0 0 1}").find("no camera is called 'b'") !=
+        std::string::npos);
+  CHECK(mount_complaint(camera + "laser: {camera: a, emitter: 0 0 0 m, axis: 0 0 2}").find("must be a unit vector") !=
+        std::string::npos);
+  CHECK(mount_complaint("ahrs: {position: 0 0 m}").find("v.yaml:1: 'position' must be three numbers") !=
+        std::string::npos);
+  CHECK(mount_complaint("dvl: {position: 0 0 0 m, beam_angle: 95 deg}").find("stays below 90 deg") !=
+        std::string::npos);
+  CHECK(mount_complaint("depht: {position: 0 0 0 m}").find("did you mean 'depth'") != std::string::npos);
+}
