@@ -85,6 +85,11 @@ void Supervisor::hear(const Health& health) {
   }
 }
 
+void Supervisor::hear(const EffectRanking& ranking) {
+  const bool found = ranking.verdict == "effect" && !ranking.candidates.empty();
+  suspect_ = found ? ranking.candidates.front().name : "";
+}
+
 // An abort needs no permission. Everything else must come from somebody who knows the token, once, and now.
 void Supervisor::hear(const Operator& order) {
   if (order.abort) {
@@ -236,6 +241,7 @@ void Supervisor::judge(double now) {
   if (model_ && model_is_new_) {
     model_is_new_ = false;
     verdict_ = may_leave(mode(), *model_, vehicle_, settings_.leaving);
+    if (!verdict_.missing.empty() && !suspect_.empty()) verdict_.missing.push_back("suspected: " + suspect_);
     if (verdict_.missing.empty() && dwell_ >= settings_.least_dwell) {
       finish_mode(true, "");
       return;

@@ -86,6 +86,8 @@ class Supervisor {
   void hear(const ModelEstimate& model);
   void hear(const Operator& order);
   void hear(const Health& health);
+  /// What the diagnoser suspects is named beside a residual that does not fit.
+  void hear(const EffectRanking& ranking);
   /// A log started over: disarmed, nothing known.
   void reset();
 
@@ -132,6 +134,7 @@ class Supervisor {
   std::optional<ModelEstimate> model_;
   bool model_is_new_{false};
   LeavingVerdict verdict_;
+  std::string suspect_;
   Utime armed_at_{}, last_command_{}, lost_since_{};
   std::size_t mode_{};
   int attempt_{};

@@ -10,6 +10,7 @@
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/usbl_t.hpp>
 
+#include "common/base/config.hpp"
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/estimator.hpp"
 #include "common/estimation/navigator.hpp"
@@ -46,8 +47,8 @@ void tell_refused(runtime::Process& process, const std::map<std::string, std::in
   }
 }
 
-void run_recorded(runtime::Process& process) {
-  estimation::Estimator estimator{estimation::EstimatorSettings::from(process.config()),
+void run_recorded(runtime::Process& process, const Config& config) {
+  estimation::Estimator estimator{estimation::EstimatorSettings::from(config),
                                   estimation::load_corrections(process.config_path("corrections"))};
   hear<fathom_lcm::pose_capture_t>(process, estimator, wire::kPoseCapture);
   hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
@@ -65,10 +66,10 @@ void run_recorded(runtime::Process& process) {
   process.run();
 }
 
-void run_trial(runtime::Process& process) {
+void run_trial(runtime::Process& process, const Config& config) {
   const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
   const model::Site site = model::Site::load(process.config_path("site"));
-  estimation::Navigator navigator{estimation::NavigatorSettings::from(process.config()),
+  estimation::Navigator navigator{estimation::NavigatorSettings::from(config),
                                   estimation::NavigatorPlaces::of(vehicle.mounts, site)};
   hear<fathom_lcm::ahrs_t>(process, navigator, wire::kAhrs);
   hear<fathom_lcm::tag_pose_t>(process, navigator, wire::kTagPose);
@@ -97,6 +98,6 @@ int main(int argc, char** argv) {
     process.publishes<fathom_lcm::state_t>(wire::kState);
     const Config config = process.config();
     const bool trial = config.has("filter") && config.either("filter", "complementary", "recorded");
-    return trial ? run_trial(process) : run_recorded(process);
+    return trial ? run_trial(process, config) : run_recorded(process, config);
   });
 }

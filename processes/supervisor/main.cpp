@@ -1,6 +1,7 @@
 // supervisor: states, the model and the operator's orders in; commands and what they are for out.
 #include <unistd.h>
 
+#include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/health_t.hpp>
 #include <fathom_lcm/model_t.hpp>
@@ -52,6 +53,11 @@ int main(int argc, char** argv) {
       const auto model = wire::decode(message);
       if (!model) return process.reject(wire::kModel);
       supervisor.hear(*model);
+    });
+    process.on<fathom_lcm::effects_t>(wire::kEffects, [&](const auto& message) {
+      const auto effects = wire::decode(message);
+      if (!effects) return process.reject(wire::kEffects);
+      supervisor.hear(*effects);
     });
     process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
       const auto order = wire::decode(message);
