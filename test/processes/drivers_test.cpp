@@ -165,7 +165,8 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
 TEST_CASE("drivers: with the example's configuration each hears and says what docs/messages.md tells, and starts") {
   const Scratch scratch;
   const std::string config = " --log-level error --config " + test::file("config/drivers/example.yaml") + " --config " +
-                             test::file("config/vehicles/bluerov2.yaml");
+                             test::file("config/vehicles/bluerov2.yaml") + " --config " +
+                             test::file("config/operators/simulated.yaml");
   std::string script;
   const std::vector<std::string> drivers{"ahrs_driver",  "dvl_driver",  "usbl_driver",    "range_driver",
                                          "depth_driver", "load_driver", "thruster_driver"};

@@ -32,8 +32,8 @@ const std::string kBus = "udpm://239.255.76.67:7667?ttl=0";
 
 std::string simulator(const std::string& options, const std::string& site = "tank") {
   return program("simulator") + " --config " + file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
-         file("config/sites/" + site + ".yaml") + " --config " + file("config/simulation/seabotix_lbv150.yaml") + " --config " + file("config/operators/simulated.yaml") + " " +
-         options;
+         file("config/sites/" + site + ".yaml") + " --config " + file("config/simulation/seabotix_lbv150.yaml") +
+         " --config " + file("config/operators/simulated.yaml") + " " + options;
 }
 
 std::string pilot() { return std::string{"'"} + FATHOM_BINARY_DIR + "/test/test_pilot'"; }
