@@ -92,6 +92,7 @@ FullTrial run_trial(unsigned seed, bool optimal, double limit, const std::string
       continue;
     const double dt = seconds_between(utime, found->first);
     const StateEstimate& state = found->second;
+    if (!state.valid) continue;
     n += 1.0;
     const Eigen::Vector3d dp = state.p_WB - truth.p_WB - dt * (truth.q_WB * truth.nu.head<3>());
     const Eigen::Vector3d dv = state.nu.head<3>() - truth.nu.head<3>() - dt * truth.nu_dot.head<3>();
