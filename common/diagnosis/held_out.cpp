@@ -34,6 +34,9 @@ std::vector<int> folds_by_run(std::span<const identification::WindowResidual> wi
   return folds;
 }
 
+/// A moment is known from the windows around it alone; no others can stand in for them, so it keeps its value.
+bool is_moment(const identification::FreeParameter& number) { return number.name.ends_with(".onset"); }
+
 int fold_count(std::span<const int> folds) {
   return folds.empty() ? 0 : *std::max_element(folds.begin(), folds.end()) + 1;
 }
@@ -55,7 +58,10 @@ CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& 
   const auto n = static_cast<Eigen::Index>(map.size());
   const Eigen::VectorXd x = map.pack(fit.model);
   all_ = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  for (const identification::ProjectedWindow& window : problem.linearise(fit)) {
+  for (identification::ProjectedWindow& window : problem.linearise(fit)) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (is_moment(map[static_cast<std::size_t>(i)])) window.jacobian.col(i).setZero();
+    }
     windows_.push_back({window.jacobian.transpose() * window.jacobian, window.jacobian.transpose() * window.residual,
                         window.residual.squaredNorm()});
     all_ += windows_.back();
@@ -69,7 +75,7 @@ CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& 
     const auto& free = map[static_cast<std::size_t>(i)];
     const double prior = inflation * std::pow(free.scale / free.prior_sigma, 2);
     all_.information(i, i) += prior;
-    all_.gradient[i] += prior * (x[i] - free.prior_mean / free.scale);
+    if (!is_moment(free)) all_.gradient[i] += prior * (x[i] - free.prior_mean / free.scale);
   }
 }
 

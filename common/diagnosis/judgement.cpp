@@ -13,8 +13,9 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr double kEdge = 0.03;     // of the data's length
-constexpr double kAtLimit = 0.05;  // of a limit: nearer than that, the number wants to be beyond it
+constexpr double kSameStory = 0.5;  // correlation of what two forms of one effect claim
+constexpr double kEdge = 0.03;      // of the data's length
+constexpr double kAtLimit = 0.05;   // of a limit: nearer than that, the number wants to be beyond it
 
 /// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none
 /// did.
@@ -119,11 +120,14 @@ Judged judge(const Screened& screened, const Linearisation& base, int tried) {
   return judged;
 }
 
-void judge_by_fit(Judged& judged, const TrajectoryFit& problem, const FitResult& without,
-                  const CrossValidation& without_checked, const FitResult& with, int tried) {
+void judge_by_odds(Judged& judged, const FitResult& without, const FitResult& with, int tried) {
   const auto parameters = static_cast<int>(judged.effect->parameters().size());
   judged.log_odds = log_odds(without.window_cost, with.window_cost, parameters, tried) - surprise(with.model, judged);
   judged.error_reduction = reduction(without.cost, with.cost);
+}
+
+void judge_by_data_left_out(Judged& judged, const TrajectoryFit& problem, const FitResult& without,
+                            const CrossValidation& without_checked, const FitResult& with) {
   judged.change = prediction_change(problem, without, with);
   judged.lasting = onset_at_edge(problem, with.model, judged);
   const HeldOut carried =
@@ -137,7 +141,13 @@ void find_aliases(Judged& winner, const Screened& best, const std::vector<Screen
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const Screened& other = screened[i];
     const std::string name{other.effect->name()};
-    if (other.effect == best.effect || other.signature.size() != best.signature.size()) continue;
+    if (other.signature.size() != best.signature.size()) continue;
+    if (other.effect == best.effect) {
+      if (other.variant != best.variant && other.signature.dot(best.signature) > kSameStory &&
+          robust_log_likelihood_ratio(other.window_cost, best.window_cost) < kAlternativeLogOdds)
+        winner.other_forms.push_back(other.variant_name);
+      continue;
+    }
     if (other.signature.dot(best.signature) < settings.alias_correlation) continue;
     if (std::find(winner.aliased_with.begin(), winner.aliased_with.end(), name) == winner.aliased_with.end()) {
       winner.aliased_with.push_back(name);

@@ -18,10 +18,13 @@ constexpr double kAlternativeLogOdds = 3.0;  ///< 20 to 1 between two look-alike
 [[nodiscard]] double total(std::span<const double> window_cost);
 /// By the screening alone; `tried` candidates share the prior.
 [[nodiscard]] Judged judge(const Screened& screened, const Linearisation& base, int tried);
-/// By a full fit of it against the fit without it.
-void judge_by_fit(Judged& judged, const identification::TrajectoryFit& problem,
-                  const identification::FitResult& without, const CrossValidation& without_checked,
-                  const identification::FitResult& with, int tried);
+/// Odds and share of the error, by a fit of it against the fit without it.
+void judge_by_odds(Judged& judged, const identification::FitResult& without, const identification::FitResult& with,
+                   int tried);
+/// Whether it moves predictions, and whether it carries over to data left out of its estimate.
+void judge_by_data_left_out(Judged& judged, const identification::TrajectoryFit& problem,
+                            const identification::FitResult& without, const CrossValidation& without_checked,
+                            const identification::FitResult& with);
 /// Log odds that numbers far beyond the ordinary cost: a prior with tails that never rule anything out (Cauchy), free
 /// of charge up to one prior sigma.
 [[nodiscard]] double surprise(const model::Model& model, const Judged& judged);

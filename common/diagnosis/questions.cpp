@@ -13,9 +13,13 @@ using identification::FitResult;
 using identification::TrajectoryFit;
 
 constexpr std::size_t kCoarseWindows = 60;  // enough to tell whether a form leads anywhere
+constexpr double kNearWindow = 2.0;         // s: what a wrong model does in it is still nearly linear
+constexpr std::size_t kNearWindows = 200;   // a trial of 400 s whole, longer ones by an even spread
 constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
 constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
-constexpr double kPromise = 0.5;            // of the smallest reduction: less on the spread of windows promises nothing
+constexpr int kEnoughRefusals = 2;          // by full fits, in the company of different effects
+constexpr double kPromisesMore = 1.25;      // times the gain: then a refused form is asked again
+constexpr double kLeastTrust = 0.01;        // what broke its promise once is still asked last
 
 bool holds(const model::Model& model, const Candidate& candidate) {
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const model::ActiveEffect& active) {
@@ -38,6 +42,13 @@ std::vector<std::size_t> promising(const std::vector<Screened>& rough, const Lin
   return order;
 }
 
+identification::FitSettings near_settings(const Settings& settings) {
+  identification::FitSettings near = settings.fit;
+  near.window = kNearWindow;
+  near.most_windows = kNearWindows;
+  return near;
+}
+
 }  // namespace
 
 std::vector<Candidate> all_candidates(const model::Scene& scene) {
@@ -51,92 +62,174 @@ std::vector<Candidate> all_candidates(const model::Scene& scene) {
   return candidates;
 }
 
-Answers ask(std::span<const Candidate> candidates, const TrajectoryFit& problem, const FitResult& fit,
-            const model::Scene& scene, const Settings& settings) {
+NearView::NearView(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings)
+    : problem{vehicle, train, near_settings(settings)} {}
+
+void NearView::fit(const model::Model& model) { reference = problem.fit(model); }
+
+Answers ask_near(std::span<const Candidate> candidates, const NearView& near, const model::Scene& scene,
+                 const Settings& settings) {
   std::vector<Candidate> asked;
   for (const Candidate& candidate : candidates) {
-    if (!holds(fit.model, candidate)) asked.push_back(candidate);
+    if (!holds(near.reference.model, candidate)) asked.push_back(candidate);
   }
-  const int tried = static_cast<int>(candidates.size());
-  const Linearisation whole{problem, fit};
-  const bool thin = problem.windows().size() > kThinFrom;
-  const Linearisation base = whole.thinned(thin ? kCoarseWindows : problem.windows().size());
-
+  const Linearisation base{near.problem, near.reference};
   Answers answers;
-  answers.screened.resize(asked.size());
+  answers.near.resize(asked.size());
   for_each_index(asked.size(), settings.threads, [&](std::size_t i) {
     const Candidate& form = asked[i];
-    answers.screened[i] = screen(base, *form.effect, form.variant, form.name, form.effect->starts(scene, form.variant));
+    answers.near[i] = screen(base, *form.effect, form.variant, form.name, form.effect->starts(scene, form.variant));
   });
-  for (const Screened& rough : answers.screened) answers.judged.push_back(judge(rough, base, tried));
-  if (thin) {
-    const std::vector<std::size_t> careful = promising(answers.screened, base, settings);
-    for_each_index(careful.size(), settings.threads,
-                   [&](std::size_t k) { answers.screened[careful[k]] = refine(whole, answers.screened[careful[k]]); });
-    for (const std::size_t i : careful) answers.judged[i] = judge(answers.screened[i], whole, tried);
-    // What only the spread of windows was asked about counts by its share, so that forms can be compared.
-    const double scale = total(whole.window_cost()) / std::max(total(base.window_cost()), 1e-300);
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      if (std::find(careful.begin(), careful.end(), i) == careful.end()) answers.screened[i].gain *= scale;
-    }
+  for (const Screened& screened : answers.near) {
+    answers.judged.push_back(judge(screened, base, static_cast<int>(candidates.size())));
+    answers.share.push_back(answers.judged.back().error_reduction);
   }
   answers.fitted.assign(asked.size(), false);
-  for (Judged& judged : answers.judged) judged.reason = refusal(judged, settings);
+  answers.found.resize(asked.size());
   return answers;
 }
 
-void look_afar(Answers& answers, const TrajectoryFit& problem, const FitResult& fit, std::span<const Trial> train,
-               const model::Scene& scene, const Settings& settings, const Progress& progress, double share) {
-  std::optional<TrajectoryFit> coarse;
-  FitResult like, base;
+void ask_whole(Answers& answers, const TrajectoryFit& problem, const FitResult& fit, const model::Scene& scene,
+               int tried, const Settings& settings) {
+  const Linearisation whole{problem, fit};
+  const bool thin = problem.windows().size() > kThinFrom;
+  const Linearisation base = whole.thinned(thin ? kCoarseWindows : problem.windows().size());
+  answers.screened.resize(answers.near.size());
+  for_each_index(answers.near.size(), settings.threads, [&](std::size_t i) {
+    const Screened& form = answers.near[i];
+    answers.screened[i] =
+        screen(base, *form.effect, form.variant, form.variant_name, form.effect->starts(scene, form.variant));
+  });
+  const std::vector<std::size_t> careful =
+      thin ? promising(answers.screened, base, settings) : std::vector<std::size_t>{};
+  for_each_index(careful.size(), settings.threads,
+                 [&](std::size_t k) { answers.screened[careful[k]] = refine(whole, answers.screened[careful[k]]); });
   for (std::size_t i = 0; i < answers.screened.size(); ++i) {
-    Screened& candidate = answers.screened[i];
+    const bool refined = std::find(careful.begin(), careful.end(), i) != careful.end();
+    const Judged judged = judge(answers.screened[i], refined ? whole : base, tried);
+    answers.share[i] = std::max(answers.share[i], judged.error_reduction);
+    if (answers.fitted[i]) continue;
+    answers.judged[i] = judged;
+    answers.judged[i].reason = refusal(judged, settings);
+  }
+}
+
+Coarse::Coarse(const TrajectoryFit& whole, std::span<const Trial> train, const Settings& settings, const FitResult& fit)
+    : whole_{whole}, train_{train}, settings_{settings}, fit_{fit} {}
+
+bool Coarse::useful() const { return whole_.windows().size() > kThinFrom; }
+
+const TrajectoryFit& Coarse::problem() {
+  if (problem_) return *problem_;
+  identification::FitSettings few = settings_.fit;
+  few.most_windows = kCoarseWindows;
+  problem_.emplace(whole_.vehicle(), train_, few);
+  like_.sigma = fit_.sigma;
+  for (const auto& window : problem_->windows()) like_.nu0.push_back(window.window().trial->nu[window.window().start]);
+  reference_ = problem_->fit(fit_.model, &like_);
+  return *problem_;
+}
+
+const FitResult& Coarse::reference() {
+  (void)problem();
+  return reference_;
+}
+
+void look_afar(Answers& answers, Coarse& coarse, const FitResult& fit, const model::Scene& scene,
+               const Progress& progress, double done) {
+  for (std::size_t i = 0; i < answers.screened.size(); ++i) {
+    const Screened& candidate = answers.near[i];
     for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
-      if (!coarse) {
-        identification::FitSettings few = settings.fit;
-        few.most_windows = kCoarseWindows;
-        coarse.emplace(problem.vehicle(), train, few);
-        like.sigma = fit.sigma;
-        for (const auto& window : coarse->windows())
-          like.nu0.push_back(window.window().trial->nu[window.window().start]);
-        base = coarse->fit(fit.model, &like);
-      }
-      progress("looking further at " + std::string(candidate.effect->name()), share);
+      progress("looking further at " + std::string(candidate.effect->name()), done);
       model::Model model = fit.model;
       model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
-      const FitResult far = coarse->fit(model, &like);
-      const double gain = (base.cost - far.cost) / base.cost * fit.cost;
-      if (gain <= candidate.gain) continue;
-      candidate.gain = gain;
-      candidate.start = far.model;
+      const FitResult far = coarse.problem().fit(model, &coarse.reference());
+      const double share = reduction(coarse.reference().cost, far.cost);
+      if (share <= answers.share[i]) continue;
+      answers.share[i] = share;
+      answers.found[i] = far.model;
       answers.fitted[i] = false;
     }
   }
 }
 
-std::vector<std::size_t> worth_fitting(const Answers& answers, const Settings& settings) {
-  const std::vector<Screened>& screened = answers.screened;
+double Promises::expected(const Answers& answers, std::size_t candidate) const {
+  const auto place = kept_.find(answers.near[candidate].effect);
+  const bool trusted = place == kept_.end() || answers.found[candidate];
+  return answers.share[candidate] * (trusted ? 1.0 : place->second);
+}
+
+void Promises::kept(const Answers& answers, std::size_t candidate, double share) {
+  const double promised = answers.share[candidate];
+  if (promised > 0.0) kept_[answers.near[candidate].effect] = std::clamp(share / promised, kLeastTrust, 1.0);
+}
+
+void Promises::refused(const Answers& answers, std::size_t candidate) {
+  Refusal& refusal = refused_[{answers.near[candidate].effect, answers.near[candidate].variant}];
+  ++refusal.times;
+  refusal.share = std::max(refusal.share, answers.share[candidate]);
+  refusal.judged = answers.judged[candidate];
+}
+
+void Promises::recall(Answers& answers) const {
+  for (std::size_t i = 0; i < answers.near.size(); ++i) {
+    const auto known = refused_.find({answers.near[i].effect, answers.near[i].variant});
+    if (known == refused_.end() || known->second.times < kEnoughRefusals) continue;
+    if (answers.share[i] > kPromisesMore * known->second.share) continue;
+    answers.judged[i] = known->second.judged;
+    answers.fitted[i] = true;
+  }
+}
+
+std::vector<std::size_t> worth_fitting(const Answers& answers, const Promises& promises, const Settings& settings,
+                                       Which which) {
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < screened.size(); ++i) {
-    if (answers.judged[i].error_reduction < settings.smallest_reduction && !screened[i].start) continue;
-    const auto same = std::find_if(order.begin(), order.end(),
-                                   [&](std::size_t k) { return screened[k].effect == screened[i].effect; });
+  std::map<const model::Effect*, int> fitted;
+  for (std::size_t i = 0; i < answers.near.size(); ++i) {
+    if (answers.fitted[i]) ++fitted[answers.near[i].effect];
+  }
+  for (std::size_t i = 0; i < answers.near.size(); ++i) {
+    const model::Effect* effect = answers.near[i].effect;
+    const bool from_afar = answers.found[i].has_value();
+    if (answers.fitted[i] || (fitted[effect] >= kCareful && !from_afar)) continue;
+    if (answers.share[i] < settings.smallest_reduction && !from_afar) continue;
+    if (which == Which::kOpen && !answers.judged[i].reason.empty()) continue;
+    if (which == Which::kFromAfar && !from_afar) continue;
+    const auto same =
+        std::find_if(order.begin(), order.end(), [&](std::size_t k) { return answers.near[k].effect == effect; });
     if (same == order.end()) {
       order.push_back(i);
-    } else if (screened[i].gain > screened[*same].gain) {
+    } else if (answers.share[i] > answers.share[*same]) {
       *same = i;
     }
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return screened[a].gain > screened[b].gain; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return promises.expected(answers, a) > promises.expected(answers, b);
+  });
   return order;
 }
 
-model::Model start_of(const FitResult& fit, const Screened& screened) {
-  if (screened.start) return *screened.start;
-  model::Model model = fit.model;
-  model.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
-  return model;
+void name_unfitted(Answers& answers) {
+  for (std::size_t i = 0; i < answers.judged.size(); ++i) {
+    if (answers.judged[i].reason.empty() && !answers.fitted[i])
+      answers.judged[i].reason = "looked at only roughly: others promise more";
+  }
+}
+
+model::Model start_of(const TrajectoryFit& problem, const FitResult& fit, const Answers& answers,
+                      std::size_t candidate) {
+  if (answers.found[candidate]) return *answers.found[candidate];
+  std::vector<const Screened*> views{&answers.near[candidate]};
+  if (!answers.screened.empty()) views.push_back(&answers.screened[candidate]);
+  std::vector<model::Model> proposed;
+  for (const Screened* screened : views) {
+    for (const model::Model* base : {&screened->base, &fit.model}) {
+      proposed.push_back(*base);
+      proposed.back().add({screened->effect, screened->variant, screened->variant_name, screened->theta});
+    }
+  }
+  return *std::min_element(proposed.begin(), proposed.end(),
+                           [&](const auto& a, const auto& b) { return problem.cost(a, fit) < problem.cost(b, fit); });
 }
 
 }  // namespace fathom::diagnosis

@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "common/diagnosis/judgement.hpp"
+#include "common/identification/outlier.hpp"
+
 namespace fathom::diagnosis {
 namespace {
 
@@ -37,13 +40,8 @@ class CandidateModel {
       const ProjectedWindow& projected = base_.windows()[w];
       auto segment = all.segment(offset, window.rows());
       window.evaluate(model_, base_.fit().nu0[place], base_.fit().sigma, trace_, segment);
-      // Windows beyond the outlier bound were weighted down; their base residual tells by how much.
-      if (projected.initial_basis.cols() > 0) {
-        segment -= projected.initial_basis * (projected.initial_basis.transpose() * segment).eval();
-      } else {
-        const double norm = segment.norm();
-        if (norm > 0.0) segment *= std::min(1.0, projected.residual.norm() / norm);
-      }
+      segment.array() *= projected.weight.array();
+      segment -= projected.initial_basis * (projected.initial_basis.transpose() * segment).eval();
       offset += window.rows();
     }
     return all;
@@ -79,6 +77,29 @@ void remove_base(const Linearisation& base, Eigen::MatrixXd& columns) {
   }
 }
 
+/// The step of the base parameters that goes with a residual, inside their limits.
+void step_base(const Linearisation& base, const Eigen::VectorXd& residual, model::Model& model) {
+  const identification::ParameterMap map{model};
+  const Eigen::VectorXd x = map.pack(model);
+  Eigen::VectorXd gradient(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const auto& free = map[static_cast<std::size_t>(i)];
+    gradient[i] = (free.scale * x[i] - free.prior_mean) * free.scale / (free.prior_sigma * free.prior_sigma);
+  }
+  Eigen::Index offset = 0;
+  for (const ProjectedWindow& window : base.windows()) {
+    gradient += window.jacobian.transpose() * residual.segment(offset, window.jacobian.rows());
+    offset += window.jacobian.rows();
+  }
+  Eigen::VectorXd next = x - base.solve(gradient);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const auto& free = map[static_cast<std::size_t>(i)];
+    const double low = free.low / free.scale, high = free.high / free.scale;
+    next[i] = x[i] <= low || x[i] >= high ? x[i] : std::clamp(next[i], low, high);
+  }
+  map.unpack(next, model);
+}
+
 std::vector<double> clamped(const model::Effect& effect, std::vector<double> theta) {
   const auto parameters = effect.parameters();
   for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = std::clamp(theta[i], parameters[i].low, parameters[i].high);
@@ -91,11 +112,16 @@ std::vector<std::size_t> all_places(std::size_t count) {
   return places;
 }
 
+/// What the fit minimises, per window. An outlier counts for less than its square; a candidate that explains it must be
+/// credited with what that saves, so this is not the sum of the weighted squares.
 std::vector<double> window_costs(const Linearisation& base, const Eigen::VectorXd& residual) {
   std::vector<double> costs;
   Eigen::Index offset = 0;
-  for (const ProjectedWindow& window : base.windows()) {
-    costs.push_back(0.5 * residual.segment(offset, window.residual.size()).squaredNorm());
+  for (std::size_t w = 0; w < base.windows().size(); ++w) {
+    const ProjectedWindow& window = base.windows()[w];
+    const Eigen::VectorXd alone =
+        residual.segment(offset, window.residual.size()).array() / window.weight.array();  // as the fit would see it
+    costs.push_back(identification::robust_cost(alone, base.problem().windows()[base.places()[w]].axes()));
     offset += window.residual.size();
   }
   return costs;
@@ -148,6 +174,25 @@ Eigen::VectorXd Linearisation::stacked_residual() const {
 
 namespace {
 
+struct Start {
+  double gain;
+  std::vector<double> theta;
+};
+
+/// The start with its amplitudes where the linear picture wants them, inside their limits. `bottom`: squared norm of
+/// what the start changes; `top`: its product with what is unexplained.
+Start with_best_amplitude(const model::Effect& effect, std::vector<double> theta, double bottom, double top) {
+  if (bottom <= 0.0) return {0.0, theta};
+  double share = effect.amplitudes() > 0 ? -top / bottom : 1.0;
+  for (int i = 0; i < effect.amplitudes(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double wanted = share * theta[k];
+    if (wanted != 0.0) share *= std::clamp(wanted, effect.parameters()[k].low, effect.parameters()[k].high) / wanted;
+  }
+  for (int i = 0; i < effect.amplitudes(); ++i) theta[static_cast<std::size_t>(i)] *= share;
+  return {-(share * top + 0.5 * share * share * bottom), theta};
+}
+
 /// `refining`: the only start is a point found before, not merely the size of a first step away from nothing.
 Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
                      const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining) {
@@ -157,13 +202,9 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
 
   const Eigen::VectorXd unfitted = base.stacked_residual();
   const Eigen::MatrixXd& without = base.unexplained();
-  const double cost_without = 0.5 * without.squaredNorm();
+  const double cost_without = total(base.window_cost());
 
   // Rank the starts by what an amplitude along (start - absent) would gain.
-  struct Start {
-    double gain;
-    std::vector<double> theta;
-  };
   std::vector<Start> ranked;
   for (const auto& start : starts) {
     if (starts.size() == 1) {
@@ -172,9 +213,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     }
     Eigen::MatrixXd direction = candidate.residual(start) - unfitted;
     remove_base(base, direction);
-    const double bottom = direction.squaredNorm();
-    const double top = direction.col(0).dot(without.col(0));
-    ranked.push_back({bottom > 0.0 && top < 0.0 ? 0.5 * top * top / bottom : 0.0, start});
+    ranked.push_back(with_best_amplitude(effect, start, direction.squaredNorm(), direction.col(0).dot(without.col(0))));
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Start& a, const Start& b) { return a.gain > b.gain; });
   if (ranked.size() > kBestStarts) ranked.resize(kBestStarts);
@@ -197,7 +236,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       residual = candidate.residual(theta);
       remove_base(base, residual);
     }
-    double cost = 0.5 * residual.squaredNorm();
+    double cost = total(window_costs(base, residual.col(0)));
     double damping = 0.0;
     Eigen::MatrixXd columns;
     for (int step = 0; step < kNewtonSteps; ++step) {
@@ -230,7 +269,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       next = clamped(effect, next);
       Eigen::MatrixXd next_residual = candidate.residual(next);
       remove_base(base, next_residual);
-      const double next_cost = 0.5 * next_residual.squaredNorm();
+      const double next_cost = total(window_costs(base, next_residual.col(0)));
       if (next_cost >= cost) {
         damping = damping == 0.0 ? 1.0 : 10.0 * damping;
         continue;
@@ -252,6 +291,8 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     }
   }
   best.gain = cost_without - best_cost;
+  best.base = base.fit().model;
+  if (best.gain > 0.0) step_base(base, candidate.residual(best.theta), best.base);
   best.window_cost = window_costs(base, best_residual);
   best.signature = best_residual - without.col(0);
   const double norm = best.signature.norm();

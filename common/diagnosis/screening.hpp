@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,11 +51,11 @@ struct Screened {
   const model::Effect* effect{};
   int variant{};
   std::string variant_name;
-  std::vector<double> theta;          ///< best values found
-  double gain{};                      ///< fall of the cost
-  std::optional<model::Model> start;  ///< where a full fit should begin, when not at `theta` beside the base model
-  std::vector<double> window_cost;    ///< cost per window with the candidate
-  Eigen::VectorXd signature;          ///< change of all residuals that only this candidate can make; unit norm
+  std::vector<double> theta;        ///< best values found
+  model::Model base;                ///< the fit's model after the step that its parameters take beside the candidate
+  double gain{};                    ///< fall of the cost
+  std::vector<double> window_cost;  ///< cost per window with the candidate
+  Eigen::VectorXd signature;        ///< change of all residuals that only this candidate can make; unit norm
 };
 
 /// Searches the candidate's numbers from `starts`: from the best of them when there are many.

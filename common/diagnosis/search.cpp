@@ -5,6 +5,7 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/questions.hpp"
+#include "common/identification/sparse.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -12,12 +13,15 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 6;         // candidates per round that earn a full fit
-constexpr std::size_t kManyWindows = 120;  // full fits are dear from here: those that screening finds hopeless are left
-constexpr double kHopelessOdds = -5.0;     // log odds by the screening
-constexpr double kAsGood = 0.9;            // of the gain: with fewer numbers, that is the better explanation
-constexpr double kHopeless = 1.0 / 3.0;    // of the best gain so far: screening does not err by more
-constexpr double kQuickTolerance = 1e-3;   // relative decrease of the cost; a tenth of the smallest gain that counts
+constexpr std::size_t kRefits = 6;       // candidates per round that earn a full fit
+constexpr std::size_t kMostRefits = 16;  // while no winner is found and the screening still speaks for some
+constexpr double kSearchStep = 0.05;     // s: coarser than most recordings, finer than any vehicle moves
+constexpr double kAsGood = 0.9;          // of the gain: with fewer numbers, that is the better explanation
+constexpr double kHopeless = 1.0 / 3.0;  // of the best gain so far: screening does not err by more
+constexpr double kClearlyLess = 0.6;     // of the best gain so far, on a spread of windows
+constexpr const char* kWeaker = "weaker than the accepted effects";
+constexpr double kRestart = 0.1;          // of the screened numbers: where a fit that went astray begins again
+constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
 /// The candidate that gains most and that nothing speaks against.
 struct Winner {
@@ -29,39 +33,114 @@ struct Winner {
 bool better(const Answers& answers, std::size_t place, const FitResult& fit, const Winner& best, double reference) {
   const double gain = reference - fit.cost;
   const double other = reference - best.fit.cost;
-  const auto numbers = answers.screened[place].effect->parameters().size();
-  const auto others = answers.screened[best.place].effect->parameters().size();
+  const auto numbers = answers.near[place].effect->parameters().size();
+  const auto others = answers.near[best.place].effect->parameters().size();
   if (numbers == others) return gain > other;
   return numbers < others ? gain > kAsGood * other : kAsGood * gain > other;
 }
 
-/// Fits the most promising candidates in full, and fills in what the fits say of them. `only_far`: those that have been
-/// found from afar since.
-std::optional<Winner> fit_best(Answers& answers, const TrajectoryFit& problem, const FitResult& reference,
-                               const Settings& settings, int tried, const Progress& progress, double share,
-                               bool only_far = false) {
-  std::optional<Winner> best;
-  std::size_t fitted = 0;
-  std::optional<CrossValidation> checked;
-  for (const std::size_t i : worth_fitting(answers, settings)) {
-    const Screened& screened = answers.screened[i];
-    if (answers.fitted[i] || (only_far && !screened.start)) continue;
-    const bool dear = problem.windows().size() > kManyWindows && !screened.start;
-    if (dear && answers.judged[i].log_odds < kHopelessOdds) continue;
-    if (fitted++ >= kRefits) break;
-    answers.fitted[i] = true;
-    if (best && screened.gain < kHopeless * (reference.cost - best->fit.cost)) break;  // may come back next round
-    progress("fitting " + std::string(screened.effect->name()) + " " + screened.variant_name, share);
-    FitResult fit = problem.fit(start_of(reference, screened), &reference, kQuickTolerance);
-    Judged& judged = answers.judged[i];
-    if (!checked) checked.emplace(problem, reference);
-    judge_by_fit(judged, problem, reference, *checked, fit, tried);
-    judged.reason = refusal(judged, settings, &fit.model);
-    if (judged.reason.empty() && (!best || better(answers, i, fit, *best, reference.cost)))
-      best = Winner{i, std::move(fit)};
+/// A model with the effect never explains less than the same model without it; a fit that says so has gone astray, and
+/// begins again nearer to absence.
+FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, const model::Model& start,
+                   const Screened& screened) {
+  FitResult fit = problem.fit(start, &reference, kQuickTolerance);
+  if (fit.cost <= reference.cost) return fit;
+  model::Model nearer = reference.model;
+  nearer.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
+  for (model::ActiveEffect& active : nearer.effects) {
+    if (active.effect != screened.effect || active.variant != screened.variant) continue;
+    for (double& number : active.theta) number *= kRestart;
   }
-  return best;
+  FitResult again = problem.fit(nearer, &reference, kQuickTolerance);
+  return again.cost < fit.cost ? again : fit;
 }
+
+/// One round's full fits: the most promising candidates, most promising first.
+class Round {
+ public:
+  Round(Answers& answers, Promises& promises, const TrajectoryFit& problem, const FitResult& reference,
+        std::span<const Trial> train, const Settings& settings, int tried, const Progress& progress, double done)
+      : answers_{answers},
+        promises_{promises},
+        problem_{problem},
+        reference_{reference},
+        settings_{settings},
+        tried_{tried},
+        progress_{progress},
+        done_{done},
+        coarse_{problem, train, settings, reference} {}
+
+  /// `first` tells which candidates are meant; after a few fits without a winner, only open ones.
+  std::optional<Winner> fit_best(Which first, std::size_t most) {
+    std::optional<Winner> best;
+    for (std::size_t fits = 0; fits < most; ++fits) {
+      if (best && fits >= kRefits) break;
+      const Which which = first == Which::kAll && fits >= kRefits ? Which::kOpen : first;
+      const std::vector<std::size_t> order = worth_fitting(answers_, promises_, settings_, which);
+      if (order.empty()) break;
+      const std::size_t next = order.front();
+      const double best_share = best ? reduction(reference_.cost, best->fit.cost) : 0.0;
+      if (promises_.expected(answers_, next) < kHopeless * best_share) break;
+      std::optional<FitResult> fit = fit_in_full(next, best_share);
+      if (fit && answers_.judged[next].reason.empty() &&
+          (!best || better(answers_, next, *fit, *best, reference_.cost)))
+        best = Winner{next, std::move(*fit)};
+    }
+    return best;
+  }
+
+  [[nodiscard]] Coarse& coarse() { return coarse_; }
+
+ private:
+  /// Empty when a spread of windows already tells that it would be in vain, or gain far less than `best_gain`.
+  std::optional<FitResult> fit_in_full(std::size_t i, double best_share) {
+    const Screened& screened = answers_.near[i];
+    Judged& judged = answers_.judged[i];
+    progress_("fitting " + std::string(screened.effect->name()) + " " + screened.variant_name, done_);
+    answers_.fitted[i] = true;
+    model::Model start;
+    if (coarse_.useful() && !answers_.found[i]) {
+      const TrajectoryFit& problem = coarse_.problem();
+      const FitResult& without = coarse_.reference();
+      const FitResult rough = fit_with(problem, without, start_of(problem, without, answers_, i), screened);
+      const double share = reduction(without.cost, rough.cost);
+      const bool vain = share < kPromise * settings_.smallest_reduction;
+      if (vain || share < kClearlyLess * best_share) {
+        promises_.kept(answers_, i, share);
+        judge_by_odds(judged, without, rough, tried_);
+        judged.reason = refusal(judged, settings_);
+        if (vain) promises_.refused(answers_, i);
+        if (judged.reason.empty()) judged.reason = kWeaker;
+        return std::nullopt;
+      }
+      start = rough.model;
+    } else {
+      start = start_of(problem_, reference_, answers_, i);
+    }
+    FitResult fit = fit_with(problem_, reference_, start, screened);
+    promises_.kept(answers_, i, reduction(reference_.cost, fit.cost));
+    judge_by_odds(judged, reference_, fit, tried_);
+    judged.reason = refusal(judged, settings_, &fit.model);
+    if (judged.reason.empty()) {
+      if (!checked_) checked_.emplace(problem_, reference_);
+      judge_by_data_left_out(judged, problem_, reference_, *checked_, fit);
+      judged.reason = refusal(judged, settings_, &fit.model);
+    }
+    if (!judged.reason.empty()) promises_.refused(answers_, i);
+    return fit;
+  }
+
+  Answers& answers_;
+  Promises& promises_;
+  const TrajectoryFit& problem_;
+  const FitResult& reference_;
+  const Settings& settings_;
+  int tried_;
+  const Progress& progress_;
+  double done_;
+  Coarse coarse_;
+  std::optional<CrossValidation> checked_;  // of the reference, made when the first fit is judged
+};
 
 /// Drops every accepted effect that the others have made superfluous; fills in the final odds of those that stay.
 void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried,
@@ -98,38 +177,53 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
 
 SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,
                     const Progress& progress) {
+  std::vector<Trial> trials;
+  for (const Trial& trial : train) trials.push_back(identification::sparse(trial, kSearchStep));
   SearchResult result;
   progress("fitting the base model", 0.0);
-  result.before = identification::fit_from_priors(vehicle, train, settings.fit);
-  const TrajectoryFit problem{vehicle, train, settings.fit};
-  const model::Scene scene = model::scene_of(vehicle, train);
+  result.before = identification::fit_from_priors(vehicle, trials, settings.fit);
+  const TrajectoryFit problem{vehicle, trials, settings.fit};
+  NearView near{vehicle, trials, settings};
+  const model::Scene scene = model::scene_of(vehicle, trials);
   const std::vector<Candidate> candidates = all_candidates(scene);
   const int tried = static_cast<int>(candidates.size());
   result.after = result.before;
+  Promises promises;
 
   for (int round = 0; round < settings.most_effects; ++round) {
-    const double share = 0.2 + 0.6 * round / settings.most_effects;
-    progress("round " + std::to_string(round + 1) + ": asking " + std::to_string(tried) + " candidates", share);
-    Answers answers = ask(candidates, problem, result.after, scene, settings);
-    std::optional<Winner> winner = fit_best(answers, problem, result.after, settings, tried, progress, share);
+    const double done = 0.2 + 0.6 * round / settings.most_effects;
+    progress("round " + std::to_string(round + 1) + ": asking " + std::to_string(tried) + " candidates", done);
+    near.fit(result.after.model);
+    Answers answers = ask_near(candidates, near, scene, settings);
+    promises.recall(answers);
+    Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
+    std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits);
     if (!winner) {
-      look_afar(answers, problem, result.after, train, scene, settings, progress, share);
-      winner = fit_best(answers, problem, result.after, settings, tried, progress, share, true);
+      progress("round " + std::to_string(round + 1) + ": looking at whole windows", done);
+      ask_whole(answers, problem, result.after, scene, tried, settings);
+      winner = fits.fit_best(Which::kAll, kMostRefits);
+    }
+    if (!winner) {
+      look_afar(answers, fits.coarse(), result.after, scene, progress, done);
+      winner = fits.fit_best(Which::kFromAfar, kMostRefits);
     }
     if (winner) {
       Judged accepted = answers.judged[winner->place];
-      find_aliases(accepted, answers.screened[winner->place], answers.screened, answers.judged, settings);
+      find_aliases(accepted, answers.near[winner->place], answers.near, answers.judged, settings);
       result.accepted.push_back(accepted);
       result.after = problem.fit(winner->fit.model, &winner->fit);
     }
+    name_unfitted(answers);
     result.refused = best_of_each_effect(answers.judged, result.accepted);
     if (!winner) break;
   }
   prune(result, problem, settings, tried, progress);
   progress("final fits", 0.95);
-  if (!result.accepted.empty()) result.after = problem.fit(result.after.model);
-  problem.add_covariance(result.before);
-  problem.add_covariance(result.after);
+  const TrajectoryFit whole{vehicle, train, settings.fit};
+  result.before = whole.fit(result.before.model);
+  result.after = result.accepted.empty() ? result.before : whole.fit(result.after.model);
+  whole.add_covariance(result.before);
+  whole.add_covariance(result.after);
   return result;
 }
 

@@ -23,6 +23,7 @@ struct Judged {
   bool lasting{false};  ///< an onset at the edge of the data
   std::vector<std::string> aliased_with{};  ///< other effects whose predictions look alike
   std::vector<std::string> alternatives{};  ///< of those, the ones that the odds cannot rule out
+  std::vector<std::string> other_forms{};   ///< of the same effect, that would explain as much
   std::string reason{};                     ///< why it was refused; empty when accepted
 };
 

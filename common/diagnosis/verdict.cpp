@@ -58,8 +58,12 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
           known->alternatives.push_back(other);
         }
       }
+      for (const std::string& other : judged.other_forms)
+        known->other_forms.push_back(judged.variant_name + " or " + other);
       continue;
     }
+    std::vector<std::string> other_forms;
+    for (const std::string& other : judged.other_forms) other_forms.push_back(judged.variant_name + " or " + other);
     result.effects.push_back({.name = name,
                               .variant = judged.variant_name,
                               .accepted = true,
@@ -67,6 +71,7 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
                               .log_odds = judged.log_odds,
                               .error_reduction = judged.error_reduction,
                               .alternatives = judged.alternatives,
+                              .other_forms = other_forms,
                               .sentence = std::string(judged.effect->sentence())});
   }
 }
@@ -181,7 +186,11 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     text = "The base model leaves structure in the residual that no known effect explains. ";
   } else {
     text = "The motion shows what the base model lacks: " + joined(names) + ". ";
-    for (const EffectFound& effect : result.effects) text += effect.sentence + " ";
+    for (const EffectFound& effect : result.effects) {
+      text += effect.sentence + " ";
+      if (!effect.other_forms.empty())
+        text += "Which form of " + effect.name + " it is remains open: " + joined(effect.other_forms, "; ") + ". ";
+    }
     text += improvement_sentence(result);
   }
   if (!open.empty()) {

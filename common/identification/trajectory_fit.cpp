@@ -1,7 +1,5 @@
 #include "common/identification/trajectory_fit.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
@@ -11,126 +9,17 @@
 
 #include "common/base/error.hpp"
 #include "common/base/parallel.hpp"
+#include "common/identification/fit_costs.hpp"
+#include "common/identification/outlier.hpp"
 
 namespace fathom::identification {
 namespace {
 
-// A window whose residual is this many times its expected norm pulls no harder than one at that size: capture glitches
-// and collisions must not bend the model.
-constexpr double kWindowOutlier = 2.5;
 constexpr double kBoundMargin = 1e-9;       // of a parameter's scale
 constexpr double kReleaseStep = 0.02;       // of a parameter's scale, away from its bound
 constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
 constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
 constexpr double kSmallestSigma = 1e-5;     // m/s, rad/s: below any sensor's noise; keeps perfect data finite
-
-/// Half of Huber's loss of the squared norm: what the solver minimises.
-double window_cost(const Eigen::VectorXd& residual) {
-  const double bound = kWindowOutlier * std::sqrt(static_cast<double>(residual.size()));
-  const double norm = residual.norm();
-  return norm <= bound ? 0.5 * norm * norm : bound * norm - 0.5 * bound * bound;
-}
-
-/// Residuals and derivatives of all windows at the solver's current point. They are worked out side by side before the
-/// solver asks, and the solver itself adds them up in one thread: so a fit gives the same bits however many threads
-/// help.
-class Evaluations final : public ceres::EvaluationCallback {
- public:
-  Evaluations(std::span<const WindowResidual> windows, const model::Model& model, const ParameterMap& map,
-              const Vector6d& sigma, const Eigen::VectorXd& x, const std::vector<Vector6d>& nu0, int threads)
-      : windows_{windows},
-        model_{model},
-        map_{map},
-        sigma_{sigma},
-        x_{x},
-        nu0_{nu0},
-        threads_{threads},
-        at_(windows.size()) {}
-
-  struct One {
-    Eigen::VectorXd residual;
-    Eigen::MatrixXd by_parameter, by_initial;
-  };
-
-  void PrepareForEvaluation(bool jacobians, bool new_point) override {
-    if (!new_point && !(jacobians && !with_jacobians_)) return;
-    with_jacobians_ = jacobians;
-    model::Model model = model_;
-    map_.unpack(x_, model);
-    for_each_index(windows_.size(), threads_, [&](std::size_t w) {
-      thread_local model::VelocityTrace trace;
-      One& one = at_[w];
-      one.residual.resize(windows_[w].rows());
-      windows_[w].evaluate(model, nu0_[w], sigma_, trace, one.residual);
-      if (jacobians)
-        windows_[w].jacobians(model, map_, nu0_[w], sigma_, one.residual, one.by_parameter, one.by_initial);
-    });
-  }
-
-  [[nodiscard]] const One& at(std::size_t window) const { return at_[window]; }
-
- private:
-  std::span<const WindowResidual> windows_;
-  const model::Model& model_;
-  const ParameterMap& map_;
-  const Vector6d& sigma_;
-  const Eigen::VectorXd& x_;
-  const std::vector<Vector6d>& nu0_;
-  int threads_;
-  bool with_jacobians_{false};
-  std::vector<One> at_;
-};
-
-/// Weighted residual of one window: parameter blocks theta (scaled) and nu0.
-class WindowCost final : public ceres::CostFunction {
- public:
-  WindowCost(const Evaluations& evaluations, std::size_t window, Eigen::Index rows, std::size_t parameters)
-      : evaluations_{evaluations}, window_{window} {
-    set_num_residuals(static_cast<int>(rows));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(parameters));
-    mutable_parameter_block_sizes()->push_back(6);
-  }
-
-  bool Evaluate(double const* const* /*blocks*/, double* residuals, double** jacobians) const override {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Evaluations::One& one = evaluations_.at(window_);
-    Eigen::Map<Eigen::VectorXd>(residuals, one.residual.size()) = one.residual;
-    if (jacobians == nullptr) return one.residual.allFinite();
-    if (jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], one.by_parameter.rows(), one.by_parameter.cols()) = one.by_parameter;
-    }
-    if (jacobians[1] != nullptr) Eigen::Map<RowMajor>(jacobians[1], one.by_initial.rows(), 6) = one.by_initial;
-    return one.residual.allFinite();
-  }
-
- private:
-  const Evaluations& evaluations_;
-  std::size_t window_;
-};
-
-/// Priors on the parameters, and on nothing else.
-class PriorCost final : public ceres::CostFunction {
- public:
-  explicit PriorCost(const ParameterMap& map) : map_{map} {
-    set_num_residuals(static_cast<int>(map.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(map.size()));
-  }
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const std::size_t n = map_.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      residuals[i] = (blocks[0][i] * map_[i].scale - map_[i].prior_mean) / map_[i].prior_sigma;
-    }
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      std::fill(jacobians[0], jacobians[0] + n * n, 0.0);
-      for (std::size_t i = 0; i < n; ++i) jacobians[0][i * n + i] = map_[i].scale / map_[i].prior_sigma;
-    }
-    return true;
-  }
-
- private:
-  const ParameterMap& map_;
-};
 
 std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd& x) {
   std::vector<int> held;
@@ -223,7 +112,7 @@ void TrajectoryFit::score(FitResult& fit) const {
     const WindowResidual& window = windows_[w];
     Eigen::VectorXd residual(window.rows());
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, residual);
-    fit.window_cost[w] = window_cost(residual);
+    fit.window_cost[w] = robust_cost(residual, window.axes());
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
       const int axis = window.axis(i);
       const double error = residual[i] * fit.sigma[axis];
@@ -232,6 +121,15 @@ void TrajectoryFit::score(FitResult& fit) const {
     }
   });
   fit.cost = std::accumulate(fit.window_cost.begin(), fit.window_cost.end(), 0.0);
+}
+
+double TrajectoryFit::cost(const model::Model& model, const FitResult& like) const {
+  FitResult fit;
+  fit.model = model;
+  fit.sigma = like.sigma;
+  fit.nu0 = like.nu0;
+  score(fit);
+  return fit.cost;
 }
 
 void TrajectoryFit::solve(FitResult& fit, bool release, double tolerance) const {
@@ -251,9 +149,10 @@ void TrajectoryFit::solve(FitResult& fit, bool release, double tolerance) const 
     if (!vehicle_.dof[static_cast<std::size_t>(axis)]) unsimulated.push_back(axis);
   }
   for (std::size_t w = 0; w < windows_.size(); ++w) {
-    const double norm = std::sqrt(static_cast<double>(windows_[w].rows()));
-    problem.AddResidualBlock(new WindowCost(evaluations, w, windows_[w].rows(), map.size()),
-                             new ceres::HuberLoss(kWindowOutlier * norm), x.data(), fit.nu0[w].data());
+    for (const AxisRows& rows : windows_[w].axes()) {
+      problem.AddResidualBlock(new AxisCost(evaluations, w, rows, map.size()),
+                               new ceres::HuberLoss(outlier_bound(rows.count)), x.data(), fit.nu0[w].data());
+    }
     ordering->AddElementToGroup(fit.nu0[w].data(), 0);
     if (!unsimulated.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, unsimulated));
   }
@@ -297,7 +196,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   if (like != nullptr) {
     fit.sigma = like->sigma;
     fit.nu0 = like->nu0;
-    solve(fit, false, tolerance);
+    solve(fit, tolerance == 0.0, tolerance);  // a quick look leaves numbers on their bounds
     score(fit);
     return fit;
   }
@@ -327,20 +226,15 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
     if (hold_bounds) {
       for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
     }
+    out.weight = robust_weight(out.residual, window.axes());
+    out.residual.array() *= out.weight.array();
+    out.jacobian.array().colwise() *= out.weight.array();
+    initial.array().colwise() *= out.weight.array();
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};
     out.initial_basis = Eigen::MatrixXd::Identity(window.rows(), qr.rank());
     out.initial_basis.applyOnTheLeft(qr.householderQ());
     out.residual -= out.initial_basis * (out.initial_basis.transpose() * out.residual);
     out.jacobian -= out.initial_basis * (out.initial_basis.transpose() * out.jacobian);
-    // The same weight as in the fit: a window beyond the outlier bound counts less.
-    const double bound = kWindowOutlier * std::sqrt(static_cast<double>(window.rows()));
-    const double norm = out.residual.norm();
-    if (norm > bound) {
-      const double weight = std::sqrt(bound / norm);
-      out.residual *= weight;
-      out.jacobian *= weight;
-      out.initial_basis.resize(window.rows(), 0);
-    }
   });
   return projected;
 }

@@ -36,11 +36,13 @@ struct FitResult {
   [[nodiscard]] std::vector<NamedValue> parameters() const;  ///< with standard deviations when covariance is there
 };
 
-/// One window's residual and derivatives with the initial velocity projected out (orthogonally).
+/// One window's residual and derivatives, weighted as the fit weighs them and with the initial velocity projected out
+/// (orthogonally).
 struct ProjectedWindow {
+  Eigen::VectorXd weight;         ///< per row, 1 unless its axis is an outlier in this window
   Eigen::VectorXd residual;       ///< weighted, projected
-  Eigen::MatrixXd jacobian;       ///< with respect to the scaled free parameters, projected
-  Eigen::MatrixXd initial_basis;  ///< orthonormal basis of the initial velocity's columns
+  Eigen::MatrixXd jacobian;       ///< with respect to the scaled free parameters, weighted, projected
+  Eigen::MatrixXd initial_basis;  ///< orthonormal basis of the initial velocity's weighted columns
 };
 
 class TrajectoryFit {
@@ -50,6 +52,8 @@ class TrajectoryFit {
   /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs
   /// can be compared); without, sigma is found by iteration. `tolerance` replaces that of the settings unless zero.
   [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr, double tolerance = 0.0) const;
+  /// Cost of a model with the weights and the initial velocities of a fit.
+  [[nodiscard]] double cost(const model::Model& model, const FitResult& like) const;
   /// Residuals and derivatives at a fit, per window. With `hold_bounds`, numbers on a physical bound have no
   /// derivative: they stay there.
   [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit, bool hold_bounds = true) const;

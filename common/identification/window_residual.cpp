@@ -47,9 +47,11 @@ WindowResidual::WindowResidual(const model::Window& window, const model::Vehicle
     if (!vehicle.dof[static_cast<std::size_t>(axis)]) continue;
     if (axis < 3 ? !trial.observed.velocity : !trial.observed.rates) continue;
     const auto& valid = axis < 3 ? trial.velocity_valid : trial.rates_valid;
+    const auto first = rows();
     for (std::size_t k = 0; k < window.count; ++k) {
       if (valid[window.start + k] != 0) rows_.push_back({static_cast<int>(k), axis});
     }
+    if (rows() > first) axes_.push_back({first, rows() - first});
   }
 }
 

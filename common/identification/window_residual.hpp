@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "common/identification/parameter_map.hpp"
@@ -13,13 +14,22 @@ namespace fathom::identification {
 /// valid and keeping at least half of its samples valid.
 [[nodiscard]] std::vector<model::Window> cut_windows(std::span<const Trial> trials, double length);
 
-/// Residual rows of one window: valid samples of observed, simulated axes, each divided by the axis' `sigma`.
+/// Rows of one axis in a window's residual.
+struct AxisRows {
+  Eigen::Index first;
+  Eigen::Index count;
+};
+
+/// Residual rows of one window, axis after axis: valid samples of observed, simulated axes, each divided by the axis'
+/// `sigma`.
 class WindowResidual {
  public:
   WindowResidual(const model::Window& window, const model::Vehicle& vehicle);
 
   [[nodiscard]] const model::Window& window() const { return window_; }
   [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(rows_.size()); }
+  /// Where each observed axis has its rows.
+  [[nodiscard]] std::span<const AxisRows> axes() const { return axes_; }
   /// Axis (0..5) of a row.
   [[nodiscard]] int axis(Eigen::Index row) const { return rows_[static_cast<std::size_t>(row)].axis; }
   /// Measured velocity of a row, m/s or rad/s.
@@ -44,6 +54,7 @@ class WindowResidual {
   };
   model::Window window_;
   std::vector<Row> rows_;
+  std::vector<AxisRows> axes_;
 };
 
 }  // namespace fathom::identification

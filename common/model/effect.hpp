@@ -68,6 +68,8 @@ class Effect {
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
 
+  /// How many leading numbers the effect is proportional to; the others say where, when or how fast.
+  [[nodiscard]] virtual int amplitudes() const { return 0; }
   /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
   /// fitted anew (its small sizes may even look harmful). Tried by full fits; none by default.
   [[nodiscard]] virtual std::vector<std::vector<double>> far_starts(const Scene&, int /*variant*/) const { return {}; }

@@ -80,6 +80,7 @@ Json effects(const std::vector<EffectFound>& found) {
                      {"log_odds", finite(e.log_odds)},
                      {"error_reduction", finite(e.error_reduction)},
                      {"alternatives", e.alternatives},
+                     {"other_forms", e.other_forms},
                      {"sentence", e.sentence}});
   }
   return array;

@@ -217,6 +217,10 @@ std::string certainty_section(const DiagnosisResult& result) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +
               "</b> cannot be told apart from " + escape(titles(effect.alternatives)) + ".</li>\n";
     }
+    for (const std::string& forms : effect.other_forms) {
+      open += "<li>Which form of <b>" + escape(effect_title(effect.name, "")) +
+              "</b> it is remains open: " + escape(forms) + ".</li>\n";
+    }
   }
   for (const auto& axis : result.residual_after) {
     if (!(axis.p_value < kNotRandom)) continue;

@@ -118,6 +118,9 @@ void accepted(Text& out, const DiagnosisResult& result) {
     if (!effect.alternatives.empty()) {
       out.paragraph("cannot be told apart from: " + join(effect.alternatives, ", "), "      ");
     }
+    if (!effect.other_forms.empty()) {
+      out.paragraph("which one is not certain: " + join(effect.other_forms, "; "), "      ");
+    }
   }
   if (!any) out.line("  none");
 }

@@ -8,7 +8,7 @@
 
 #include "common/runtime/bus.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 

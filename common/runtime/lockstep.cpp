@@ -35,7 +35,14 @@ void Follower::arrived(std::size_t hearing, std::vector<std::uint8_t> bytes) {
 void Follower::announced(const fathom_lcm::lockstep_t& phase) {
   started_ = true;
   if (phase.phase < 0) {
-    ended_ = true;
+    const bool all = phase.channel.empty();
+    if (!all && phase.channel.front() != name_) return;
+    ends_ = true;
+    answer_ = {};
+    answer_.utime = phase.utime;
+    answer_.process = name_;
+    answer_.tick = phase.tick;
+    answer_.phase = phase.phase;
   } else if (std::any_of(phase.channel.begin(), phase.channel.end(), [&](const auto& each) { return heard(each); })) {
     phases_.push_back(phase);
   }
@@ -103,7 +110,8 @@ std::vector<std::string> Conductor::absent() const {
 }
 
 void Conductor::hear(const fathom_lcm::lockstep_ack_t& ack) {
-  if (std::find(names_.begin(), names_.end(), ack.process) == names_.end()) {
+  const bool known = std::find(names_.begin(), names_.end(), ack.process) != names_.end();
+  if (!known && ending_.empty()) {
     throw InputError("lockstep: " + ack.process + " follows but nobody waits for it; name it with --wait-for");
   }
   if (ack.tick < 0) {
@@ -161,7 +169,9 @@ std::optional<fathom_lcm::lockstep_t> Conductor::next() {
   if (!answered_) return {};
   answered_ = false;
   phase_.channel.clear();
-  for (const std::string& name : names_) {
+  std::vector<std::string> speakers = names_;
+  if (phase_.phase < 0) speakers.push_back(ending_);
+  for (const std::string& name : speakers) {
     std::vector<std::string>& said = said_[name];
     phase_.channel.insert(phase_.channel.end(), said.begin(), said.end());
     said.clear();
@@ -187,6 +197,24 @@ std::int64_t Conductor::said(const std::string& channel) const {
 std::string Conductor::waiting_for() const {
   if (!waiting_for_.empty()) return list(waiting_for_);
   return recorded_.empty() ? "anybody" : recorded_.begin()->first;
+}
+
+std::optional<fathom_lcm::lockstep_t> Conductor::finish(Utime utime) {
+  const auto next =
+      std::find_if(names_.begin(), names_.end(), [&](const auto& name) { return !recorded_.contains(name); });
+  if (next == names_.end()) {
+    if (std::exchange(finished_, true)) return {};
+    return end(utime);
+  }
+  phase_.utime = utime;
+  ++phase_.tick;
+  phase_.phase = -1;
+  phase_.channel = {*next};
+  phase_.n_messages = 1;
+  waiting_for_ = {*next};
+  names_.erase(next);
+  ending_ = waiting_for_.front();
+  return phase_;
 }
 
 fathom_lcm::lockstep_t Conductor::end(Utime utime) const {

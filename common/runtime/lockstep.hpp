@@ -45,7 +45,8 @@ class Follower {
   /// What is said until the first phase comes.
   [[nodiscard]] fathom_lcm::lockstep_ack_t hello() const;
   [[nodiscard]] bool started() const { return started_; }
-  [[nodiscard]] bool ended() const { return ended_ && phases_.empty(); }
+  /// It is this process's turn to end: what it says meanwhile belongs to the answer, and then it goes.
+  [[nodiscard]] bool ends() const { return ends_ && phases_.empty(); }
 
  private:
   [[nodiscard]] bool heard(const std::string& channel) const;
@@ -55,7 +56,7 @@ class Follower {
   std::vector<std::deque<std::vector<std::uint8_t>>> waiting_;  ///< per hearing
   std::deque<fathom_lcm::lockstep_t> phases_;
   fathom_lcm::lockstep_ack_t answer_{};
-  bool started_{false}, ended_{false};
+  bool started_{false}, ends_{false};
 };
 
 /// The simulator's side: who has to answer, and when a control interval is over.
@@ -81,6 +82,10 @@ class Conductor {
   [[nodiscard]] std::int64_t said(const std::string& channel) const;
   /// Who has not answered yet, for an operator.
   [[nodiscard]] std::string waiting_for() const;
+  /// The run is over: each process ends in its turn, in the order of the names, so that those behind it still hear its
+  /// last words. To be published whenever an interval is over; nothing once all have been told.
+  [[nodiscard]] std::optional<fathom_lcm::lockstep_t> finish(Utime utime);
+  /// Ends all at once.
   [[nodiscard]] fathom_lcm::lockstep_t end(Utime utime) const;
 
  private:
@@ -93,6 +98,8 @@ class Conductor {
   std::map<std::string, std::int64_t> recorded_;  ///< newest interval that a recorder has written, by its name
   std::vector<std::string> waiting_for_;
   fathom_lcm::lockstep_t phase_{};
+  std::string ending_;  ///< the process whose turn it is, or was
+  bool finished_{false};
   bool answered_{false};  ///< all have answered a phase and next() has not been asked yet
 };
 

@@ -321,7 +321,7 @@ void Process::run_lockstep() {
   introduce(wall_clock());
   auto last_hello = Clock::now();
   tell(follower.hello());
-  while (!state_->stop->raised() && !state_->ended && !follower.ended()) {
+  while (!state_->stop->raised() && !state_->ended) {
     state_->live->wait(state_->stop->descriptor(), kWaitMs);
     while (auto message = state_->live->next()) {
       if (message->subscription < heard.size()) {
@@ -335,6 +335,11 @@ void Process::run_lockstep() {
     while (const auto phase = follower.next()) {
       for (const Follower::Message& message : *phase) deliver(message.hearing, message.bytes);
       tell(follower.answer());
+    }
+    if (follower.ends()) {
+      if (const auto end = std::exchange(state_->end, nullptr)) end();
+      tell(follower.answer());
+      return;
     }
     const auto now = Clock::now();
     if (!follower.started() && now - last_hello >= std::chrono::milliseconds{200}) {

@@ -12,7 +12,7 @@
 #include "common/base/config.hpp"
 #include "common/base/time.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 

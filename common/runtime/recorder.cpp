@@ -88,7 +88,7 @@ void Arrangement::arrived(const std::string& channel, std::vector<std::uint8_t> 
 
 void Arrangement::announced(const fathom_lcm::lockstep_t& phase) {
   if (phase.phase < 0) {
-    ended_ = true;
+    ended_ = ended_ || phase.channel.empty();  // else one process ends, and its last words are announced
   } else {
     phases_.push_back(phase);
   }
@@ -113,7 +113,7 @@ void Arrangement::write_complete() {
   }
   if (!ended_) return;
   for (auto& [channel, messages] : waiting_) {
-    while (!messages.empty()) put(channel, utime_);  // said at the end of the run
+    while (is_free_channel(channel) && !messages.empty()) put(channel, utime_);
   }
 }
 
@@ -122,10 +122,14 @@ int recorder_main(int argc, const char* const* argv) {
   logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
   try {
     std::string path;
-    const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
-      app.add_option("--file", path, "the log to be written")->required();
-    });
+    const auto arguments = Arguments::parse(
+        "recorder", argc, argv, [&](CLI::App& app) { app.add_option("--file", path, "the log to be written"); });
     if (!arguments) return 0;
+    if (arguments->interface_only) {
+      std::cout << "hears every channel\n";
+      return 0;
+    }
+    if (path.empty()) throw InputError("--file is missing: the log to be written");
     if (!arguments->in.front().live()) throw InputError("--in: a recorder hears a live bus");
     if (!arguments->lockstep) throw InputError("--lockstep is missing: in real time lcm-logger records");
     run(*arguments, path);

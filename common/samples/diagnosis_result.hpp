@@ -51,7 +51,8 @@ struct EffectFound {
   std::vector<NamedValue> parameters;
   double log_odds{};
   double error_reduction{};
-  std::vector<std::string> alternatives;
+  std::vector<std::string> alternatives;  ///< other effects that the data cannot rule out
+  std::vector<std::string> other_forms;   ///< "T4 or T0": forms of this effect that would explain as much
   std::string sentence;
 };
 

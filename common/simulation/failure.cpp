@@ -51,7 +51,7 @@ Failure Failure::parse(const std::string& text) {
   if (equals == std::string::npos) throw wrong("no '='");
   Failure failure{.sensor = text.substr(0, equals)};
   const auto& kinds = sensor_kinds();
-  if (std::none_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return failure.sensor == kind.name; })) {
+  if (std::none_of(kinds.begin(), kinds.end(), [&](const auto& each) { return failure.sensor == each.name; })) {
     throw wrong("no instrument '" + failure.sensor + "'");
   }
   std::size_t at = std::min(text.find(',', equals), text.size());

@@ -80,7 +80,7 @@ StartPose start_of(const Config& config, const model::Site& site, const Eigen::V
     static_cast<void>(start.quantity("heading", "rad"));
   }
   const Config start = starts.section(site.name);
-  const StartPose pose{.p_WB = start.vector3("position", "m"), .heading = start.quantity("heading", "rad")};
+  StartPose pose{.p_WB = start.vector3("position", "m"), .heading = start.quantity("heading", "rad")};
   const double reach = 0.5 * hull.norm();
   for (const Plane& plane : solid_planes(site)) {
     if (plane.n.dot(pose.p_WB) - plane.offset < reach) {
@@ -177,10 +177,10 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
   for (const SensorKind& kind : sensor_kinds()) {
     if (!sensors.has(kind.name)) continue;
     const Config one = sensors.section(kind.name);
-    Timing timing{one, kind.name, setup.seed};
+    const Timing timing{one, kind.name, setup.seed};
     auto sensor = kind.make(one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_});
     if (!carried_at(one, site_)) sensor.reset();
-    if (sensor) slots_.push_back({kind.name, std::move(timing), std::move(sensor)});
+    if (sensor) slots_.push_back({kind.name, timing, std::move(sensor)});
   }
   for (const Failure& failure : failures_) {
     if (std::none_of(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.name == failure.sensor; })) {

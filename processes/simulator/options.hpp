@@ -8,7 +8,7 @@
 #include "common/samples/commands.hpp"
 #include "common/simulation/simulator.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
 }
 

@@ -96,7 +96,7 @@ void Stage::hear(const fathom_lcm::health_t& health) {
 }
 
 void Stage::wait(std::span<const int> descriptors, int milliseconds) {
-  if (state_ == State::kRunning) {
+  if (state_ == State::kRunning || state_ == State::kEnding) {
     if (milliseconds == 0) return;  // messages are here already
     if (conductor_) {
       conduct(descriptors, milliseconds);
@@ -110,15 +110,15 @@ void Stage::wait(std::span<const int> descriptors, int milliseconds) {
   if (state_ == State::kLooking) {
     if (seconds(now - began_) < kLook) return;
     state_ = State::kGathering;
-    last_answer_ = now;
+    last_complaint_ = now;
   }
   const std::vector<std::string> absent = conductor_ ? conductor_->absent() : std::vector<std::string>{};
   if (absent.empty()) {
     state_ = State::kRunning;
     first_tick_ = last_answer_ = Clock::now();
     advance();
-  } else if (seconds(now - last_answer_) > kComplain) {
-    last_answer_ = now;
+  } else if (seconds(now - last_complaint_) > kComplain) {  // others keep saying hello meanwhile
+    last_complaint_ = now;
     std::string names;
     for (const std::string& each : absent) names += (names.empty() ? "" : ", ") + each;
     process_.log_warning("waits for " + names + "; start them with --lockstep");
@@ -155,6 +155,14 @@ void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
     }
     return;
   }
+  if (state_ == State::kEnding) {
+    if (const auto last = conductor_->finish(simulator_.now())) {
+      process_.publish(runtime::kLockstep, *last);
+    } else {
+      process_.stop();
+    }
+    return;
+  }
   if (options_.speed > 0.0) return run(descriptors, milliseconds);
   advance();
 }
@@ -182,7 +190,8 @@ void Stage::publish(const simulation::Sample& sample) {
 
 void Stage::advance() {
   if (seconds_between(options_.setup.origin, simulator_.now()) >= options_.setup.duration - 1e-9) {
-    process_.stop();
+    state_ = State::kEnding;
+    if (!conductor_) process_.stop();
     return;
   }
   const Utime utime = simulator_.now();

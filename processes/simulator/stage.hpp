@@ -40,7 +40,7 @@ class Stage {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class State { kLooking, kGathering, kRunning };
+  enum class State { kLooking, kGathering, kRunning, kEnding };
 
   void run(std::span<const int> descriptors, int milliseconds);
   void conduct(std::span<const int> descriptors, int milliseconds);
@@ -60,7 +60,7 @@ class Stage {
   driver::ThrusterGate gate_;
   std::optional<runtime::Conductor> conductor_;
   State state_{State::kLooking};
-  Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{};
+  Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{}, last_complaint_{};
   int introductions_{};
   std::int64_t commands_{};
   std::vector<std::string> said_;

@@ -112,6 +112,31 @@ TEST_CASE("simulator: lockstep twice, lockstep at the wall's pace and plain real
   }
 }
 
+TEST_CASE("simulator: minds in lockstep, and the same minds on the recorded log: the same bits") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const std::string vehicle = " --config " + file("config/vehicles/beluga.yaml");
+  const std::string minds = vehicle + " --config " + file("config/pipelines/beluga.yaml") + " --config " +
+                            file("config/corrections/none.yaml");
+  const auto ran = on_private_network(
+      program("recorder") + " --lockstep --file " + scratch.path("run.lcmlog") + " &\n" + pilot() + " --lockstep &\n" +
+      program("estimator") + " --lockstep" + minds + " &\n" + program("identifier") + " --lockstep" + minds + " &\n" +
+      program("simulator") + vehicle + " --config " + file("config/sites/tank.yaml") + " --config " +
+      file("config/simulation/beluga.yaml") +
+      " --speed 0 --duration 60 --order 0=enable --wait-for recorder,test_pilot,estimator,identifier\nwait");
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const std::string in = " --in file://" + scratch.path("run.lcmlog");
+  const auto estimator = shell(program("estimator") + minds + in + " --out file://" + scratch.path("state.lcmlog"));
+  REQUIRE_MESSAGE(estimator.code == 0, estimator.text);
+  const auto identifier = shell(program("identifier") + minds + in + " --out file://" + scratch.path("model.lcmlog"));
+  REQUIRE_MESSAGE(identifier.code == 0, identifier.text);
+  auto live = messages(scratch.path("run.lcmlog"));
+  REQUIRE(live["STATE"].size() > 500);
+  REQUIRE(live["MODEL"].size() > 50);
+  CHECK(messages(scratch.path("state.lcmlog"))["STATE"] == live["STATE"]);
+  CHECK(messages(scratch.path("model.lcmlog"))["MODEL"] == live["MODEL"]);
+}
+
 TEST_CASE(
     "simulator: nothing reaches the thrusters from a commander who was there first, until enable; abort stops it") {
   if (!private_network()) return;
@@ -178,6 +203,9 @@ TEST_CASE("simulator: a follower that restarts, a stranger, and words that do no
         " --lockstep) &\n" + simulator("--duration 20 --speed 1 --wait-for test_pilot") + "\necho ended with \\$?");
     CHECK_MESSAGE(restarted.says("test_pilot was started anew in the middle of the run"), restarted.text);
     CHECK_MESSAGE(restarted.says("ended with 1"), restarted.text);
+    const auto alone = on_private_network("timeout 8 " + pilot() + " --lockstep &\ntimeout 7 " +
+                                          simulator("--duration 20 --speed 0 --wait-for test_pilot,estimator"));
+    CHECK_MESSAGE(alone.says("waits for estimator; start them with --lockstep"), alone.text);
     const auto stranger =
         on_private_network("timeout 5 " + pilot() + " --lockstep &\n" +
                            simulator("--duration 20 --speed 1 --wait-for estimator") + "\necho ended with \\$?");

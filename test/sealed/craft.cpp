@@ -64,10 +64,9 @@ void load_hull(bool slender, bool six, Random& random, Craft& craft) {
   const Vector3d& extent = craft.extent;
   const double volume = extent.prod() * (slender ? 0.7 : random.uniform(0.3, 0.5));  // frames are half water
   hull.mass = craft.density * volume * random.uniform(0.9, 1.0);
-  for (int k = 0; k < 3; ++k) {
-    const double a = extent[(k + 1) % 3], b = extent[(k + 2) % 3];
-    hull.inertia[k] = hull.mass * (a * a + b * b) / 12.0 * random.uniform(0.9, 1.3);
-  }
+  Vector3d square;  // of the extents; chance comes in here, so that a body with these moments can exist
+  for (int k = 0; k < 3; ++k) square[k] = extent[k] * extent[k] * random.uniform(0.9, 1.3);
+  for (int k = 0; k < 3; ++k) hull.inertia[k] = hull.mass * (square.sum() - square[k]) / 12.0;
   const Vector3d share = slender ? Vector3d(0.1, 0.95, 0.95) : Vector3d(0.5, 0.8, 1.1);
   for (int k = 0; k < 3; ++k) {
     const double face = extent.prod() / extent[k];
@@ -80,7 +79,7 @@ void load_hull(bool slender, bool six, Random& random, Craft& craft) {
     hull.linear[3 + k] = hull.quadratic[3 + k] * random.uniform(0.2, 0.6) + 0.4 * hull.inertia[k];
   }
   if (!six) {  // four degrees of freedom have no numbers for (I_Y - I_X) p q in yaw
-    hull.inertia[1] = hull.inertia[0];
+    hull.inertia[0] = hull.inertia[1] = std::max(hull.inertia[0], hull.inertia[1]);
     hull.added[4] = hull.added[3];
   }
   hull.net_weight = hull.mass * kGravity * random.uniform(-0.015, 0.006);

@@ -8,7 +8,7 @@
 namespace fathom::sealed {
 
 /// Counts up whenever the same number draws another set: old sets are then drawn again.
-constexpr int kGenerator = 4;
+constexpr int kGenerator = 5;
 
 /// Where a set lies below the benchmark's folder.
 struct Places {

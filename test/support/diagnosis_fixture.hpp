@@ -143,6 +143,7 @@ inline DiagnosisReport made_up_report(const FixtureOptions& options = {}) {
                 214.6,
                 0.31,
                 {},
+                {},
                 "The thrusters reach a new force only after about 0.35 s."},
                {"current",
                 "",
@@ -151,6 +152,7 @@ inline DiagnosisReport made_up_report(const FixtureOptions& options = {}) {
                 18.2,
                 0.09,
                 {"tether_tension"},
+                {"east or north"},
                 "The water moves at 0.09 m/s towards the north-west."}};
   r.candidates = {{"thruster_lag", "", 214.6, 0.31, {}, "explains the late answer in every axis"},
                   {"current", "", 18.2, 0.09, {"tether_tension"}, "residual turns with the heading"},

@@ -28,10 +28,10 @@ using Changes = std::vector<std::pair<std::string, std::string>>;
 
 inline std::string simulation_text(const std::string& name, const Changes& changes) {
   std::string text = read_bytes(std::string{FATHOM_SOURCE_DIR} + "/config/simulation/" + name + ".yaml");
-  for (const auto& [from, to] : changes) {
-    const auto at = text.find(from);
-    REQUIRE_MESSAGE(at != std::string::npos, from);
-    text.replace(at, from.size(), to);
+  for (const auto& change : changes) {
+    const auto at = text.find(change.first);
+    REQUIRE_MESSAGE(at != std::string::npos, change.first);
+    text.replace(at, change.first.size(), change.second);
   }
   return text;
 }

@@ -26,6 +26,7 @@ class BottomEffect final : public Effect {
   std::string_view sentence() const override { return "The bottom below is felt when it is near."; }
   std::string_view revealed_by() const override { return "hovering and moving at several heights above the floor"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }

@@ -24,6 +24,7 @@ class FluidMemory final : public Effect {
   std::string_view sentence() const override { return "The water remembers past motion for a while."; }
   std::string_view revealed_by() const override { return "slow and quick changes between the same speeds"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

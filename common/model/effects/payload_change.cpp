@@ -27,6 +27,7 @@ class PayloadChange final : public Effect {
   std::string_view sentence() const override { return "The vehicle gains or loses mass and weight at some moment."; }
   std::string_view revealed_by() const override { return "hovering and the same steps of thrust, early and late"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 2; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;

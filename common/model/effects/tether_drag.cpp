@@ -28,6 +28,7 @@ class TetherDrag final : public Effect {
     return "the same speeds near the tether's fixed end and far from it";
   }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -23,6 +23,7 @@ class TetherTension final : public Effect {
   std::string_view sentence() const override { return "A tether pulls toward its fixed end."; }
   std::string_view revealed_by() const override { return "slow excursions to every side of the site, with pauses"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -32,6 +32,7 @@ class ThrustOvershoot final : public Effect {
   std::string_view sentence() const override { return "Thrust peaks after each change of command and then fades."; }
   std::string_view revealed_by() const override { return "steps of thrust held for five seconds and more"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
     int vertical = 0;

@@ -24,6 +24,7 @@ class ThrusterFailure final : public Effect {
   std::string_view sentence() const override { return "One thruster loses part of its thrust at some moment."; }
   std::string_view revealed_by() const override { return "the same motions in every part of the run"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -29,6 +29,7 @@ class WallEffect final : public Effect {
   std::string_view sentence() const override { return "A wall beside is felt when it is near."; }
   std::string_view revealed_by() const override { return "moving along and toward every side of the site"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }

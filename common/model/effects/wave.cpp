@@ -31,6 +31,7 @@ class Wave final : public Effect {
   std::string_view sentence() const override { return "Waves push the vehicle to and fro."; }
   std::string_view revealed_by() const override { return "hovering for many periods of the waves"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  int amplitudes() const override { return 2; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -30,8 +30,8 @@ class LaserRangeSensor final : public Sensor {
     const double error = stream_.normal(), wild = stream_.uniform(-0.5, 0.5);
     const bool is_wild = stream_.chance(outlier_);
     const CameraView view{camera_, moment};
-    const Eigen::Vector3d emitter_W = view.p_WC + view.R_WC * laser_.p_CE;
-    const double distance = distance_along(*site_, emitter_W, view.R_WC * laser_.axis_C);
+    const Eigen::Vector3d p_WE = view.p_WC + view.R_WC * laser_.p_CE;
+    const double distance = distance_along(*site_, p_WE, view.R_WC * laser_.axis_C);
     const Eigen::Vector3d p_CL = laser_.p_CE + distance * laser_.axis_C;
     if (!(distance <= farthest_) || !view.sees(p_CL)) return;
     const double z = p_CL.z();

@@ -117,3 +117,15 @@ TEST_CASE("screening: the found numbers respect physical bounds") {
     }
   }
 }
+
+TEST_CASE("screening: an amplitude may have either sign, wherever the search begins") {
+  for (const double sign : {1.0, -1.0}) {
+    const Fitted fitted{{test::active("payload_change", {0.0, 3.0 * sign, 52.0})}};
+    const model::Effect& effect = *model::find_effect("payload_change");
+    const Screened found = screen(fitted.base, effect, 0, "", effect.starts(fitted.scene, 0));
+    CAPTURE(sign);
+    CHECK(found.theta[1] == doctest::Approx(3.0 * sign).epsilon(kFirstOrder));
+    constexpr double kMoment = 1.0;  // s: the step itself lasts as long
+    CHECK(std::abs(found.theta[2] - 52.0) < kMoment);
+  }
+}

@@ -32,8 +32,8 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(file["train"].size() == 5);
   CHECK(keys(file["consistency"][0]) ==
         Names{"action", "evidence", "finding", "reference", "run", "signal", "size", "unit"});
-  CHECK(keys(file["effects"][0]) ==
-        Names{"accepted", "alternatives", "error_reduction", "log_odds", "name", "parameters", "sentence", "variant"});
+  CHECK(keys(file["effects"][0]) == Names{"accepted", "alternatives", "error_reduction", "log_odds", "name",
+                                          "other_forms", "parameters", "sentence", "variant"});
   CHECK(keys(file["candidates"][0]) ==
         Names{"aliased_with", "error_reduction", "log_odds", "name", "reason", "variant"});
   CHECK(keys(file["error"]) == Names{"after", "before", "improvement"});

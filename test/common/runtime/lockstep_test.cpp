@@ -76,8 +76,47 @@ TEST_CASE(
   REQUIRE(messages);
   CHECK((*messages)[0].bytes == text("human"));
   CHECK((*messages)[1].bytes == text("s"));
-  follower.announced(phase_of(2, -1, {}));
-  CHECK(follower.ended());
+  follower.announced(phase_of(2, -1, {"estimator"}));  // somebody else's turn
+  CHECK_FALSE(follower.ends());
+  follower.announced(phase_of(3, -1, {"supervisor"}));
+  CHECK(follower.ends());
+  follower.said("WRENCH_COMMAND");
+  CHECK(follower.answer().said == Names{"WRENCH_COMMAND"});
+  CHECK(follower.answer().tick == 3);
+}
+
+TEST_CASE("conductor: at the end each process goes in its turn, and those behind it hear its last words") {
+  Conductor conductor{{"recorder", "estimator", "identifier"}};
+  conductor.hear(hello("recorder", {kEveryChannel}));
+  conductor.hear(hello("estimator", {"AHRS"}));
+  conductor.hear(hello("identifier", {"STATE"}));
+  static_cast<void>(conductor.begin(0, {"TRUTH"}));
+  REQUIRE(conductor.over());
+  const auto first = conductor.finish(7);
+  REQUIRE(first);
+  CHECK(first->phase == -1);
+  CHECK(first->channel == Names{"estimator"});
+  CHECK_FALSE(conductor.over());
+  conductor.hear(answer("estimator", *first, {"STATE"}));
+  const auto words = conductor.next();
+  REQUIRE(words);
+  CHECK(words->channel == Names{"STATE"});
+  CHECK(words->phase == 0);
+  conductor.hear(answer("identifier", *words, {"MODEL"}));
+  const auto for_the_log = conductor.next();  // nobody hears MODEL but the recorder
+  REQUIRE(for_the_log);
+  CHECK(for_the_log->channel == Names{"MODEL"});
+  CHECK(conductor.over());
+  const auto second = conductor.finish(7);
+  REQUIRE(second);
+  CHECK(second->channel == Names{"identifier"});
+  conductor.hear(answer("identifier", *second, {}));
+  CHECK_FALSE(conductor.next());
+  CHECK(conductor.over());
+  const auto last = conductor.finish(7);
+  REQUIRE(last);
+  CHECK(last->channel.empty());  // the recorder's
+  CHECK_FALSE(conductor.finish(7));
 }
 
 TEST_CASE("conductor: phases follow the messages until nobody has anything left to handle") {
@@ -162,9 +201,8 @@ TEST_CASE("recorder: whatever the order of arrival, the log has the order of han
   arrangement.arrived("HEALTH", text("h"));
   arrangement.arrived("AHRS", text("a2"));
   CHECK(arrangement.tick() == 1);
-  arrangement.arrived("MODEL", text("last"));
+  arrangement.arrived("MODEL", text("nobody announced it"));
   arrangement.announced(phase_of(2, -1, {}));
   CHECK(arrangement.ended());
-  CHECK(log ==
-        Names{"HEALTH h 1000", "AHRS a1 1000", "DVL d1 1000", "AHRS a2 1000", "STATE s1 1000", "MODEL last 1000"});
+  CHECK(log == Names{"HEALTH h 1000", "AHRS a1 1000", "DVL d1 1000", "AHRS a2 1000", "STATE s1 1000"});
 }
