@@ -15,6 +15,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/operator_token.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
 #include "common/driver/thruster_gate.hpp"
@@ -61,11 +62,11 @@ Way way_of(const Config& config) {
 
 class ThrusterDriver final : public devices::Output {
  public:
-  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle)
+  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle, std::string token)
       : process_{process},
         way_{way_of(config)},
         allocation_{vehicle, positive(config, "largest_thrust", "N")},
-        gate_{wall_clock()},
+        gate_{std::move(token)},
         period_{1.0 / positive(config, "rate", "Hz")},
         writer_{255, 190} {
     if (vehicle.curve.empty()) {
@@ -138,6 +139,9 @@ class ThrusterDriver final : public devices::Output {
     if (unhealthy.empty()) unhealthy = lacking_;
     const std::string_view reason = gate_.reason(wall_clock());
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
+    if (gate_.refused() > 0) {
+      detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";
+    }
     if (parser_) {
       detail += ", frames " + std::to_string(parser_->counters().frames) + ", bad checksums " +
                 std::to_string(parser_->counters().bad_checksum);
@@ -251,10 +255,10 @@ class ThrusterDriver final : public devices::Output {
 int thruster_main(int argc, const char* const* argv) {
   return runtime::main("thruster_driver", argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
-    ThrusterDriver driver{process, process.config(), vehicle};
+    ThrusterDriver driver{process, process.config(), vehicle, operator_token(process.config_path("operator"))};
     process.publishes<fathom_lcm::thrusters_t>(wire::kThrusters);
     process.publishes<fathom_lcm::battery_t>(wire::kBattery);
-    process.on_latest<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
+    process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
       const auto command = wire::decode(message);
       if (!command) return process.reject(wire::kWrenchCommand);
       driver.hear(*command);

@@ -1,21 +1,26 @@
 // Whether a command may reach the thrusters now. Everything doubtful means zero thrust.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "common/samples/commands.hpp"
 
 namespace fathom::driver {
 
-/// Zero until it is sure that somebody means it: commands that were flowing already when the driver started count only
-/// after a pause of half a second or an operator's "enable". An abort holds until the next "enable". A command dies
-/// after its stated life, after half a second without a new one, and when its own time is too old.
+/// Zero until an operator has armed: an order to enable with the right token, a sequence number not heard before, and
+/// a time that is now; so that neither a stray publisher nor a replayed log can do it. An abort needs none of these
+/// and holds until the next arming. A command dies after its stated life, after half a second without a new one, and
+/// when its own time is too old. Armed is armed for
+/// the one who commands first: while another one speaks none is obeyed, and the other never without a new arming.
 class ThrusterGate {
  public:
-  static constexpr double kPause = 0.5;  ///< s
-  /// Times are wall-clock microseconds, as in messages.
-  explicit ThrusterGate(Utime start) : quiet_since_{start} {}
+  static constexpr double kPause = 0.5;     ///< s
+  static constexpr double kOrderAge = 5.0;  ///< s that an order's own time may be off
+  /// Times are those of messages: wall-clock microseconds, or virtual ones with a simulator. An empty token never arms.
+  explicit ThrusterGate(std::string token) : token_{std::move(token)} {}
 
   void hear(const WrenchCommand& command, Utime now);
   void hear(const Operator& order, Utime now);
@@ -23,13 +28,23 @@ class ThrusterGate {
   [[nodiscard]] Vector6d wrench(Utime now) const;
   /// Empty while a command is obeyed.
   [[nodiscard]] std::string_view reason(Utime now) const;
+  [[nodiscard]] bool armed() const { return armed_; }
+  /// Orders that were not believed, and why the last one was not.
+  [[nodiscard]] std::int64_t refused() const { return refused_; }
+  [[nodiscard]] std::string_view refusal() const { return refusal_; }
 
  private:
-  Utime quiet_since_;  ///< start, or the last command that was heard while not trusted
-  bool trusted_{false};
+  [[nodiscard]] std::string_view objection(const Operator& order, Utime now) const;
+
+  std::string token_;
+  bool armed_{false};
   bool aborted_{false};
+  std::int64_t sequence_{};
   std::optional<WrenchCommand> command_;
   Utime heard_{};
+  std::optional<Utime> contested_;  ///< when another commander was heard last
+  std::int64_t refused_{};
+  std::string_view refusal_;
 };
 
 }  // namespace fathom::driver

@@ -287,6 +287,15 @@ void Estimator::say() {
   state.nu << R_WB.transpose() * translation_.velocity(), attitude_.rates();
   state.sigma << translation_.sigma_position(), Eigen::Vector3d::Constant(attitude_.sigma_rotation()),
       translation_.sigma_velocity_body(R_WB), Eigen::Vector3d::Constant(attitude_.sigma_rates());
+  state.covariance.topLeftCorner<3, 3>() = state.sigma.head<3>().cwiseAbs2().asDiagonal();
+  state.covariance.bottomRightCorner<3, 3>() = state.sigma.segment<3>(6).cwiseAbs2().asDiagonal();
+  const auto age = [&](Source source, const Track& track) {
+    if (track.last) state.age[static_cast<std::size_t>(source)] = seconds_between(*track.last, *now_);
+  };
+  age(Source::kAhrs, gyro_track_);
+  age(Source::kPoseCapture, position_.last ? position_ : captured_);
+  age(Source::kDvl, velocity_);
+  age(Source::kDepth, depth_);
   state.valid = fresh(rotation_) && (fresh(position_) || fresh(velocity_)) && moving_since_ &&
                 seconds_between(*moving_since_, *now_) * settings_.position_cutoff >= kSettling && state.nu.allFinite();
   output_.push_back(state);

@@ -52,6 +52,10 @@ RecursiveSettings recursive_settings(const IdentifierSettings& settings, const m
       throw InputError("vehicle '" + vehicle.name + "': prior of " + vehicle.parameters[i] +
                        " needs sigma > 0; a known constant gets a small one");
     }
+    if (settings.from_zero) {
+      s.mean(static_cast<Eigen::Index>(i)) = 0.0;
+      s.sigma(static_cast<Eigen::Index>(i)) = settings.zero_sigma;
+    }
     s.signs[i] = static_cast<std::int8_t>(model::sign_constraint(columns[i]));
     if (settings.buoyant && columns[i] == model::BaseParameter::W_B) s.signs[i] = -1;
   }
@@ -78,8 +82,26 @@ const Identifier::Output& Identifier::step(const StateEstimate& state) {
     reject("late");
     return output_;
   }
+  if (!offered_.empty()) decide(state.utime);
   release();
   return output_;
+}
+
+void Identifier::hear(const Excitation& excitation) {
+  const std::vector<std::string>& last = wishes_.empty() ? frozen_ : wishes_.back().frozen;
+  if (excitation.frozen == last) return;
+  if (!wishes_.empty() && excitation.utime <= wishes_.back().utime) return;
+  wishes_.push_back({excitation.utime, excitation.frozen});
+}
+
+// By time stamps alone, so that it does not matter when the wish arrived.
+void Identifier::obey(Utime utime) {
+  while (!wishes_.empty() && seconds_between(wishes_.front().utime, utime) >= settings_.freeze_delay) {
+    for (const std::string& name : frozen_) resume(name);
+    frozen_ = std::move(wishes_.front().frozen);
+    for (const std::string& name : frozen_) freeze(name);
+    wishes_.erase(wishes_.begin());
+  }
 }
 
 const Identifier::Output& Identifier::step(const Thrusters& thrusters) {
@@ -134,14 +156,17 @@ void Identifier::use(const MotionSample& sample) {
   Residual residual;
   residual.utime = block->utime;
   for (const Row& row : block->view()) residual.wrench(row.axis) = row.y - row.h.dot(known);
+  obey(block->end);
   estimator_.step(block->view());
+  remember(*block);
   model_utime_ = block->end;
   output_.residuals.push_back(residual);
   output_.models.push_back(model());
 }
 
 ModelEstimate Identifier::model() const {
-  const RecursiveReport report = estimator_.report();
+  RecursiveReport report = estimator_.report();
+  add_scale(report);
   ModelEstimate estimate;
   estimate.utime = model_utime_;
   estimate.updates = estimator_.state().updates;
@@ -153,6 +178,7 @@ ModelEstimate Identifier::model() const {
                                    .std = report.sigma(k),
                                    .unit = std::string{unit(parameters_[i])}});
   }
+  add_metrics(estimate, report);
   return estimate;
 }
 
@@ -161,6 +187,9 @@ void Identifier::reset() {
   estimator_.reset();
   aligner_.reset();
   model_utime_ = 0;
+  recent_ = {};
+  wishes_.clear();
+  frozen_.clear();
   output_ = Output{};
 }
 

@@ -3,6 +3,7 @@
 // last bit.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "common/identification/recursive.hpp"
 #include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
+#include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/sensors.hpp"
 
@@ -33,9 +35,15 @@ struct IdentifierSettings {
   double max_input_gap{0.5};     ///< s; a state between inputs further apart is not used
   double max_skew{0.5};          ///< s by which one channel may lag the other without changing the result
   bool buoyant{false};           ///< W-B is known to be negative
+  bool from_zero{false};         ///< begins with all parameters zero and one sigma, as the paper does
+  double zero_sigma{10.0};       ///< of every parameter in its own unit (the paper's P_0 = sigma^2 I)
+  double residual_memory{30.0};  ///< s over which MODEL's residual statistics look back
+  double velocity_scale{0.0};  ///< share by which u v w may be off in proportion: no residual shows it, intervals must
+  double freeze_delay{0.5};    ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
-  /// buoyant.
+  /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
+  /// freeze_delay.
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -55,6 +63,8 @@ class Identifier {
   const Output& step(const StateEstimate& state);
   /// `force` times the vehicle's allocation, else `tau`; a sample with neither is rejected.
   const Output& step(const Thrusters& thrusters);
+  /// Which parameters shall not be learnt from then on; unknown names are nobody's.
+  void hear(const Excitation& excitation);
   /// A log started over: back to the prior, nothing pending.
   void reset();
 
@@ -66,11 +76,34 @@ class Identifier {
   [[nodiscard]] const RecursiveEstimator& estimator() const { return estimator_; }
   [[nodiscard]] const RecursiveEstimator::State& save() const { return estimator_.state(); }
   void restore(const RecursiveEstimator::State& state) { estimator_.restore(state); }
+  /// Everything learnt as text, for a file; and such a text offered to a new process. It is taken when the first state
+  /// comes at most `within` [s] after it was written; a file of another vehicle, time or run is left alone.
+  [[nodiscard]] std::string save_text() const;
+  void offer(const std::string& text, double within);
+  /// True when an offered state was taken.
+  [[nodiscard]] bool resumed() const { return resumed_; }
   /// Samples not used, by reason: "late", "state invalid", "no force", "not finite", "no input".
   [[nodiscard]] const std::map<std::string, std::int64_t>& rejected() const { return rejected_; }
 
  private:
+  /// Recent residuals of one axis, each divided by its standard deviation.
+  struct Recent {
+    double weight{};
+    double mean{};
+    double square{};
+    double product{};  ///< of one with the next
+    double last{};
+  };
+  struct Wish {
+    Utime utime{};
+    std::vector<std::string> frozen;
+  };
   void reject(const char* reason) { ++rejected_[reason]; }
+  void obey(Utime utime);
+  void remember(const RowBlock& block);
+  void decide(Utime first);
+  void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
+  void add_scale(RecursiveReport& report) const;
   void release();
   void use(const MotionSample& sample);
   [[nodiscard]] int column(std::string_view parameter) const;
@@ -82,6 +115,12 @@ class Identifier {
   RecursiveEstimator estimator_;
   StreamAligner aligner_;
   Utime model_utime_{};
+  std::array<Recent, 6> recent_{};
+  std::vector<Wish> wishes_;  // in the order of time, not yet obeyed
+  std::vector<std::string> frozen_;
+  std::string offered_;
+  double offered_within_{};
+  bool resumed_{false};
   Output output_;
   std::map<std::string, std::int64_t> rejected_;
 };

@@ -16,6 +16,13 @@ IdentifierSettings IdentifierSettings::from(const Config& config) {
   s.max_input_gap = config.positive("max_input_gap", "s");
   s.max_skew = config.not_negative("max_skew", "s");
   s.buoyant = config.flag("buoyant");
+  if (config.has("prior")) {
+    s.from_zero = config.either("prior", "zero", "vehicle");
+    if (s.from_zero) s.zero_sigma = config.positive("prior_sigma", "");
+  }
+  if (config.has("residual_memory")) s.residual_memory = config.positive("residual_memory", "s");
+  if (config.has("velocity_scale")) s.velocity_scale = config.not_negative("velocity_scale", "");
+  if (config.has("freeze_delay")) s.freeze_delay = config.not_negative("freeze_delay", "s");
   return s;
 }
 

@@ -217,6 +217,25 @@ ParameterMatrix RecursiveEstimator::covariance() const {
 
 ParameterVector RecursiveEstimator::projected() const {
   if (obeys(state_.estimate, settings_.signs)) return state_.estimate;
+  // One violated sign is the usual case: the nearest point on its face, when that obeys the others, is the solution,
+  // and it needs one column of P alone.
+  const Eigen::Index n = state_.estimate.size();
+  Eigen::Index violated = -1;
+  int count = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (state_.estimate(i) * settings_.signs[static_cast<std::size_t>(i)] >= 0.0) continue;
+    violated = i;
+    ++count;
+  }
+  if (count == 1) {
+    ParameterVector column = ParameterVector::Zero(n);
+    for (Eigen::Index k = violated; k < n; ++k) {
+      column.head(k + 1) += (state_.D(k) * state_.U(violated, k)) * state_.U.col(k).head(k + 1);
+    }
+    ParameterVector x = state_.estimate - (state_.estimate(violated) / column(violated)) * column;
+    x(violated) = 0.0;
+    if (obeys(x, settings_.signs)) return x;
+  }
   return project_on_signs(state_.estimate, covariance(), settings_.signs);
 }
 

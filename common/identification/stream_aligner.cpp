@@ -72,11 +72,14 @@ std::optional<model::ActuatorForces> StreamAligner::input_at(Utime utime) const 
   const auto after = std::lower_bound(inputs_.begin(), inputs_.end(), utime,
                                       [](const Input& input, Utime time) { return input.utime < time; });
   if (after == inputs_.end()) return std::nullopt;
-  if (after->utime == utime) return after->value;
+  if (after->utime == utime && (settings_.interpolate || after == inputs_.begin())) return after->value;
   if (after == inputs_.begin()) return std::nullopt;
   const auto before = std::prev(after);
   const double gap = seconds_between(before->utime, after->utime);
-  if (gap > settings_.max_input_gap) return std::nullopt;
+  // Where a held input jumps, its mean is right for whoever sums samples by trapezoids; either side is half a step off.
+  const bool jump = after->utime == utime;
+  if (gap > settings_.max_input_gap) return jump ? std::optional{after->value} : std::nullopt;
+  if (jump) return model::ActuatorForces{0.5 * (before->value + after->value)};
   if (!settings_.interpolate) return before->value;
   return model::ActuatorForces{before->value +
                                (seconds_between(before->utime, utime) / gap) * (after->value - before->value)};

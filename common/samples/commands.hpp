@@ -1,7 +1,9 @@
 // What is asked of the vehicle: WRENCH_COMMAND, OPERATOR, EXCITATION.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/base/spatial.hpp"
 #include "common/base/time.hpp"
@@ -13,6 +15,7 @@ struct WrenchCommand {
   Utime utime{};                   ///< of the state that it answers
   Vector6d tau{Vector6d::Zero()};  ///< N, N m at the body origin, body axes
   double life{};                   ///< s; after utime + life the thruster driver goes to zero
+  std::string commander;           ///< who commands, different for every running process
 };
 
 /// What the human wants.
@@ -20,8 +23,10 @@ struct Operator {
   Utime utime{};
   bool abort{false};               ///< thrust to zero at once
   bool enable{false};              ///< automatic motion is allowed
-  std::string order;               ///< "hold", "identify", "manual"; empty: no change
+  std::string order;               ///< "hold", "identify", "manual", "skip", "retry"; empty: no change
   Vector6d tau{Vector6d::Zero()};  ///< N, N m at the body origin, body axes; used under "manual"
+  std::string token;               ///< as configured on the vehicle: without it only an abort is obeyed
+  std::int64_t sequence{};         ///< rises with every order: one that was heard before is not obeyed again
 };
 
 /// The experiment that the supervisor runs, and why.
@@ -33,6 +38,13 @@ struct Excitation {
   double elapsed{};                  ///< s since the experiment began
   double duration{};                 ///< s planned
   Vector6d probe{Vector6d::Zero()};  ///< N, N m: the experiment's share of the command
+  std::string mode;                  ///< "yaw", "surge", "sway", "heave" or "total"; empty: none
+  std::string phase;                 ///< "disarmed", "approach", "excite", "done", "aborted" or "lost"
+  double metric{-1.0};               ///< of MODEL for this mode; -1: not known
+  double threshold{};                ///< below which the mode may be left
+  std::string missing;               ///< what else is needed to leave the mode
+  bool bent{false};                  ///< the fence altered the command
+  std::vector<std::string> frozen;   ///< parameters that shall not be learnt now
 };
 
 }  // namespace fathom

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,12 @@
 
 namespace fathom {
 
+/// What a state estimate can rest on, in the order of StateEstimate::age.
+enum class Source { kAhrs, kPoseCapture, kTagPose, kOpticalFlow, kLaserRange, kDvl, kUsbl, kDepth };
+inline constexpr std::size_t kSources = 8;
+using SourceAges = std::array<double, kSources>;
+inline constexpr SourceAges kNoSource{-1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0};
+
 /// Estimate of the vehicle's motion.
 struct StateEstimate {
   Utime utime{};
@@ -18,7 +26,9 @@ struct StateEstimate {
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};                   ///< unit
   Vector6d nu{Vector6d::Zero()};                                             ///< m/s, rad/s: u v w p q r
   Eigen::Matrix<double, 12, 1> sigma{Eigen::Matrix<double, 12, 1>::Zero()};  ///< std of p_WB, rotation, nu
-  bool valid{false};  ///< false until every part rests on a measurement
+  bool valid{false};                      ///< false until every part rests on a measurement
+  Matrix6d covariance{Matrix6d::Zero()};  ///< of p_WB in W [m] and u v w in B [m/s]
+  SourceAges age{kNoSource};              ///< s since a sample of each source counted; -1: never
 };
 
 /// One named number with its standard deviation.
@@ -29,12 +39,24 @@ struct NamedValue {
   std::string unit;  ///< e.g. "N/(m/s)"
 };
 
+/// How sure the parameters of one motion are.
+struct ModeMetric {
+  std::string mode;  ///< "surge", "sway", "heave", "roll", "pitch", "yaw" or "total"
+  double sum{};      ///< of variances under the stated noise, each in its own unit squared (Karras et al., eq. 1.15)
+  double scaled{};   ///< largest standard deviation over the parameter's size, residuals' colour included
+};
+
 /// The identifier's model.
 struct ModelEstimate {
   Utime utime{};
   std::vector<NamedValue> parameters;
   std::vector<std::string> effects;  ///< adopted effects
   std::int64_t updates{};            ///< regressor rows used so far
+  std::vector<ModeMetric> modes;
+  std::vector<double> covariance;             ///< of the parameters, row by row, as honest as std
+  Vector6d residual_ratio{Vector6d::Zero()};  ///< recent mean square over the expected one; 0: unknown
+  Vector6d residual_mean{Vector6d::Zero()};   ///< recent mean in standard deviations of that mean
+  std::vector<std::string> frozen;            ///< parameters that are not learnt at present
 };
 
 /// What the model leaves unexplained: tau_applied - tau_explained.

@@ -1,5 +1,6 @@
 #include "common/wire/minds.hpp"
 
+#include <algorithm>
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/health_t.hpp>
@@ -17,12 +18,16 @@ namespace fathom::wire {
 
 std::optional<StateEstimate> decode(const fathom_lcm::state_t& message) {
   if (!finite(message.p_WB) || !unit(message.q_WB) || !finite(message.nu) || !finite(message.sigma)) return {};
-  return StateEstimate{.utime = message.utime,
+  if (!finite(message.covariance) || !finite(message.age)) return {};
+  StateEstimate sample{.utime = message.utime,
                        .p_WB = vector(message.p_WB),
                        .q_WB = quaternion(message.q_WB),
                        .nu = vector(message.nu),
                        .sigma = vector(message.sigma),
                        .valid = message.valid != 0};
+  sample.covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance);
+  std::copy(std::begin(message.age), std::end(message.age), sample.age.begin());
+  return sample;
 }
 
 fathom_lcm::state_t encode(const StateEstimate& sample) {
@@ -33,12 +38,17 @@ fathom_lcm::state_t encode(const StateEstimate& sample) {
   put(sample.nu, message.nu);
   put(sample.sigma, message.sigma);
   message.valid = sample.valid;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>{message.covariance} = sample.covariance;
+  std::copy(sample.age.begin(), sample.age.end(), message.age);
   return message;
 }
 
 std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
   if (!length(message.n_parameters, message.parameters.size())) return {};
   if (!length(message.n_effects, message.effects.size())) return {};
+  if (!length(message.n_modes, message.modes.size()) || !length(message.n_frozen, message.frozen.size())) return {};
+  if (!length(message.n_covariance, message.covariance.size()) || !finite(message.covariance)) return {};
+  if (!finite(message.residual_ratio) || !finite(message.residual_mean)) return {};
   ModelEstimate sample{
       .utime = message.utime, .parameters = {}, .effects = message.effects, .updates = message.updates};
   sample.parameters.reserve(message.parameters.size());
@@ -46,6 +56,14 @@ std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
     if (!finite(part.value) || !finite(part.std)) return {};
     sample.parameters.push_back({.name = part.name, .value = part.value, .std = part.std, .unit = part.unit});
   }
+  for (const auto& part : message.modes) {
+    if (!finite(part.sum) || !finite(part.scaled)) return {};
+    sample.modes.push_back({.mode = part.mode, .sum = part.sum, .scaled = part.scaled});
+  }
+  sample.covariance = message.covariance;
+  sample.residual_ratio = vector(message.residual_ratio);
+  sample.residual_mean = vector(message.residual_mean);
+  sample.frozen = message.frozen;
   return sample;
 }
 
@@ -63,6 +81,19 @@ fathom_lcm::model_t encode(const ModelEstimate& sample) {
   message.n_effects = count(sample.effects);
   message.effects = sample.effects;
   message.updates = sample.updates;
+  message.n_modes = count(sample.modes);
+  for (const ModeMetric& part : sample.modes) {
+    auto& to = message.modes.emplace_back();
+    to.mode = part.mode;
+    to.sum = part.sum;
+    to.scaled = part.scaled;
+  }
+  message.n_covariance = count(sample.covariance);
+  message.covariance = sample.covariance;
+  put(sample.residual_ratio, message.residual_ratio);
+  put(sample.residual_mean, message.residual_mean);
+  message.n_frozen = count(sample.frozen);
+  message.frozen = sample.frozen;
   return message;
 }
 
@@ -106,7 +137,8 @@ fathom_lcm::effects_t encode(const EffectRanking& sample) {
 
 std::optional<WrenchCommand> decode(const fathom_lcm::wrench_command_t& message) {
   if (!finite(message.tau) || !finite(message.life)) return {};
-  return WrenchCommand{.utime = message.utime, .tau = vector(message.tau), .life = message.life};
+  return WrenchCommand{
+      .utime = message.utime, .tau = vector(message.tau), .life = message.life, .commander = message.commander};
 }
 
 fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
@@ -114,6 +146,7 @@ fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
   message.utime = sample.utime;
   put(sample.tau, message.tau);
   message.life = sample.life;
+  message.commander = sample.commander;
   return message;
 }
 
@@ -125,7 +158,9 @@ std::optional<Operator> decode(const fathom_lcm::operator_t& message) {
                   .abort = message.abort != 0,
                   .enable = message.enable != 0,
                   .order = message.order,
-                  .tau = usable ? vector(message.tau) : Vector6d(Vector6d::Zero())};
+                  .tau = usable ? vector(message.tau) : Vector6d(Vector6d::Zero()),
+                  .token = message.token,
+                  .sequence = message.sequence};
 }
 
 fathom_lcm::operator_t encode(const Operator& sample) {
@@ -135,18 +170,29 @@ fathom_lcm::operator_t encode(const Operator& sample) {
   message.enable = sample.enable;
   message.order = sample.order;
   put(sample.tau, message.tau);
+  message.token = sample.token;
+  message.sequence = sample.sequence;
   return message;
 }
 
 std::optional<Excitation> decode(const fathom_lcm::excitation_t& message) {
   if (!finite(message.elapsed) || !finite(message.duration) || !finite(message.probe)) return {};
+  if (!finite(message.metric) || !finite(message.threshold)) return {};
+  if (!length(message.n_frozen, message.frozen.size())) return {};
   return Excitation{.utime = message.utime,
                     .active = message.active != 0,
                     .signal = message.signal,
                     .reason = message.reason,
                     .elapsed = message.elapsed,
                     .duration = message.duration,
-                    .probe = vector(message.probe)};
+                    .probe = vector(message.probe),
+                    .mode = message.mode,
+                    .phase = message.phase,
+                    .metric = message.metric,
+                    .threshold = message.threshold,
+                    .missing = message.missing,
+                    .bent = message.bent != 0,
+                    .frozen = message.frozen};
 }
 
 fathom_lcm::excitation_t encode(const Excitation& sample) {
@@ -158,6 +204,14 @@ fathom_lcm::excitation_t encode(const Excitation& sample) {
   message.elapsed = sample.elapsed;
   message.duration = sample.duration;
   put(sample.probe, message.probe);
+  message.mode = sample.mode;
+  message.phase = sample.phase;
+  message.metric = sample.metric;
+  message.threshold = sample.threshold;
+  message.missing = sample.missing;
+  message.bent = sample.bent;
+  message.n_frozen = count(sample.frozen);
+  message.frozen = sample.frozen;
   return message;
 }
 

@@ -1,12 +1,21 @@
-// estimator: what the sensors say in, STATE out.
+// estimator: what the sensors say in, STATE out. The section's `filter` chooses between the trial's complementary
+// filter and the one for recordings with motion capture.
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
+#include <fathom_lcm/laser_range_t.hpp>
+#include <fathom_lcm/optical_flow_t.hpp>
 #include <fathom_lcm/pose_capture_t.hpp>
 #include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/tag_pose_t.hpp>
+#include <fathom_lcm/usbl_t.hpp>
 
+#include "common/base/config.hpp"
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/estimator.hpp"
+#include "common/estimation/navigator.hpp"
+#include "common/model/site.hpp"
+#include "common/model/vehicle.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
@@ -17,7 +26,7 @@ using namespace fathom;
 namespace {
 
 template <class Message>
-void hear(runtime::Process& process, estimation::Estimator& estimator, const std::string& channel) {
+void hear(runtime::Process& process, auto& estimator, const std::string& channel) {
   process.on<Message>(channel, [&process, &estimator, channel](const Message& message) {
     const auto sample = wire::decode(message);
     if (!sample) return process.reject(channel);
@@ -25,24 +34,70 @@ void hear(runtime::Process& process, estimation::Estimator& estimator, const std
   });
 }
 
+/// A channel that the chosen filter has no use for. It is heard all the same: what a process hears shall not depend on
+/// its configuration.
+template <class Message>
+void ignore(runtime::Process& process, const std::string& channel) {
+  process.on<Message>(channel, [](const Message&) {});
+}
+
+void tell_refused(runtime::Process& process, const std::map<std::string, std::int64_t>& rejected) {
+  for (const auto& [reason, count] : rejected) {
+    process.log_info(std::to_string(count) + " samples not used: " + reason);
+  }
+}
+
+void run_recorded(runtime::Process& process, const Config& config) {
+  estimation::Estimator estimator{estimation::EstimatorSettings::from(config),
+                                  estimation::load_corrections(process.config_path("corrections"))};
+  hear<fathom_lcm::pose_capture_t>(process, estimator, wire::kPoseCapture);
+  hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
+  hear<fathom_lcm::dvl_t>(process, estimator, wire::kDvl);
+  hear<fathom_lcm::depth_t>(process, estimator, wire::kDepth);
+  ignore<fathom_lcm::usbl_t>(process, wire::kUsbl);
+  ignore<fathom_lcm::tag_pose_t>(process, wire::kTagPose);
+  ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
+  ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
+  process.on_restart([&] { estimator.reset(); });
+  process.on_end([&] {
+    for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
+    tell_refused(process, estimator.rejected());
+  });
+  process.run();
+}
+
+void run_trial(runtime::Process& process, const Config& config) {
+  const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
+  const model::Site site = model::Site::load(process.config_path("site"));
+  estimation::Navigator navigator{estimation::NavigatorSettings::from(config),
+                                  estimation::NavigatorPlaces::of(vehicle.mounts, site)};
+  hear<fathom_lcm::ahrs_t>(process, navigator, wire::kAhrs);
+  hear<fathom_lcm::tag_pose_t>(process, navigator, wire::kTagPose);
+  hear<fathom_lcm::optical_flow_t>(process, navigator, wire::kOpticalFlow);
+  hear<fathom_lcm::laser_range_t>(process, navigator, wire::kLaserRange);
+  hear<fathom_lcm::dvl_t>(process, navigator, wire::kDvl);
+  hear<fathom_lcm::usbl_t>(process, navigator, wire::kUsbl);
+  hear<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
+  ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
+  process.on_health([&]() -> runtime::Process::Condition {
+    std::string detail;
+    for (const auto& [reason, count] : navigator.rejected()) {
+      detail += (detail.empty() ? "" : ", ") + reason + " " + std::to_string(count);
+    }
+    return {.unhealthy = navigator.complaint(), .detail = detail};
+  });
+  process.on_restart([&] { navigator.reset(); });
+  process.on_end([&] { tell_refused(process, navigator.rejected()); });
+  process.run();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   return runtime::main("estimator", argc, argv, [](runtime::Process& process) {
-    estimation::Estimator estimator{estimation::EstimatorSettings::from(process.config()),
-                                    estimation::load_corrections(process.config_path("corrections"))};
     process.publishes<fathom_lcm::state_t>(wire::kState);
-    hear<fathom_lcm::pose_capture_t>(process, estimator, wire::kPoseCapture);
-    hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
-    hear<fathom_lcm::dvl_t>(process, estimator, wire::kDvl);
-    hear<fathom_lcm::depth_t>(process, estimator, wire::kDepth);
-    process.on_restart([&] { estimator.reset(); });
-    process.on_end([&] {
-      for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
-      for (const auto& [reason, count] : estimator.rejected()) {
-        process.log_info(std::to_string(count) + " samples not used: " + reason);
-      }
-    });
-    process.run();
+    const Config config = process.config();
+    const bool trial = config.has("filter") && config.either("filter", "complementary", "recorded");
+    return trial ? run_trial(process, config) : run_recorded(process, config);
   });
 }

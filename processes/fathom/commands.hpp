@@ -13,5 +13,6 @@ void add_diagnose(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_decode(CLI::App& app);
 void add_emulate(CLI::App& app);
+void add_operator(CLI::App& app);
 
 }  // namespace fathom::tool

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_compare(app);
   fathom::tool::add_decode(app);
   fathom::tool::add_emulate(app);
+  fathom::tool::add_operator(app);
   try {
     app.parse(argc, argv);
     return 0;

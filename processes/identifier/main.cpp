@@ -1,9 +1,13 @@
 // identifier: states and thruster commands in, the vehicle's parameters and what they leave unexplained out.
+#include <cstdio>
 #include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/residual_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
+#include <fstream>
+#include <iterator>
 
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/thruster_forces.hpp"
@@ -15,15 +19,50 @@
 
 using namespace fathom;
 
+namespace {
+
+constexpr double kSavePeriod = 2.0;      // s of message time between two savings
+constexpr double kResumeWithin = 120.0;  // s that a saved state may be older than the first state heard
+
+std::string content(const std::string& path) {
+  std::ifstream file{path};
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+// Whole or not at all: a process that is killed while it writes leaves the file of before.
+void save(const std::string& path, const std::string& text) {
+  const std::string fresh = path + ".new";
+  std::ofstream file{fresh, std::ios::trunc};
+  file << text;
+  file.close();
+  if (file) std::rename(fresh.c_str(), path.c_str());
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   return runtime::main("identifier", argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
-    identification::Identifier identifier{identification::IdentifierSettings::from(process.config()), vehicle};
+    const Config config = process.config();
+    identification::Identifier identifier{identification::IdentifierSettings::from(config), vehicle};
+    const std::string saved = config.has("save") ? config.text("save") : "";
+    if (!saved.empty()) identifier.offer(content(saved), kResumeWithin);
+    Utime last_save{};
+    bool resumed = false;
     estimation::ThrusterForces forces{corrections.thrusters, vehicle};
     const auto say = [&](const identification::Identifier::Output& output) {
       for (const Residual& residual : output.residuals) process.publish(wire::kResidual, wire::encode(residual));
       for (const ModelEstimate& model : output.models) process.publish(wire::kModel, wire::encode(model));
+      if (!resumed && identifier.resumed()) {
+        resumed = true;
+        process.log_info("goes on from " + saved);
+      }
+      if (saved.empty() || output.models.empty()) return;
+      const Utime now = output.models.back().utime;
+      if (seconds_between(last_save, now) >= 0.0 && seconds_between(last_save, now) < kSavePeriod) return;
+      last_save = now;
+      save(saved, identifier.save_text());
     };
 
     process.publishes<fathom_lcm::model_t>(wire::kModel);
@@ -42,6 +81,11 @@ int main(int argc, char** argv) {
       const auto battery = wire::decode(message);
       if (!battery) return process.reject(wire::kBattery);
       forces.step(*battery);
+    });
+    process.on<fathom_lcm::excitation_t>(wire::kExcitation, [&](const auto& message) {
+      const auto excitation = wire::decode(message);
+      if (!excitation) return process.reject(wire::kExcitation);
+      identifier.hear(*excitation);
     });
     process.on_restart([&] {
       identifier.reset();

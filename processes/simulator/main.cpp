@@ -16,6 +16,7 @@
 #include <fathom_lcm/wrench_command_t.hpp>
 
 #include "common/base/error.hpp"
+#include "common/base/operator_token.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "processes/simulator/stage.hpp"
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
       "simulator", argc, argv,
       [&](runtime::Process& process) {
         options.check();
+        options.token = operator_token(process.config_path("operator"));
         const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
         const model::Site site = model::Site::load(process.config_path("site"));
         simulation::Simulator simulator{vehicle, site, process.config(), options.setup};

@@ -45,7 +45,9 @@ std::vector<Operator> Options::schedule() const {
                         .enable = word == "enable" || word == "identify",
                         .order = word == "abort"    ? ""
                                  : word == "enable" ? "identify"
-                                                    : word});
+                                                    : word,
+                        .token = token,
+                        .sequence = utime_after(setup.origin, seconds)});
   }
   std::stable_sort(schedule.begin(), schedule.end(),
                    [](const Operator& a, const Operator& b) { return a.utime < b.utime; });

@@ -59,11 +59,7 @@ double seconds(std::chrono::steady_clock::duration duration) { return std::chron
 }  // namespace
 
 Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, const Options& options)
-    : process_{process},
-      simulator_{simulator},
-      options_{options},
-      schedule_{options.schedule()},
-      gate_{options.setup.origin} {
+    : process_{process}, simulator_{simulator}, options_{options}, schedule_{options.schedule()}, gate_{options.token} {
   if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
 }
 

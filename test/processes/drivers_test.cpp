@@ -165,7 +165,8 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
 TEST_CASE("drivers: with the example's configuration each hears and says what docs/messages.md tells, and starts") {
   const Scratch scratch;
   const std::string config = " --log-level error --config " + test::file("config/drivers/example.yaml") + " --config " +
-                             test::file("config/vehicles/bluerov2.yaml");
+                             test::file("config/vehicles/bluerov2.yaml") + " --config " +
+                             test::file("config/operators/simulated.yaml");
   std::string script;
   const std::vector<std::string> drivers{"ahrs_driver",  "dvl_driver",  "usbl_driver",    "range_driver",
                                          "depth_driver", "load_driver", "thruster_driver"};
@@ -290,7 +291,22 @@ TEST_CASE(
   CHECK(bus.health.back().state == "unhealthy");
 }
 
-TEST_CASE("thruster_driver: obeys, goes to zero within half a second, hears an abort, and says what was applied") {
+namespace {
+
+void arm(Bus& bus, const std::string& token) {
+  fathom_lcm::operator_t order{};
+  order.utime = now();
+  order.enable = true;
+  order.token = token;
+  order.sequence = order.utime;
+  bus.publish("OPERATOR", order);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "thruster_driver: arms by token alone, obeys, goes to zero within half a second, hears an abort, and says what was "
+    "applied") {
   for (const std::string protocol : {"text", "motor_test", "dry_run"}) {
     CAPTURE(protocol);
     const Scratch scratch;
@@ -306,7 +322,7 @@ TEST_CASE("thruster_driver: obeys, goes to zero within half a second, hears an a
         scratch, "driver",
         program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
             test::file(protocol == "text" ? "config/vehicles/beluga.yaml" : "config/vehicles/bluerov2.yaml") +
-            " --in '" + bus.url + "'"};
+            " --config " + test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
     bus.listen(1.5);
     CAPTURE(test::read_bytes(scratch.path("driver.text")));
     const auto thrust = [&] { return bus.thrusters.empty() ? -1.0 : bus.thrusters.back().tau[0]; };
@@ -321,6 +337,12 @@ TEST_CASE("thruster_driver: obeys, goes to zero within half a second, hears an a
         bus.listen(0.05);
       }
     };
+    command(0.7);
+    CHECK(thrust() == doctest::Approx(0.0));  // nobody has armed
+    arm(bus, "a guess");
+    command(0.4);
+    CHECK(thrust() == doctest::Approx(0.0));
+    arm(bus, "only-for-simulation");
     command(1.0);
     CHECK(thrust() == doctest::Approx(20.0).epsilon(0.05));  // the rig rounds to a microsecond
     bus.listen(0.9);                                         // half a second, and the rig's next report
@@ -346,8 +368,10 @@ TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels,
       << "  full_stick: {X: 40 N, Y: 40 N, Z: 40 N, K: 4 N m, M: 4 N m, N: 4 N m}\n";
   const Background driver{scratch, "driver",
                           program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
-                              test::file("config/vehicles/bluerov2.yaml") + " --in '" + bus.url + "'"};
+                              test::file("config/vehicles/bluerov2.yaml") + " --config " +
+                              test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
   bus.listen(1.5);
+  arm(bus, "only-for-simulation");
   (void)vehicle.wait(0.1);
   std::string bytes;
   for (int i = 0; i < 20; ++i) {

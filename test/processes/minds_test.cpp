@@ -35,12 +35,17 @@ void make_log(const Scratch& scratch, const std::string& name, int seconds) {
 }  // namespace
 
 TEST_CASE("minds: each hears and says what docs/messages.md tells") {
-  for (const std::string process : {"estimator", "identifier", "diagnoser"}) {
+  const std::string trial = " --config " + file("config/pipelines/tank.yaml") + " --config " +
+                            file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
+                            file("config/sites/tank.yaml") + " --config " + file("config/operators/simulated.yaml");
+  for (const std::string process : {"estimator", "identifier", "diagnoser", "supervisor", "estimator of a trial"}) {
     CAPTURE(process);
-    const auto ran = shell(program(process) + kConfig + " --interface");
+    const std::string name = process.substr(0, process.find(' '));
+    const bool live = process != name || process == "supervisor";
+    const auto ran = shell(program(name) + (live ? trial : kConfig) + " --interface");
     REQUIRE_MESSAGE(ran.code == 0, ran.text);
     const test::Channels actual = test::channels_of(ran.text);
-    const test::Channels stated = test::channels_in_docs(process);
+    const test::Channels stated = test::channels_in_docs(name);
     CHECK(actual.hears == stated.hears);
     CHECK(actual.says == stated.says);
   }

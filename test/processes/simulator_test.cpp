@@ -32,8 +32,8 @@ const std::string kBus = "udpm://239.255.76.67:7667?ttl=0";
 
 std::string simulator(const std::string& options, const std::string& site = "tank") {
   return program("simulator") + " --config " + file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
-         file("config/sites/" + site + ".yaml") + " --config " + file("config/simulation/seabotix_lbv150.yaml") + " " +
-         options;
+         file("config/sites/" + site + ".yaml") + " --config " + file("config/simulation/seabotix_lbv150.yaml") +
+         " --config " + file("config/operators/simulated.yaml") + " " + options;
 }
 
 std::string pilot() { return std::string{"'"} + FATHOM_BINARY_DIR + "/test/test_pilot'"; }
@@ -121,8 +121,8 @@ TEST_CASE("simulator: minds in lockstep, and the same minds on the recorded log:
   const auto ran = on_private_network(
       program("recorder") + " --lockstep --file " + scratch.path("run.lcmlog") + " &\n" + pilot() + " --lockstep &\n" +
       program("estimator") + " --lockstep" + minds + " &\n" + program("identifier") + " --lockstep" + minds + " &\n" +
-      program("simulator") + vehicle + " --config " + file("config/sites/tank.yaml") + " --config " +
-      file("config/simulation/beluga.yaml") +
+      program("simulator") + vehicle + " --config " + file("config/operators/simulated.yaml") + " --config " +
+      file("config/sites/tank.yaml") + " --config " + file("config/simulation/beluga.yaml") +
       " --speed 0 --duration 60 --order 0=enable --wait-for recorder,test_pilot,estimator,identifier\nwait");
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   const std::string in = " --in file://" + scratch.path("run.lcmlog");

@@ -62,18 +62,27 @@ inline void fill(Fill& f, OpticalFlow& s) {
   s = {f.utime(), f.word(), f.number(), f.matrix<Eigen::Vector2d>(), f.number(), f.whole()};
 }
 inline void fill(Fill& f, LaserRange& s) { s = {f.utime(), f.word(), f.matrix<Vector3>(), f.number()}; }
-inline void fill(Fill& f, WrenchCommand& s) { s = {f.utime(), f.matrix<Vector6d>(), f.number()}; }
-inline void fill(Fill& f, Operator& s) { s = {f.utime(), false, true, f.word(), f.matrix<Vector6d>()}; }
+inline void fill(Fill& f, WrenchCommand& s) { s = {f.utime(), f.matrix<Vector6d>(), f.number(), f.word()}; }
+inline void fill(Fill& f, Operator& s) {
+  s = {f.utime(), false, true, f.word(), f.matrix<Vector6d>(), f.word(), f.whole()};
+}
 inline void fill(Fill& f, Excitation& s) {
-  s = {f.utime(), true, f.word(), f.word(), f.number(), f.number(), f.matrix<Vector6d>()};
+  s = {f.utime(), true,     f.word(),   f.word(),   f.number(), f.number(), f.matrix<Vector6d>(),
+       f.word(),  f.word(), f.number(), f.number(), f.word(),   true,       {f.word(), f.word()}};
 }
 inline void fill(Fill& f, StateEstimate& s) {
   s = {f.utime(), f.matrix<Vector3>(), f.quaternion(), f.matrix<Vector6d>(), f.matrix<Eigen::Matrix<double, 12, 1>>(),
-       true};
+       true,      f.matrix<Matrix6d>()};
+  for (double& value : s.age) value = f.number();
 }
 inline void fill(Fill& f, ModelEstimate& s) {
   s = {f.utime(), {}, {f.word(), f.word(), f.word()}, f.whole()};
   for (int i = 0; i < 2; ++i) s.parameters.push_back({f.word(), f.number(), f.number(), f.word()});
+  for (int i = 0; i < 2; ++i) s.modes.push_back({f.word(), f.number(), f.number()});
+  s.covariance = f.list();
+  s.residual_ratio = f.matrix<Vector6d>();
+  s.residual_mean = f.matrix<Vector6d>();
+  s.frozen = {f.word(), f.word()};
 }
 inline void fill(Fill& f, Residual& s) { s = {f.utime(), f.matrix<Vector6d>()}; }
 inline void fill(Fill& f, EffectRanking& s) {

@@ -1,5 +1,8 @@
-// The gate that lets a command pass to the thrusters.
+// The gate that lets a command pass to the thrusters: every rule, and what breaks it.
 #include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
 
 #include "common/driver/thruster_gate.hpp"
 
@@ -9,61 +12,129 @@ using namespace fathom::driver;
 namespace {
 
 constexpr Utime kStart = 1'700'000'000'000'000;
+const std::string kToken = "a word that only they know";
 
 Utime at(double seconds) { return utime_after(kStart, seconds); }
 
-WrenchCommand surge(double seconds) {
-  WrenchCommand command{.utime = at(seconds), .life = 0.5};
+WrenchCommand surge(double seconds, const std::string& commander = "supervisor") {
+  WrenchCommand command{.utime = at(seconds), .life = 0.5, .commander = commander};
   command.tau(0) = 10.0;
   return command;
 }
 
+Operator arm(double seconds, const std::string& token = kToken) {
+  return {.utime = at(seconds), .enable = true, .token = token, .sequence = at(seconds)};
+}
+
 }  // namespace
 
-TEST_CASE("gate: no command, no thrust; a command is obeyed until half a second after the last") {
-  ThrusterGate gate{at(0.0)};
-  CHECK(gate.wrench(at(0.1)).isZero());
+TEST_CASE("gate: nothing passes before the operator has armed, whoever has been commanding for how long") {
+  ThrusterGate gate{kToken};
+  CHECK(gate.wrench(at(0.0)).isZero());
+  for (int i = 1; i <= 60; ++i) {  // with a pause in between
+    if (i > 20 && i < 40) continue;
+    gate.hear(surge(0.1 * i), at(0.1 * i));
+    CHECK(gate.wrench(at(0.1 * i)).isZero());
+    CHECK(gate.reason(at(0.1 * i)) == "not armed");
+  }
+  gate.hear(arm(6.05), at(6.05));
+  CHECK(gate.wrench(at(6.05)).isZero());  // what was asked before is not taken up
+  gate.hear(surge(6.1), at(6.1));
+  CHECK(gate.wrench(at(6.1))(0) == 10.0);
+}
+
+TEST_CASE("gate: a command is obeyed until half a second after the last, or for its life if that is shorter") {
+  ThrusterGate gate{kToken};
+  gate.hear(arm(0.5), at(0.5));
+  CHECK(gate.reason(at(0.6)) == "no command");
   gate.hear(surge(1.0), at(1.0));
-  CHECK(gate.wrench(at(1.1))(0) == 10.0);
   CHECK(gate.wrench(at(1.49))(0) == 10.0);
   CHECK(gate.wrench(at(1.51)).isZero());
   CHECK(gate.reason(at(1.51)) == "commands have stopped");
+  WrenchCommand command = surge(2.0);
+  command.life = 0.1;
+  gate.hear(command, at(2.0));
+  CHECK(gate.wrench(at(2.05))(0) == 10.0);
+  CHECK(gate.wrench(at(2.15)).isZero());
 }
 
-TEST_CASE("gate: a short life ends earlier, an old command is refused, numbers that are none are refused") {
-  ThrusterGate gate{at(0.0)};
-  WrenchCommand command = surge(1.0);
-  command.life = 0.1;
-  gate.hear(command, at(1.0));
-  CHECK(gate.wrench(at(1.05))(0) == 10.0);
-  CHECK(gate.wrench(at(1.15)).isZero());
+TEST_CASE("gate: a command of another time and numbers that are none are refused") {
+  ThrusterGate gate{kToken};
+  gate.hear(arm(0.5), at(0.5));
   gate.hear(surge(1.0), at(3.0));
-  CHECK(gate.reason(at(3.0)) == "commands are too old");
-  command = surge(4.0);
+  CHECK(gate.reason(at(3.0)) == "commands are not of now");
+  gate.hear(surge(3600.0), at(3.1));
+  CHECK(gate.wrench(at(3.1)).isZero());
+  WrenchCommand command = surge(4.0);
   command.tau(1) = std::nan("");
   gate.hear(command, at(4.0));
   CHECK(gate.wrench(at(4.0)).isZero());
 }
 
-TEST_CASE("gate: commands that flow when the driver starts wait for a pause or for the operator") {
-  ThrusterGate gate{at(0.0)};
-  for (int i = 1; i <= 20; ++i) {
-    gate.hear(surge(0.1 * i), at(0.1 * i));
-    CHECK(gate.wrench(at(0.1 * i)).isZero());
-  }
-  SUBCASE("a pause") {
-    gate.hear(surge(2.7), at(2.7));
-    CHECK(gate.wrench(at(2.7))(0) == 10.0);
-  }
-  SUBCASE("enable") {
-    gate.hear(Operator{.enable = true}, at(2.05));
-    gate.hear(surge(2.1), at(2.1));
-    CHECK(gate.wrench(at(2.1))(0) == 10.0);
-  }
+TEST_CASE("gate: an order with a wrong token, heard before or of another time does not arm, and is counted") {
+  ThrusterGate gate{kToken};
+  const auto refused = [&](const Operator& order, double now, const char* why) {
+    const auto before = gate.refused();
+    gate.hear(order, at(now));
+    CHECK_FALSE(gate.armed());
+    CHECK(gate.refused() == before + 1);
+    CHECK(std::string{gate.refusal()}.find(why) != std::string::npos);
+  };
+  refused(arm(1.0, "guess"), 1.0, "token");
+  refused(arm(1.0, ""), 1.0, "token");
+  refused(arm(1.0), 100.0, "replayed");  // a log played back
+  refused(arm(100.0), 1.0, "replayed");  // or from a clock that is ahead
+  const Operator good = arm(2.0);
+  gate.hear(good, at(2.0));
+  CHECK(gate.armed());
+  gate.hear(Operator{.utime = at(2.5), .abort = true}, at(2.5));
+  refused(good, 3.0, "before");  // the same message again, within its time
+  ThrusterGate open{std::string{}};
+  open.hear(arm(1.0, ""), at(1.0));
+  CHECK_FALSE(open.armed());  // no token is no permission
 }
 
-TEST_CASE("gate: an abort is at once and holds until enable") {
-  ThrusterGate gate{at(0.0)};
+TEST_CASE("gate: a log player cannot move the vehicle, not even while it is armed") {
+  // Recorded an hour ago: an operator who arms, and commands.
+  ThrusterGate gate{kToken};
+  const auto replay = [&](double now) {
+    for (int i = 0; i < 50; ++i) {
+      gate.hear(arm(-3600.0 + 0.02 * i), at(now + 0.02 * i));
+      gate.hear(surge(-3600.0 + 0.02 * i, "supervisor of then"), at(now + 0.02 * i));
+      CHECK(gate.wrench(at(now + 0.02 * i)).isZero());
+    }
+  };
+  replay(0.0);
+  gate.hear(arm(2.0), at(2.0));
+  replay(2.0);
+}
+
+TEST_CASE("gate: of two commanders none is obeyed, and a stranger never takes over") {
+  ThrusterGate gate{kToken};
+  gate.hear(arm(0.5), at(0.5));
+  for (int i = 0; i < 20; ++i) {
+    gate.hear(surge(1.0 + 0.05 * i), at(1.0 + 0.05 * i));
+    CHECK(gate.wrench(at(1.0 + 0.05 * i))(0) == 10.0);
+  }
+  for (int i = 0; i < 20; ++i) {
+    gate.hear(surge(2.0 + 0.05 * i, "stranger"), at(2.0 + 0.05 * i));
+    gate.hear(surge(2.0 + 0.05 * i), at(2.0 + 0.05 * i));
+    CHECK(gate.wrench(at(2.0 + 0.05 * i)).isZero());
+  }
+  gate.hear(surge(4.0), at(4.0));  // alone again
+  CHECK(gate.wrench(at(4.0))(0) == 10.0);
+  for (int i = 0; i < 40; ++i) {  // the first one dies, the stranger goes on
+    gate.hear(surge(5.0 + 0.05 * i, "stranger"), at(5.0 + 0.05 * i));
+    CHECK(gate.wrench(at(5.0 + 0.05 * i)).isZero());
+  }
+  gate.hear(arm(9.5), at(9.5));  // the operator knows of the successor
+  gate.hear(surge(9.6, "successor"), at(9.6));
+  CHECK(gate.wrench(at(9.6))(0) == 10.0);
+}
+
+TEST_CASE("gate: an abort needs no token, is at once, and holds until it is armed again") {
+  ThrusterGate gate{kToken};
+  gate.hear(arm(0.5), at(0.5));
   gate.hear(surge(1.0), at(1.0));
   gate.hear(Operator{.abort = true}, at(1.1));
   CHECK(gate.wrench(at(1.1)).isZero());
@@ -71,7 +142,7 @@ TEST_CASE("gate: an abort is at once and holds until enable") {
   CHECK(gate.wrench(at(1.2)).isZero());
   gate.hear(surge(3.0), at(3.0));  // a pause does not end an abort
   CHECK(gate.wrench(at(3.0)).isZero());
-  gate.hear(Operator{.enable = true}, at(3.1));
+  gate.hear(arm(3.1), at(3.1));
   CHECK(gate.wrench(at(3.1)).isZero());  // nor is the old command taken up again
   gate.hear(surge(3.2), at(3.2));
   CHECK(gate.wrench(at(3.2))(0) == 10.0);

@@ -290,3 +290,29 @@ TEST_CASE("recursive: a saved state resumes to the same bits, and a foreign one 
   CHECK(first.unconstrained().norm() == 0.0);
   CHECK(first.state().updates == 0);
 }
+
+TEST_CASE("recursive: one violated sign goes the short way to the same point as the general projection") {
+  std::mt19937 engine{12};
+  std::normal_distribution<double> normal;
+  int checked = 0;
+  for (int round = 0; round < 200; ++round) {
+    RecursiveSettings settings;
+    settings.mean = ParameterVector::Zero(6);
+    settings.sigma = ParameterVector::Constant(6, 10.0);
+    settings.signs = {1, -1, 1, -1, 0, 1};
+    RecursiveEstimator estimator{settings};
+    for (int k = 0; k < 12; ++k) {
+      Row row{.axis = 0, .h = ParameterVector::Zero(6), .y = normal(engine), .variance = 0.5};
+      for (Eigen::Index i = 0; i < 6; ++i) row.h(i) = normal(engine);
+      estimator.step(std::span{&row, 1});
+    }
+    const ParameterVector general = project_on_signs(estimator.unconstrained(), estimator.covariance(), settings.signs);
+    CHECK((estimator.projected() - general).cwiseAbs().maxCoeff() < 1e-9);  // rounding of two orders of summing
+    int violated = 0;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      violated += estimator.unconstrained()(i) * settings.signs[static_cast<std::size_t>(i)] < 0.0 ? 1 : 0;
+    }
+    checked += violated == 1 ? 1 : 0;
+  }
+  CHECK(checked > 20);
+}

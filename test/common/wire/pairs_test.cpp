@@ -34,12 +34,19 @@ auto members(const T& s) {
   } else if constexpr (N == 7) {
     const auto& [a, b, c, d, e, f, g] = s;
     return std::tie(a, b, c, d, e, f, g);
-  } else {
+  } else if constexpr (N == 8) {
+    const auto& [a, b, c, d, e, f, g, h] = s;
+    return std::tie(a, b, c, d, e, f, g, h);
+  } else if constexpr (N == 9) {
     const auto& [a, b, c, d, e, f, g, h, i] = s;
     return std::tie(a, b, c, d, e, f, g, h, i);
+  } else {
+    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
   }
 }
 static bool operator==(const NamedValue& a, const NamedValue& b) { return members<4>(a) == members<4>(b); }
+static bool operator==(const ModeMetric& a, const ModeMetric& b) { return members<3>(a) == members<3>(b); }
 static bool operator==(const EffectEvidence& a, const EffectEvidence& b) { return members<3>(a) == members<3>(b); }
 
 namespace {
@@ -138,11 +145,11 @@ TEST_CASE("wire: every sensor sample comes back whole, and no non-finite number 
 }
 
 TEST_CASE("wire: every sample of minds, commands and processes comes back whole, and no non-finite number comes in") {
-  check_pair<WrenchCommand, 3>();
-  check_pair<Operator, 5>();
-  check_pair<Excitation, 7>();
-  check_pair<StateEstimate, 6>();
-  check_pair<ModelEstimate, 4>();
+  check_pair<WrenchCommand, 4>();
+  check_pair<Operator, 7>();
+  check_pair<Excitation, 14>();
+  check_pair<StateEstimate, 8>();
+  check_pair<ModelEstimate, 9>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 3>();
   check_pair<Truth, 7>();
@@ -212,7 +219,7 @@ TEST_CASE("wire: a missing flag of a range means that no echo came") {
 
 TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each rightly") {
   std::set<std::int64_t> fingerprints{fathom_lcm::camera_t::getHash(), fathom_lcm::named_value_t::getHash(),
-                                      fathom_lcm::effect_evidence_t::getHash()};
+                                      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash()};
   std::size_t types = fingerprints.size();
   std::set<std::string> channels{wire::kCamera};
   const Recording empty;
@@ -223,7 +230,7 @@ TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each
     ++types;
   });
   CHECK(fingerprints.size() == types);
-  CHECK(types == 25);  // as many as there are files in lcmtypes/
+  CHECK(types == 26);  // as many as there are files in lcmtypes/
   CHECK(channels.size() == 23);
 }
 

@@ -1,0 +1,100 @@
+#include "common/excitation/fence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fathom::excitation {
+namespace {
+
+constexpr double kReaction = 0.15;  // s from deciding to feeling the thrust
+constexpr double kSoften = 0.4;     // s in which outward speed shall be taken away
+constexpr double kOutward = 0.2;    // share of an axis's push that leads outwards before its signal turns
+
+// 0 far inside, 1 where all that is left must go into braking.
+double urgency(double room, double speed, double braking, double band) {
+  const double outward = std::max(0.0, speed);
+  const double stop = outward * kReaction + outward * outward / (2.0 * braking);
+  return std::clamp((stop + band - room) / band, 0.0, 1.0);
+}
+
+}  // namespace
+
+Eigen::Vector3d Fence::middle() const {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (std::isfinite(settings_.low[i]) && std::isfinite(settings_.high[i])) {
+      p[i] = 0.5 * (settings_.low[i] + settings_.high[i]);
+    }
+  }
+  return p;
+}
+
+Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double turned, double mass, double inertia,
+                        const Vector6d& largest) const {
+  Bent bent{.tau = tau};
+  const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
+  const Eigen::Vector3d v_W = R_WB * state.nu.head<3>();
+  Eigen::Vector3d force_W = R_WB * tau.head<3>();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (const double side : {-1.0, 1.0}) {
+      const double room = side > 0.0 ? settings_.high[i] - state.p_WB[i] : state.p_WB[i] - settings_.low[i];
+      const double speed = side * v_W[i];
+      const double u = urgency(room, speed, settings_.braking, settings_.band);
+      if (u <= 0.0) continue;
+      const double inwards = mass * (std::max(0.0, speed) / kSoften +
+                                     settings_.braking * std::clamp(-room / settings_.band + 0.5, 0.0, 1.0));
+      const double asked = side * force_W[i];
+      const double given = std::min(asked, (1.0 - u) * asked - u * inwards);
+      if (given < asked) {
+        bent.bent = true;
+        force_W[i] = side * given;
+      }
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const double outward = side * R_WB(i, axis) * tau[axis];
+        if (outward > kOutward * std::abs(tau[axis]) && outward > 0.0) bent.turn[static_cast<std::size_t>(axis)] = true;
+      }
+    }
+  }
+  bent.tau.head<3>() = R_WB.transpose() * force_W;
+  const double limit = 2.0 * std::numbers::pi * settings_.turns;
+  for (const double side : {-1.0, 1.0}) {
+    const double speed = side * state.nu[5];
+    const double u = urgency(limit - side * turned, speed, settings_.turning, 0.5);
+    if (u <= 0.0) continue;
+    const double asked = side * tau[5];
+    const double given = std::min(asked, (1.0 - u) * asked - u * inertia * std::max(0.0, speed) / kSoften);
+    if (asked > 0.0) bent.turn[5] = true;
+    if (given < asked) {
+      bent.bent = true;
+      bent.tau[5] = side * given;
+    }
+  }
+  bent.tau = bent.tau.cwiseMax(-largest).cwiseMin(largest);
+  return bent;
+}
+
+std::string Fence::outside(const StateEstimate& state, double turned) const {
+  constexpr const char* kNames[] = {"south", "north", "west", "east", "up", "down"};
+  for (int i = 0; i < 3; ++i) {
+    if (state.p_WB[i] < settings_.low[i] - settings_.hard) return std::string{"too far "} + kNames[2 * i];
+    if (state.p_WB[i] > settings_.high[i] + settings_.hard) return std::string{"too far "} + kNames[2 * i + 1];
+  }
+  if (state.nu.head<3>().norm() > settings_.largest_speed) return "too fast";
+  if (state.nu.tail<3>().norm() > settings_.largest_rate) return "turning too fast";
+  const double upright = (state.q_WB * Eigen::Vector3d::UnitZ()).z();
+  if (upright < std::cos(settings_.largest_tilt)) return "tilted too far";
+  if (std::abs(turned) > 2.0 * std::numbers::pi * (settings_.turns + 1.0)) return "the tether is wound up";
+  return {};
+}
+
+bool Fence::holds(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB) const {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double stop = v_WB[i] * std::abs(v_WB[i]) / (2.0 * settings_.braking) + v_WB[i] * kReaction;
+    const double reach = p_WB[i] + stop;
+    if (std::min(reach, p_WB[i]) < settings_.low[i] || std::max(reach, p_WB[i]) > settings_.high[i]) return false;
+  }
+  return true;
+}
+
+}  // namespace fathom::excitation

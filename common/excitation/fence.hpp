@@ -1,0 +1,53 @@
+// The room that excitation may use: walls, floor, surface, and turns of the tether. What would lead out is bent back in
+// time to stop before contact; outside of the hard envelope nothing may be thrust at all.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+
+#include "common/base/spatial.hpp"
+#include "common/samples/estimates.hpp"
+
+namespace fathom::excitation {
+
+struct FenceSettings {
+  Eigen::Vector3d low{Eigen::Vector3d::Zero()};  ///< m in W, where the vehicle's origin may be; infinite: open
+  Eigen::Vector3d high{Eigen::Vector3d::Zero()};
+  double hard{0.1};           ///< m beyond low and high: the envelope, outside of which all stops
+  double band{0.25};          ///< m over which excitation is bent
+  double braking{0.8};        ///< m/s^2 that the thrusters can surely give against the motion
+  double turning{1.0};        ///< rad/s^2, likewise
+  double turns{1.5};          ///< of the tether to either side
+  double largest_speed{1.5};  ///< m/s
+  double largest_rate{3.0};   ///< rad/s
+  double largest_tilt{0.9};   ///< rad
+};
+
+class Fence {
+ public:
+  struct Bent {
+    Vector6d tau{Vector6d::Zero()};
+    /// Axes X Y Z N whose push leads outwards: the signal shall turn.
+    std::array<bool, 6> turn{};
+    bool bent{false};
+  };
+
+  explicit Fence(const FenceSettings& settings) : settings_{settings} {}
+
+  /// `tau` [N, N m, body] so altered that the vehicle stays inside; `mass` [kg] and `inertia` [kg m^2] roughly;
+  /// `turned` [rad]: heading unwound since the start.
+  [[nodiscard]] Bent bend(const Vector6d& tau, const StateEstimate& state, double turned, double mass, double inertia,
+                          const Vector6d& largest) const;
+  /// Why all must stop now; empty inside the envelope.
+  [[nodiscard]] std::string outside(const StateEstimate& state, double turned) const;
+  /// True when the vehicle can be there with this velocity and still stop inside.
+  [[nodiscard]] bool holds(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB) const;
+  [[nodiscard]] Eigen::Vector3d middle() const;
+  [[nodiscard]] const FenceSettings& settings() const { return settings_; }
+
+ private:
+  FenceSettings settings_;
+};
+
+}  // namespace fathom::excitation

@@ -1,0 +1,379 @@
+#include "common/excitation/supervisor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/base/error.hpp"
+
+namespace fathom::excitation {
+namespace {
+
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kNear = 0.12;       // m from the place where a mode begins
+constexpr double kNearTurn = 0.12;   // rad
+constexpr double kSlow = 0.05;       // m/s, rad/s
+constexpr double kSayStopped = 1.0;  // s of commanding zero after a stop, should a message be lost
+constexpr double kRounding = 1e-4;   // s: stamps are whole microseconds
+
+double heading_of(const StateEstimate& state) {
+  const Eigen::Vector3d ahead = state.q_WB * Eigen::Vector3d::UnitX();
+  return std::atan2(ahead.y(), ahead.x());
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string all;
+  for (const std::string& part : parts) all += (all.empty() ? "" : "; ") + part;
+  return all;
+}
+
+}  // namespace
+
+const char* name(Phase phase) {
+  switch (phase) {
+    case Phase::kDisarmed:
+      return "disarmed";
+    case Phase::kApproach:
+      return "approach";
+    case Phase::kExcite:
+      return "excite";
+    case Phase::kHold:
+      return "hold";
+    case Phase::kManual:
+      return "manual";
+    case Phase::kDone:
+      return "done";
+    case Phase::kAborted:
+      return "aborted";
+    default:
+      return "lost";
+  }
+}
+
+Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle& vehicle, std::string token)
+    : settings_{settings},
+      vehicle_{vehicle},
+      token_{std::move(token)},
+      fence_{settings.fence},
+      hold_{settings.hold, settings.largest},
+      designer_{settings.design, vehicle, settings.largest, settings.seed},
+      signals_(6) {
+  if (token_.empty()) throw InputError("supervisor: the operator's token is empty; give a --config file with operator");
+  if (settings_.schedule.empty()) throw InputError("supervisor: the schedule is empty");
+  for (const Mode& mode : settings_.schedule) {
+    if (mode.axis >= 0 && !vehicle_.dof[static_cast<std::size_t>(mode.axis)]) {
+      throw InputError("supervisor: vehicle '" + vehicle_.name + "' cannot move in mode " + mode.name);
+    }
+  }
+}
+
+void Supervisor::reset() {
+  *this = Supervisor{SupervisorSettings{settings_}, model::Vehicle{vehicle_}, std::string{token_}};
+}
+
+void Supervisor::hear(const ModelEstimate& model) {
+  model_ = model;
+  model_is_new_ = true;
+}
+
+void Supervisor::hear(const Health& health) {
+  if (std::find(settings_.needs.begin(), settings_.needs.end(), health.process) == settings_.needs.end()) return;
+  if (health.state == "running") {
+    unhealthy_.erase(health.process);
+  } else {
+    unhealthy_[health.process] = health.state;
+  }
+}
+
+void Supervisor::hear(const EffectRanking& ranking) {
+  const bool found = ranking.verdict == "effect" && !ranking.candidates.empty();
+  suspect_ = found ? ranking.candidates.front().name : "";
+}
+
+// An abort needs no permission. Everything else must come from somebody who knows the token, once, and now.
+void Supervisor::hear(const Operator& order) {
+  if (order.abort) {
+    stop(Phase::kAborted, "aborted by the operator");
+    return;
+  }
+  if (order.token != token_ || order.sequence <= last_sequence_) return;
+  if (!has_state_ || std::abs(seconds_between(order.utime, state_.utime)) > settings_.order_age) return;
+  last_sequence_ = order.sequence;
+  if (order.enable && !armed_) {
+    arm();
+  } else if (armed_) {
+    this->order(order);
+  }
+}
+
+void Supervisor::order(const Operator& order) {
+  if (order.order == "hold") {
+    phase_ = Phase::kHold;
+    place_ = {state_.p_WB, turned_};
+    reason_ = "the operator wants it to stay";
+  } else if (order.order == "manual") {
+    phase_ = Phase::kManual;
+    manual_ = order.tau;
+    reason_ = "the operator steers";
+  } else if (order.order == "identify") {
+    if (phase_ == Phase::kHold || phase_ == Phase::kManual || phase_ == Phase::kDone)
+      enter(phase_ == Phase::kDone ? 0 : mode_);
+  } else if (order.order == "skip") {
+    finish_mode(false, "skipped by the operator");
+  } else if (order.order == "retry") {
+    enter(mode_);
+  }
+}
+
+void Supervisor::arm() {
+  std::string why;
+  if (!state_.valid) why = "the state is not valid";
+  if (why.empty()) why = fence_.outside(state_, 0.0);
+  if (why.empty() && !unhealthy_.empty()) why = unhealthy_.begin()->first + " is " + unhealthy_.begin()->second;
+  if (!why.empty()) {
+    reason_ = "not armed: " + why;
+    return;
+  }
+  armed_ = true;
+  armed_at_ = state_.utime;
+  lost_since_ = 0;
+  turned_ = 0.0;
+  FenceSettings settings = settings_.fence;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (!std::isfinite(settings.low[i])) settings.low[i] = state_.p_WB[i] - settings_.open_range;
+    if (!std::isfinite(settings.high[i])) settings.high[i] = state_.p_WB[i] + settings_.open_range;
+  }
+  fence_ = Fence{settings};
+  middle_ = fence_.middle();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    // A side far away does not pull the vehicle there.
+    const double reach = settings_.open_range;
+    middle_[i] = std::clamp(middle_[i], std::max(settings.low[i], state_.p_WB[i] - reach),
+                            std::min(settings.high[i], state_.p_WB[i] + reach));
+  }
+  visits_.clear();
+  frozen_.clear();
+  hold_.reset();
+  enter(0);
+}
+
+void Supervisor::stop(Phase phase, const std::string& reason) {
+  if (phase_ == Phase::kAborted && !armed_) return;
+  armed_ = false;
+  phase_ = phase;
+  reason_ = reason;
+  armed_at_ = state_.utime;
+  segment_.reset();
+}
+
+// A mode begins in the middle of the room, with the axis that it excites along the room's longer side.
+Place Supervisor::place_for(const Mode& mode) const {
+  const Eigen::Vector3d room = fence_.settings().high - fence_.settings().low;
+  const double longer = room.x() >= room.y() ? 0.0 : 0.5 * kHalfTurn;
+  const double heading = mode.axis == 1 ? longer + 0.5 * kHalfTurn : longer;
+  // Either way round serves; the nearer one, but not further than half a turn of the tether.
+  const double start = last_heading_ - turned_;
+  double target = heading - start;
+  target += kHalfTurn * std::round((turned_ - target) / kHalfTurn);
+  while (target > kHalfTurn) target -= kHalfTurn;
+  while (target < -kHalfTurn) target += kHalfTurn;
+  return {middle_, target};
+}
+
+void Supervisor::enter(std::size_t mode) {
+  mode_ = mode;
+  attempt_ = 0;
+  mode_since_ = now();
+  dwell_ = 0.0;
+  verdict_ = {};
+  if (this->mode().axis < 0) frozen_.clear();  // all are learnt again to the end
+  begin();
+}
+
+void Supervisor::begin() {
+  phase_ = Phase::kApproach;
+  phase_since_ = now();
+  place_ = place_for(mode());
+  segment_.reset();
+  model_is_new_ = false;
+  reason_ = "goes to where mode " + mode().name + " begins";
+  const auto steps = [&](double time) { return std::max(1, static_cast<int>(std::lround(time * settings_.rate))); };
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    signals_[axis].reset();
+    if (!excites(static_cast<int>(axis))) continue;
+    const std::uint64_t seed =
+        settings_.seed * 1'000'003U + mode_ * 101U + axis * 11U + static_cast<std::uint64_t>(attempt_);
+    signals_[axis].emplace(PaperSignalSettings{.largest = settings_.largest[static_cast<Eigen::Index>(axis)],
+                                               .low_share = settings_.low_share,
+                                               .highest_frequency = settings_.highest_frequency,
+                                               .submode_steps = steps(settings_.submode_time),
+                                               .interval_steps = steps(settings_.interval_time),
+                                               .random_amplitude = settings_.random_amplitude},
+                           seed);
+  }
+}
+
+bool Supervisor::excites(int axis) const {
+  return vehicle_.dof[static_cast<std::size_t>(axis)] && settings_.largest[axis] > 0.0 &&
+         (mode().axis < 0 || mode().axis == axis);
+}
+
+void Supervisor::finish_mode(bool left, const std::string& missing) {
+  visits_.push_back({.mode = mode().name, .begun = mode_since_, .ended = now(), .left = left, .missing = missing});
+  if (left && mode().axis >= 0) {
+    for (std::string& name : parameters_of(mode(), vehicle_)) frozen_.push_back(std::move(name));
+  }
+  if (mode_ + 1 < settings_.schedule.size()) {
+    enter(mode_ + 1);
+    return;
+  }
+  phase_ = Phase::kDone;
+  phase_since_ = now();
+  place_ = {state_.p_WB, turned_};
+  std::string open;
+  for (const Visit& visit : visits_) {
+    if (!visit.left) open += (open.empty() ? "" : "; ") + visit.mode + ": " + visit.missing;
+  }
+  reason_ = open.empty() ? "all modes are done" : "done, but not settled: " + open;
+}
+
+void Supervisor::judge(double now) {
+  if (model_ && model_is_new_) {
+    model_is_new_ = false;
+    verdict_ = may_leave(mode(), *model_, vehicle_, settings_.leaving);
+    if (!verdict_.missing.empty() && !suspect_.empty()) verdict_.missing.push_back("suspected: " + suspect_);
+    if (verdict_.missing.empty() && dwell_ >= settings_.least_dwell) {
+      finish_mode(true, "");
+      return;
+    }
+  }
+  if (now - phase_since_ < settings_.most_dwell) return;
+  if (attempt_ < settings_.retries) {
+    ++attempt_;
+    begin();
+  } else {
+    finish_mode(false, verdict_.missing.empty() ? "no MODEL came" : joined(verdict_.missing));
+  }
+}
+
+Vector6d Supervisor::probe(double dt) {
+  Vector6d tau = Vector6d::Zero();
+  if (settings_.optimal) {
+    if (!segment_ || now() - segment_since_ >= segment_->duration - kRounding) {
+      segment_ = designer_.next(state_, turned_, model_.value_or(ModelEstimate{}), fence_, hold_.trim());
+      segment_since_ = now();
+    }
+    return segment_->at(now() - segment_since_).cwiseProduct(settings_.largest);
+  }
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (signals_[axis]) tau[static_cast<Eigen::Index>(axis)] = signals_[axis]->step(dt);
+  }
+  return tau;
+}
+
+void Supervisor::turn(const std::array<bool, 6>& axes) {
+  if (settings_.optimal) return;  // what is designed fits, or is bent for the rest of a segment
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (axes[axis] && signals_[axis]) signals_[axis]->turn();
+  }
+}
+
+bool Supervisor::arrived() const {
+  return (place_.p_WB - state_.p_WB).norm() < kNear && std::abs(place_.turned - turned_) < kNearTurn &&
+         state_.nu.head<3>().norm() < kSlow && std::abs(state_.nu[5]) < kSlow;
+}
+
+void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
+  output_.command = WrenchCommand{.utime = state_.utime, .tau = tau, .life = settings_.life, .commander = {}};
+  const bool active = phase_ == Phase::kExcite;
+  Excitation said{.utime = state_.utime, .active = active, .reason = reason_, .probe = probe};
+  said.mode = armed_ ? mode().name : "";
+  said.phase = name(phase_);
+  said.signal = !active ? "" : (settings_.optimal ? (segment_ ? segment_->name : "") : "algorithm 1");
+  said.elapsed = armed_ ? dwell_ : 0.0;
+  said.duration = settings_.most_dwell;
+  said.metric = verdict_.metric;
+  said.threshold = armed_ ? mode().threshold : 0.0;
+  said.missing = joined(verdict_.missing);
+  said.bent = bent;
+  said.frozen = frozen_;
+  output_.excitation = said;
+}
+
+const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
+  output_.command.reset();
+  output_.excitation.reset();
+  const bool finite = state.p_WB.allFinite() && state.nu.allFinite() && state.q_WB.coeffs().allFinite();
+  if (!finite || (has_state_ && state.utime <= state_.utime)) return output_;
+  const double heading = heading_of(state);
+  if (has_state_) turned_ += wrap_angle(heading - last_heading_);
+  last_heading_ = heading;
+  state_ = state;
+  has_state_ = true;
+  const double since = seconds_between(last_command_, state.utime);
+  if (last_command_ != 0 && since + kRounding < 1.0 / settings_.rate) return output_;
+  const double dt = last_command_ == 0 ? 0.0 : std::min(since, 2.0 / settings_.rate);
+  last_command_ = state.utime;
+
+  if (!armed_) {
+    say(Vector6d::Zero(), Vector6d::Zero(), false);
+    const bool stopping = phase_ == Phase::kAborted || phase_ == Phase::kLost;
+    if (!stopping || now() > kSayStopped) output_.command.reset();
+    return output_;
+  }
+  if (!unhealthy_.empty()) {
+    stop(Phase::kAborted, unhealthy_.begin()->first + " is " + unhealthy_.begin()->second);
+  } else if (const std::string why = state.valid ? fence_.outside(state, turned_) : ""; !why.empty()) {
+    stop(Phase::kAborted, "left the envelope: " + why);
+  } else if (!state.valid) {
+    if (lost_since_ == 0) lost_since_ = state.utime;
+    if (seconds_between(lost_since_, state.utime) > settings_.patience)
+      stop(Phase::kLost, "the state was lost; arm again");
+  }
+  if (!armed_ || !state.valid) {
+    say(Vector6d::Zero(), Vector6d::Zero(), false);
+    if (armed_) output_.excitation->phase = name(Phase::kLost);
+    return output_;
+  }
+  if (lost_since_ != 0) {  // back again: where a mode begins, not where it was cut
+    lost_since_ = 0;
+    if (phase_ == Phase::kExcite || phase_ == Phase::kApproach) begin();
+  }
+
+  const bool anywhere = settings_.optimal && fence_.holds(state.p_WB, state.q_WB * state.nu.head<3>());
+  if (phase_ == Phase::kApproach && (anywhere || arrived() || now() - phase_since_ > settings_.approach_time)) {
+    phase_ = Phase::kExcite;
+    phase_since_ = now();
+    reason_ = "settles mode " + mode().name;
+  }
+  std::array<bool, 6> held{};
+  for (std::size_t axis = 0; axis < 6; ++axis) held[axis] = vehicle_.dof[axis];
+  Vector6d share = Vector6d::Zero();
+  if (phase_ == Phase::kExcite) {
+    dwell_ += dt;
+    judge(now());
+  }
+  if (phase_ == Phase::kExcite) {
+    for (int axis = 0; axis < 6; ++axis) {
+      if (excites(axis)) held[static_cast<std::size_t>(axis)] = false;
+    }
+    share = probe(dt);
+  } else if (phase_ == Phase::kManual) {
+    held.fill(false);
+    share = manual_;
+  } else if (phase_ == Phase::kDone && now() - phase_since_ > settings_.closing_time) {
+    stop(Phase::kDone, reason_);
+    say(Vector6d::Zero(), Vector6d::Zero(), false);
+    return output_;
+  }
+  const Vector6d holding = hold_.step(state, turned_, place_, held, dt);
+  const Fence::Bent allowed =
+      fence_.bend(holding + share, state, turned_, settings_.hold.mass, settings_.hold.inertia, settings_.largest);
+  if (phase_ == Phase::kExcite) turn(allowed.turn);
+  // What holding asks beyond the limit is cut too; the log shows what was commanded, THRUSTERS what was applied.
+  say(allowed.tau, phase_ == Phase::kExcite ? Vector6d(allowed.tau - holding) : Vector6d(Vector6d::Zero()),
+      allowed.bent);
+  return output_;
+}
+
+}  // namespace fathom::excitation

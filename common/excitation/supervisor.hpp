@@ -1,0 +1,150 @@
+// The supervisor's mind: STATE, MODEL and the operator's orders in; WRENCH_COMMAND and EXCITATION out. It runs the
+// schedule of Karras et al. (Fig. 1.3) or a designed experiment, holds and trims the axes that are not excited, keeps
+// the vehicle inside its fence, and gives no thrust whenever something is doubtful. Time is that of STATE.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/excitation/design.hpp"
+#include "common/excitation/fence.hpp"
+#include "common/excitation/hold.hpp"
+#include "common/excitation/leaving.hpp"
+#include "common/excitation/paper_signal.hpp"
+#include "common/model/vehicle.hpp"
+#include "common/samples/commands.hpp"
+#include "common/samples/estimates.hpp"
+#include "common/samples/health.hpp"
+
+namespace fathom {
+class Config;
+}
+namespace fathom::model {
+struct Site;
+}
+
+namespace fathom::excitation {
+
+struct SupervisorSettings {
+  std::uint64_t seed{1};
+  bool optimal{false};                 ///< designed segments on all axes instead of the paper's schedule
+  double rate{20.0};                   ///< Hz of commands, STATE permitting
+  double life{0.3};                    ///< s of a command
+  Vector6d largest{Vector6d::Zero()};  ///< N, N m per axis: of excitation and holding together
+  std::vector<Mode> schedule;
+  double low_share{0.4};
+  double highest_frequency{0.3};  ///< Hz
+  double submode_time{12.0};      ///< s
+  double interval_time{3.0};      ///< s between draws
+  bool random_amplitude{false};
+  double least_dwell{10.0};  ///< s in a mode before it may be left
+  double most_dwell{120.0};  ///< s after which it is tried again
+  int retries{1};
+  double approach_time{15.0};      ///< s at most to the place where a mode begins
+  double closing_time{2.0};        ///< s of holding still at the end
+  double patience{3.0};            ///< s without a valid state after which the operator must arm again
+  double order_age{5.0};           ///< s that an order may be old
+  double open_range{8.0};          ///< m around the start where the site has no walls
+  std::vector<std::string> needs;  ///< processes that must not be unhealthy
+  HoldSettings hold;
+  FenceSettings fence;
+  LeavingSettings leaving;
+  DesignSettings design;
+
+  /// Keys as in docs/configuration.md; the fence from site and hull.
+  [[nodiscard]] static SupervisorSettings from(const Config& config, const model::Vehicle& vehicle,
+                                               const model::Site& site);
+};
+
+/// What an operator may want to see at any time.
+enum class Phase { kDisarmed, kApproach, kExcite, kHold, kManual, kDone, kAborted, kLost };
+[[nodiscard]] const char* name(Phase phase);
+
+class Supervisor {
+ public:
+  struct Output {
+    std::optional<WrenchCommand> command;
+    std::optional<Excitation> excitation;
+  };
+  /// How a mode ended.
+  struct Visit {
+    std::string mode;
+    double begun{}, ended{};  ///< s since arming
+    bool left{false};         ///< all tests agreed; else given up or skipped
+    std::string missing;
+  };
+
+  /// InputError when the schedule asks for a motion that the vehicle does not have.
+  Supervisor(const SupervisorSettings& settings, const model::Vehicle& vehicle, std::string token);
+
+  /// The reference is good until the next call.
+  const Output& step(const StateEstimate& state);
+  void hear(const ModelEstimate& model);
+  void hear(const Operator& order);
+  void hear(const Health& health);
+  /// What the diagnoser suspects is named beside a residual that does not fit.
+  void hear(const EffectRanking& ranking);
+  /// A log started over: disarmed, nothing known.
+  void reset();
+
+  [[nodiscard]] Phase phase() const { return phase_; }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  [[nodiscard]] const std::vector<Visit>& visits() const { return visits_; }
+  [[nodiscard]] const Fence& fence() const { return fence_; }
+
+ private:
+  void order(const Operator& order);
+  void arm();
+  void stop(Phase phase, const std::string& reason);
+  void enter(std::size_t mode);
+  void begin();
+  void finish_mode(bool left, const std::string& missing);
+  void judge(double now);
+  [[nodiscard]] Vector6d probe(double dt);
+  void turn(const std::array<bool, 6>& axes);
+  [[nodiscard]] Place place_for(const Mode& mode) const;
+  [[nodiscard]] bool arrived() const;
+  void say(const Vector6d& tau, const Vector6d& probe, bool bent);
+  [[nodiscard]] const Mode& mode() const { return settings_.schedule[mode_]; }
+  [[nodiscard]] double now() const { return seconds_between(armed_at_, state_.utime); }
+  [[nodiscard]] bool excites(int axis) const;
+
+  SupervisorSettings settings_;
+  model::Vehicle vehicle_;
+  std::string token_;
+  Fence fence_;
+  Hold hold_;
+  Designer designer_;
+  std::vector<std::optional<PaperSignal>> signals_;  // by axis
+  std::optional<Segment> segment_;
+  double segment_since_{};
+  Phase phase_{Phase::kDisarmed};
+  std::string reason_{"waits for the operator to arm"};
+  bool armed_{false};
+  std::int64_t last_sequence_{};
+  std::optional<Operator> pending_;  // an order to arm waits for the next state
+  std::map<std::string, std::string> unhealthy_;
+  StateEstimate state_;
+  bool has_state_{false};
+  double turned_{}, last_heading_{};
+  std::optional<ModelEstimate> model_;
+  bool model_is_new_{false};
+  LeavingVerdict verdict_;
+  std::string suspect_;
+  Utime armed_at_{}, last_command_{}, lost_since_{};
+  std::size_t mode_{};
+  int attempt_{};
+  double phase_since_{}, dwell_{}, mode_since_{};
+  Place place_;
+  Eigen::Vector3d middle_{Eigen::Vector3d::Zero()};
+  Vector6d manual_{Vector6d::Zero()};
+  std::vector<std::string> frozen_;
+  std::vector<Visit> visits_;
+  Output output_;
+};
+
+}  // namespace fathom::excitation

@@ -1,0 +1,189 @@
+// What MODEL says beside the parameters: metrics, recent residuals; and all that was learnt as text for a restart.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "common/identification/identifier.hpp"
+
+namespace fathom::identification {
+namespace {
+
+constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr double kFewest = 5.0;               // residuals before anything is said of them
+constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
+constexpr char kHeader[] = "fathom identifier 1";
+
+void put(std::string& text, double value) {
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%a ", value);  // exact
+  text += number.data();
+}
+
+double take(std::istringstream& text) {
+  std::string word;
+  if (!(text >> word)) throw InputError("identifier: the saved state is cut off");
+  return std::strtod(word.c_str(), nullptr);
+}
+
+}  // namespace
+
+// The paper's sums (eq. 1.15) are over the covariance that the stated noise gives, in mixed units; beside them stands
+// the largest relative standard deviation, honest about the residuals' colour.
+void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const {
+  const ParameterMatrix nominal = estimator_.covariance();
+  const auto n = static_cast<Eigen::Index>(parameters_.size());
+  std::array<ModeMetric, 6> modes;
+  std::array<bool, 6> any{};
+  ModeMetric total{.mode = "total"};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto axis = static_cast<std::size_t>(model::axis(parameters_[static_cast<std::size_t>(i)]));
+    const double size = std::abs(report.estimate(i));
+    const double relative = size > 0.0 ? report.sigma(i) / size : 1e3;  // at zero nothing is known in proportion
+    for (ModeMetric* mode : {&modes[axis], &total}) {
+      mode->sum += nominal(i, i);
+      mode->scaled = std::max(mode->scaled, relative);
+    }
+    any[axis] = true;
+  }
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!any[axis]) continue;
+    modes[axis].mode = kModes[axis];
+    estimate.modes.push_back(modes[axis]);
+  }
+  estimate.modes.push_back(total);
+  estimate.covariance.assign(report.covariance.data(), report.covariance.data() + n * n);
+  estimate.frozen = frozen_;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const Recent& r = recent_[axis];
+    if (r.weight < kFewest) continue;
+    const auto k = static_cast<Eigen::Index>(axis);
+    estimate.residual_ratio[k] = r.square;
+    const double variance = std::max(r.square - r.mean * r.mean, 1e-12);
+    const double rho = std::clamp((r.product - r.mean * r.mean) / variance, 0.0, kLargestCorrelation);
+    estimate.residual_mean[k] = r.mean / std::sqrt(variance / r.weight * (1.0 + rho) / (1.0 - rho));
+  }
+}
+
+// Velocities that are all off by the same share s explain every force as well with masses and linear drag divided by
+// 1 + s, quadratic drag by its square: a direction in which data say nothing, known beforehand to `velocity_scale`.
+void Identifier::add_scale(RecursiveReport& report) const {
+  if (settings_.velocity_scale <= 0.0) return;
+  ParameterVector along = ParameterVector::Zero(report.estimate.size());
+  for (Eigen::Index i = 0; i < along.size(); ++i) {
+    const model::BaseParameter parameter = parameters_[static_cast<std::size_t>(i)];
+    if (model::axis(parameter) > 2 || model::index(parameter) >= model::index(model::BaseParameter::W_B)) continue;
+    const bool quadratic = model::index(parameter) >= model::index(model::BaseParameter::X_uu);
+    along(i) = settings_.velocity_scale * (quadratic ? 2.0 : 1.0) * report.estimate(i);
+  }
+  report.covariance += along * along.transpose();
+  report.sigma = report.covariance.diagonal().cwiseSqrt();
+}
+
+void Identifier::remember(const RowBlock& block) {
+  const double keep = std::exp(-settings_.stride / settings_.residual_memory);
+  for (const Row& row : block.view()) {
+    const auto axis = static_cast<std::size_t>(row.axis);
+    // Scaled by the estimator so that it has the row's variance when the model is right.
+    const double value = estimator_.state().axes[axis].last / std::sqrt(row.variance);
+    Recent& r = recent_[axis];
+    const double product = value * r.last;
+    r.weight = keep * r.weight + 1.0;
+    const double share = 1.0 / r.weight;
+    r.mean += share * (value - r.mean);
+    r.square += share * (value * value - r.square);
+    r.product += share * (product - r.product);
+    r.last = value;
+  }
+}
+
+std::string Identifier::save_text() const {
+  const RecursiveEstimator::State& s = estimator_.state();
+  std::string text = std::string{kHeader} + "\n" + std::to_string(model_utime_) + " " + std::to_string(s.updates) +
+                     " " + std::to_string(parameters_.size());
+  for (const model::BaseParameter parameter : parameters_) text += " " + std::string{name(parameter)};
+  text += "\n";
+  const auto all = [&](const auto& values) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) put(text, values.data()[i]);
+    text += "\n";
+  };
+  all(s.estimate);
+  all(s.U);
+  all(s.D);
+  all(s.information);
+  all(s.score0);
+  all(s.score1);
+  all(s.last_score);
+  put(text, s.steps_until_check);
+  for (const AxisStatistics& axis : s.axes) {
+    for (const double value : {axis.weight, axis.mean, axis.variance, axis.covariance, axis.last}) put(text, value);
+  }
+  for (const Recent& r : recent_) {
+    for (const double value : {r.weight, r.mean, r.square, r.product, r.last}) put(text, value);
+  }
+  text += "\n" + std::to_string(frozen_.size());
+  for (const std::string& name : frozen_) text += " " + name;
+  return text + "\nend\n";
+}
+
+void Identifier::offer(const std::string& text, double within) {
+  offered_ = text;
+  offered_within_ = within;
+}
+
+void Identifier::decide(Utime first) {
+  std::istringstream text{std::exchange(offered_, {})};
+  std::string header;
+  std::getline(text, header);
+  Utime utime{};
+  std::size_t count{};
+  RecursiveEstimator::State s = estimator_.state();
+  if (header != kHeader || !(text >> utime >> s.updates >> count) || count != parameters_.size()) return;
+  const double age = seconds_between(utime, first);
+  if (age < 0.0 || age > offered_within_) return;
+  for (const model::BaseParameter parameter : parameters_) {
+    std::string word;
+    if (!(text >> word) || word != name(parameter)) return;
+  }
+  try {
+    const auto all = [&](auto& values) {
+      for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = take(text);
+    };
+    all(s.estimate);
+    all(s.U);
+    all(s.D);
+    all(s.information);
+    all(s.score0);
+    all(s.score1);
+    all(s.last_score);
+    s.steps_until_check = take(text);
+    for (AxisStatistics& axis : s.axes) {
+      for (double* value : {&axis.weight, &axis.mean, &axis.variance, &axis.covariance, &axis.last})
+        *value = take(text);
+    }
+    std::array<Recent, 6> recent{};
+    for (Recent& r : recent) {
+      for (double* value : {&r.weight, &r.mean, &r.square, &r.product, &r.last}) *value = take(text);
+    }
+    std::size_t frozen{};
+    std::string word;
+    std::vector<std::string> names;
+    text >> frozen;
+    while (names.size() < frozen && text >> word) names.push_back(word);
+    if (!(text >> word) || word != "end") return;
+    estimator_.restore(s);
+    recent_ = recent;
+    frozen_ = names;
+    for (const std::string& name : frozen_) freeze(name);
+    model_utime_ = utime;
+    resumed_ = true;
+  } catch (const InputError&) {
+    ++rejected_["saved state damaged"];
+  }
+}
+
+}  // namespace fathom::identification

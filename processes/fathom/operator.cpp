@@ -1,0 +1,179 @@
+// fathom arm, abort, order, status: the operator's console. Orders carry the token of the vehicle's operator file, the
+// vehicle's time and a sequence number; an abort needs none of these.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fathom_lcm/excitation_t.hpp>
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/thrusters_t.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/base/operator_token.hpp"
+#include "common/runtime/bus.hpp"
+#include "common/wire/channels.hpp"
+#include "common/wire/minds.hpp"
+#include "processes/fathom/commands.hpp"
+
+namespace fathom::tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string url{"udpm://239.255.76.67:7667?ttl=0"};
+  std::string operator_file;
+  std::string word;
+};
+
+Utime wall_clock() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+template <class Message>
+std::optional<Message> message_of(const std::vector<std::uint8_t>& bytes) {
+  Message message{};
+  const int length = static_cast<int>(bytes.size());
+  if (message.decode(bytes.data(), 0, length) != length) return {};
+  return message;
+}
+
+class Console {
+ public:
+  explicit Console(const std::string& url)
+      : url_{runtime::Url::parse(url, "--bus")},
+        input_{{url_}, {{wire::kThrusters, 1}, {wire::kExcitation, 1}, {wire::kHealth, 200}, {wire::kState, 1}}},
+        output_{url_} {
+    if (!url_.live()) throw InputError("--bus " + url + ": an operator needs a live bus");
+  }
+
+  /// Hears for so long, or until `enough`.
+  void listen(double seconds, const std::function<bool()>& enough = {}) {
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    while (Clock::now() < end && !(enough && enough())) {
+      input_.wait(-1, 20);
+      while (const auto message = input_.next()) hear(*message);
+    }
+  }
+  void say(const Operator& order) {
+    const auto message = wire::encode(order);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    output_.write(wire::kOperator, bytes, message.utime);
+  }
+
+  std::optional<Utime> vehicle_time;  // of the thrusters: the clock that judges orders
+  std::optional<Excitation> excitation;
+  std::optional<StateEstimate> state;
+  std::map<std::string, Health> health;
+
+ private:
+  void hear(const runtime::LiveInput::Message& message) {
+    if (message.subscription == 0) {
+      if (const auto one = message_of<fathom_lcm::thrusters_t>(message.bytes)) vehicle_time = one->utime;
+    } else if (message.subscription == 1) {
+      if (const auto one = message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
+    } else if (message.subscription == 2) {
+      if (const auto one = message_of<fathom_lcm::health_t>(message.bytes)) {
+        if (const auto heard = wire::decode(*one)) health[heard->process] = *heard;
+      }
+    } else if (const auto one = message_of<fathom_lcm::state_t>(message.bytes)) {
+      state = wire::decode(*one);
+    }
+  }
+  runtime::Url url_;
+  runtime::LiveInput input_;
+  runtime::Output output_;
+};
+
+void print(const Excitation& e) {
+  std::printf("%-10s %s\n", e.phase.c_str(), e.reason.c_str());
+  if (e.mode.empty()) return;
+  std::printf("mode %s, %.0f of at most %.0f s", e.mode.c_str(), e.elapsed, e.duration);
+  if (e.metric >= 0.0) std::printf(", certainty %.3g of %.3g", e.metric, e.threshold);
+  std::printf("%s\n", e.bent ? ", bent by the fence" : "");
+  if (!e.missing.empty()) std::printf("still missing: %s\n", e.missing.c_str());
+}
+
+void order(const Options& options, bool enable, const std::string& word) {
+  const std::string token = operator_token(options.operator_file);
+  Console console{options.url};
+  console.listen(1.0, [&] { return console.vehicle_time.has_value(); });
+  if (!console.vehicle_time)
+    throw InputError("no THRUSTERS on the bus: is the thruster driver (or the simulator) running?");
+  const std::string before = console.excitation ? console.excitation->phase : "";
+  const auto give = [&] {
+    console.say(
+        {.utime = *console.vehicle_time, .enable = enable, .order = word, .token = token, .sequence = wall_clock()});
+  };
+  give();
+  const auto moved = [&] { return console.excitation && console.excitation->phase != before; };
+  console.listen(1.5, moved);
+  if (!console.excitation) throw InputError("no EXCITATION on the bus: is the supervisor running?");
+  print(*console.excitation);
+  if (enable && console.excitation->phase == "disarmed") throw InputError("the supervisor did not arm; see above");
+}
+
+void abort_now(const Options& options) {
+  Console console{options.url};
+  for (int i = 0; i < 5; ++i) {  // one may be lost
+    console.say({.utime = wall_clock(), .abort = true});
+    console.listen(0.05);
+  }
+  console.listen(0.5, [&] { return console.excitation && console.excitation->phase == "aborted"; });
+  if (console.excitation) print(*console.excitation);
+}
+
+void status(const Options& options) {
+  Console console{options.url};
+  console.listen(1.6);
+  if (console.health.empty())
+    throw InputError("nobody says HEALTH on this bus; check --bus and that processes are running");
+  if (console.excitation) print(*console.excitation);
+  if (console.state) {
+    const Eigen::Vector3d& p = console.state->p_WB;
+    std::printf("state %s, at %.2f %.2f %.2f m\n", console.state->valid ? "valid" : "NOT VALID", p.x(), p.y(), p.z());
+  }
+  for (const auto& [name, health] : console.health) {
+    std::printf("%-16s %-10s busy %3.0f %%, dropped %lld, rejected %lld  %s\n", name.c_str(), health.state.c_str(),
+                100.0 * health.busy, static_cast<long long>(health.dropped), static_cast<long long>(health.rejected),
+                health.detail.c_str());
+  }
+}
+
+CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shared_ptr<Options>& options) {
+  CLI::App* command = app.add_subcommand(name, what);
+  if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
+  command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
+  return command;
+}
+
+}  // namespace
+
+void add_operator(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  const auto with_token = [&](CLI::App* command) {
+    command->add_option("--operator", options->operator_file, "file with the token that the vehicle knows")->required();
+  };
+  CLI::App* arm = add(app, "arm", "let the thrusters obey the supervisor, and begin", options);
+  with_token(arm);
+  arm->callback([options] { order(*options, true, "identify"); });
+  CLI::App* say = add(app, "order", "say hold, identify, skip or retry to an armed supervisor", options);
+  with_token(say);
+  say->add_option("word", options->word)->required()->check(CLI::IsMember({"hold", "identify", "skip", "retry"}));
+  say->callback([options] { order(*options, false, options->word); });
+  CLI::App* abort = add(app, "abort", "thrusters to zero at once; needs no token", options);
+  abort->callback([options] { abort_now(*options); });
+  CLI::App* ask = add(app, "status", "what runs, in which mode, and what is missing", options);
+  ask->callback([options] { status(*options); });
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,79 @@
+// supervisor: states, the model and the operator's orders in; commands and what they are for out.
+#include <unistd.h>
+
+#include <fathom_lcm/effects_t.hpp>
+#include <fathom_lcm/excitation_t.hpp>
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/model_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/wrench_command_t.hpp>
+
+#include "common/base/operator_token.hpp"
+#include "common/excitation/supervisor.hpp"
+#include "common/model/site.hpp"
+#include "common/runtime/process.hpp"
+#include "common/wire/channels.hpp"
+#include "common/wire/minds.hpp"
+
+using namespace fathom;
+
+int main(int argc, char** argv) {
+  return runtime::main("supervisor", argc, argv, [](runtime::Process& process) {
+    const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
+    const model::Site site = model::Site::load(process.config_path("site"));
+    excitation::Supervisor supervisor{excitation::SupervisorSettings::from(process.config(), vehicle, site), vehicle,
+                                      operator_token(process.config_path("operator"))};
+    // Two supervisors must not look alike to the thrusters.
+    const std::string commander = "supervisor " + std::to_string(getpid());
+    std::string told;
+    const auto tell = [&] {
+      const std::string now = std::string{name(supervisor.phase())} + ": " + supervisor.reason();
+      if (now == told) return;
+      told = now;
+      process.log_info(now);
+      process.tell_health();
+    };
+
+    process.publishes<fathom_lcm::wrench_command_t>(wire::kWrenchCommand);
+    process.publishes<fathom_lcm::excitation_t>(wire::kExcitation);
+    process.on<fathom_lcm::state_t>(wire::kState, [&](const auto& message) {
+      const auto state = wire::decode(message);
+      if (!state) return process.reject(wire::kState);
+      const auto& output = supervisor.step(*state);
+      if (output.command) {
+        WrenchCommand command = *output.command;
+        command.commander = commander;
+        process.publish(wire::kWrenchCommand, wire::encode(command));
+      }
+      if (output.excitation) process.publish(wire::kExcitation, wire::encode(*output.excitation));
+      tell();
+    });
+    process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
+      const auto model = wire::decode(message);
+      if (!model) return process.reject(wire::kModel);
+      supervisor.hear(*model);
+    });
+    process.on<fathom_lcm::effects_t>(wire::kEffects, [&](const auto& message) {
+      const auto effects = wire::decode(message);
+      if (!effects) return process.reject(wire::kEffects);
+      supervisor.hear(*effects);
+    });
+    process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
+      const auto order = wire::decode(message);
+      if (!order) return process.reject(wire::kOperator);
+      supervisor.hear(*order);
+      tell();
+    });
+    process.on<fathom_lcm::health_t>(wire::kHealth, [&](const auto& message) {
+      const auto health = wire::decode(message);
+      if (!health) return process.reject(wire::kHealth);
+      supervisor.hear(*health);
+    });
+    process.on_health([&]() -> runtime::Process::Condition {
+      return {.unhealthy = "", .detail = std::string{name(supervisor.phase())} + ": " + supervisor.reason()};
+    });
+    process.on_restart([&] { supervisor.reset(); });
+    process.run();
+  });
+}

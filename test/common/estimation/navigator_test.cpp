@@ -1,0 +1,302 @@
+// The trial's estimator on motions known at every instant: shallow and deep, its stated errors, late and bad samples.
+#include "common/estimation/navigator.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "test/support/scratch.hpp"
+#include "test/support/synthetic_survey.hpp"
+
+namespace fathom {
+namespace {
+
+using estimation::Navigator;
+using estimation::NavigatorSettings;
+using test::SurveyOptions;
+
+struct Judged {
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()}, velocity{Eigen::Vector3d::Zero()};  // RMS, m and m/s
+  Eigen::Vector3d nees_position{Eigen::Vector3d::Zero()}, nees_velocity{Eigen::Vector3d::Zero()};
+  double worst_position{}, last_position{};
+  double valid{};
+};
+
+Judged judge(const std::vector<StateEstimate>& states, unsigned seed, double from, double to = 1e9) {
+  const test::SyntheticMotion motion{seed};
+  Judged j;
+  double n = 0.0, valid = 0.0;
+  for (const StateEstimate& state : states) {
+    const double t = seconds_between(1'000'000'000, state.utime);
+    if (t < from || t >= to) continue;
+    n += 1.0;
+    valid += state.valid ? 1.0 : 0.0;
+    const Eigen::Vector3d dp = state.p_WB - motion.p_WB(t), dv = state.nu.head<3>() - motion.v_B(t);
+    j.position += dp.cwiseAbs2();
+    j.velocity += dv.cwiseAbs2();
+    j.nees_position += dp.cwiseQuotient(state.sigma.head<3>()).cwiseAbs2();
+    j.nees_velocity += dv.cwiseQuotient(state.sigma.segment<3>(6)).cwiseAbs2();
+    j.worst_position = std::max(j.worst_position, dp.norm());
+    j.last_position = dp.norm();
+  }
+  j.position = (j.position / n).cwiseSqrt();
+  j.velocity = (j.velocity / n).cwiseSqrt();
+  j.nees_position /= n;
+  j.nees_velocity /= n;
+  j.valid = valid / n;
+  return j;
+}
+
+std::vector<StateEstimate> run(const SurveyOptions& options, const NavigatorSettings& settings) {
+  Navigator navigator{settings, test::survey_places()};
+  return test::feed(navigator, test::synthetic_survey(options));
+}
+
+}  // namespace
+
+TEST_CASE("navigator: without noise the corrected equations follow the truth, shallow and deep") {
+  for (const bool shallow : {true, false}) {
+    CAPTURE(shallow);
+    const Judged j =
+        judge(run({.shallow = shallow, .noisy = false, .force_bias = 0.0}, test::survey_settings(shallow)), 1, 20.0);
+    CHECK(j.position.maxCoeff() < (shallow ? 0.002 : 0.02));  // m: what sampling the attitude at 100 Hz leaves
+    CHECK(j.velocity.maxCoeff() < 0.003);                     // m/s
+    CHECK(j.valid == 1.0);
+  }
+}
+
+TEST_CASE("navigator: errors per axis over twenty seeds, and stated errors that are the true ones") {
+  constexpr int kSeeds = 20;
+  for (const bool shallow : {true, false}) {
+    CAPTURE(shallow);
+    Judged mean;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+      const Judged j = judge(run({.seed = seed, .shallow = shallow}, test::survey_settings(shallow)), seed, 20.0);
+      mean.position += j.position / kSeeds;
+      mean.velocity += j.velocity / kSeeds;
+      mean.nees_position += j.nees_position / kSeeds;
+      mean.nees_velocity += j.nees_velocity / kSeeds;
+      CHECK(j.valid == 1.0);
+    }
+    MESSAGE("position [mm] " << 1e3 * mean.position.transpose() << ", velocity [mm/s] "
+                             << 1e3 * mean.velocity.transpose() << ", NEES per axis, position "
+                             << mean.nees_position.transpose() << ", velocity " << mean.nees_velocity.transpose());
+    CHECK(mean.position.maxCoeff() < (shallow ? 0.006 : 0.08));  // m; one tag has 0.008, one acoustic fix 0.1
+    CHECK(mean.velocity.maxCoeff() < 0.012);                     // m/s
+    for (const double nees : {mean.nees_position.x(), mean.nees_position.y(), mean.nees_position.z(),
+                              mean.nees_velocity.x(), mean.nees_velocity.y(), mean.nees_velocity.z()}) {
+      CHECK(nees > 0.5);  // twenty runs of 40 s: the band around 1 within which a filter with fixed gains is honest
+      CHECK(nees < 1.6);
+    }
+  }
+}
+
+TEST_CASE("navigator: ten seconds without a tag move the position by less than a tenth of a metre") {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const auto states = run({.seed = seed, .gap_from = 30.0, .gap_to = 40.0}, test::survey_settings(true));
+    const Judged j = judge(states, seed, 30.0, 40.0);
+    CAPTURE(seed);
+    CHECK(j.worst_position < 0.1);
+    CHECK(j.valid == 1.0);
+    CHECK(j.nees_position.maxCoeff() < 9.0);  // it says itself that it drifts: within three standard deviations
+    const StateEstimate& last = states[3990];
+    CHECK(last.age[static_cast<std::size_t>(Source::kTagPose)] > 9.8);
+    CHECK(last.age[static_cast<std::size_t>(Source::kOpticalFlow)] < 0.15);
+    CHECK(last.age[static_cast<std::size_t>(Source::kDvl)] == -1.0);
+  }
+}
+
+TEST_CASE("navigator: lateness within what is stated, and the order of arrival, change no bit") {
+  for (const bool shallow : {true, false}) {
+    const auto in_time = run({.duration = 20.0, .shallow = shallow, .lateness = 0.0}, test::survey_settings(shallow));
+    const auto late = run({.duration = 20.0, .shallow = shallow, .lateness = 1.0}, test::survey_settings(shallow));
+    REQUIRE(in_time.size() == late.size());
+    for (std::size_t k = 0; k < late.size(); ++k) {
+      REQUIRE(in_time[k].utime == late[k].utime);
+      REQUIRE(in_time[k].p_WB == late[k].p_WB);
+      REQUIRE(in_time[k].nu == late[k].nu);
+      REQUIRE(in_time[k].covariance == late[k].covariance);
+    }
+  }
+}
+
+TEST_CASE("navigator: a measurement later than stated is used at its own time and counted") {
+  Navigator navigator{test::survey_settings(false), test::survey_places()};
+  const auto states =
+      test::feed(navigator, test::synthetic_survey({.duration = 40.0, .shallow = false, .lateness = 1.6}));
+  const Judged j = judge(states, 1, 20.0);
+  CHECK(j.velocity.maxCoeff() < 0.012);  // m/s: as good as in time, since nothing is taken for what it is not
+  CHECK(navigator.rejected()["USBL later than stated"] > 30);
+  CHECK(navigator.rejected().count("USBL too late") == 0);
+}
+
+TEST_CASE("navigator: published gains keep the paper's tank estimate within centimetres") {
+  NavigatorSettings settings = test::survey_settings(true);
+  settings.published_gains = true;
+  const Judged j = judge(run({.shallow = true}, settings), 1, 20.0);
+  CHECK(j.position.maxCoeff() < 0.03);            // m
+  CHECK(j.velocity.head<2>().maxCoeff() < 0.03);  // m/s; heave has only two laser ranges to go by
+  CHECK(j.velocity.z() < 0.08);
+}
+
+TEST_CASE("navigator: a sensor that is silent, frozen, jumping or sends no numbers is refused, counted and named") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Spoil = std::function<bool(test::SurveySample&, double)>;
+  struct Fault {
+    const char* reason;     // counted under this; empty: nothing to count
+    const char* complaint;  // said at the end
+    bool shallow;
+    Spoil spoil;
+    double limit;  // m: largest position error all the same
+  };
+  std::optional<LaserRange> held_laser;
+  std::optional<Dvl> held_dvl;
+  std::optional<Depth> held_depth;
+  const auto after = [](double t) { return t > 25.0; };
+  const std::vector<Fault> faults{
+      {"", "OPTICAL_FLOW is silent", true,
+       [&](auto& s, double t) { return !(after(t) && std::holds_alternative<OpticalFlow>(s)); }, 0.1},
+      {"OPTICAL_FLOW not plausible", "OPTICAL_FLOW is silent", true,
+       [&](auto& s, double t) {
+         if (auto* flow = std::get_if<OpticalFlow>(&s); flow != nullptr && after(t)) flow->flow_C.x() = nan;
+         return true;
+       },
+       0.1},
+      {"LASER_RANGE frozen", "LASER_RANGE is frozen", true,
+       [&](auto& s, double t) {
+         if (auto* laser = std::get_if<LaserRange>(&s); laser != nullptr) {
+           if (after(t) && held_laser) laser->p_CL = held_laser->p_CL;
+           held_laser = *laser;
+         }
+         return true;
+       },
+       0.1},
+      {"TAG_POSE gated", "", true,
+       [&](auto& s, double t) {
+         if (auto* tag = std::get_if<TagPose>(&s); tag != nullptr && std::fmod(t, 1.0) < 0.03) tag->p_CT.x() += 0.5;
+         return true;
+       },
+       0.05},
+      {"DVL gated", "", false,
+       [&](auto& s, double t) {
+         if (auto* dvl = std::get_if<Dvl>(&s); dvl != nullptr && std::fmod(t, 2.0) < 0.12) dvl->v_WB_B.y() += 1.0;
+         return true;
+       },
+       0.4},
+      {"USBL gated", "", false,
+       [&](auto& s, double t) {
+         if (auto* usbl = std::get_if<Usbl>(&s); usbl != nullptr && std::fmod(t + 0.5, 7.0) < 1.0)
+           usbl->p_WB.x() += 20.0;
+         return true;
+       },
+       0.4},
+      {"DVL frozen", "DVL is frozen", false,
+       [&](auto& s, double t) {
+         if (auto* dvl = std::get_if<Dvl>(&s); dvl != nullptr) {
+           if (after(t) && held_dvl) dvl->v_WB_B = held_dvl->v_WB_B;
+           held_dvl = *dvl;
+         }
+         return true;
+       },
+       5.0},
+      {"DEPTH not plausible", "DEPTH is silent", false,
+       [&](auto& s, double t) {
+         if (auto* depth = std::get_if<Depth>(&s); depth != nullptr && after(t)) depth->z = nan;
+         return true;
+       },
+       0.5},
+      {"AHRS not plausible", "", true,
+       [&](auto& s, double t) {
+         if (auto* ahrs = std::get_if<Ahrs>(&s); ahrs != nullptr && std::fmod(t, 0.5) < 0.005) ahrs->f_B.y() = nan;
+         return true;
+       },
+       0.05},
+      {"AHRS jumped", "", true,
+       [&](auto& s, double t) {
+         if (auto* ahrs = std::get_if<Ahrs>(&s); ahrs != nullptr && std::fmod(t, 0.5) < 0.005) {
+           ahrs->q_WB = ahrs->q_WB * quaternion_from_rotation_vector({0.0, 0.0, 1.0});
+         }
+         return true;
+       },
+       0.05},
+  };
+  for (const Fault& fault : faults) {
+    CAPTURE(fault.reason);
+    CAPTURE(fault.complaint);
+    Navigator navigator{test::survey_settings(fault.shallow), test::survey_places()};
+    const auto states = test::feed(
+        navigator, test::synthetic_survey({.duration = 30.0, .shallow = fault.shallow, .spoil = fault.spoil}));
+    const Judged j = judge(states, 1, 10.0);
+    CHECK(j.worst_position < fault.limit);
+    for (const StateEstimate& state : states) REQUIRE(state.p_WB.allFinite());
+    if (*fault.reason != '\0') CHECK(navigator.rejected()[fault.reason] > 0);
+    CHECK(navigator.complaint() == fault.complaint);
+  }
+}
+
+TEST_CASE("navigator: an attitude sensor that froze gives no state, and what comes after a gap is doubted") {
+  std::optional<Ahrs> held;
+  const auto spoil = [&](test::SurveySample& s, double t) {
+    if (auto* ahrs = std::get_if<Ahrs>(&s); ahrs != nullptr) {
+      if (t > 10.0 && t < 12.0 && held) {
+        ahrs->f_B = held->f_B;
+        ahrs->w_WB_B = held->w_WB_B;
+        ahrs->q_WB = held->q_WB;
+      }
+      held = *ahrs;
+    }
+    return true;
+  };
+  const auto states = run({.duration = 20.0, .spoil = spoil}, test::survey_settings(true));
+  for (std::size_t k = 1; k < states.size(); ++k) {
+    const double t = seconds_between(1'000'000'000, states[k].utime);
+    CHECK_FALSE((t > 10.1 && t < 11.99));
+    if (seconds_between(states[k - 1].utime, states[k].utime) > 1.0) {
+      CHECK_FALSE(states[k].valid);
+      CHECK(states[k + 300].valid);  // heave is learnt anew from depths at 2 rad/s
+    }
+  }
+  CHECK(judge(states, 1, 14.0).worst_position < 0.05);
+}
+
+TEST_CASE("navigator: a first fix that is wild is outvoted by the next two") {
+  bool first = true;
+  const auto spoil = [&](test::SurveySample& s, double) {
+    if (auto* usbl = std::get_if<Usbl>(&s); usbl != nullptr && first) {
+      usbl->p_WB.x() += 12.0;
+      first = false;
+    }
+    return true;
+  };
+  const auto states = run({.duration = 20.0, .shallow = false, .spoil = spoil}, test::survey_settings(false));
+  CHECK(judge(states, 1, 5.0).worst_position < 0.4);
+}
+
+TEST_CASE("navigator: clocks that jump forward or back make no state wrong") {
+  auto arrivals = test::synthetic_survey({.duration = 20.0});
+  for (auto& arrival : arrivals) {  // a camera whose clock is an hour ahead for a while
+    if (auto* flow = std::get_if<OpticalFlow>(&arrival.sample); flow != nullptr && flow->utime > 1'010'000'000) {
+      flow->utime += 3'600'000'000;
+    }
+  }
+  Navigator navigator{test::survey_settings(true), test::survey_places()};
+  const auto states = test::feed(navigator, arrivals);
+  CHECK(navigator.rejected()["OPTICAL_FLOW not plausible"] > 100);
+  CHECK(judge(states, 1, 5.0).worst_position < 0.1);
+}
+
+TEST_CASE("navigator: what an aid needs and is not there is said in one line") {
+  const NavigatorSettings settings = test::survey_settings(true);
+  auto places = test::survey_places();
+  places.tags.clear();
+  CHECK(test::complaint_of<InputError>([&] { Navigator none(settings, places); }).find("tags") != std::string::npos);
+  places = test::survey_places();
+  places.floor.reset();
+  CHECK(test::complaint_of<InputError>([&] { Navigator none(settings, places); }).find("floor") != std::string::npos);
+}
+
+}  // namespace fathom

@@ -1,0 +1,117 @@
+// The fence: far inside it does nothing, near a wall it bends, and whatever is asked for, nothing is touched.
+#include "common/excitation/fence.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "test/common/excitation/tank_run.hpp"
+
+namespace fathom::excitation {
+namespace {
+
+FenceSettings tank() {
+  FenceSettings f;
+  f.low = {-2.0, -1.0, 0.3};
+  f.high = {2.0, 1.0, 1.2};
+  return f;
+}
+
+Vector6d largest() { return (Vector6d{} << 12.0, 12.0, 10.0, 0.0, 0.0, 1.2).finished(); }
+
+StateEstimate at(const Eigen::Vector3d& p, const Eigen::Vector3d& v = Eigen::Vector3d::Zero(), double heading = 0.0) {
+  StateEstimate state{.p_WB = p, .q_WB = Eigen::Quaterniond{rotation_from_euler({0.0, 0.0, heading})}, .valid = true};
+  state.nu.head<3>() = state.q_WB.conjugate() * v;
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("fence: far inside nothing is altered") {
+  const Fence fence{tank()};
+  Vector6d tau;
+  tau << 12.0, -12.0, 10.0, 0.0, 0.0, 1.2;
+  const auto bent = fence.bend(tau, at({0.0, 0.0, 0.75}), 0.0, 11.0, 0.2, largest());
+  CHECK(bent.tau == tau);
+  CHECK_FALSE(bent.bent);
+  for (const bool turn : bent.turn) CHECK_FALSE(turn);
+}
+
+TEST_CASE(
+    "fence: near a wall the push toward it ends and the axis turns, along the wall it stays, whatever the heading") {
+  const Fence fence{tank()};
+  for (const double heading : {0.0, 0.5 * std::numbers::pi, std::numbers::pi}) {
+    const StateEstimate state = at({1.98, 0.0, 0.75}, {0.3, 0.0, 0.0}, heading);
+    const Eigen::Matrix3d R = state.q_WB.toRotationMatrix();
+    Vector6d tau = Vector6d::Zero();
+    tau.head<3>() = R.transpose() * Eigen::Vector3d{8.0, 3.0, 0.0};
+    const auto bent = fence.bend(tau, state, 0.0, 11.0, 0.2, largest());
+    const Eigen::Vector3d force = R * bent.tau.head<3>();
+    CHECK(bent.bent);
+    CHECK(force.x() < 0.0);
+    CHECK(force.y() == doctest::Approx(3.0));
+    const std::size_t axis = std::abs(R(0, 0)) > 0.5 ? 0 : 1;  // which of surge and sway leads outwards
+    CHECK(bent.turn[axis]);
+    CHECK_FALSE(bent.turn[1 - axis]);
+    CHECK_FALSE(bent.turn[2]);
+  }
+}
+
+TEST_CASE("fence: the tether is not wound up beyond its turns") {
+  const Fence fence{tank()};
+  StateEstimate state = at({0.0, 0.0, 0.75});
+  state.nu[5] = 0.4;
+  Vector6d tau = Vector6d::Zero();
+  tau[5] = 1.0;
+  const double limit = 2.0 * std::numbers::pi * tank().turns;
+  CHECK(fence.bend(tau, state, 0.0, 11.0, 0.2, largest()).tau[5] == 1.0);
+  const auto bent = fence.bend(tau, state, limit - 0.05, 11.0, 0.2, largest());
+  CHECK(bent.tau[5] < 0.0);
+  CHECK(bent.turn[5]);
+  CHECK(fence.bend(-tau, state, limit - 0.05, 11.0, 0.2, largest()).tau[5] <= -1.0);  // back is free
+}
+
+TEST_CASE("fence: outside of the envelope it says why") {
+  const Fence fence{tank()};
+  CHECK(fence.outside(at({0.0, 0.0, 0.75}), 0.0).empty());
+  CHECK(fence.outside(at({2.2, 0.0, 0.75}), 0.0) == "too far north");
+  CHECK(fence.outside(at({0.0, -1.2, 0.75}), 0.0) == "too far west");
+  CHECK(fence.outside(at({0.0, 0.0, 0.1}), 0.0) == "too far up");
+  CHECK(fence.outside(at({0.0, 0.0, 0.75}, {2.0, 0.0, 0.0}), 0.0) == "too fast");
+  CHECK(fence.outside(at({0.0, 0.0, 0.75}), 100.0) == "the tether is wound up");
+  StateEstimate tilted = at({0.0, 0.0, 0.75});
+  tilted.q_WB = Eigen::Quaterniond{rotation_from_euler({1.2, 0.0, 0.0})};
+  CHECK(fence.outside(tilted, 0.0) == "tilted too far");
+}
+
+TEST_CASE("fence: the largest thrust held against every side, in every heading, touches nothing") {
+  const auto settings = test::tank_settings();
+  const Fence fence{settings.supervisor.fence};
+  for (int direction = 0; direction < 16; ++direction) {
+    test::TankPlant plant{settings.vehicle, {}};
+    plant.place({0.0, 0.0, 0.75});
+    const double angle = direction * std::numbers::pi / 8.0;
+    const Eigen::Vector3d push{std::cos(angle), std::sin(angle), direction % 3 - 1.0};
+    double turned = 0.0, least = 1e9;
+    for (int k = 0; k < 3000; ++k) {
+      const StateEstimate state = plant.state();
+      Vector6d tau = Vector6d::Zero();
+      tau.head<3>() = state.q_WB.conjugate() * Eigen::Vector3d{12.0 * push};
+      tau[5] = direction % 2 == 0 ? 0.4 : 0.0;
+      turned += 0.01 * plant.nu()[5];
+      if (k % 5 == 0) {
+        const auto bent = fence.bend(tau, state, turned, settings.supervisor.hold.mass,
+                                     settings.supervisor.hold.inertia, settings.supervisor.largest);
+        plant.command({.utime = plant.utime(), .tau = bent.tau, .life = 0.3});
+      }
+      plant.step();
+      least = std::min(least, plant.room(settings.site));
+    }
+    CAPTURE(direction);
+    CHECK(least > 0.02);  // m
+  }
+}
+
+}  // namespace fathom::excitation
