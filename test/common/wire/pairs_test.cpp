@@ -142,6 +142,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Operator, 5>();
   check_pair<Excitation, 7>();
   check_pair<StateEstimate, 6>();
+  check_pair<SmoothedState, 6>();
   check_pair<ModelEstimate, 4>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 3>();
