@@ -51,8 +51,4 @@ struct StepwiseResult {
 [[nodiscard]] StepwiseResult stepwise(const std::vector<LaggedGram>& parts, const std::vector<std::string>& names,
                                       const StepwiseSettings& settings);
 
-/// Coefficients of `columns` over resampled blocks (Kuensch 1989): one row per repetition. phi stays.
-[[nodiscard]] Eigen::MatrixXd block_bootstrap(const LaggedGram& gram, const std::vector<int>& columns, double phi,
-                                              int repetitions, unsigned seed);
-
 }  // namespace fathom::identification

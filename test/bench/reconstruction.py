@@ -98,6 +98,7 @@ def filter_and_smoother():
         K = np.linalg.solve(S, H @ P).T
         x = x + K @ (z - predicted)
         P = P - K @ S @ K.T
+        P = 0.5 * (P + P.T)  # without it rounding grows until the filter diverges
         xs.append(x), Ps.append(P)
     for k in range(n - 2, -1, -1):
         C = np.linalg.solve(Pp[k + 1], Fs[k + 1] @ Ps[k]).T

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "common/estimation/trial_smoother.hpp"
+#include "common/identification/block_bootstrap.hpp"
 #include "common/identification/stepwise.hpp"
 
 namespace {

@@ -74,6 +74,27 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
   CHECK_MESSAGE(bad.says("'X_uuu' is no hydrodynamic derivative"), bad.text);
 }
 
+TEST_CASE("fathom methods: both methods on the same recording, judged on another") {
+  const Scratch scratch;
+  std::ifstream from{std::string{FATHOM_SOURCE_DIR} + "/test/data/beluga/surge-1.csv"};
+  std::ofstream first{scratch.path("first.csv")}, second{scratch.path("second.csv")};
+  std::string line;
+  for (int i = 0; i < 2000 && std::getline(from, line); ++i) {
+    if (i == 0 || i <= 1000) first << line << "\n";
+    if (i == 0 || i > 1000) second << line << "\n";
+  }
+  first.close();
+  second.close();
+  const auto ran =
+      shell(program("fathom") + " methods --vehicle " + file("config/vehicles/beluga.yaml") + " --config " +
+            file("config/pipelines/beluga.yaml") + " --map " + file("config/maps/beluga.yaml") + " --train " +
+            scratch.path("first.csv") + " --validate " + scratch.path("second.csv"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  CHECK_MESSAGE(ran.says("complementary filter, recursive"), ran.text);
+  CHECK_MESSAGE(ran.says("smoother, regression under AR(1)"), ran.text);
+  CHECK_MESSAGE(ran.says("m_X"), ran.text);
+}
+
 TEST_CASE("estimator: with `filter: ekf` it gives STATE from ranges, twice the same bytes") {
   const Scratch scratch;
   const auto trial = zigzag();

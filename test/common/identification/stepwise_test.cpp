@@ -9,6 +9,7 @@
 #include <random>
 
 #include "common/base/distributions.hpp"
+#include "common/identification/block_bootstrap.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -112,13 +113,6 @@ std::vector<int> by_qr(const Eigen::MatrixXd& w, double enter, double leave, dou
 }
 
 }  // namespace
-
-TEST_CASE("F: tail probabilities of the tables") {
-  CHECK(f_tail(4.96, 10) == doctest::Approx(0.05).epsilon(2e-3));  // tables have three digits
-  CHECK(f_tail(6.63, 1e6) == doctest::Approx(0.01).epsilon(5e-3));
-  CHECK(f_quantile(0.05, 20) == doctest::Approx(4.351).epsilon(1e-3));
-  CHECK(f_tail(0.0, 5) == 1.0);
-}
 
 TEST_CASE("Gram: for every phi the sums are those of the whitened rows, first sample kept, also over several blocks") {
   const Problem p = problem(1, 203, 5, 0.8);
