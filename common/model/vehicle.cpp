@@ -267,6 +267,7 @@ Vehicle Vehicle::load(const std::string& path) {
       }
     }
   }
+  if (config.has("hydrodynamics")) vehicle.hydrodynamics = Hydrodynamics::from(config.section("hydrodynamics"));
   config.finish();
   return vehicle;
 }

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/spatial.hpp"
+#include "common/model/hydrodynamics.hpp"
 #include "common/model/mounts.hpp"
 
 namespace fathom::model {
@@ -59,6 +61,8 @@ struct Vehicle {
   std::vector<Prior> priors;  ///< one per parameter
   Eigen::Matrix<double, 6, Eigen::Dynamic> allocation;  ///< tau = allocation * force; 6 x N
   Mounts mounts{};                                      ///< where the instruments sit
+
+  std::optional<Hydrodynamics> hydrodynamics;  ///< for manoeuvres and regression
 
   /// False for a vehicle that is driven by a body wrench (no thrusters in its file).
   [[nodiscard]] bool has_thrusters() const { return !thrusters.empty(); }

@@ -31,6 +31,16 @@ struct StateEstimate {
   SourceAges age{kNoSource};              ///< s since a sample of each source counted; -1: never
 };
 
+/// Motion of a recorded run as all its measurements together tell it.
+struct SmoothedState {
+  Utime utime{};
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};                             ///< m, NED
+  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};                   ///< unit
+  Vector6d nu{Vector6d::Zero()};                                             ///< m/s, rad/s: u v w p q r
+  Vector6d nu_dot{Vector6d::Zero()};                                         ///< m/s^2, rad/s^2
+  Eigen::Matrix<double, 18, 1> sigma{Eigen::Matrix<double, 18, 1>::Zero()};  ///< std of p_WB, rotation, nu, nu_dot
+};
+
 /// One named number with its standard deviation.
 struct NamedValue {
   std::string name;  ///< SNAME letters, e.g. "X_u", "m_X"

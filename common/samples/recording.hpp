@@ -23,6 +23,7 @@ struct Recording {
   std::vector<Thrusters> thrusters;
   std::vector<Battery> battery;
   std::vector<StateEstimate> state;  ///< from an estimator, when the log holds it
+  std::vector<SmoothedState> smoothed;
   std::vector<Usbl> usbl;
   std::vector<Ranges> ranges;
   std::vector<Loads> loads;

@@ -19,6 +19,7 @@ inline constexpr char kWrenchCommand[] = "WRENCH_COMMAND";
 inline constexpr char kOperator[] = "OPERATOR";
 inline constexpr char kThrusters[] = "THRUSTERS";
 inline constexpr char kState[] = "STATE";
+inline constexpr char kSmoothed[] = "SMOOTHED";
 inline constexpr char kModel[] = "MODEL";
 inline constexpr char kResidual[] = "RESIDUAL";
 inline constexpr char kEffects[] = "EFFECTS";

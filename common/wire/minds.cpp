@@ -8,6 +8,7 @@
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/process_info_t.hpp>
 #include <fathom_lcm/residual_t.hpp>
+#include <fathom_lcm/smoothed_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/truth_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
@@ -40,6 +41,28 @@ fathom_lcm::state_t encode(const StateEstimate& sample) {
   message.valid = sample.valid;
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>{message.covariance} = sample.covariance;
   std::copy(sample.age.begin(), sample.age.end(), message.age);
+  return message;
+}
+
+std::optional<SmoothedState> decode(const fathom_lcm::smoothed_t& message) {
+  if (!finite(message.p_WB) || !unit(message.q_WB) || !finite(message.nu)) return {};
+  if (!finite(message.nu_dot) || !finite(message.sigma)) return {};
+  return SmoothedState{.utime = message.utime,
+                       .p_WB = vector(message.p_WB),
+                       .q_WB = quaternion(message.q_WB),
+                       .nu = vector(message.nu),
+                       .nu_dot = vector(message.nu_dot),
+                       .sigma = vector(message.sigma)};
+}
+
+fathom_lcm::smoothed_t encode(const SmoothedState& sample) {
+  fathom_lcm::smoothed_t message{};
+  message.utime = sample.utime;
+  put(sample.p_WB, message.p_WB);
+  put(sample.q_WB, message.q_WB);
+  put(sample.nu, message.nu);
+  put(sample.nu_dot, message.nu_dot);
+  put(sample.sigma, message.sigma);
   return message;
 }
 

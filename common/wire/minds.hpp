@@ -13,6 +13,7 @@ class wrench_command_t;
 class operator_t;
 class excitation_t;
 class state_t;
+class smoothed_t;
 class model_t;
 class residual_t;
 class effects_t;
@@ -28,6 +29,7 @@ namespace fathom::wire {
 [[nodiscard]] std::optional<Operator> decode(const fathom_lcm::operator_t& message);
 [[nodiscard]] std::optional<Excitation> decode(const fathom_lcm::excitation_t& message);
 [[nodiscard]] std::optional<StateEstimate> decode(const fathom_lcm::state_t& message);
+[[nodiscard]] std::optional<SmoothedState> decode(const fathom_lcm::smoothed_t& message);
 [[nodiscard]] std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message);
 [[nodiscard]] std::optional<Residual> decode(const fathom_lcm::residual_t& message);
 [[nodiscard]] std::optional<EffectRanking> decode(const fathom_lcm::effects_t& message);
@@ -39,6 +41,7 @@ namespace fathom::wire {
 [[nodiscard]] fathom_lcm::operator_t encode(const Operator& sample);
 [[nodiscard]] fathom_lcm::excitation_t encode(const Excitation& sample);
 [[nodiscard]] fathom_lcm::state_t encode(const StateEstimate& sample);
+[[nodiscard]] fathom_lcm::smoothed_t encode(const SmoothedState& sample);
 [[nodiscard]] fathom_lcm::model_t encode(const ModelEstimate& sample);
 [[nodiscard]] fathom_lcm::residual_t encode(const Residual& sample);
 [[nodiscard]] fathom_lcm::effects_t encode(const EffectRanking& sample);

@@ -17,6 +17,7 @@
 #include <fathom_lcm/process_info_t.hpp>
 #include <fathom_lcm/ranges_t.hpp>
 #include <fathom_lcm/residual_t.hpp>
+#include <fathom_lcm/smoothed_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
@@ -57,6 +58,7 @@ void visit_streams(AnyRecording& recording, Visit&& visit) {
   visit(kLaserRange, recording.laser_range);
   visit(kTruth, recording.truth);
   visit(kState, recording.state);
+  visit(kSmoothed, recording.smoothed);
   visit(kModel, recording.model);
   visit(kResidual, recording.residual);
   visit(kEffects, recording.effects);

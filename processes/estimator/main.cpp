@@ -1,11 +1,12 @@
 // estimator: what the sensors say in, STATE out. The section's `filter` chooses between the trial's complementary
-// filter and the one for recordings with motion capture.
+// filter, the one for recordings with motion capture, and a Kalman filter.
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
 #include <fathom_lcm/optical_flow_t.hpp>
 #include <fathom_lcm/pose_capture_t.hpp>
+#include <fathom_lcm/ranges_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/usbl_t.hpp>
@@ -13,6 +14,7 @@
 #include "common/base/config.hpp"
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/estimator.hpp"
+#include "common/estimation/kalman_estimator.hpp"
 #include "common/estimation/navigator.hpp"
 #include "common/model/site.hpp"
 #include "common/model/vehicle.hpp"
@@ -25,12 +27,12 @@ using namespace fathom;
 
 namespace {
 
-template <class Message>
-void hear(runtime::Process& process, auto& estimator, const std::string& channel) {
-  process.on<Message>(channel, [&process, &estimator, channel](const Message& message) {
+template <class Message, class Mind>
+void hear(runtime::Process& process, Mind& mind, const std::string& channel) {
+  process.on<Message>(channel, [&process, &mind, channel](const Message& message) {
     const auto sample = wire::decode(message);
     if (!sample) return process.reject(channel);
-    for (const StateEstimate& state : estimator.step(*sample)) process.publish(wire::kState, wire::encode(state));
+    for (const StateEstimate& state : mind.step(*sample)) process.publish(wire::kState, wire::encode(state));
   });
 }
 
@@ -58,6 +60,7 @@ void run_recorded(runtime::Process& process, const Config& config) {
   ignore<fathom_lcm::tag_pose_t>(process, wire::kTagPose);
   ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
   ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
+  ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
@@ -79,6 +82,7 @@ void run_trial(runtime::Process& process, const Config& config) {
   hear<fathom_lcm::usbl_t>(process, navigator, wire::kUsbl);
   hear<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
+  ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
   process.on_health([&]() -> runtime::Process::Condition {
     std::string detail;
     for (const auto& [reason, count] : navigator.rejected()) {
@@ -91,13 +95,35 @@ void run_trial(runtime::Process& process, const Config& config) {
   process.run();
 }
 
+void run_kalman(runtime::Process& process, const Config& config) {
+  estimation::KalmanEstimator estimator{estimation::KalmanSettings::from(config)};
+  hear<fathom_lcm::pose_capture_t>(process, estimator, wire::kPoseCapture);
+  hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
+  hear<fathom_lcm::dvl_t>(process, estimator, wire::kDvl);
+  hear<fathom_lcm::depth_t>(process, estimator, wire::kDepth);
+  hear<fathom_lcm::usbl_t>(process, estimator, wire::kUsbl);
+  hear<fathom_lcm::ranges_t>(process, estimator, wire::kRanges);
+  hear<fathom_lcm::tag_pose_t>(process, estimator, wire::kTagPose);
+  ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
+  ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
+  process.on_restart([&] { estimator.reset(); });
+  process.on_end([&] {
+    for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));
+    tell_refused(process, estimator.rejected());
+  });
+  process.run();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   return runtime::main("estimator", argc, argv, [](runtime::Process& process) {
     process.publishes<fathom_lcm::state_t>(wire::kState);
     const Config config = process.config();
-    const bool trial = config.has("filter") && config.either("filter", "complementary", "recorded");
-    return trial ? run_trial(process, config) : run_recorded(process, config);
+    const std::string filter = config.has("filter") ? config.text("filter") : "recorded";
+    if (filter == "recorded") return run_recorded(process, config);
+    if (filter == "complementary") return run_trial(process, config);
+    if (filter == "ekf") return run_kalman(process, config);
+    config.fail("filter", "'filter' must be recorded, complementary or ekf, not '" + filter + "'");
   });
 }

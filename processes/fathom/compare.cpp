@@ -1,4 +1,4 @@
-// fathom compare: do two logs end with the same model?
+// fathom compare: do two logs end with the same model? With --manoeuvre: do two sets of derivatives fly alike?
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -11,7 +11,7 @@ namespace fathom::tool {
 namespace {
 
 struct Options {
-  std::string first, second;
+  std::string first, second, manoeuvre, plot;
 };
 
 ModelEstimate last_model(const std::string& path) {
@@ -21,6 +21,10 @@ ModelEstimate last_model(const std::string& path) {
 }
 
 void run(const Options& options) {
+  if (!options.manoeuvre.empty()) {
+    compare_manoeuvre(options.first, options.second, options.manoeuvre, options.plot);
+    return;
+  }
   const ModelEstimate a = last_model(options.first), b = last_model(options.second);
   if (a.parameters.size() != b.parameters.size()) throw InputError("the two models have different parameters");
   bool equal = a.utime == b.utime && a.updates == b.updates;
@@ -41,9 +45,13 @@ void run(const Options& options) {
 
 void add_compare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("compare", "do two logs end with the same MODEL?");
-  command->add_option("first", options->first, "LCM log")->required();
-  command->add_option("second", options->second, "LCM log")->required();
+  CLI::App* command =
+      app.add_subcommand("compare", "do two logs end with the same MODEL, or do two vehicles fly a manoeuvre alike?");
+  command->add_option("first", options->first, "LCM log; with --manoeuvre a vehicle file")->required();
+  command->add_option("second", options->second, "LCM log; with --manoeuvre a vehicle file, or coefficients alone")
+      ->required();
+  command->add_option("--manoeuvre", options->manoeuvre, "line, zigzag or circle: fly both and compare");
+  command->add_option("--plot", options->plot, "write the two tracks of the manoeuvre to this SVG file");
   command->callback([options] { run(*options); });
 }
 

@@ -13,6 +13,9 @@ int main(int argc, char** argv) {
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
   fathom::tool::add_compare(app);
+  fathom::tool::add_smooth(app);
+  fathom::tool::add_regress(app);
+  fathom::tool::add_methods(app);
   fathom::tool::add_decode(app);
   fathom::tool::add_emulate(app);
   fathom::tool::add_operator(app);

@@ -149,6 +149,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Operator, 7>();
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
+  check_pair<SmoothedState, 6>();
   check_pair<ModelEstimate, 9>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 3>();

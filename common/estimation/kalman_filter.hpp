@@ -1,0 +1,92 @@
+// Extended Kalman filter on the kinematic model of Pereira and Duncan (eqs. 6 to 11), as printed or with velocity and
+// position driven by the estimated acceleration. Fixed sizes, no allocation; the covariance's structure is used:
+// a step costs four products of 3 x 3 with 3 x N instead of two of N x N.
+#pragma once
+
+#include <optional>
+
+#include "common/model/sensors/kinematic_point.hpp"
+
+namespace fathom::estimation {
+
+/// How velocity comes about. Printed (eqs. 6, 8): a random walk, so that accelerometers never inform it. Coupled: the
+/// integral of the acceleration.
+enum class KinematicModel { kPrinted, kCoupled };
+
+/// White noise that drives the model, per root of a second.
+struct ProcessNoise {
+  double jerk{0.05};                ///< m/s^2: moves the acceleration
+  double angular_jerk{0.05};        ///< rad/s^2: moves the derivative of the rates
+  double velocity{0.1};             ///< m/s: moves the velocity of the printed model; unused in the coupled one
+  double accelerometer_bias{1e-4};  ///< m/s^2: moves the first three biases
+  double gyro_bias{1e-5};           ///< rad/s: moves the last three
+};
+
+/// What a step does to small errors: the model's derivative at a point. Kept so that a smoother can go back.
+struct Transition {
+  Transition(const model::KinematicPoint& from, double dt, KinematicModel model);
+
+  double dt;
+  bool coupled;
+  Eigen::Matrix3d R_WB;
+  Eigen::Matrix3d by_euler;     ///< d(R_WB a)/d(euler)
+  Eigen::Matrix3d euler_rates;  ///< d(euler)/dt by rates
+  Eigen::Matrix3d euler_euler;  ///< d(new euler)/d(euler)
+};
+
+/// N is 18, or 24 with six sensor biases.
+template <int N>
+class KalmanFilter {
+ public:
+  using State = Eigen::Matrix<double, N, 1>;
+  using Covariance = Eigen::Matrix<double, N, N>;
+
+  /// What an observation did.
+  struct Outcome {
+    bool used{false};
+    double innovation{};  ///< less what earlier rows of the same instant have already explained
+    double variance{};    ///< predicted, of the innovation
+    State gain{State::Zero()};
+    /// Normalised innovation squared: 1 on average when noise is as stated.
+    [[nodiscard]] double nis() const { return innovation * innovation / variance; }
+  };
+
+  void start(const State& x, const State& sigma);
+  /// Goes on by dt > 0; returns the transition. Where pitch has come near the vertical, the angles are first counted
+  /// from the present attitude: turned() then says how small changes of the old ones become changes of the new ones.
+  Transition predict(double dt, const ProcessNoise& noise, KinematicModel model);
+  /// Something unseen has moved the vehicle, or the estimate is lost: adds to the variances. Between instants only.
+  void doubt(const State& sigma) { P_.diagonal() += sigma.cwiseAbs2(); }
+  /// The point at which the observations of this instant are linearised; good until the next predict().
+  [[nodiscard]] model::KinematicPoint point() const;
+  /// Takes in one observation made at point() before any update() of this instant; those already taken count through
+  /// `moved`, the sum of their changes. Refused beyond `gate` sigma; an infinite variance changes nothing.
+  Outcome update(const model::Observation& observation, double gate, State& moved);
+  /// What the last predict() did to the angles before it went on.
+  [[nodiscard]] const std::optional<Eigen::Matrix3d>& turned() const { return turned_; }
+  [[nodiscard]] const Eigen::Matrix3d& reference() const { return reference_; }
+  /// Yaw is not folded: it goes on counting turns, so that smoothing is a sum.
+  [[nodiscard]] const State& state() const { return x_; }
+  [[nodiscard]] const Covariance& covariance() const { return P_; }
+
+ private:
+  State x_{State::Zero()};
+  Covariance P_{Covariance::Identity()};
+  Eigen::Matrix3d reference_{Eigen::Matrix3d::Identity()};  // from which the angles are counted
+  std::optional<Eigen::Matrix3d> turned_;
+};
+
+/// P F^T in place, columns by columns.
+template <int N>
+void transport(const Transition& F, Eigen::Matrix<double, N, N>& P);
+/// L F in place: the adjoint, for the smoother's way back.
+template <int N>
+void transport_back(const Transition& F, Eigen::Matrix<double, N, N>& L);
+/// F^T l in place.
+template <int N>
+void transport_back(const Transition& F, Eigen::Matrix<double, N, 1>& l);
+
+extern template class KalmanFilter<model::kKinematicStates>;
+extern template class KalmanFilter<model::kMostStates>;
+
+}  // namespace fathom::estimation

@@ -1,0 +1,95 @@
+#include "common/estimation/process_tuning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/estimation/trial_smoother.hpp"
+
+namespace fathom::estimation {
+namespace {
+
+template <class Stream>
+void cut(Stream& stream, Utime end) {
+  stream.erase(std::find_if(stream.begin(), stream.end(), [end](const auto& one) { return one.utime > end; }),
+               stream.end());
+}
+
+Recording beginning(const Recording& recording, double longest) {
+  Recording part;
+  part.name = recording.name;
+  part.ahrs = recording.ahrs;
+  part.pose_capture = recording.pose_capture;
+  part.dvl = recording.dvl;
+  part.depth = recording.depth;
+  part.usbl = recording.usbl;
+  part.ranges = recording.ranges;
+  part.tag_pose = recording.tag_pose;
+  const Utime origin = !part.ahrs.empty()           ? part.ahrs.front().utime
+                       : !part.pose_capture.empty() ? part.pose_capture.front().utime
+                                                    : Utime{};
+  const Utime end = utime_after(origin, longest);
+  cut(part.ahrs, end);
+  cut(part.pose_capture, end);
+  cut(part.dvl, end);
+  cut(part.depth, end);
+  cut(part.usbl, end);
+  cut(part.ranges, end);
+  cut(part.tag_pose, end);
+  return part;
+}
+
+/// Settings under which the run is lost altogether have no likelihood.
+double score(const Recording& recording, const KalmanSettings& settings) {
+  try {
+    const double found = likelihood(recording, settings);
+    return std::isfinite(found) ? found : -std::numeric_limits<double>::infinity();
+  } catch (const InputError&) {
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
+}  // namespace
+
+KalmanSettings tune_process(const Recording& recording, KalmanSettings settings, double longest) {
+  const Recording part = beginning(recording, longest);
+  std::vector<double*> tuned{&settings.process.jerk, &settings.process.angular_jerk};
+  if (settings.model == KinematicModel::kPrinted) tuned.push_back(&settings.process.velocity);
+  // A first look from sluggish to lively: a filter that is far too slow loses the run, and no small step mends that.
+  double best = -std::numeric_limits<double>::infinity(), liveliest = 1.0;
+  const ProcessNoise given = settings.process;
+  const auto scaled = [&](double factor) {
+    settings.process.jerk = factor * given.jerk;
+    settings.process.angular_jerk = factor * given.angular_jerk;
+    settings.process.velocity = given.velocity;
+  };
+  for (const double factor : {1.0, 0.2, 5.0, 25.0}) {
+    scaled(factor);
+    const double now = score(part, settings);
+    if (now <= best) continue;
+    best = now;
+    liveliest = factor;
+  }
+  scaled(liveliest);
+  for (const double factor : {3.0, 1.5, 1.2}) {
+    for (double* one : tuned) {
+      for (const double way : {factor, 1.0 / factor}) {
+        for (;;) {
+          const double kept = *one;
+          *one *= way;
+          const double now = *one > 1e-7 && *one < 1e3 ? score(part, settings) : best;
+          if (now <= best) {
+            *one = kept;
+            break;
+          }
+          best = now;
+        }
+      }
+    }
+  }
+  return settings;
+}
+
+}  // namespace fathom::estimation

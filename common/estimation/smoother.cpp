@@ -1,0 +1,108 @@
+#include "common/estimation/smoother.hpp"
+
+namespace fathom::estimation {
+namespace {
+
+/// Where the step from `from` to `to` was made linear.
+template <int N>
+model::KinematicPoint point_of(const typename FilterRecord<N>::Instant& from,
+                               const typename FilterRecord<N>::Instant& to) {
+  model::KinematicVector x = model::KinematicVector::Zero();
+  x.template head<N>() = from.x;
+  if (to.turned) x.segment<3>(model::at::kEuler).setZero();
+  return model::KinematicPoint{x, to.reference};
+}
+
+}  // namespace
+
+template <int N>
+void FilterRecord<N>::begin(const KalmanFilter<N>& filter) {
+  instants.clear();
+  taken.clear();
+  add(0.0, filter);
+}
+
+template <int N>
+void FilterRecord<N>::add(double dt, const KalmanFilter<N>& filter) {
+  Instant& instant = instants.emplace_back();
+  instant.dt = dt;
+  instant.x = filter.state();
+  instant.P = filter.covariance();
+  instant.reference = filter.reference();
+  if (dt > 0.0) instant.turned = filter.turned();
+  instant.taken = taken.size();
+}
+
+template <int N>
+void FilterRecord<N>::add(const model::Observation& observation, const typename KalmanFilter<N>::Outcome& outcome) {
+  if (!outcome.used) return;
+  Taken& one = taken.emplace_back();
+  one.row = observation.row.template head<N>();
+  one.gain = outcome.gain;
+  one.innovation = outcome.innovation;
+  one.variance = outcome.variance;
+}
+
+template <int N>
+typename Smoothed<N>::State Smoothed<N>::state() const {
+  return filtered_.x - filtered_.P * lambda_;
+}
+
+template <int N>
+typename Smoothed<N>::Covariance Smoothed<N>::covariance() const {
+  Covariance LP;
+  LP.noalias() = Lambda_ * filtered_.P;
+  Covariance P = filtered_.P;
+  P.noalias() -= filtered_.P * LP;
+  return 0.5 * (P + P.transpose());
+}
+
+template <int N>
+typename Smoothed<N>::State Smoothed<N>::variance() const {
+  Covariance LP;
+  LP.noalias() = Lambda_ * filtered_.P;
+  return filtered_.P.diagonal() - filtered_.P.cwiseProduct(LP).colwise().sum().transpose();
+}
+
+template <int N>
+void Smoother<N>::back_over(const FilterRecord<N>& record, KinematicModel model, const Visit& visit) {
+  for (std::size_t k = record.instants.size() - 1; k > 0; --k) {
+    visit(k, Smoothed<N>{record.instants[k], lambda_, Lambda_});
+    for (std::size_t i = record.instants[k].taken; i > record.instants[k - 1].taken; --i) {
+      const typename FilterRecord<N>::Taken& one = record.taken[i - 1];
+      const State v = Lambda_ * one.gain;
+      lambda_ -= one.row * (one.gain.dot(lambda_) + one.innovation / one.variance);
+      // (I - k h')' L (I - k h') + h h' / S, as one symmetric update of rank two.
+      const State half = v - (0.5 * (one.gain.dot(v) + 1.0 / one.variance)) * one.row;
+      Lambda_.noalias() -= one.row * half.transpose();
+      Lambda_.noalias() -= half * one.row.transpose();
+    }
+    const Transition F{point_of<N>(record.instants[k - 1], record.instants[k]), record.instants[k].dt, model};
+    transport_back<N>(F, lambda_);
+    transport_back<N>(F, Lambda_);
+    Lambda_.transposeInPlace();
+    transport_back<N>(F, Lambda_);
+    if (record.instants[k].turned) {
+      const Eigen::Matrix3d& M = *record.instants[k].turned;
+      constexpr int kEuler = model::at::kEuler;
+      const Eigen::Vector3d part = M.transpose() * lambda_.template segment<3>(kEuler);
+      lambda_.template segment<3>(kEuler) = part;
+      const Eigen::Matrix<double, N, 3> columns = Lambda_.template middleCols<3>(kEuler) * M;
+      Lambda_.template middleCols<3>(kEuler) = columns;
+      const Eigen::Matrix<double, 3, N> rows = M.transpose() * Lambda_.template middleRows<3>(kEuler);
+      Lambda_.template middleRows<3>(kEuler) = rows;
+    }
+    for (int column = 1; column < N; ++column) {
+      for (int row = 0; row < column; ++row) Lambda_(row, column) = Lambda_(column, row);
+    }
+  }
+}
+
+template struct FilterRecord<model::kKinematicStates>;
+template struct FilterRecord<model::kMostStates>;
+template class Smoothed<model::kKinematicStates>;
+template class Smoothed<model::kMostStates>;
+template class Smoother<model::kKinematicStates>;
+template class Smoother<model::kMostStates>;
+
+}  // namespace fathom::estimation

@@ -1,0 +1,199 @@
+#include "common/estimation/trial_smoother.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+
+namespace fathom::estimation {
+namespace {
+
+namespace at = model::at;
+
+constexpr std::size_t kStretch = 400;  // instants whose record is kept at a time: it stays in the cache
+
+struct Event {
+  Utime utime{};
+  SampleView sample;
+};
+
+std::vector<Event> events_of(const Recording& recording, const KalmanSettings& settings) {
+  std::vector<Event> events;
+  const auto add = [&events](const auto& stream) {
+    for (const auto& sample : stream) events.push_back({sample.utime, &sample});
+  };
+  add(recording.ahrs);
+  add(recording.pose_capture);
+  add(recording.dvl);
+  add(recording.depth);
+  add(recording.usbl);
+  if (!settings.transponders.empty()) add(recording.ranges);
+  if (!settings.tags.empty()) add(recording.tag_pose);
+  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+    return a.utime != b.utime ? a.utime < b.utime : a.sample.index() < b.sample.index();
+  });
+  return events;
+}
+
+KalmanStart start_of(const std::string& name, const std::vector<Event>& events, const KalmanSettings& settings) {
+  StartFinder finder{settings};
+  for (const Event& event : events) {
+    finder.hear(event.utime, event.sample);
+    if (const auto start = finder.found()) return *start;
+  }
+  throw InputError(name + ": " + (events.empty() ? "no sensor to estimate motion from" : finder.missing()));
+}
+
+/// [first, last) of one time stamp.
+template <int N>
+void pass_instant(const std::vector<Event>& events, std::size_t first, std::size_t last,
+                  KinematicEstimator<N>& estimator, FilterRecord<N>* record) {
+  estimator.advance(events[first].utime, record);
+  for (std::size_t i = first; i < last; ++i) estimator.take(events[i].sample, record);
+  estimator.close(record);
+}
+
+bool is_output(const std::vector<Event>& events, std::size_t first, std::size_t last, bool inertial) {
+  return std::any_of(events.begin() + static_cast<std::ptrdiff_t>(first),
+                     events.begin() + static_cast<std::ptrdiff_t>(last), [inertial](const Event& event) {
+                       return inertial ? std::holds_alternative<const Ahrs*>(event.sample)
+                                       : !std::holds_alternative<const Depth*>(event.sample);
+                     });
+}
+
+template <int N>
+model::KinematicVector widen(const Eigen::Matrix<double, N, 1>& x) {
+  model::KinematicVector wide = model::KinematicVector::Zero();
+  wide.template head<N>() = x;
+  return wide;
+}
+
+/// The inertial acceleration less w x v is the derivative of v in B.
+SmoothedState motion_of(Utime utime, const model::KinematicVector& x, const model::KinematicVector& variance,
+                        const Eigen::Matrix3d& reference) {
+  const StateEstimate state = state_of(utime, x, variance, reference);
+  SmoothedState motion{.utime = utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .nu = state.nu};
+  const Eigen::Vector3d v = state.nu.head<3>(), w = state.nu.tail<3>();
+  motion.nu_dot << x.segment<3>(at::kAcceleration) - w.cross(v), x.segment<3>(at::kRateSlopes);
+  const Eigen::Vector3d v2 = state.sigma.segment<3>(6).cwiseAbs2();
+  const Eigen::Vector3d turning = skew(w).cwiseAbs2() * v2;  // the rates are far better known than the velocity
+  motion.sigma << state.sigma, (variance.segment<3>(at::kAcceleration) + turning).cwiseMax(0.0).cwiseSqrt(),
+      variance.segment<3>(at::kRateSlopes).cwiseMax(0.0).cwiseSqrt();
+  return motion;
+}
+
+template <int N>
+class Run {
+ public:
+  Run(const Recording& recording, const KalmanSettings& settings)
+      : name_{recording.name},
+        settings_{settings},
+        events_{events_of(recording, settings)},
+        inertial_{!recording.ahrs.empty()},
+        estimator_{settings} {
+    for (std::size_t first = 0; first < events_.size();) {
+      std::size_t last = first + 1;
+      while (last < events_.size() && events_[last].utime == events_[first].utime) ++last;
+      instants_.push_back(first);
+      first = last;
+    }
+    instants_.push_back(events_.size());
+    estimator_.start(events_.empty() ? 0 : events_.front().utime, start_of(name_, events_, settings));
+  }
+
+  void forward(SmoothedTrial* trial) {
+    for (std::size_t k = 0; k + 1 < instants_.size(); ++k) {
+      if (k % kStretch == 0 && trial != nullptr) checkpoints_.push_back(estimator_);
+      pass_instant<N>(events_, instants_[k], instants_[k + 1], estimator_, nullptr);
+      if (trial == nullptr || !output(k)) continue;
+      trial->filtered.push_back(state_of(events_[instants_[k]].utime, widen<N>(estimator_.filter().state()),
+                                         widen<N>(estimator_.filter().covariance().diagonal()),
+                                         estimator_.filter().reference()));
+    }
+    if (!estimator_.upright()) {
+      throw InputError(name_ + ": the attitude is lost; check the noises of gyro and attitude, and their axes");
+    }
+    if (!estimator_.filter().state().allFinite()) throw InputError(name_ + ": the filter diverged; check the noises");
+  }
+
+  void backward(SmoothedTrial& trial, const SmoothedVisit& visit) {
+    FilterRecord<N> record;
+    Smoother<N> smoother;
+    std::vector<Utime> utimes;  // of the record's instants; 0: a step inside a gap
+    trial.smoothed.reserve(trial.filtered.size());
+    for (std::size_t c = checkpoints_.size(); c > 0; --c) {
+      KinematicEstimator<N>& estimator = checkpoints_[c - 1];
+      record.begin(estimator.filter());
+      utimes.assign(1, 0);
+      const std::size_t from = (c - 1) * kStretch, to = std::min(c * kStretch, instants_.size() - 1);
+      for (std::size_t k = from; k < to; ++k) {
+        pass_instant<N>(events_, instants_[k], instants_[k + 1], estimator, &record);
+        utimes.resize(record.instants.size(), 0);
+        if (output(k)) utimes.back() = events_[instants_[k]].utime;
+      }
+      smoother.back_over(record, settings_.model, [&](std::size_t i, const Smoothed<N>& smoothed) {
+        if (utimes[i] == 0) return;
+        const typename KalmanFilter<N>::State x = smoothed.state();
+        if (visit) visit(utimes[i], x, smoothed.covariance());
+        if (trial.smoothed.empty()) trial.biases = widen<N>(x);
+        trial.smoothed.push_back(
+            motion_of(utimes[i], widen<N>(x), widen<N>(smoothed.variance()), smoothed.reference()));
+      });
+    }
+    std::reverse(trial.smoothed.begin(), trial.smoothed.end());
+  }
+
+  [[nodiscard]] const KinematicEstimator<N>& estimator() const { return estimator_; }
+
+ private:
+  [[nodiscard]] bool output(std::size_t k) const {
+    return is_output(events_, instants_[k], instants_[k + 1], inertial_);
+  }
+
+  const std::string& name_;
+  const KalmanSettings& settings_;
+  std::vector<Event> events_;
+  bool inertial_;
+  std::vector<std::size_t> instants_;  // first event of each, and the end
+  KinematicEstimator<N> estimator_;
+  std::vector<KinematicEstimator<N>> checkpoints_;
+};
+
+template <int N>
+SmoothedTrial smooth_as(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit) {
+  SmoothedTrial trial;
+  Run<N> run{recording, settings};
+  trial.filtered.reserve(std::max(recording.ahrs.size(), recording.pose_capture.size()));
+  run.forward(&trial);
+  trial.statistics = run.estimator().statistics();
+  trial.likelihood = run.estimator().likelihood();
+  run.backward(trial, visit);
+  return trial;
+}
+
+template <int N>
+std::vector<InnovationStatistics> statistics_as(const Recording& recording, const KalmanSettings& settings) {
+  Run<N> run{recording, settings};
+  run.forward(nullptr);
+  return run.estimator().statistics();
+}
+
+}  // namespace
+
+std::vector<InnovationStatistics> innovations(const Recording& recording, const KalmanSettings& settings) {
+  return settings.biases ? statistics_as<model::kMostStates>(recording, settings)
+                         : statistics_as<model::kKinematicStates>(recording, settings);
+}
+
+SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit) {
+  return settings.biases ? smooth_as<model::kMostStates>(recording, settings, visit)
+                         : smooth_as<model::kKinematicStates>(recording, settings, visit);
+}
+
+double likelihood(const Recording& recording, const KalmanSettings& settings) {
+  double sum = 0.0;
+  for (const InnovationStatistics& one : innovations(recording, settings)) sum += one.likelihood;
+  return sum;
+}
+
+}  // namespace fathom::estimation

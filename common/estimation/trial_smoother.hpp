@@ -1,0 +1,36 @@
+// A whole recorded trial through the Kalman filter and back through the smoother. Memory stays small: the filter runs a
+// second time, stretch by stretch, for what the way back needs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/estimation/kinematic_estimator.hpp"
+#include "common/samples/recording.hpp"
+
+namespace fathom::estimation {
+
+struct SmoothedTrial {
+  std::vector<StateEstimate> filtered;
+  std::vector<SmoothedState> smoothed;  ///< at the same times
+  std::vector<InnovationStatistics> statistics;
+  std::vector<std::string> notes;  ///< one line each: what was wrong and what was done about it
+  double likelihood{};             ///< log p of all innovations
+  model::KinematicVector biases{model::KinematicVector::Zero()};  ///< smoothed, at the end of the run
+};
+
+/// Asked for every instant besides the output: full numbers, for tests and tables. Instants come newest first.
+using SmoothedVisit = std::function<void(Utime, const Eigen::VectorXd& x, const Eigen::MatrixXd& P)>;
+
+/// Estimates at the times of the inertial package (of the pose capture without one). InputError in one line when the
+/// run cannot begin, holds nothing to estimate from, or dives too steeply for Euler angles.
+[[nodiscard]] SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings,
+                                   const SmoothedVisit& visit = nullptr);
+
+/// The filter alone: how every instrument fared.
+[[nodiscard]] std::vector<InnovationStatistics> innovations(const Recording& recording, const KalmanSettings& settings);
+
+/// log p of all innovations, filter alone.
+[[nodiscard]] double likelihood(const Recording& recording, const KalmanSettings& settings);
+
+}  // namespace fathom::estimation

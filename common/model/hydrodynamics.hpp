@@ -1,0 +1,58 @@
+// What a vehicle file may say of a vehicle that is flown and identified by hydrodynamic derivatives: length, added
+// mass, coefficients, a reference set, umbilical, chain and load cells.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/manoeuvring_terms.hpp"
+
+namespace fathom {
+class Config;
+}
+
+namespace fathom::model {
+
+/// A cable that trails: half the drag of its swept length, at its attachment. Its own weight and inertia are not
+/// modelled, nor the seabed's touch.
+struct Umbilical {
+  Eigen::Vector3d p_BU{Eigen::Vector3d::Zero()};  ///< m
+  double diameter{};                              ///< m
+  double paid_out{};                              ///< m
+  double drag_coefficient{};                      ///< of a cylinder broadside
+};
+
+/// A chain that hangs to the seabed and drags on it: what is lifted weighs, what lies rubs. Height is held by it.
+struct Chain {
+  Eigen::Vector3d p_BC{Eigen::Vector3d::Zero()};  ///< m
+  double weight{};                                ///< N/m in water
+  double length{};                                ///< m
+  double friction{};                              ///< of what lies, over its weight
+  double seabed{};                                ///< m, depth
+};
+
+struct LoadCell {
+  std::string name;
+  std::string of;                                    ///< "thrusters", "umbilical" or "chain"
+  Eigen::Vector3d p_BL{Eigen::Vector3d::Zero()};     ///< m
+  Eigen::Vector3d axis_B{Eigen::Vector3d::UnitX()};  ///< unit: direction in which a positive load pushes the hull
+};
+
+struct Hydrodynamics {
+  double length{};                                ///< m, of the dimensionless numbers
+  Vector6d added_mass{Vector6d::Zero()};          ///< kg, kg m^2: -X_udot ... -N_rdot
+  Eigen::Vector3d p_BB{Eigen::Vector3d::Zero()};  ///< m, centre of buoyancy; that of mass is the origin
+  std::vector<ManoeuvringCoefficient> coefficients;
+  std::vector<ManoeuvringCoefficient> reference;  ///< another set, to be printed beside (a planar motion mechanism's)
+  std::optional<Umbilical> umbilical;
+  std::optional<Chain> chain;
+  std::vector<LoadCell> load_cells;  ///< order of LOADS
+
+  [[nodiscard]] static Hydrodynamics from(const Config& config);
+};
+
+/// A map of term names to numbers, or to {value, error}.
+[[nodiscard]] std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config);
+
+}  // namespace fathom::model

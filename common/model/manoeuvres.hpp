@@ -1,0 +1,56 @@
+// A vehicle of hydrodynamic derivatives flown through a standard manoeuvre in virtual time: rigid body in six degrees
+// of freedom, thrusters, umbilical and chain. For trials that are to be reconstructed, and to compare sets of
+// derivatives.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/model/vehicle.hpp"
+
+namespace fathom::model {
+
+enum class ManoeuvreKind { kLine, kZigzag, kCircle };
+
+/// "line", "zigzag" or "circle"; InputError otherwise.
+[[nodiscard]] ManoeuvreKind manoeuvre_from(const std::string& name);
+
+/// Rest, straight ahead, and then what the kind says. A circle goes to port.
+struct Manoeuvre {
+  ManoeuvreKind kind{ManoeuvreKind::kCircle};
+  double rest{6.0};                       ///< s
+  double straight{6.0};                   ///< s
+  double duration{95.0};                  ///< s in all
+  double thrust{11.5};                    ///< N of each of the two thrusters ahead
+  double difference{3.2};                 ///< N by which one gives more and the other less while turning
+  double swing{0.35};                     ///< rad of heading at which a zigzag turns back
+  Eigen::Vector3d start{3.0, 10.0, 0.0};  ///< m; the depth is where the vehicle hangs at rest
+  double heading{0.0};                    ///< rad
+};
+
+/// Everything about one instant of a flight.
+struct FlightMoment {
+  double t{};  ///< s
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
+  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
+  Vector6d nu{Vector6d::Zero()}, nu_dot{Vector6d::Zero()};
+  std::vector<double> thrust;            ///< N each
+  Vector6d umbilical{Vector6d::Zero()};  ///< N, N m at Bo, in B, disturbance included
+  Vector6d chain{Vector6d::Zero()};
+  Eigen::Vector3d F_umbilical_B{Eigen::Vector3d::Zero()}, F_chain_B{Eigen::Vector3d::Zero()};  ///< N at the attachment
+};
+
+/// Additional force [N in W] at the umbilical's attachment at time t.
+using Disturbance = std::function<Eigen::Vector3d(double t)>;
+
+/// Moments `dt` apart. InputError when the vehicle file has no hydrodynamics or not two thrusters.
+[[nodiscard]] std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre, double dt,
+                                            const Disturbance& disturbance = nullptr);
+
+/// What is known of the motion without derivatives: the wrench that hydrodynamics must have given, b of A x = b
+/// (Pereira and Duncan, eq. 1): M nu_dot + C_RB nu - weight and buoyancy - known.
+[[nodiscard]] Vector6d hydrodynamic_wrench(const Vehicle& vehicle, const Eigen::Quaterniond& q_WB, const Vector6d& nu,
+                                           const Vector6d& nu_dot, const Vector6d& known);
+
+}  // namespace fathom::model

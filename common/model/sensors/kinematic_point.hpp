@@ -1,0 +1,66 @@
+// The kinematic state of Pereira and Duncan (eqs. 6 to 11) at one instant, with what every observation needs of it.
+// Observations of single sensors are the other files of this folder: each gives innovation and row at a point.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "common/base/spatial.hpp"
+
+namespace fathom::model {
+
+/// Where the groups of three begin: position and velocity in W; roll, pitch, yaw; acceleration of Bo in W seen in B
+/// (inertial: v_dot + w x v); rates and their derivatives in B; six sensor biases.
+namespace at {
+inline constexpr int kPosition = 0;
+inline constexpr int kVelocity = 3;
+inline constexpr int kEuler = 6;
+inline constexpr int kAcceleration = 9;
+inline constexpr int kRates = 12;
+inline constexpr int kRateSlopes = 15;
+inline constexpr int kBias = 18;
+}  // namespace at
+inline constexpr int kKinematicStates = 18;
+inline constexpr int kBiasStates = 6;
+inline constexpr int kMostStates = kKinematicStates + kBiasStates;
+inline constexpr double kGravity = 9.80665;                           ///< m/s^2
+inline constexpr double kSteepest = 85.0 * std::numbers::pi / 180.0;  ///< rad, pitch beyond which roll and yaw blur
+
+using KinematicVector = Eigen::Matrix<double, kMostStates, 1>;
+
+/// One scalar measurement seen from a point: z = h(x) + noise, linear about x.
+struct Observation {
+  double innovation{};                           ///< z - h(x)
+  double variance{};                             ///< of the noise; infinite: dropped out, changes nothing
+  KinematicVector row{KinematicVector::Zero()};  ///< dh/dx
+  unsigned groups{};                             ///< bit i: the row's entries 3i .. 3i + 2 are not all zero
+
+  /// Writes three entries of the row at `begin` (one of `at`).
+  void set(int begin, const Eigen::Vector3d& entries) {
+    row.segment<3>(begin) = entries;
+    groups |= 1U << static_cast<unsigned>(begin / 3);
+  }
+};
+
+struct KinematicPoint {
+  /// The angles are counted from `reference`: R_WB = reference R(roll, pitch, yaw). With the identity they are the
+  /// paper's; another one keeps a vehicle that stands on its bow away from their singularity.
+  explicit KinematicPoint(const KinematicVector& state, const Eigen::Matrix3d& reference = Eigen::Matrix3d::Identity());
+
+  KinematicVector x;
+  Eigen::Matrix3d R_WB;
+  Eigen::Matrix3d euler_from_rates;  ///< d(roll, pitch, yaw)/dt = this * w_WB_B (Fossen 2011, eq. 2.28)
+  Eigen::Matrix3d rates_from_euler;  ///< its inverse: small turns in B by small changes of the angles
+  Eigen::Vector3d down_B;            ///< R_WB^T e_z
+
+  [[nodiscard]] Eigen::Vector3d group(int begin) const { return x.segment<3>(begin); }
+  /// d(R_WB a_B)/d(euler).
+  [[nodiscard]] Eigen::Matrix3d turned_out(const Eigen::Vector3d& a_B) const {
+    return -R_WB * skew(a_B) * rates_from_euler;
+  }
+  /// d(R_WB^T c_W)/d(euler), with c_B = R_WB^T c_W.
+  [[nodiscard]] Eigen::Matrix3d turned_in(const Eigen::Vector3d& c_B) const { return skew(c_B) * rates_from_euler; }
+};
+
+}  // namespace fathom::model

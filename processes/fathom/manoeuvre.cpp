@@ -1,0 +1,119 @@
+// fathom compare --manoeuvre: two sets of hydrodynamic derivatives flown through the same manoeuvre, side by side.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/model/manoeuvres.hpp"
+#include "common/report/plot.hpp"
+#include "common/tables/writer.hpp"
+#include "processes/fathom/commands.hpp"
+
+namespace fathom::tool {
+namespace {
+
+using Flight = std::vector<model::FlightMoment>;
+
+constexpr double kEvery = 0.1;  // s
+
+/// A vehicle file, or a file of coefficients alone for the vehicle `base`.
+model::Vehicle vehicle_of(const std::string& path, const model::Vehicle* base) {
+  const Config config = Config::load(path);
+  if (base == nullptr || config.has("name")) return model::Vehicle::load(path);
+  model::Vehicle vehicle = *base;
+  vehicle.hydrodynamics->coefficients = model::read_coefficients(config.section("coefficients"));
+  config.finish();
+  return vehicle;
+}
+
+struct Figures {
+  double speed{}, drift{}, yaw_rate{}, radius{}, pitch{}, overshoot{}, period{};
+};
+
+double yaw(const model::FlightMoment& m) { return euler_from_rotation(m.q_WB.toRotationMatrix()).z(); }
+
+/// Means over the second half; overshoot and period of a zigzag from its turns of heading.
+Figures figures_of(const Flight& flight, const model::Manoeuvre& manoeuvre) {
+  Figures f;
+  double n = 0.0, last_turn = 0.0, turns = 0.0, first_turn = 0.0;
+  for (std::size_t k = flight.size() / 2; k < flight.size(); ++k) {
+    const model::FlightMoment& m = flight[k];
+    const double u = std::hypot(m.nu[0], m.nu[1]);
+    f.speed += u;
+    f.drift += std::atan2(m.nu[1], m.nu[0]);
+    f.yaw_rate += m.nu[5];
+    f.pitch += euler_from_rotation(m.q_WB.toRotationMatrix()).y();
+    f.overshoot = std::max(f.overshoot, std::abs(wrap_angle(yaw(m) - manoeuvre.heading)) - manoeuvre.swing);
+    if (k > 0 && m.nu[5] > 0.0 && flight[k - 1].nu[5] <= 0.0) {
+      if (turns == 0.0) first_turn = m.t;
+      last_turn = m.t;
+      turns += 1.0;
+    }
+    n += 1.0;
+  }
+  f.speed /= n;
+  f.drift /= n;
+  f.yaw_rate /= n;
+  f.pitch /= n;
+  f.radius = f.yaw_rate != 0.0 ? f.speed / std::abs(f.yaw_rate) : 0.0;
+  f.period = turns > 1.0 ? (last_turn - first_turn) / (turns - 1.0) : 0.0;
+  return f;
+}
+
+void line(const char* name, double a, double b, const char* unit) {
+  std::printf("%-28s %12.4g %12.4g  %s\n", name, a, b, unit);
+}
+
+std::string block(const char* name, const Flight& flight) {
+  std::string text = std::string{name} + " << EOD\n";
+  for (const model::FlightMoment& m : flight) {
+    text += std::to_string(m.p_WB.y()) + " " + std::to_string(m.p_WB.x()) + "\n";
+  }
+  return text + "EOD\n";
+}
+
+}  // namespace
+
+void compare_manoeuvre(const std::string& first, const std::string& second, const std::string& name,
+                       const std::string& plot) {
+  const model::Vehicle a = vehicle_of(first, nullptr);
+  const model::Vehicle b = vehicle_of(second, &a);
+  model::Manoeuvre manoeuvre;
+  manoeuvre.kind = model::manoeuvre_from(name);
+  const Flight one = model::fly(a, manoeuvre, kEvery), two = model::fly(b, manoeuvre, kEvery);
+  const Figures x = figures_of(one, manoeuvre), y = figures_of(two, manoeuvre);
+  std::printf("%s, %.0f s, the same thrusters' rule for both; means over the second half\n%-28s %12s %12s\n",
+              name.c_str(), manoeuvre.duration, "", "first", "second");
+  line("speed", x.speed, y.speed, "m/s");
+  line("drift angle", x.drift, y.drift, "rad");
+  line("pitch", x.pitch, y.pitch, "rad");
+  if (manoeuvre.kind == model::ManoeuvreKind::kCircle) {
+    line("yaw rate", x.yaw_rate, y.yaw_rate, "rad/s");
+    line("radius", x.radius, y.radius, "m");
+  }
+  if (manoeuvre.kind == model::ManoeuvreKind::kZigzag) {
+    line("overshoot of heading", x.overshoot, y.overshoot, "rad");
+    line("period", x.period, y.period, "s");
+  }
+  Vector6d square = Vector6d::Zero();
+  double apart = 0.0, turned = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    square += (one[k].nu - two[k].nu).cwiseAbs2();
+    apart = std::max(apart, (one[k].p_WB - two[k].p_WB).norm());
+    turned = std::max(turned, std::abs(wrap_angle(yaw(one[k]) - yaw(two[k]))));
+  }
+  const Vector6d rms = (square / static_cast<double>(one.size())).cwiseSqrt();
+  std::printf("difference, rms: u %.4f v %.4f w %.4f m/s, p %.4f q %.4f r %.4f rad/s\n", rms[0], rms[1], rms[2], rms[3],
+              rms[4], rms[5]);
+  std::printf("difference, largest: %.2f m of position, %.2f rad of heading; at the end %.2f m\n", apart, turned,
+              (one.back().p_WB - two.back().p_WB).norm());
+  if (plot.empty()) return;
+  report::Figure figure{.alt = "Tracks of two sets of derivatives", .width = 560, .height = 420};
+  figure.script = block("$a", one) + block("$b", two) +
+                  "set size ratio -1\nset xlabel 'east [m]'\nset ylabel 'north [m]'\n"
+                  "plot $a with lines lw 2 lc rgb '#22262b', $b with lines lw 2 dt 2 lc rgb '#e07b00'\n";
+  tables::write_file(plot, report::render({figure}).front());
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,146 @@
+// fathom regress: hydrodynamic derivatives from reconstructed trials, printed as Pereira and Duncan's Tables 1 to 6.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <set>
+
+#include "common/base/error.hpp"
+#include "common/identification/manoeuvre_regression.hpp"
+#include "common/tables/writer.hpp"
+#include "processes/fathom/commands.hpp"
+#include "processes/fathom/recordings.hpp"
+
+namespace fathom::tool {
+namespace {
+
+using identification::AxisRegression;
+using identification::StepwiseResult;
+
+constexpr std::array<const char*, 6> kTitles{"surge", "sway", "heave", "roll", "pitch", "yaw"};
+
+struct Options {
+  std::string vehicle, write;
+  std::vector<std::string> runs;
+  std::vector<double> current;
+  double rate{10.0};
+  bool table{false}, estimate{false}, plain{false};
+};
+
+std::string cell(const StepwiseResult& result, int column) {
+  for (std::size_t i = 0; i < result.terms.size(); ++i) {
+    const auto& term = result.terms[i];
+    if (term.column != column) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, "%9.4f%s %4.0f%%", term.value,
+                  static_cast<int>(i) == result.most_significant ? "*" : " ", term.percent());
+    return text;
+  }
+  return "";
+}
+
+void print(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs,
+           const model::Vehicle& vehicle) {
+  std::printf("\n%s (%s): dimensionless, standard error in per cent, * most significant\n%-10s",
+              model::kAxisNames[static_cast<std::size_t>(axis.axis)], kTitles[static_cast<std::size_t>(axis.axis)], "");
+  for (const auto& run : runs) std::printf(" | %16.16s", run.name.c_str());
+  if (runs.size() > 1) std::printf(" | %16s", "together");
+  std::printf(" | %16s\n", "reference");
+  std::set<int> shown;
+  for (const StepwiseResult& one : axis.manoeuvres) {
+    for (const auto& term : one.terms) shown.insert(term.column);
+  }
+  for (const auto& term : axis.together.terms) shown.insert(term.column);
+  for (std::size_t j = 0; j < axis.candidates.terms.size(); ++j) {
+    std::string reference;
+    for (const auto& known : vehicle.hydrodynamics->reference) {
+      if (known.term != axis.candidates.terms[j]) continue;
+      char text[64];
+      std::snprintf(text, sizeof text, "%9.4f  %4.0f%%", known.value, 100.0 * known.error / std::abs(known.value));
+      reference = text;
+    }
+    if (reference.empty() && !shown.contains(static_cast<int>(j))) continue;
+    std::printf("%-10s", axis.candidates.names[j].c_str());
+    for (const StepwiseResult& one : axis.manoeuvres) std::printf(" | %16s", cell(one, static_cast<int>(j)).c_str());
+    if (runs.size() > 1) std::printf(" | %16s", cell(axis.together, static_cast<int>(j)).c_str());
+    std::printf(" | %16s\n", reference.c_str());
+  }
+}
+
+void print_quality(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs) {
+  const auto line = [&](const char* name, const StepwiseResult& one) {
+    std::printf(
+        "  %-14.14s phi %.4f +- %.4f, residual %.3g white, %d samples of which %.0f independent, explained %.1f %%, "
+        "cross-validated %.1f %%\n",
+        name, one.phi, one.phi_sigma, one.sigma, one.samples, one.effective_samples, 100.0 * one.explained,
+        100.0 * one.cross_validated);
+    for (const auto& refused : one.refused) {
+      std::printf("    %s: %s\n", axis.candidates.names[static_cast<std::size_t>(refused.column)].c_str(),
+                  refused.why.c_str());
+    }
+  };
+  for (std::size_t i = 0; i < runs.size(); ++i) line(runs[i].name.c_str(), axis.manoeuvres[i]);
+  if (runs.size() > 1) line("together", axis.together);
+}
+
+std::string coefficients_of(const std::vector<AxisRegression>& axes) {
+  std::string text = "# Written by fathom regress.\ncoefficients:\n";
+  for (const AxisRegression& axis : axes) {
+    for (const auto& term : axis.together.terms) {
+      char line[160];
+      std::snprintf(line, sizeof line, "  \"%s\": {value: %.6g, error: %.3g %%}\n",
+                    axis.candidates.names[static_cast<std::size_t>(term.column)].c_str(), term.value, term.percent());
+      text += line;
+    }
+  }
+  return text;
+}
+
+void run(const Options& options) {
+  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  std::vector<std::string> notes;
+  std::vector<identification::ManoeuvreRows> runs;
+  for (const Recording& recording : read_recordings(options.runs, "", notes)) {
+    runs.push_back(identification::rows_of(recording, vehicle, options.rate));
+    if (runs.back().stretches.size() > 1) {
+      notes.push_back(recording.name + ": cut at gaps into " + std::to_string(runs.back().stretches.size()) +
+                      " stretches");
+    }
+  }
+  identification::RegressionSettings settings;
+  settings.rate = options.rate;
+  settings.stepwise.autoregressive = settings.stepwise.effective_samples = !options.plain;
+  if (options.current.size() == 2) settings.v_WF << options.current[0], options.current[1], 0.0;
+  if (options.estimate) {
+    settings.v_WF = identification::estimate_current(vehicle, runs, settings);
+    char text[100];
+    std::snprintf(text, sizeof text, "water moves north %.3f, east %.3f m/s (estimated)", settings.v_WF.x(),
+                  settings.v_WF.y());
+    notes.emplace_back(text);
+  }
+  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  const std::vector<AxisRegression> axes = identification::regress(vehicle, runs, settings);
+  if (!options.table) std::printf("forces from %s; rows of %.3g s\n", runs.front().known_from.c_str(), runs.front().dt);
+  for (const AxisRegression& axis : axes) {
+    print(axis, runs, vehicle);
+    if (!options.table) print_quality(axis, runs);
+  }
+  if (!options.write.empty()) tables::write_file(options.write, coefficients_of(axes));
+}
+
+}  // namespace
+
+void add_regress(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
+  command->add_option("runs", options->runs, "logs written by fathom smooth, one per manoeuvre")->required();
+  command->add_option("--vehicle", options->vehicle, "vehicle file (YAML) with hydrodynamics")->required();
+  command->add_flag("--table", options->table, "the tables alone");
+  command->add_option("--rate", options->rate, "rows per second")->check(CLI::PositiveNumber);
+  command->add_option("--current", options->current, "north and east velocity of the water [m/s]")->expected(2);
+  command->add_flag("--estimate-current", options->estimate, "find the water's velocity as well");
+  command->add_flag("--plain", options->plain, "plain least squares, as if the residual were white");
+  command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,116 @@
+// fathom smooth: a recorded run through the Kalman filter and back through the smoother.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/estimation/noise_from_rest.hpp"
+#include "common/estimation/process_tuning.hpp"
+#include "common/estimation/transponder_check.hpp"
+#include "common/estimation/trial_smoother.hpp"
+#include "common/wire/log_writer.hpp"
+#include "processes/fathom/commands.hpp"
+#include "processes/fathom/recordings.hpp"
+
+namespace fathom::tool {
+namespace {
+
+constexpr double kConverged = 30.0;  // s after which filter and smoother are compared, as Pereira and Duncan did
+
+struct Options {
+  std::string run, out, config, model;
+  bool stated{false};
+};
+
+void print(const estimation::SmoothedTrial& trial) {
+  std::printf("%-18s %9s %9s %9s %8s\n", "instrument", "used", "refused", "not heard", "NIS");
+  for (const estimation::InnovationStatistics& one : trial.statistics) {
+    if (one.used + one.refused + one.dropped == 0) continue;
+    std::printf("%-18s %9lld %9lld %9lld %8.3f\n", one.name.c_str(), static_cast<long long>(one.used),
+                static_cast<long long>(one.refused), static_cast<long long>(one.dropped), one.nis());
+  }
+  Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (std::size_t k = 0; k < trial.filtered.size() && k < trial.smoothed.size(); ++k) {
+    const Eigen::Vector3d apart = (trial.filtered[k].p_WB - trial.smoothed[k].p_WB).cwiseAbs();
+    if (seconds_between(trial.smoothed.front().utime, trial.smoothed[k].utime) < kConverged) {
+      early = early.cwiseMax(apart);
+    } else {
+      sum += apart;
+      ++count;
+    }
+  }
+  std::printf("filter against smoother, X Y Z: within %.0f s at most %.2f %.2f %.2f m", kConverged, early.x(),
+              early.y(), early.z());
+  if (count > 0.0)
+    std::printf(", after that %.1f %.1f %.1f cm on average", 100 * sum.x() / count, 100 * sum.y() / count,
+                100 * sum.z() / count);
+  std::printf("\nbiases: accelerometer %.4f %.4f %.4f m/s^2, gyro %.5f %.5f %.5f rad/s\n", trial.biases[18],
+              trial.biases[19], trial.biases[20], trial.biases[21], trial.biases[22], trial.biases[23]);
+}
+
+StateEstimate estimate_of(const SmoothedState& smoothed) {
+  return {.utime = smoothed.utime,
+          .p_WB = smoothed.p_WB,
+          .q_WB = smoothed.q_WB,
+          .nu = smoothed.nu,
+          .sigma = smoothed.sigma.head<12>(),
+          .valid = true};
+}
+
+void run(const Options& options) {
+  estimation::KalmanSettings settings;
+  bool process_stated = options.stated;
+  if (!options.config.empty()) {
+    const Config config = Config::load(options.config);
+    const Config section = config.section("estimator");
+    settings = estimation::KalmanSettings::from(section);
+    section.finish();
+    process_stated = process_stated || section.has("process");
+  }
+  if (!options.model.empty()) {
+    settings.model =
+        options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
+  }
+  std::vector<std::string> notes;
+  Recording recording = std::move(read_recordings({options.run}, "", notes).front());
+  if (!recording.ranges.empty() && settings.transponders.empty()) {
+    notes.push_back(options.run + ": RANGES are not used: no transponder's place is known; state them in --config");
+  }
+  if (!options.stated) settings = estimation::noise_from_rest(recording, settings, notes);
+  settings = estimation::without_wrong_transponders(recording, settings, notes);
+  if (!process_stated) {
+    settings = estimation::tune_process(recording, settings);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  ": most probable process noise: jerk %.3g m/s^2, angular jerk %.3g rad/s^2 per root second",
+                  settings.process.jerk, settings.process.angular_jerk);
+    notes.push_back(recording.name + text);
+  }
+  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  estimation::SmoothedTrial trial = estimation::smooth(recording, settings);
+  print(trial);
+  recording.state.clear();
+  for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));
+  recording.smoothed = std::move(trial.smoothed);
+  const auto events = wire::write_log(recording, options.out);
+  std::printf("%s: %llu events, %zu of them SMOOTHED\n", options.out.c_str(), static_cast<unsigned long long>(events),
+              recording.smoothed.size());
+}
+
+}  // namespace
+
+void add_smooth(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
+  command->add_option("run", options->run, ".lcmlog or .csv file")->required();
+  command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
+  command->add_option("--config", options->config, "YAML file whose section estimator has `filter: ekf`");
+  command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
+  command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool

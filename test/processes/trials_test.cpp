@@ -1,0 +1,117 @@
+// Trials by the offline tool: a recorded manoeuvre smoothed, regressed, and its derivatives flown again.
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "common/wire/log_reader.hpp"
+#include "common/wire/log_writer.hpp"
+#include "test/support/scratch.hpp"
+#include "test/support/shell.hpp"
+#include "test/support/trial_recording.hpp"
+#include "test/support/virtual_dive.hpp"
+
+namespace fathom {
+namespace {
+
+using test::file;
+using test::program;
+using test::Scratch;
+using test::shell;
+
+const std::string kVehicle = file("config/vehicles/pap104_half.yaml");
+const std::string kPipeline = file("config/pipelines/pap104_half.yaml");
+
+test::TrialRecording zigzag() {
+  model::Manoeuvre manoeuvre{.kind = model::ManoeuvreKind::kZigzag, .duration = 60.0, .difference = 4.5};
+  return test::record_trial(test::vehicle_from_repository("pap104_half"),
+                            test::instruments_from_repository("pap104_half"), {.manoeuvre = manoeuvre});
+}
+
+}  // namespace
+
+TEST_CASE("fathom smooth, regress and compare --manoeuvre: from a log to derivatives that fly") {
+  const Scratch scratch;
+  const auto trial = zigzag();
+  wire::write_log(trial.recording, scratch.path("zigzag.lcmlog"));
+  const auto smoothed = shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " +
+                              scratch.path("smooth.lcmlog") + " --config " + kPipeline);
+  REQUIRE_MESSAGE(smoothed.code == 0, smoothed.text);
+  CHECK_MESSAGE(smoothed.says("noises from"), smoothed.text);
+  CHECK_MESSAGE(smoothed.says("most probable process noise"), smoothed.text);
+  const Recording result = wire::read_log(scratch.path("smooth.lcmlog")).recording;
+  CHECK(result.smoothed.size() == trial.flight.size());
+  CHECK(result.loads.size() == trial.recording.loads.size());
+
+  const auto regressed = shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + " --vehicle " +
+                               kVehicle + " --write " + scratch.path("found.yaml"));
+  REQUIRE_MESSAGE(regressed.code == 0, regressed.text);
+  CHECK_MESSAGE(regressed.says("X_uu"), regressed.text);
+  CHECK_MESSAGE(regressed.says("forces from load cells"), regressed.text);
+  CHECK_MESSAGE(regressed.says("N_ur"), regressed.text);
+
+  const auto compared = shell(program("fathom") + " compare " + kVehicle + " " + kVehicle + " --manoeuvre circle");
+  REQUIRE_MESSAGE(compared.code == 0, compared.text);
+  CHECK_MESSAGE(compared.says("largest: 0.00 m"), compared.text);
+}
+
+TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said in one line") {
+  const Scratch scratch;
+  const auto trial = zigzag();
+  wire::write_log(trial.recording, scratch.path("zigzag.lcmlog"));
+  const auto raw = shell(program("fathom") + " regress " + scratch.path("zigzag.lcmlog") + " --vehicle " + kVehicle);
+  CHECK(raw.code == 1);
+  CHECK_MESSAGE(raw.says("no SMOOTHED in this log; run fathom smooth first"), raw.text);
+  const auto bare =
+      shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("x.lcmlog"));
+  CHECK_MESSAGE(bare.says("RANGES are not used"), bare.text);
+  const auto unknown = shell(program("fathom") + " compare " + kVehicle + " " + kVehicle + " --manoeuvre loop");
+  CHECK(unknown.code == 1);
+  CHECK_MESSAGE(unknown.says("'loop' is no manoeuvre: line, zigzag, circle"), unknown.text);
+  std::ofstream{scratch.path("bad.yaml")} << "coefficients: {X_uuu: 1}\n";
+  const auto bad =
+      shell(program("fathom") + " compare " + kVehicle + " " + scratch.path("bad.yaml") + " --manoeuvre line");
+  CHECK(bad.code == 1);
+  CHECK_MESSAGE(bad.says("'X_uuu' is no hydrodynamic derivative"), bad.text);
+}
+
+TEST_CASE("fathom methods: both methods on the same recording, judged on another") {
+  const Scratch scratch;
+  std::ifstream from{std::string{FATHOM_SOURCE_DIR} + "/test/data/beluga/surge-1.csv"};
+  std::ofstream first{scratch.path("first.csv")}, second{scratch.path("second.csv")};
+  std::string line;
+  for (int i = 0; i < 2000 && std::getline(from, line); ++i) {
+    if (i == 0 || i <= 1000) first << line << "\n";
+    if (i == 0 || i > 1000) second << line << "\n";
+  }
+  first.close();
+  second.close();
+  const auto ran =
+      shell(program("fathom") + " methods --vehicle " + file("config/vehicles/beluga.yaml") + " --config " +
+            file("config/pipelines/beluga.yaml") + " --map " + file("config/maps/beluga.yaml") + " --train " +
+            scratch.path("first.csv") + " --validate " + scratch.path("second.csv"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  CHECK_MESSAGE(ran.says("complementary filter, recursive"), ran.text);
+  CHECK_MESSAGE(ran.says("smoother, regression under AR(1)"), ran.text);
+  CHECK_MESSAGE(ran.says("m_X"), ran.text);
+}
+
+TEST_CASE("estimator: with `filter: ekf` it gives STATE from ranges, twice the same bytes") {
+  const Scratch scratch;
+  const auto trial = zigzag();
+  wire::write_log(trial.recording, scratch.path("zigzag.lcmlog"));
+  for (const std::string turn : {"1", "2"}) {
+    const auto ran = shell(program("estimator") + " --log-level warning --config " + kPipeline + " --in file://" +
+                           scratch.path("zigzag.lcmlog") + " --out file://" + scratch.path("state" + turn + ".lcmlog"));
+    REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  }
+  const Recording first = wire::read_log(scratch.path("state1.lcmlog")).recording;
+  const Recording second = wire::read_log(scratch.path("state2.lcmlog")).recording;
+  REQUIRE(first.state.size() > 2900);
+  REQUIRE(second.state.size() == first.state.size());
+  const StateEstimate &a = first.state.back(), &b = second.state.back();
+  CHECK(a.p_WB == b.p_WB);
+  CHECK((a.p_WB - trial.flight.back().p_WB).norm() < 0.6);  // m: filtered from ranges of 10 cm
+  CHECK(a.valid);
+}
+
+}  // namespace fathom

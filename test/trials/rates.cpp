@@ -1,0 +1,195 @@
+// Rates over seeds: consistency of filter and smoother, and selection of terms.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
+
+#include "common/base/spatial.hpp"
+#include "common/estimation/process_tuning.hpp"
+#include "common/estimation/trial_smoother.hpp"
+#include "common/identification/manoeuvre_regression.hpp"
+#include "test/trials/trials.hpp"
+
+namespace fathom::trials {
+namespace {
+
+namespace at = model::at;
+
+/// Position, velocity in W and angles of the truth, as the filter counts them.
+Eigen::Matrix<double, 9, 1> error_of(const Eigen::VectorXd& x, const model::FlightMoment& m) {
+  Eigen::Matrix<double, 9, 1> e;
+  e.head<3>() = x.segment<3>(at::kPosition) - m.p_WB;
+  e.segment<3>(3) = x.segment<3>(at::kVelocity) - m.q_WB * m.nu.head<3>();
+  const Eigen::Vector3d euler = euler_from_rotation(m.q_WB.toRotationMatrix());
+  for (int i = 0; i < 3; ++i) e[6 + i] = wrap_angle(x[at::kEuler + i] - euler[i]);
+  return e;
+}
+
+struct Errors {
+  double nees{};  ///< per component
+  double nis{};
+  Eigen::Vector3d filter_early{Eigen::Vector3d::Zero()}, filter_late{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d early{Eigen::Vector3d::Zero()}, late{Eigen::Vector3d::Zero()}, apart{Eigen::Vector3d::Zero()};
+};
+
+Errors errors_of(const Setup& s, const test::TrialSettings& settings) {
+  const auto trial = test::record_trial(s.vehicle, s.instruments, settings);
+  Errors result;
+  double samples = 0.0, early = 0.0, late = 0.0;
+  std::size_t back = trial.flight.size();
+  const auto smoothed = estimation::smooth(trial.recording, s.instruments,
+                                           [&](Utime, const Eigen::VectorXd& x, const Eigen::MatrixXd& P) {
+                                             --back;
+                                             if (back % 50 != 0) return;
+                                             const Eigen::Matrix<double, 9, 1> e = error_of(x, trial.flight[back]);
+                                             result.nees += e.dot(P.topLeftCorner<9, 9>().ldlt().solve(e)) / 9.0;
+                                             samples += 1.0;
+                                           });
+  result.nees /= samples;
+  double nis = 0.0, used = 0.0;
+  for (const auto& one : smoothed.statistics) {
+    nis += one.nis_sum;
+    used += static_cast<double>(one.used);
+  }
+  result.nis = nis / used;
+  for (std::size_t k = 0; k < trial.flight.size(); ++k) {
+    const Eigen::Vector3d f = (smoothed.filtered[k].p_WB - trial.flight[k].p_WB).cwiseAbs2();
+    const Eigen::Vector3d b = (smoothed.smoothed[k].p_WB - trial.flight[k].p_WB).cwiseAbs2();
+    const bool first = trial.flight[k].t < 30.0;
+    (first ? result.filter_early : result.filter_late) += f;
+    (first ? result.early : result.late) += b;
+    (first ? early : late) += 1.0;
+    if (!first) result.apart += (smoothed.filtered[k].p_WB - smoothed.smoothed[k].p_WB).cwiseAbs();
+  }
+  result.filter_early = (result.filter_early / early).cwiseSqrt();
+  result.early = (result.early / early).cwiseSqrt();
+  result.filter_late = (result.filter_late / late).cwiseSqrt();
+  result.late = (result.late / late).cwiseSqrt();
+  result.apart /= late;
+  return result;
+}
+
+void line(const char* name, const Errors& e) {
+  std::printf("%-34s NEES %.2f NIS %.3f | filter %.2f %.2f | smoother %.3f %.3f m | apart %.1f %.1f %.1f cm\n", name,
+              e.nees, e.nis, e.filter_early.norm(), e.filter_late.norm(), e.early.norm(), e.late.norm(),
+              100 * e.apart.x(), 100 * e.apart.y(), 100 * e.apart.z());
+}
+
+struct Rates {
+  std::map<std::string, int> hits;
+  int false_ones{};
+};
+
+}  // namespace
+
+void consistency(int seeds) {
+  const Setup base = setup();
+  std::printf("errors: root mean square of position before and after 30 s; NEES and NIS per component, 1 is right\n");
+  for (const char* name : {"line", "zigzag", "circle"}) {
+    Setup s = base;  // the process noise is tuned on a run of the same kind that is not among the seeds
+    const auto apart = test::record_trial(s.vehicle, s.instruments, {.manoeuvre = preset(name), .seed = 2000});
+    s.instruments = estimation::tune_process(apart.recording, s.instruments);
+    Errors mean;
+    double lowest = 1e9, highest = 0.0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      const Errors e = errors_of(s, {.manoeuvre = preset(name), .seed = static_cast<unsigned>(seed)});
+      mean.nees += e.nees / seeds;
+      mean.nis += e.nis / seeds;
+      mean.filter_early += e.filter_early / seeds;
+      mean.filter_late += e.filter_late / seeds;
+      mean.early += e.early / seeds;
+      mean.late += e.late / seeds;
+      mean.apart += e.apart / seeds;
+      lowest = std::min(lowest, e.nees);
+      highest = std::max(highest, e.nees);
+    }
+    line(name, mean);
+    std::printf("    NEES of single seeds %.2f to %.2f\n", lowest, highest);
+  }
+}
+
+void variations() {
+  const Setup base = setup();
+  const auto show = [&](const char* name, const std::function<void(Setup&, test::TrialSettings&)>& change) {
+    Setup s = base;
+    test::TrialSettings settings{.manoeuvre = preset("circle"), .seed = 1};
+    change(s, settings);
+    line(name, errors_of(s, settings));
+  };
+  show("as assumed", [](Setup&, test::TrialSettings&) {});
+  show("inertial package at 100 Hz", [](Setup&, test::TrialSettings& t) { t.inertial_rate = 100.0; });
+  show("accelerometers four times as noisy",
+       [](Setup& s, test::TrialSettings&) { s.instruments.accelerometer_noise *= 4.0; });
+  show("ranges 30 cm", [](Setup& s, test::TrialSettings&) { s.instruments.range_noise = 0.3; });
+  show("ranges every 3 s", [](Setup&, test::TrialSettings& t) { t.range_rate = 1.0 / 3.0; });
+  show("half of the ranges lost", [](Setup&, test::TrialSettings& t) { t.drop_outs = 0.5; });
+  show("one in ten an outlier", [](Setup&, test::TrialSettings& t) { t.outliers = 0.1; });
+  show("web twice as wide", [](Setup& s, test::TrialSettings&) {
+    for (auto& one : s.instruments.transponders) one.p_WT.head<2>() *= 2.0;
+  });
+  show("a hull twice as long", [](Setup& s, test::TrialSettings&) { s.vehicle.hydrodynamics->length *= 1.5; });
+}
+
+// Truth: the motion of the three manoeuvres; a disturbance with or without memory is added to the force of every axis.
+void selection(int seeds) {
+  const Setup s = setup();
+  identification::RegressionSettings settings;
+  std::vector<identification::ManoeuvreRows> runs;
+  for (const char* name : {"line", "zigzag", "circle"}) {
+    auto manoeuvre = preset(name);
+    manoeuvre.duration = std::max(manoeuvre.duration, 95.0);
+    const auto trial =
+        test::record_trial(s.vehicle, s.instruments, {.manoeuvre = manoeuvre, .seed = 1, .noise = false});
+    identification::ManoeuvreRows rows{.name = name, .dt = 0.1, .stretches = {{}}, .known_from = ""};
+    for (std::size_t k = 0; k < trial.flight.size(); k += 5) {
+      const auto& m = trial.flight[k];
+      const Vector6d tau = s.vehicle.allocation * Eigen::Map<const Eigen::Vector2d>(m.thrust.data());
+      rows.stretches.front().push_back({m.q_WB, m.nu, m.nu_dot, tau + m.umbilical + m.chain});
+    }
+    runs.push_back(rows);
+  }
+  std::set<std::string> truth;
+  for (const auto& one : s.vehicle.hydrodynamics->coefficients) truth.insert(std::string{one.term->name});
+  Vector6d sigma;
+  sigma << 0.3, 0.3, 0.3, 0.02, 0.1, 0.1;  // N, N m
+  for (const double phi : {0.0, 0.9}) {
+    for (const bool honest : {true, false}) {
+      settings.stepwise.autoregressive = settings.stepwise.effective_samples = honest;
+      Rates rates;
+      int absent = 0;
+      for (int seed = 1; seed <= seeds; ++seed) {
+        std::mt19937 random{static_cast<unsigned>(seed)};
+        std::normal_distribution<double> normal;
+        auto disturbed = runs;
+        for (auto& run : disturbed) {
+          Vector6d z = Vector6d::Zero();
+          for (auto& row : run.stretches.front()) {
+            for (int i = 0; i < 6; ++i) z[i] = phi * z[i] + std::sqrt(1.0 - phi * phi) * sigma[i] * normal(random);
+            row.known -= z;
+          }
+        }
+        for (const auto& axis : identification::regress(s.vehicle, disturbed, settings)) {
+          for (std::size_t j = 0; j < axis.candidates.names.size(); ++j) {
+            const bool chosen = std::any_of(axis.together.terms.begin(), axis.together.terms.end(),
+                                            [&](const auto& t) { return t.column == static_cast<int>(j); });
+            const bool acts = truth.contains(axis.candidates.names[j]);
+            absent += acts ? 0 : 1;
+            if (acts) rates.hits[axis.candidates.names[j]] += chosen ? 1 : 0;
+            if (!acts && chosen) ++rates.false_ones;
+          }
+        }
+      }
+      std::printf("disturbance %s, %s: %d of %d that do not act are selected (%.1f %%); that act:",
+                  phi > 0.0 ? "AR(1) 0.9" : "white", honest ? "AR(1) regression" : "plain least squares",
+                  rates.false_ones, absent, 100.0 * rates.false_ones / absent);
+      for (const auto& [name, count] : rates.hits) std::printf(" %s %.0f%%", name.c_str(), 100.0 * count / seeds);
+      std::printf("\n");
+    }
+  }
+}
+
+}  // namespace fathom::trials
