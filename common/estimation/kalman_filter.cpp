@@ -139,7 +139,7 @@ Transition KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, Kinema
     P_.template middleRows<3>(at::kEuler) = rows;
   }
   const model::KinematicPoint from = point();
-  const Transition F{from, dt, model};
+  Transition F{from, dt, model};
   const auto group = [this](int begin) { return x_.template segment<3>(begin); };
   group(at::kPosition) += dt * group(at::kVelocity);
   if (F.coupled) {

@@ -69,7 +69,7 @@ template <int N>
 void KinematicEstimator<N>::take(const SampleView& sample, FilterRecord<N>* record) {
   record_ = record;
   moved_.setZero();
-  std::visit([this](const auto* one) { use(*one); }, sample);
+  std::visit([this](const auto* one) { this->use(*one); }, sample);
 }
 
 // An instrument that is refused many times in a row is believed again, and what it measures is as open as at the start.

@@ -75,6 +75,14 @@ inline void fill(Fill& f, StateEstimate& s) {
        true,      f.matrix<Matrix6d>()};
   for (double& value : s.age) value = f.number();
 }
+inline void fill(Fill& f, SmoothedState& s) {
+  s = {f.utime(),
+       f.matrix<Vector3>(),
+       f.quaternion(),
+       f.matrix<Vector6d>(),
+       f.matrix<Vector6d>(),
+       f.matrix<Eigen::Matrix<double, 18, 1>>()};
+}
 inline void fill(Fill& f, ModelEstimate& s) {
   s = {f.utime(), {}, {f.word(), f.word(), f.word()}, f.whole()};
   for (int i = 0; i < 2; ++i) s.parameters.push_back({f.word(), f.number(), f.number(), f.word()});

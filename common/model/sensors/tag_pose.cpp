@@ -16,10 +16,10 @@ Pose body_from_tag(const Pose& X_WT, const Pose& X_CT, const Pose& X_BC) {
 std::array<Observation, 6> observe_tag(const KinematicPoint& point, const Pose& X_WT, const Pose& X_BC,
                                        const Pose& X_CT, double across, double along, double attitude) {
   const Eigen::Matrix3d R_CB = X_BC.q.toRotationMatrix().transpose();
-  const Eigen::Vector3d to_tag_B = point.R_WB.transpose() * (X_WT.p - point.group(at::kPosition));
-  const Eigen::Vector3d innovation = X_CT.p - R_CB * (to_tag_B - X_BC.p);
+  const Eigen::Vector3d p_BT = point.R_WB.transpose() * (X_WT.p - point.group(at::kPosition));
+  const Eigen::Vector3d innovation = X_CT.p - R_CB * (p_BT - X_BC.p);
   const Eigen::Matrix3d by_position = -R_CB * point.R_WB.transpose();
-  const Eigen::Matrix3d by_euler = R_CB * point.turned_in(to_tag_B);
+  const Eigen::Matrix3d by_euler = R_CB * point.turned_in(p_BT);
   std::array<Observation, 6> result;
   for (int i = 0; i < 3; ++i) {
     Observation& one = result[static_cast<std::size_t>(i)];
