@@ -12,9 +12,9 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kCoarseWindows = 60;  // enough to tell whether a form leads anywhere
+constexpr std::size_t kCoarseWindows = 40;  // enough to tell whether a form leads anywhere
 constexpr double kNearWindow = 2.0;         // s: what a wrong model does in it is still nearly linear
-constexpr std::size_t kNearWindows = 200;   // a trial of 400 s whole, longer ones by an even spread
+constexpr std::size_t kNearWindows = 150;   // five minutes whole, longer trials by an even spread
 constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
 constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
 constexpr int kEnoughRefusals = 2;          // by full fits, in the company of different effects

@@ -13,12 +13,14 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kRefits = 6;       // candidates per round that earn a full fit
-constexpr std::size_t kMostRefits = 16;  // while no winner is found and the screening still speaks for some
-constexpr double kSearchStep = 0.05;     // s: coarser than most recordings, finer than any vehicle moves
-constexpr double kAsGood = 0.9;          // of the gain: with fewer numbers, that is the better explanation
-constexpr double kHopeless = 1.0 / 3.0;  // of the best gain so far: screening does not err by more
-constexpr double kClearlyLess = 0.6;     // of the best gain so far, on a spread of windows
+constexpr std::size_t kRefits = 6;           // candidates per round that earn a full fit
+constexpr std::size_t kWholeRefits = 2;      // whatever it promises by whole windows
+constexpr std::size_t kMostRefits = 8;       // while no winner is found and the screening still speaks for some
+constexpr std::size_t kSearchWindows = 160;  // half an hour; more only makes the search longer
+constexpr double kSearchStep = 0.05;         // s: coarser than most recordings, finer than any vehicle moves
+constexpr double kAsGood = 0.9;              // of the gain: with fewer numbers, that is the better explanation
+constexpr double kHopeless = 1.0 / 3.0;      // of the best gain so far: screening does not err by more
+constexpr double kClearlyLess = 0.6;         // of the best gain so far, on a spread of windows
 constexpr const char* kWeaker = "weaker than the accepted effects";
 constexpr double kRestart = 0.1;          // of the screened numbers: where a fit that went astray begins again
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
@@ -70,12 +72,12 @@ class Round {
         done_{done},
         coarse_{problem, train, settings, reference} {}
 
-  /// `first` tells which candidates are meant; after a few fits without a winner, only open ones.
-  std::optional<Winner> fit_best(Which first, std::size_t most) {
+  /// `first` tells which candidates are meant; after `few` fits without a winner, only open ones, `most` in all.
+  std::optional<Winner> fit_best(Which first, std::size_t few, std::size_t most) {
     std::optional<Winner> best;
     for (std::size_t fits = 0; fits < most; ++fits) {
-      if (best && fits >= kRefits) break;
-      const Which which = first == Which::kAll && fits >= kRefits ? Which::kOpen : first;
+      if (best && fits >= few) break;
+      const Which which = first == Which::kAll && fits >= few ? Which::kOpen : first;
       const std::vector<std::size_t> order = worth_fitting(answers_, promises_, settings_, which);
       if (order.empty()) break;
       const std::size_t next = order.front();
@@ -181,8 +183,10 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   for (const Trial& trial : train) trials.push_back(identification::sparse(trial, kSearchStep));
   SearchResult result;
   progress("fitting the base model", 0.0);
-  result.before = identification::fit_from_priors(vehicle, trials, settings.fit);
-  const TrajectoryFit problem{vehicle, trials, settings.fit};
+  identification::FitSettings spread = settings.fit;
+  spread.most_windows = std::min(spread.most_windows, kSearchWindows);
+  result.before = identification::fit_from_priors(vehicle, trials, spread);
+  const TrajectoryFit problem{vehicle, trials, spread};
   NearView near{vehicle, trials, settings};
   const model::Scene scene = model::scene_of(vehicle, trials);
   const std::vector<Candidate> candidates = all_candidates(scene);
@@ -197,15 +201,15 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     Answers answers = ask_near(candidates, near, scene, settings);
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
-    std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits);
+    std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kRefits);
     if (!winner) {
       progress("round " + std::to_string(round + 1) + ": looking at whole windows", done);
       ask_whole(answers, problem, result.after, scene, tried, settings);
-      winner = fits.fit_best(Which::kAll, kMostRefits);
+      winner = fits.fit_best(Which::kAll, kWholeRefits, kMostRefits);
     }
     if (!winner) {
       look_afar(answers, fits.coarse(), result.after, scene, progress, done);
-      winner = fits.fit_best(Which::kFromAfar, kMostRefits);
+      winner = fits.fit_best(Which::kFromAfar, kRefits, kRefits);
     }
     if (winner) {
       Judged accepted = answers.judged[winner->place];
@@ -217,11 +221,12 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     result.refused = best_of_each_effect(answers.judged, result.accepted);
     if (!winner) break;
   }
-  prune(result, problem, settings, tried, progress);
-  progress("final fits", 0.95);
+  progress("final fits", 0.8);
+  // The search may have seen a spread of windows at a lower rate; what it found is tested on everything.
   const TrajectoryFit whole{vehicle, train, settings.fit};
   result.before = whole.fit(result.before.model);
   result.after = result.accepted.empty() ? result.before : whole.fit(result.after.model);
+  prune(result, whole, settings, tried, progress);
   whole.add_covariance(result.before);
   whole.add_covariance(result.after);
   return result;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fathom::sealed {
 namespace {
@@ -154,6 +155,8 @@ Floor prediction_floor(const SealedSet& set) {
   Errors plain;
   predict(run, first, base, false, plain);
   floor.base = normalised(set.craft, plain);
+  // The best fit to accelerations may diverge when it has to predict: no error is then too large.
+  if (!std::isfinite(floor.base)) floor.base = std::numeric_limits<double>::infinity();
   return floor;
 }
 

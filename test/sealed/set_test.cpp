@@ -2,6 +2,7 @@
 // data.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -145,10 +146,13 @@ TEST_CASE("sealed set: nobody beats the true simulator, and more signals never w
     CHECK(bound.all[j] > 0.0);
     CHECK(bound.all[j] < bound.speeds[j]);
   }
-  const SealedSet strong = set_of(9, "current", Size::kStrong);
-  const Floor floor = prediction_floor(strong);
-  CHECK(floor.truth > 0.0);
-  CHECK(floor.base > 3.0 * floor.truth);
+  const SealedSet strong = set_of(9, "current", Size::kStrong), medium = set_of(9, "thrust_asymmetry", Size::kMedium);
+  for (const SealedSet* set : {&strong, &medium}) {
+    const Floor floor = prediction_floor(*set);
+    CHECK(floor.truth > 0.0);
+    CHECK(floor.base > 3.0 * floor.truth);
+  }
+  CHECK(std::isfinite(prediction_floor(medium).base));  // a strong one may make the base model diverge
 }
 
 }  // namespace fathom::sealed
