@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+
+#include "common/model/onset.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -35,7 +38,9 @@ std::vector<int> folds_by_run(std::span<const identification::WindowResidual> wi
 }
 
 /// A moment is known from the windows around it alone; no others can stand in for them, so it keeps its value.
-bool is_moment(const identification::FreeParameter& number) { return number.name.ends_with(".onset"); }
+bool is_moment(const identification::FreeParameter& number) {
+  return number.name.ends_with("." + std::string{model::kOnset});
+}
 
 int fold_count(std::span<const int> folds) {
   return folds.empty() ? 0 : *std::max_element(folds.begin(), folds.end()) + 1;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/model/onset.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -57,7 +58,7 @@ bool onset_at_edge(const TrajectoryFit& problem, const model::Model& model, cons
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;
     for (std::size_t i = 0; i < active.theta.size(); ++i) {
-      if (active.effect->parameters()[i].name != "onset") continue;
+      if (active.effect->parameters()[i].name != model::kOnset) continue;
       const double margin = kEdge * (high - low);
       if (active.theta[i] < low + margin || active.theta[i] > high - margin) return true;
     }

@@ -12,6 +12,9 @@ namespace fathom::diagnosis {
 
 constexpr double kAlternativeLogOdds = 3.0;  ///< 20 to 1 between two look-alikes settles which it is
 
+/// Reason of what would have been accepted had nothing better been found.
+inline constexpr const char* kWeaker = "weaker than the accepted effects";
+
 /// Share of the error (RMS) that a cost has lost.
 [[nodiscard]] double reduction(double cost_without, double cost_with);
 /// Sum of costs per window.

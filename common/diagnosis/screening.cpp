@@ -94,8 +94,7 @@ void step_base(const Linearisation& base, const Eigen::VectorXd& residual, model
   Eigen::VectorXd next = x - base.solve(gradient);
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const auto& free = map[static_cast<std::size_t>(i)];
-    const double low = free.low / free.scale, high = free.high / free.scale;
-    next[i] = x[i] <= low || x[i] >= high ? x[i] : std::clamp(next[i], low, high);
+    next[i] = free.at_bound(x[i]) ? x[i] : std::clamp(next[i], free.low / free.scale, free.high / free.scale);
   }
   map.unpack(next, model);
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/questions.hpp"
 #include "common/identification/sparse.hpp"
 
@@ -21,8 +22,7 @@ constexpr double kSearchStep = 0.05;         // s: coarser than most recordings,
 constexpr double kAsGood = 0.9;              // of the gain: with fewer numbers, that is the better explanation
 constexpr double kHopeless = 1.0 / 3.0;      // of the best gain so far: screening does not err by more
 constexpr double kClearlyLess = 0.6;         // of the best gain so far, on a spread of windows
-constexpr const char* kWeaker = "weaker than the accepted effects";
-constexpr double kRestart = 0.1;          // of the screened numbers: where a fit that went astray begins again
+constexpr double kRestart = 0.1;          // of the screened size: where a fit that went astray begins again
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
 /// The candidate that gains most and that nothing speaks against.
@@ -51,7 +51,9 @@ FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, con
   nearer.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
   for (model::ActiveEffect& active : nearer.effects) {
     if (active.effect != screened.effect || active.variant != screened.variant) continue;
-    for (double& number : active.theta) number *= kRestart;
+    const int amplitudes = screened.effect->amplitudes();
+    const auto scaled = amplitudes > 0 ? static_cast<std::size_t>(amplitudes) : active.theta.size();
+    for (std::size_t i = 0; i < scaled; ++i) active.theta[i] *= kRestart;
   }
   FitResult again = problem.fit(nearer, &reference, kQuickTolerance);
   return again.cost < fit.cost ? again : fit;
@@ -94,7 +96,7 @@ class Round {
   [[nodiscard]] Coarse& coarse() { return coarse_; }
 
  private:
-  /// Empty when a spread of windows already tells that it would be in vain, or gain far less than `best_gain`.
+  /// Empty when a spread of windows already tells that it would be in vain, or gain far less than `best_share`.
   std::optional<FitResult> fit_in_full(std::size_t i, double best_share) {
     const Screened& screened = answers_.near[i];
     Judged& judged = answers_.judged[i];
@@ -144,12 +146,13 @@ class Round {
   std::optional<CrossValidation> checked_;  // of the reference, made when the first fit is judged
 };
 
-/// Drops every accepted effect that the others have made superfluous; fills in the final odds of those that stay.
+/// Drops every accepted effect that the others have made superfluous or that all data does not bear out; fills in the
+/// final odds of those that stay.
 void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried,
            const Progress& progress) {
-  for (std::size_t i = 0; result.accepted.size() > 1 && i < result.accepted.size();) {
+  for (std::size_t i = 0; i < result.accepted.size();) {
     const Judged& candidate = result.accepted[i];
-    progress("testing " + std::string(candidate.effect->name()) + " in the company of the others", 0.85);
+    progress("testing " + std::string(candidate.effect->name()) + " on everything", 0.85);
     model::Model without = result.after.model;
     std::erase_if(without.effects,
                   [&](const auto& a) { return a.effect == candidate.effect && a.variant == candidate.variant; });
@@ -167,7 +170,7 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
     Judged dropped = candidate;
     dropped.log_odds = odds;
     dropped.error_reduction = share;
-    dropped.reason = "made superfluous by the other effects";
+    dropped.reason = result.accepted.size() > 1 ? "made superfluous by the other effects" : refusal(dropped, settings);
     result.refused.push_back(dropped);
     result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
     result.after = fit;
@@ -216,6 +219,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       find_aliases(accepted, answers.near[winner->place], answers.near, answers.judged, settings);
       result.accepted.push_back(accepted);
       result.after = problem.fit(winner->fit.model, &winner->fit);
+      result.after = at_best_moment(problem, std::move(result.after), *accepted.effect, accepted.variant);
     }
     name_unfitted(answers);
     result.refused = best_of_each_effect(answers.judged, result.accepted);
@@ -225,8 +229,9 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   // The search may have seen a spread of windows at a lower rate; what it found is tested on everything.
   const TrajectoryFit whole{vehicle, train, settings.fit};
   result.before = whole.fit(result.before.model);
-  result.after = result.accepted.empty() ? result.before : whole.fit(result.after.model);
+  if (!result.accepted.empty()) result.after = whole.fit(result.after.model);
   prune(result, whole, settings, tried, progress);
+  if (result.accepted.empty()) result.after = result.before;
   whole.add_covariance(result.before);
   whole.add_covariance(result.after);
   return result;

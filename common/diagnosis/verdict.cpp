@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/diagnosis/judgement.hpp"
+
 namespace fathom::diagnosis {
 namespace {
 
@@ -92,7 +94,7 @@ void list_candidates(const SearchResult& found, DiagnosisResult& result) {
                                     [&](const CandidateTried& c) { return c.name == name; });
     if (listed) continue;
     std::string reason = judged.reason;
-    if (reason.empty()) reason = "weaker than the accepted effects";
+    if (reason.empty()) reason = kWeaker;
     result.candidates.push_back(
         {name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, reason});
   }

@@ -35,11 +35,12 @@ ParameterMap::ParameterMap(const model::Model& model) {
     for (std::size_t c = 0; c < parameters.size(); ++c) {
       FreeParameter free{.effect = static_cast<int>(e), .component = static_cast<int>(c)};
       free.name = std::string(active.effect->name()) + "." + std::string(parameters[c].name);
-      free.unit = std::string(parameters[c].unit);
+      free.unit = std::string(active.effect->unit(active.variant, c));
       free.prior_sigma = parameters[c].sigma;
       free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameters[c].sigma);
       free.low = parameters[c].low;
       free.high = parameters[c].high;
+      free.form_sigma = parameters[c].form_sigma;
       free_.push_back(std::move(free));
     }
   }

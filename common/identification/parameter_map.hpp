@@ -20,6 +20,14 @@ struct FreeParameter {
   double prior_sigma{};
   double low{};  ///< physical bounds
   double high{};
+  double form_sigma{};  ///< what an effect's assumed form leaves open, not seen by the fit
+
+  /// Whether a scaled value lies on a bound, to within rounding.
+  [[nodiscard]] bool at_low(double x) const { return x * scale <= low + kBoundMargin * scale; }
+  [[nodiscard]] bool at_high(double x) const { return x * scale >= high - kBoundMargin * scale; }
+  [[nodiscard]] bool at_bound(double x) const { return at_low(x) || at_high(x); }
+
+  static constexpr double kBoundMargin = 1e-9;  // of the scale
 };
 
 class ParameterMap {

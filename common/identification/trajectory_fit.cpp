@@ -15,7 +15,6 @@
 namespace fathom::identification {
 namespace {
 
-constexpr double kBoundMargin = 1e-9;       // of a parameter's scale
 constexpr double kReleaseStep = 0.02;       // of a parameter's scale, away from its bound
 constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
 constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
@@ -24,9 +23,7 @@ constexpr double kSmallestSigma = 1e-5;     // m/s, rad/s: below any sensor's no
 std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd& x) {
   std::vector<int> held;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    const double value = x[static_cast<Eigen::Index>(i)] * map[i].scale;
-    const double margin = kBoundMargin * map[i].scale;
-    if (value <= map[i].low + margin || value >= map[i].high - margin) held.push_back(static_cast<int>(i));
+    if (map[i].at_bound(x[static_cast<Eigen::Index>(i)])) held.push_back(static_cast<int>(i));
   }
   return held;
 }
@@ -42,7 +39,7 @@ bool let_go(ceres::Problem& problem, const ParameterMap& map, const std::vector<
   bool any = false;
   for (const int i : held) {
     const auto k = static_cast<std::size_t>(i);
-    const bool at_low = x[i] * map[k].scale <= map[k].low + kBoundMargin * map[k].scale;
+    const bool at_low = map[k].at_low(x[i]);
     if (at_low ? gradient[k] < 0.0 : gradient[k] > 0.0) {
       x[i] += (at_low ? 1.0 : -1.0) * kReleaseStep;
       any = true;
@@ -59,7 +56,8 @@ std::vector<NamedValue> FitResult::parameters() const {
   std::vector<NamedValue> values;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const double std = covariance.rows() == x.size() ? std::sqrt(std::max(covariance(k, k), 0.0)) : 0.0;
+    const double variance = covariance.rows() == x.size() ? std::max(covariance(k, k), 0.0) : 0.0;
+    const double std = variance > 0.0 ? std::hypot(std::sqrt(variance), map[i].form_sigma) : 0.0;
     values.push_back({map[i].name, x[k] * map[i].scale, std, map[i].unit});
   }
   return values;

@@ -49,6 +49,7 @@ struct EffectParameter {
   double sigma{1.0};  ///< prior standard deviation around zero: what would be ordinary
   double low{-std::numeric_limits<double>::infinity()};
   double high{std::numeric_limits<double>::infinity()};
+  double form_sigma{0.0};  ///< what the effect's assumed form alone leaves open, however good the data
 };
 
 using EffectTheta = std::span<const double>;
@@ -63,6 +64,10 @@ class Effect {
 
   /// The forms it can take on this data ("thruster 3"); one unnamed form by default. Empty: cannot act or be seen here.
   [[nodiscard]] virtual std::vector<std::string> variants(const Scene&) const { return {""}; }
+  /// Of the number in that form of the effect.
+  [[nodiscard]] virtual std::string_view unit(int /*variant*/, std::size_t number) const {
+    return parameters()[number].unit;
+  }
   /// True when several forms can act at once, so that results must say which one a number belongs to.
   [[nodiscard]] virtual bool variants_matter() const { return false; }
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.

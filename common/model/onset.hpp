@@ -2,11 +2,20 @@
 #pragma once
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
+
+#include "common/model/effect.hpp"
 
 namespace fathom::model {
 
-constexpr double kOnsetDuration = 1.0;  // s, within which a change happens: smooth, so that its moment can be searched
+inline constexpr std::string_view kOnset = "onset";  // name of such a moment among an effect's numbers
+constexpr double kOnsetDuration = 0.3;  // s, within which a change happens: smooth, so that its moment can be searched
+
+// A step anywhere within the assumed duration would look much the same: the std of a uniform spread over it.
+constexpr double kOnsetFormSigma = kOnsetDuration / 3.4641;
+/// Such a moment, as a number of an effect.
+inline constexpr EffectParameter kOnsetParameter{kOnset, "s", 1000.0, 0.0, 1e6, kOnsetFormSigma};
 
 /// Share of the change at `t`: 0 before `onset`, 1 after it, with two continuous derivatives.
 inline double onset_share(double t, double onset) {

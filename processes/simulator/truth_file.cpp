@@ -28,7 +28,8 @@ void write_truth(const Options& options, const model::Vehicle& vehicle, const mo
     nlohmann::ordered_json one{{"name", effect.effect->name()}, {"variant", effect.variant_name}};
     for (std::size_t i = 0; i < effect.theta.size(); ++i) {
       const model::EffectParameter& parameter = effect.effect->parameters()[i];
-      one["parameters"][std::string{parameter.name}] = {{"value", effect.theta[i]}, {"unit", parameter.unit}};
+      one["parameters"][std::string{parameter.name}] = {{"value", effect.theta[i]},
+                                                        {"unit", effect.effect->unit(effect.variant, i)}};
     }
     file["effects"].push_back(std::move(one));
   }

@@ -4,18 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <fathom_lcm/health_t.hpp>
-#include <fathom_lcm/operator_t.hpp>
-#include <fathom_lcm/thrusters_t.hpp>
-#include <fathom_lcm/wrench_command_t.hpp>
 #include <fstream>
-#include <lcm/lcm-cpp.hpp>
-#include <set>
-#include <thread>
 
 #include "common/link/server.hpp"
 #include "common/wire/log_reader.hpp"
+#include "test/support/bus.hpp"
 #include "test/support/channels.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
@@ -24,6 +17,8 @@
 namespace fathom {
 namespace {
 
+using test::Background;
+using test::Bus;
 using test::program;
 using test::Scratch;
 using test::shell;
@@ -202,58 +197,6 @@ TEST_CASE("drivers: bad configuration is refused with one line") {
   CHECK(complain("file:///dev/null").says("no protocol 'vn100'; known: pd0"));
 }
 
-namespace {
-
-// Listens to a bus of its own in this thread.
-class Bus {
- public:
-  Bus() : url{"udpm://239.255.76.67:" + std::to_string(31000 + getpid() % 9000) + "?ttl=0"}, lcm_{url} {
-    REQUIRE(lcm_.good());
-    lcm_.subscribe("HEALTH", &Bus::on_health, this);
-    lcm_.subscribe("THRUSTERS", &Bus::on_thrusters, this);
-  }
-  void listen(double seconds) {
-    const double end = link::wall_seconds() + seconds;
-    while (link::wall_seconds() < end) lcm_.handleTimeout(10);
-  }
-  template <class Message>
-  void publish(const std::string& channel, const Message& message) {
-    lcm_.publish(channel, &message);
-  }
-  std::string url;
-  std::vector<fathom_lcm::health_t> health;
-  std::vector<fathom_lcm::thrusters_t> thrusters;
-
- private:
-  void on_health(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::health_t* message) {
-    health.push_back(*message);
-  }
-  void on_thrusters(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::thrusters_t* message) {
-    thrusters.push_back(*message);
-  }
-  lcm::LCM lcm_;
-};
-
-// A program in the background that ends with the object.
-class Background {
- public:
-  Background(const Scratch& scratch, const std::string& name, const std::string& command)
-      : pid_{scratch.path(name + ".pid")} {
-    shell(command + " > " + scratch.path(name + ".text") + " 2>&1 & echo $! > " + pid_);
-  }
-  ~Background() { stop(); }
-  Background(const Background&) = delete;
-  Background& operator=(const Background&) = delete;
-  void stop() const { shell("kill -INT $(cat " + pid_ + ") 2>/dev/null; sleep 0.3"); }
-
- private:
-  std::string pid_;
-};
-
-Utime now() { return static_cast<Utime>(1e6 * link::wall_seconds()); }
-
-}  // namespace
-
 TEST_CASE(
     "drivers: rubbish, silence and a line that goes are said as HEALTH within a second, and the process stays up") {
   const Scratch scratch;
@@ -289,125 +232,6 @@ TEST_CASE(
   }
   bus.listen(1.0);
   CHECK(bus.health.back().state == "unhealthy");
-}
-
-namespace {
-
-void arm(Bus& bus, const std::string& token) {
-  fathom_lcm::operator_t order{};
-  order.utime = now();
-  order.enable = true;
-  order.token = token;
-  order.sequence = order.utime;
-  bus.publish("OPERATOR", order);
-}
-
-}  // namespace
-
-TEST_CASE(
-    "thruster_driver: arms by token alone, obeys, goes to zero within half a second, hears an abort, and says what was "
-    "applied") {
-  for (const std::string protocol : {"text", "motor_test", "dry_run"}) {
-    CAPTURE(protocol);
-    const Scratch scratch;
-    Bus bus;
-    std::ofstream{scratch.path("x.yaml")}
-        << "thruster_driver:\n  protocol: " << protocol << "\n  rate: 20 Hz\n  largest_thrust: 30 N\n"
-        << (protocol == "dry_run" ? "" : "  link: serial://" + scratch.path("tty") + "?baud=115200\n")
-        << (protocol == "motor_test" ? "  system: 1\n" : "");
-    const Background rig{scratch, "rig",
-                         program("fathom") + " emulate " + (protocol == "motor_test" ? "mavlink" : "thruster_text") +
-                             " --to pty:" + scratch.path("tty")};
-    const Background driver{
-        scratch, "driver",
-        program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
-            test::file(protocol == "text" ? "config/vehicles/beluga.yaml" : "config/vehicles/bluerov2.yaml") +
-            " --config " + test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
-    bus.listen(1.5);
-    CAPTURE(test::read_bytes(scratch.path("driver.text")));
-    const auto thrust = [&] { return bus.thrusters.empty() ? -1.0 : bus.thrusters.back().tau[0]; };
-    CHECK(thrust() == doctest::Approx(0.0));
-    const auto command = [&](double seconds) {
-      for (int i = 0; i < static_cast<int>(20 * seconds); ++i) {
-        fathom_lcm::wrench_command_t message{};
-        message.utime = now();
-        message.tau[0] = 20.0;
-        message.life = 0.5;
-        bus.publish("WRENCH_COMMAND", message);
-        bus.listen(0.05);
-      }
-    };
-    command(0.7);
-    CHECK(thrust() == doctest::Approx(0.0));  // nobody has armed
-    arm(bus, "a guess");
-    command(0.4);
-    CHECK(thrust() == doctest::Approx(0.0));
-    arm(bus, "only-for-simulation");
-    command(1.0);
-    CHECK(thrust() == doctest::Approx(20.0).epsilon(0.05));  // the rig rounds to a microsecond
-    bus.listen(0.9);                                         // half a second, and the rig's next report
-    CHECK(thrust() == doctest::Approx(0.0));
-    command(0.7);
-    CHECK(thrust() > 15.0);
-    fathom_lcm::operator_t abort{};
-    abort.utime = now();
-    abort.abort = true;
-    bus.publish("OPERATOR", abort);
-    command(0.4);
-    CHECK(thrust() == doctest::Approx(0.0));
-  }
-}
-
-TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels, and the middle when commands stop") {
-  const Scratch scratch;
-  Bus bus;
-  link::Server vehicle{"pty:" + scratch.path("tty")};
-  std::ofstream{scratch.path("x.yaml")}
-      << "thruster_driver:\n  protocol: rc_override\n  rate: 20 Hz\n  largest_thrust: 30 N\n"
-      << "  link: serial://" << scratch.path("tty") << "?baud=115200\n  system: 1\n"
-      << "  full_stick: {X: 40 N, Y: 40 N, Z: 40 N, K: 4 N m, M: 4 N m, N: 4 N m}\n";
-  const Background driver{scratch, "driver",
-                          program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
-                              test::file("config/vehicles/bluerov2.yaml") + " --config " +
-                              test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
-  bus.listen(1.5);
-  arm(bus, "only-for-simulation");
-  (void)vehicle.wait(0.1);
-  std::string bytes;
-  for (int i = 0; i < 20; ++i) {
-    fathom_lcm::wrench_command_t message{};
-    message.utime = now();
-    message.tau[0] = 10.0;
-    message.tau[2] = 5.0;   // down
-    message.tau[5] = -0.4;  // to port
-    message.life = 0.5;
-    bus.publish("WRENCH_COMMAND", message);
-    bus.listen(0.05);
-    bytes += vehicle.wait(0.0);
-  }
-  const auto overrides = [](const std::string& stream) {
-    const devices::Protocol& protocol = devices::protocol("mavlink", "test");
-    const auto parser = protocol.make({});
-    std::vector<test::WireRow> found;
-    for (test::WireRow& row : test::decode_wire(*parser, protocol, {}, stream)) {
-      if (row.at("msgid") == "70") found.push_back(std::move(row));
-    }
-    return found;
-  };
-  const auto obeyed = overrides(bytes);
-  REQUIRE(obeyed.size() > 10);
-  CHECK(obeyed.back().at("f5") == "1600");  // forward: a quarter of 400 us
-  CHECK(obeyed.back().at("f3") == "1450");  // throttle is up
-  CHECK(obeyed.back().at("f4") == "1460");  // yaw
-  CHECK(obeyed.back().at("f6") == "1500");
-  CHECK(bytes.find("\xFD\x09") != std::string::npos);  // a ground station's heartbeat of nine bytes
-  bus.listen(0.7);
-  (void)vehicle.wait(0.0);
-  bus.listen(0.3);
-  const auto stopped = overrides(vehicle.wait(0.1));
-  REQUIRE_FALSE(stopped.empty());
-  CHECK(stopped.back().at("f5") == "1500");
-  CHECK(stopped.back().at("f3") == "1500");
 }
 
 }  // namespace fathom

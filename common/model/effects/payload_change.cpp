@@ -16,8 +16,7 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kParameters{EffectParameter{"mass", "kg", 2.0, -1000.0, 1000.0},
-                                 EffectParameter{"weight", "N", 5.0, -1000.0, 1000.0},
-                                 EffectParameter{"onset", "s", 1000.0, 0.0, 1e6}};
+                                 EffectParameter{"weight", "N", 5.0, -1000.0, 1000.0}, kOnsetParameter};
 constexpr int kMoments = 10;
 constexpr double kFallbackMass = 10.0;  // kg
 

@@ -13,8 +13,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.5, 0.0, 1.2},
-                                 EffectParameter{"onset", "s", 1000.0, 0.0, 1e6}};
+constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.5, 0.0, 1.2}, kOnsetParameter};
 constexpr int kMoments = 8;
 constexpr double kTypicalLoss = 0.3;
 

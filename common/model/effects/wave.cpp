@@ -17,9 +17,10 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{
-    EffectParameter{"cosine", "N or m/s", 5.0, -1e4, 1e4}, EffectParameter{"sine", "N or m/s", 5.0, -1e4, 1e4},
-    EffectParameter{"bearing", "rad", 3.0}, EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
+constexpr std::array kParameters{EffectParameter{"cosine", "N", 5.0, -1e4, 1e4},
+                                 EffectParameter{"sine", "N", 5.0, -1e4, 1e4}, EffectParameter{"bearing", "rad", 3.0},
+                                 EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
+constexpr int kAmplitudes = 2;  // the leading numbers
 enum Form { kForce, kHeave, kOrbital };
 constexpr double kGravity = 9.81;          // m/s^2
 constexpr double kMostDecay = 3.0;         // exponents of the decay with depth: the surface need not be at z = 0
@@ -31,9 +32,12 @@ class Wave final : public Effect {
   std::string_view sentence() const override { return "Waves push the vehicle to and fro."; }
   std::string_view revealed_by() const override { return "hovering for many periods of the waves"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
-  int amplitudes() const override { return 2; }
+  int amplitudes() const override { return kAmplitudes; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }
+  std::string_view unit(int variant, std::size_t number) const override {
+    return variant == kOrbital && number < std::size_t{kAmplitudes} ? "m/s" : kParameters[number].unit;
+  }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const bool sideways = (dof[0] || dof[1]) && !scene.tones_horizontal.empty();

@@ -62,15 +62,16 @@ TEST_CASE("thruster_failure: one form per thruster that was used, moments across
   CHECK(effect.variants(fixture.scene).empty());
 }
 
-TEST_CASE("onset: rises from nothing to all within its second, with two continuous derivatives") {
-  constexpr double kStep = 1e-3;
-  constexpr double kSmall = 0.1;  // of 1/s^2: the third derivative is at most 60
-  CHECK(model::onset_share(9.5, 10.0) == 0.0);
+TEST_CASE("onset: rises from nothing to all within its duration, with two continuous derivatives") {
+  constexpr double kLast = model::kOnsetDuration, kStep = 1e-3;  // the step in durations
+  constexpr double kSmall = 0.1;  // the third derivative is at most 60 per duration cubed
+  CHECK(model::onset_share(10.0 - 0.5 * kLast, 10.0) == 0.0);
   CHECK(model::onset_share(10.0, 10.0) == doctest::Approx(0.5));
-  CHECK(model::onset_share(10.5, 10.0) == 1.0);
+  CHECK(model::onset_share(10.0 + 0.5001 * kLast, 10.0) == 1.0);
   double last_slope = 0.0, last_bend = 0.0;
-  for (double t = 9.4; t < 10.6; t += kStep) {
-    const double slope = (model::onset_share(t + kStep, 10.0) - model::onset_share(t, 10.0)) / kStep;
+  for (double s = -0.6; s < 0.6; s += kStep) {
+    const auto share = [](double durations) { return model::onset_share(10.0 + kLast * durations, 10.0); };
+    const double slope = (share(s + kStep) - share(s)) / kStep;
     const double bend = (slope - last_slope) / kStep;
     CHECK(slope >= 0.0);
     CHECK(std::abs(bend - last_bend) < kSmall);

@@ -1,0 +1,125 @@
+// Positions, ranges, loads and depths: signs, gaps and units, by hand.
+#include "test/support/frames.hpp"
+
+using namespace fathom;
+using namespace fathom::test;
+using devices::kRadians;
+
+TEST_CASE("PSIMSSB: the maker's worked positions") {
+  constexpr double kRounded = 0.05;  // m: the sentences round to a centimetre and a hundredth of a degree
+  devices::Settings settings;
+  settings.checksum_required = false;
+  const auto rows = decode("nmea_usbl", wire_bytes("usbl_psimssb_examples/examples.nmea"), settings);
+  CHECK((fix(rows[0]) - Eigen::Vector3d{50.0, 100.0, 48.5}).norm() < kRounded);
+  CHECK((fix(rows[1]) - Eigen::Vector3d{50.0, -100.0, 25.8}).norm() < kRounded);
+  CHECK((fix(rows[2]) - Eigen::Vector3d{-50.0, -100.0, 0.9}).norm() < kRounded);
+  CHECK((fix(rows[3]).head<2>() - Eigen::Vector2d{-50.0, 100.0}).norm() < kRounded);
+  CHECK_FALSE(rows[5].has_sample);                                                 // no reply: no position
+  CHECK(rows[8].at("SI valid") == "0");                                            // a position that a filter refused
+  CHECK(rows[11].value("SI sigma [m]") == 1.0);                                    // a negative accuracy is none
+  CHECK(fix(rows[13]).isApprox(Eigen::Vector3d{-61.3, 39.017, 34.026}, kSingle));  // north, east
+  CHECK(rows[13].value("SI sigma [m]") == doctest::Approx(0.072 / std::sqrt(2.0)));
+}
+
+TEST_CASE("PSIMSSB: a transceiver that looks east at a place of its own") {
+  devices::Settings settings;
+  settings.checksum_required = false;
+  settings.transceiver = {.p_W = {10.0, 20.0, 1.0}, .heading = 90.0 * kRadians};
+  const auto rows = decode("nmea_usbl", wire_bytes("usbl_psimssb_examples/examples.nmea"), settings);
+  // Forward 50 is east, starboard 100 is south.
+  CHECK((fix(rows[0]) - Eigen::Vector3d{10.0 - 100.0, 20.0 + 50.0, 49.5}).norm() < 0.05);
+}
+
+TEST_CASE("Sonardyne, iXblue and EvoLogics: positions in the world") {
+  devices::Settings settings;
+  settings.transceiver.latitude = 51.3306281 * kRadians;  // the ship of the first line
+  settings.transceiver.longitude = -0.83499295 * kRadians;
+  settings.transceiver.northing = 5688874.16;
+  settings.transceiver.easting = 650879.0;
+  const auto rows = decode("nmea_usbl", wire_bytes("usbl_other_families/examples.txt"), settings);
+  CHECK(fix(rows[0]).norm() < 1e-6);
+  // 0.0009125 degrees of latitude are 101.5 m there, 0.0006468 of longitude 45.1 m.
+  CHECK((fix(rows[1]) - Eigen::Vector3d{101.5, -45.1, 999.916}).norm() < 0.1);
+  CHECK((fix(rows[3]) - Eigen::Vector3d{43.4, -100.12, 1000.09}).norm() < 1e-6);
+  CHECK_FALSE(rows[4].has_sample);  // the ship itself
+  CHECK_FALSE(rows[6].has_sample);  // axes that are not described
+  settings.transceiver.beacon = "2401";
+  const auto chosen = decode("nmea_usbl", wire_bytes("usbl_other_families/examples.txt"), settings);
+  CHECK_FALSE(chosen[0].has_sample);
+  CHECK(chosen[1].has_sample);
+
+  const auto modems = decode("evologics", wire_bytes("usbl_other_families/examples.txt"));
+  REQUIRE(modems.size() == 4);
+  CHECK(fix(modems[0]).isApprox(Eigen::Vector3d{-1.0020, -0.4233, 0.5901}, kSingle));
+  // 825 us of sound at 1500 m/s
+  CHECK(fix(modems[0]).norm() == doctest::Approx(825e-6 * 1500.0).epsilon(0.001));
+  CHECK(modems[0].value("device_time") == doctest::Approx(10446.534643));
+  CHECK_FALSE(modems[2].has_sample);
+}
+
+TEST_CASE("PSIMLBM: ranges in order, gaps as gaps, times as metres") {
+  devices::Settings settings;
+  settings.transponders = {"a", "b", "c", "d", "e"};
+  settings.sound_speed = 1480.0;
+  const auto sentence = [](const std::string& body) { return devices::detail::nmea_sentence(body); };
+  auto rows =
+      decode("psimlbm", sentence("PSIMLBM,120000.50,1,1,0.1,0.2,33.0,4.5,10.1,20.2,,40.4,50.5,60.6,,,M"), settings);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].value("SI range1 [m]") == 10.1);
+  CHECK(rows[0].at("SI range3 [m]").empty());
+  CHECK(rows[0].value("SI range5 [m]") == 50.5);
+  CHECK_FALSE(rows[0].has("SI range6 [m]"));
+  CHECK(rows[0].value("device_time") == 43200.5);
+  rows = decode("psimlbm", sentence("PSIMLBM,,1,1,,,,,0.01,,,,,,,,S"), settings);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].value("SI range1 [m]") == doctest::Approx(14.8));
+}
+
+TEST_CASE("text ranges: names in any order, doubtful lines refused") {
+  devices::Settings settings;
+  settings.transponders = {"north", "east", "south", "west", "deep"};
+  const auto rows = decode("range_text",
+                           "deep=20.5, north=12.34 south= west=0\r\n"
+                           "north=1 north=2\r\nup=3\r\nnorth=1.2.3\r\nnorth\r\neast=8.9\n",
+                           settings);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].value("SI range1 [m]") == 12.34);
+  CHECK(rows[0].at("SI range2 [m]").empty());
+  CHECK(rows[0].at("SI range4 [m]").empty());  // a range of zero is none
+  CHECK(rows[0].value("SI range5 [m]") == 20.5);
+  CHECK(rows[1].value("SI range2 [m]") == 8.9);
+}
+
+TEST_CASE("loads: gain and zero per cell, named readings, and units that must fit") {
+  devices::Settings settings;
+  settings.cells = {{.name = "umbilical", .gain = 9.81, .zero = 0.5, .unit = "kg"}, {.name = "chain", .gain = -1.0}};
+  auto rows = decode("load_text", "+00010.500 kg, 7.25\r12.0\r1 2 3\r1 lb 2\r", settings);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].value("SI load1 [N]") == doctest::Approx(98.1));
+  CHECK(rows[0].value("SI load2 [N]") == doctest::Approx(-7.25));
+  rows = decode("load_text", "umbilical=1.5 kg\nchain=2\nchain=3\numbilical=2.5\nsomething=1\n", settings);
+  REQUIRE(rows.size() == 4);
+  CHECK_FALSE(rows[0].has_sample);
+  CHECK(rows[1].value("SI load1 [N]") == doctest::Approx(9.81));
+  CHECK_FALSE(rows[2].has_sample);
+  CHECK(rows[3].value("SI load2 [N]") == -3.0);
+}
+
+TEST_CASE("depth: an offset above zero is the transducer's depth, pressure becomes metres") {
+  devices::Settings settings;
+  settings.water_density = 1000.0;
+  settings.gravity = 10.0;
+  const auto sentence = [](const std::string& body) { return devices::detail::nmea_sentence(body); };
+  const auto z = [&](const std::string& body) {
+    return decode("nmea_depth", sentence(body), settings)[0].value("SI z [m]");
+  };
+  CHECK(z("KIDPT,4674.70,8.62,12000.0") == doctest::Approx(4683.32));
+  CHECK(z("SDDPT,14.39,-2.00") == doctest::Approx(14.39));
+  CHECK(z("SDDBT,,f,3.00,M,,F") == doctest::Approx(3.0));
+  CHECK(z("SDDBT,10.0,f,,M,,F") == doctest::Approx(3.048));
+  CHECK(z("PRVAT,00.210,M,0007.497,Metres") == doctest::Approx(7.497));
+  CHECK(z("PRVAT,00.115,M,0010.000,dBar") == doctest::Approx(10.0));
+  settings.pressure_is_absolute = true;
+  CHECK(z("PRVAT,00.115,M,0020.1325,dBar") == doctest::Approx(10.0));
+  CHECK(decode("nmea_depth", sentence("SDDPT,,0.0"), settings)[0].at("SI z [m]").empty());
+}

@@ -1,0 +1,72 @@
+// A bus of a test's own, and programs in the background that end with the test.
+#pragma once
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/thrusters_t.hpp>
+#include <lcm/lcm-cpp.hpp>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/link/server.hpp"
+#include "test/support/scratch.hpp"
+#include "test/support/shell.hpp"
+
+namespace fathom::test {
+
+/// Listens to a bus of its own in this thread.
+class Bus {
+ public:
+  Bus() : url{"udpm://239.255.76.67:" + std::to_string(31000 + getpid() % 9000) + "?ttl=0"}, lcm_{url} {
+    REQUIRE(lcm_.good());
+    lcm_.subscribe("HEALTH", &Bus::on_health, this);
+    lcm_.subscribe("THRUSTERS", &Bus::on_thrusters, this);
+  }
+  void listen(double seconds) {
+    const double end = link::wall_seconds() + seconds;
+    while (link::wall_seconds() < end) lcm_.handleTimeout(10);
+  }
+  template <class Message>
+  void publish(const std::string& channel, const Message& message) {
+    lcm_.publish(channel, &message);
+  }
+  std::string url;
+  std::vector<fathom_lcm::health_t> health;
+  std::vector<fathom_lcm::thrusters_t> thrusters;
+
+ private:
+  void on_health(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::health_t* message) {
+    health.push_back(*message);
+  }
+  void on_thrusters(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::thrusters_t* message) {
+    thrusters.push_back(*message);
+  }
+  lcm::LCM lcm_;
+};
+
+/// A program in the background that ends with the object.
+class Background {
+ public:
+  Background(const Scratch& scratch, const std::string& name, const std::string& command)
+      : pid_{scratch.path(name + ".pid")} {
+    shell(command + " > " + scratch.path(name + ".text") + " 2>&1 & echo $! > " + pid_);
+  }
+  ~Background() { stop(); }
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+  /// TERM, because a shell lets its background jobs ignore INT; returns when the program has gone.
+  void stop() const {
+    shell("pid=$(cat " + pid_ + "); kill -TERM $pid 2>/dev/null; for i in $(seq 100); do kill -0 $pid 2>/dev/null || " +
+          "exit 0; sleep 0.05; done; kill -KILL $pid");
+  }
+
+ private:
+  std::string pid_;
+};
+
+inline Utime now() { return static_cast<Utime>(1e6 * link::wall_seconds()); }
+
+}  // namespace fathom::test
