@@ -126,6 +126,10 @@ double CrossValidation::error(std::span<const int> folds, std::span<const Eigen:
   return error;
 }
 
+double error_left_out(const TrajectoryFit& problem, const FitResult& fit) {
+  return CrossValidation{problem, fit}.error(folds_by_block(problem.windows().size()));
+}
+
 HeldOut held_out(const TrajectoryFit& problem, const CrossValidation& without, const CrossValidation& with,
                  std::span<const Eigen::Index> places) {
   const auto saved = [](double before, double after) { return before > 0.0 ? 1.0 - std::sqrt(after / before) : 0.0; };

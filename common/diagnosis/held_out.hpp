@@ -47,6 +47,9 @@ struct HeldOut {
   double runs{};    ///< a run at a time had no part in the effect's size; equal to `blocks` with fewer than three runs
 };
 
+/// Sum of squared residuals, each block predicted from the other blocks.
+[[nodiscard]] double error_left_out(const identification::TrajectoryFit& problem, const identification::FitResult& fit);
+
 /// `places`: where the effect's numbers stand among the parameters of the fit `with` it.
 [[nodiscard]] HeldOut held_out(const identification::TrajectoryFit& problem, const CrossValidation& without,
                                const CrossValidation& with, std::span<const Eigen::Index> places);

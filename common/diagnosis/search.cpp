@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/final_fit.hpp"
+#include "common/diagnosis/lack_of_form.hpp"
 #include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/questions.hpp"
 #include "common/identification/sparse.hpp"
@@ -22,8 +24,8 @@ constexpr double kSearchStep = 0.05;         // s: coarser than most recordings,
 constexpr double kAsGood = 0.9;              // of the gain: with fewer numbers, that is the better explanation
 constexpr double kHopeless = 1.0 / 3.0;      // of the best gain so far: screening does not err by more
 constexpr double kClearlyLess = 0.6;         // of the best gain so far, on a spread of windows
-constexpr double kRestart = 0.1;          // of the screened size: where a fit that went astray begins again
-constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
+constexpr double kRestart = 0.1;             // of the screened size: where a fit that went astray begins again
+constexpr double kQuickTolerance = 1e-3;     // relative decrease of the cost; a tenth of the smallest gain that counts
 
 /// The candidate that gains most and that nothing speaks against.
 struct Winner {
@@ -178,6 +180,17 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
   }
 }
 
+/// The final model without the effects that are no longer accepted.
+model::Model only_accepted(const SearchResult& result) {
+  model::Model model = result.after.model;
+  std::erase_if(model.effects, [&](const model::ActiveEffect& active) {
+    return std::ranges::none_of(result.accepted, [&](const Judged& judged) {
+      return judged.effect == active.effect && judged.variant == active.variant;
+    });
+  });
+  return model;
+}
+
 }  // namespace
 
 SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,
@@ -225,12 +238,18 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     result.refused = best_of_each_effect(answers.judged, result.accepted);
     if (!winner) break;
   }
+  const FitResult searched = result.after;
   progress("final fits", 0.8);
   // The search may have seen a spread of windows at a lower rate; what it found is tested on everything.
-  const TrajectoryFit whole{vehicle, train, settings.fit};
-  result.before = whole.fit(result.before.model);
-  if (!result.accepted.empty()) result.after = whole.fit(result.after.model);
+  near.fit(result.after.model);
+  auto [whole, after] = fit_everything(vehicle, train, settings, near, result.after.model);
+  result.before = result.accepted.empty() ? after : whole.fit(result.before.model);
+  result.after = std::move(after);
   prune(result, whole, settings, tried, progress);
+  if (test_forms(result, problem, problem.fit(result.after.model, &searched), scene, progress)) {
+    result.after = whole.fit(only_accepted(result), &result.after);
+    prune(result, whole, settings, tried, progress);
+  }
   if (result.accepted.empty()) result.after = result.before;
   whole.add_covariance(result.before);
   whole.add_covariance(result.after);

@@ -2,6 +2,7 @@
 // company of the others.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,19 @@ struct Judged {
   std::string reason{};                     ///< why it was refused; empty when accepted
 };
 
+/// What a force of no particular form would still explain.
+struct FreeForm {
+  std::string axis;  ///< "X" .. "N"
+  std::string with;  ///< the quantity that it runs over
+  double share{};    ///< of the error (RMS) that it would remove
+};
+
 struct SearchResult {
   identification::FitResult before;
   identification::FitResult after;
   std::vector<Judged> accepted;  ///< in the order of acceptance
   std::vector<Judged> refused;   ///< best form of every other effect, from the last round
+  std::optional<FreeForm> free_form{};
 };
 
 [[nodiscard]] SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,

@@ -173,7 +173,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     names.push_back(effect.name);
     if (!effect.alternatives.empty()) open.push_back(effect.name + " (or " + joined(effect.alternatives, " or ") + ")");
   }
-  const bool structure = !left.empty();
+  const bool structure = !left.empty() || found.free_form;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : "adequate";
   } else {
@@ -204,7 +204,12 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     }
     text += ". ";
   }
-  if (structure) {
+  if (found.free_form) {
+    text += "A force on " + found.free_form->axis + " that depends on " + found.free_form->with +
+            " in a way that no known effect has would remove " + percent(found.free_form->share) +
+            " of the error that is left. ";
+  }
+  if (!left.empty()) {
     std::vector<std::string> words;
     for (const Association& association : left.first(std::min<std::size_t>(left.size(), 3))) {
       words.push_back(association.axis + " with " + association.with + " (" + percent(association.share) +

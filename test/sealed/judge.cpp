@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace fathom::sealed {
 namespace {
@@ -90,18 +91,44 @@ std::string outcome_of(const Score& score, const std::vector<Named>& named) {
   return covered(name) ? "later" : "wrong";
 }
 
-/// Numbers of effects whose definition here and in the tool is the same: effect, name in result.json, name in the
-/// truth.
+/// Numbers of effects whose definition here and in the tool is the same: effect, name in result.json (with its form
+/// where only the form tells), name in the truth, and what the truth is multiplied by.
 struct SameMeaning {
   const char *effect, *found, *truth;
+  double factor{1.0};
 };
 constexpr std::array kSameMeaning{SameMeaning{"current", "v_N", "v_N"},
                                   SameMeaning{"current", "v_E", "v_E"},
                                   SameMeaning{"thruster_lag", "time_constant", "T"},
                                   SameMeaning{"thruster_delay", "delay", "T"},
                                   SameMeaning{"thruster_deadband", "half_width", "d"},
+                                  SameMeaning{"thrust_asymmetry", "reverse_change", "a"},
+                                  SameMeaning{"thruster_gain", "gain_change", "g"},
+                                  SameMeaning{"thruster_failure", "share_lost", "g", -1.0},
+                                  SameMeaning{"thruster_failure", "onset", "t_0"},
+                                  SameMeaning{"battery_sag", "sensitivity", "k"},
                                   SameMeaning{"cross_coupling", "coefficient", "coefficient"},
-                                  SameMeaning{"asymmetric_drag", "coefficient", "c"}};
+                                  SameMeaning{"asymmetric_drag", "coefficient", "c"},
+                                  SameMeaning{"cubic_drag", "coefficient", "c_cubic", -1.0},
+                                  SameMeaning{"fluid_memory", "time_constant", "T_memory"},
+                                  SameMeaning{"restoring_moment", "G_x.offset", "G_x"},
+                                  SameMeaning{"restoring_moment", "G_y.offset", "G_y"},
+                                  SameMeaning{"restoring_moment", "G_z.offset", "G_z"},
+                                  SameMeaning{"compressibility", "weight_per_depth", "N_per_m"},
+                                  SameMeaning{"payload_change", "mass", "mass"},
+                                  SameMeaning{"payload_change", "weight", "weight_in_water"},
+                                  SameMeaning{"payload_change", "onset", "t_0"},
+                                  SameMeaning{"tether_tension", "stiffness", "k"},
+                                  SameMeaning{"tether_tension", "slack_length", "L"},
+                                  SameMeaning{"tether_tension", "anchor_N", "A_N"},
+                                  SameMeaning{"tether_tension", "anchor_E", "A_E"},
+                                  SameMeaning{"tether_tension", "anchor_D", "A_D"},
+                                  SameMeaning{"wave", "frequency", "frequency_Hz", 2.0 * std::numbers::pi},
+                                  SameMeaning{"sensor_latency", "delay", "latency"},
+                                  SameMeaning{"sensor_scale", "error", "scale"},
+                                  SameMeaning{"lever_arm", "dvl.x", "l_x"},
+                                  SameMeaning{"lever_arm", "dvl.y", "l_y"},
+                                  SameMeaning{"lever_arm", "dvl.z", "l_z"}};
 
 void compare_parameters(const Json& truth, const Named& named, Score& score) {
   for (const Json& effect : truth.at("effects")) {
@@ -116,12 +143,13 @@ void compare_parameters(const Json& truth, const Named& named, Score& score) {
       const std::string name = key.substr(dot + 1);  // npos + 1 is 0: no prefix
       if (dot != std::string::npos && !form.empty() && key.substr(0, dot) != form) continue;
       const auto* same = std::find_if(kSameMeaning.begin(), kSameMeaning.end(), [&](const SameMeaning& s) {
-        return s.effect == named.set.front() && s.found == name;
+        return s.effect == named.set.front() && (s.found == name || s.found == key);
       });
       const Json& value = found.at("value");
       const Json& std = found.at("std");
       if (same == kSameMeaning.end() || !value.is_number() || !std.is_number() || std.get<double>() <= 0.0) continue;
-      const double true_value = effect.at("parameters").at(same->truth);
+      if (!effect.at("parameters").contains(same->truth)) continue;  // battery_sag by time has other numbers
+      const double true_value = same->factor * effect.at("parameters").at(same->truth).get<double>();
       score.deviations.push_back((value.get<double>() - true_value) / std.get<double>());
     }
   }
