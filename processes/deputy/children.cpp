@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "processes/deputy/host.hpp"
 
@@ -131,19 +130,19 @@ std::int32_t Children::pid(const std::string& id) const {
 
 void Children::watch(std::vector<pollfd>& into) const {
   for (const auto& [id, child] : children_) {
-    if (child.terminal >= 0) into.push_back({.fd = child.terminal, .events = POLLIN, .revents = 0});
+    if (!child.silent) into.push_back({.fd = child.terminal, .events = POLLIN, .revents = 0});
   }
 }
 
 void Children::drain(const std::string& id, Child& child) {
   constexpr int kAtOnce = 64;  // then others get their turn, even beside a program that prints without pause
   std::array<char, 4096> buffer{};
-  for (int i = 0; i < kAtOnce && child.terminal >= 0; ++i) {
+  for (int i = 0; i < kAtOnce && !child.silent; ++i) {
     const ssize_t length = ::read(child.terminal, buffer.data(), buffer.size());
     if (length > 0) {
       print_(id, {buffer.data(), static_cast<std::size_t>(length)});
     } else if (length == 0 || (errno != EAGAIN && errno != EINTR)) {
-      close(std::exchange(child.terminal, -1));  // nobody has it open any more
+      child.silent = true;  // to close our side now would hang up on a program that is about to end well
     } else {
       return;
     }
@@ -168,7 +167,7 @@ void Children::reap() {
         if (left != each->second.pid) kill(left, SIGKILL);
       }
     }
-    if (each->second.terminal >= 0) close(each->second.terminal);
+    close(each->second.terminal);
     each = children_.erase(each);
     death_(id, status);
   }

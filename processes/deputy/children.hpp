@@ -40,6 +40,7 @@ class Children {
   struct Child {
     std::int32_t pid{};
     int terminal{-1};
+    bool silent{false};  ///< it has closed its side
     bool signalled{false};
   };
   void drain(const std::string& id, Child& child);

@@ -39,9 +39,12 @@ void set_environment() {
   setenv("PATH", (programs.string() + (path.empty() ? "" : ":" + path)).c_str(), 1);
   set_default("FATHOM_SHARE", share_of(programs));
   set_default("FATHOM_RUN", fs::current_path(ignored).string());
-  const std::string own = variable("FATHOM_RUN") + "/operator.yaml";
-  const std::string simulated = variable("FATHOM_SHARE") + "/config/operators/simulated.yaml";
-  set_default("FATHOM_OPERATOR", fs::exists(own, ignored) ? own : simulated);
+  const auto set_file = [&](const char* name, const std::string& own, const std::string& simulated) {
+    const std::string file = variable("FATHOM_RUN") + "/" + own;
+    set_default(name, fs::exists(file, ignored) ? file : variable("FATHOM_SHARE") + "/config/" + simulated);
+  };
+  set_file("FATHOM_OPERATOR", "operator.yaml", "operators/simulated.yaml");
+  set_file("FATHOM_VEHICLE", "vehicle.yaml", "vehicles/seabotix_lbv150.yaml");
   set_default("LCM_DEFAULT_URL", "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152");
 }
 

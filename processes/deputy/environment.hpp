@@ -5,7 +5,7 @@
 
 namespace fathom::deputy {
 
-/// Own folder first in PATH; FATHOM_SHARE, FATHOM_RUN, FATHOM_OPERATOR and LCM_DEFAULT_URL where they are not set (see
+/// Own folder first in PATH; FATHOM_SHARE, FATHOM_RUN, FATHOM_OPERATOR, FATHOM_VEHICLE and LCM_DEFAULT_URL where they are not set (see
 /// procman/environment).
 void set_environment();
 

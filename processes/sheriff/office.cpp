@@ -174,7 +174,7 @@ int Office::run() {
   if (options_.stop) {
     well = stop_all();
     rounds(0.3);
-    return judge(well && unheard.empty());
+    return judge(well);
   }
   if (!options_.script.empty()) {
     well = play(mind_.config().require_script(options_.script), launch::ScriptRun::Care::kGiveUp);
