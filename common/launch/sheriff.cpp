@@ -50,10 +50,10 @@ void Sheriff::hear(const DeputyInfo& info, Utime wall, double now) {
       return each.deputy == info.deputy && each.command.id == status.command.id;
     });
     if (found != entries_.end()) {
-      adopt(*found, status);
+      adopt(*found, status, now);
     } else {
       entries_.push_back({.command = status.command, .deputy = info.deputy, .foreign = true, .running_exec = {}});
-      adopt(entries_.back(), status);
+      adopt(entries_.back(), status, now);
     }
   }
   // A foreign command that its deputy no longer has is gone.
@@ -62,7 +62,17 @@ void Sheriff::hear(const DeputyInfo& info, Utime wall, double now) {
   });
 }
 
-void Sheriff::adopt(Entry& entry, const CommandStatus& status) {
+// Respawned quickly, a program that cannot live looks as if it ran: its deaths are counted.
+void Sheriff::count_failures(Entry& entry, const CommandStatus& status, double now) {
+  std::erase_if(entry.failures, [&](double at) { return now - at > kRecent; });
+  const bool died = entry.last_pid > 0 && status.pid != entry.last_pid && !entry.stop && status.run == entry.desired;
+  if (status.pid == 0 && status.wait_status != 0) entry.last_end = status.wait_status;
+  if (died && (status.pid > 0 || status.wait_status != 0)) entry.failures.push_back(now);
+  entry.last_pid = status.pid;
+}
+
+void Sheriff::adopt(Entry& entry, const CommandStatus& status, double now) {
+  count_failures(entry, status, now);
   const bool first = !std::exchange(entry.adopted, true);
   entry.status = status;
   if (first && status.pid > 0) entry.running_exec = status.command.exec;
@@ -158,7 +168,10 @@ std::vector<Sheriff::Row> Sheriff::rows(const Target& target, double now) const 
             .started = entry.started,
             .wanted = entry.started && !entry.stop,
             .differs = !entry.running_exec.empty() && entry.running_exec != entry.command.exec,
-            .foreign = entry.foreign};
+            .foreign = entry.foreign,
+            .failures = static_cast<int>(std::count_if(entry.failures.begin(), entry.failures.end(),
+                                                       [&](double at) { return now - at < kRecent; })),
+            .last_end = entry.last_end};
     found.push_back(std::move(row));
   }
   return found;
@@ -179,7 +192,10 @@ std::vector<std::string> Sheriff::complaints(double now, bool onlooker) const {
   std::vector<std::string> found;
   for (const Row& row : rows(now)) {
     const std::string end = describe_end(row.status.wait_status);
-    if (row.state == State::kFailed && (row.started || onlooker)) {
+    if (row.failures >= 2 && row.wanted) {
+      found.push_back(row.command.id + " on " + row.deputy + " keeps failing, " + std::to_string(row.failures) +
+                      " times in 10 s: " + describe_end(row.last_end));
+    } else if (row.state == State::kFailed && (row.started || onlooker)) {
       found.push_back(row.command.id + " on " + row.deputy + " failed: " + end);
     } else if (row.wanted && row.state != State::kRunning) {
       found.push_back(row.command.id + " on " + row.deputy + " shall run: " + word(row.state) +

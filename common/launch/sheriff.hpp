@@ -28,8 +28,9 @@ enum class State {
 
 class Sheriff {
  public:
-  static constexpr double kLost = 5.0;    ///< s without a deputy's word
-  static constexpr double kStale = 30.0;  ///< s that a deputy's word may be old
+  static constexpr double kLost = 5.0;     ///< s without a deputy's word
+  static constexpr double kRecent = 10.0;  ///< s in which two failures mean that it keeps failing
+  static constexpr double kStale = 30.0;   ///< s that a deputy's word may be old
 
   Sheriff(std::string id, LaunchConfig config);
 
@@ -52,10 +53,12 @@ class Sheriff {
     std::string deputy;
     State state{};
     CommandStatus status;
-    bool started{false};  ///< by us, or it was seen running
-    bool wanted{false};   ///< shall run
-    bool differs{false};  ///< runs with another command line than the configuration's
-    bool foreign{false};  ///< not in the configuration
+    bool started{false};      ///< by us, or it was seen running
+    bool wanted{false};       ///< shall run
+    bool differs{false};      ///< runs with another command line than the configuration's
+    bool foreign{false};      ///< not in the configuration
+    int failures{};           ///< by itself, within kRecent
+    std::int32_t last_end{};  ///< wait status of the last of them
   };
   [[nodiscard]] std::vector<Row> rows(double now) const;
   [[nodiscard]] std::vector<Row> rows(const Target& target, double now) const;
@@ -79,8 +82,12 @@ class Sheriff {
     bool stop{false};
     bool started{false};  ///< by us, or running when adopted
     std::optional<CommandStatus> status{};
+    std::int32_t last_pid{};
+    std::vector<double> failures{};  ///< when
+    std::int32_t last_end{};
   };
-  void adopt(Entry& entry, const CommandStatus& status);
+  void adopt(Entry& entry, const CommandStatus& status, double now);
+  static void count_failures(Entry& entry, const CommandStatus& status, double now);
   [[nodiscard]] State state(const Entry& entry, double now) const;
 
   std::string id_;

@@ -38,6 +38,8 @@ namespace {
 std::string remark(const Sheriff::Row& row, const HealthBoard::Word& health) {
   if (row.differs) return "runs with another command line than configured";
   if (row.state == State::kStopped) return {};
+  if (row.failures >= 2)
+    return "failed " + std::to_string(row.failures) + " times in 10 s: " + describe_end(row.last_end);
   if (row.status.pid == 0) return describe_end(row.status.wait_status);
   return health.detail;
 }

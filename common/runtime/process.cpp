@@ -219,7 +219,8 @@ void Process::report_health(const std::string& state, const std::string& reason)
   Condition condition;
   if (state == "running") {
     if (state_->condition) condition = state_->condition();
-    if (condition.unhealthy.empty()) condition.unhealthy = state_->twins.complaint(now);
+    const std::string twin = state_->twins.complaint(now);
+    if (!twin.empty()) condition.unhealthy = twin + (condition.unhealthy.empty() ? "" : "; " + condition.unhealthy);
     if (!condition.unhealthy.empty()) {
       health.state = "unhealthy";
       health.detail = condition.unhealthy + "; ";

@@ -3,42 +3,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "common/wire/log_reader.hpp"
-#include "test/support/scratch.hpp"
-#include "test/support/shell.hpp"
+#include "test/support/private_network.hpp"
 
 namespace fathom {
 namespace {
 
-using test::file;
-using test::program;
+using test::on_a_network;
+using test::private_network;
 using test::Scratch;
-using test::shell;
-
-/// Runs lines of bash on a network of their own, in the scratch folder.
-test::Ran on_a_network(const Scratch& scratch, const std::string& lines, int seconds = 60) {
-  test::write_bytes(
-      scratch.path("script"),
-      "ip link set lo up; ip route add 224.0.0.0/4 dev lo; cd " + scratch.path("") + "\n" +
-          "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152'\n" +
-          "deputy=" + program("deputy") + " sheriff=" + program("sheriff") + " fathom=" + program("fathom") +
-          " configs=" + file("procman") + "\n" +
-          // Number of the program whose command line contains $1 and begins with none of our own tools.
-          "pid() { pgrep -f \"^(/[^ ]*/)?$1\" | head -n 1; }\n"
-          "until_new() { for i in $(seq 200); do b=$(pid \"$1\"); [ -n \"$b\" ] && [ \"$b\" != \"$2\" ] && "
-          "return; sleep 0.05; done; echo \"no new $1\"; }\n" +
-          lines);
-  return shell("timeout " + std::to_string(seconds) + " unshare -rn --pid --fork --kill-child --mount-proc bash " +
-               scratch.path("script"));
-}
-
-bool private_network() {
-  if (shell("unshare -rn --pid --fork --kill-child --mount-proc true").code == 0) return true;
-  MESSAGE("skipped: this machine allows no private network (unshare -rn)");
-  return false;
-}
 
 std::string hostile() { return std::string{"'"} + FATHOM_BINARY_DIR + "/test/test_hostile'"; }
 
@@ -214,6 +188,32 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
   CHECK(ran.says("zero thrust: "));
   CHECK(ran.says("orders refused"));
   CHECK(ran.says("code 0"));
+}
+
+TEST_CASE("launch: a second process of the same name is told by both, and a full disk by the logger's failure") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  test::write_bytes(scratch.path("x.cfg"),
+                    "cmd \"logger\" { exec = \"lcm-logger -q -f full/a.lcmlog\"; deputy = \"vehicle\"; "
+                    "auto_respawn = \"true\"; }\nscript \"go\" { start cmd \"logger\"; wait ms 3000; }\n");
+  const auto ran = on_a_network(
+      scratch,
+      "share=${configs%procman}config programs=${deputy%deputy}\n"
+      "site=\"--config $share/vehicles/seabotix_lbv150.yaml --config $share/sites/tank.yaml\"\n"
+      "for i in first second; do ${programs}estimator --config $share/pipelines/tank.yaml $site 2>$i.txt & done\n"
+      "sleep 3; $fathom status\n"
+      "mkdir full; mount -t tmpfs -o size=64k none full\n"
+      "${programs}simulator --config $share/operators/simulated.yaml --config $share/simulation/seabotix_lbv150.yaml "
+      "$site "
+      ">/dev/null 2>&1 &\n"
+      "$sheriff x.cfg --script go --local; echo \"code $?\"\n");
+  CHECK_MESSAGE(ran.says("another estimator speaks on this bus (process "), ran.text);
+  CHECK(test::read_bytes(scratch.path("first.txt")).find("another estimator") != std::string::npos);
+  CHECK(test::read_bytes(scratch.path("second.txt")).find("another estimator") != std::string::npos);
+  CHECK(ran.says("No space left on device"));
+  CHECK(ran.says("logger on vehicle "));
+  CHECK(ran.says("exit 1"));
+  CHECK(ran.says("code 1"));
 }
 
 }  // namespace fathom
