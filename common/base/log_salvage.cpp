@@ -136,7 +136,7 @@ Salvage salvage(const std::string& from, const std::string& to) {
   if (std::filesystem::exists(to)) throw InputError(to + ": exists already; name another file");
   std::ofstream out{to, std::ios::binary};
   if (!out) throw InputError(to + ": cannot be written; check that the folder exists and is yours");
-  const Salvage result = salvage(log.bytes(), [&](Bytes event) {
+  Salvage result = salvage(log.bytes(), [&](Bytes event) {
     out.write(reinterpret_cast<const char*>(event.data()), static_cast<std::streamsize>(event.size()));
   });
   out.close();

@@ -107,12 +107,15 @@ class Parser {
         fail("a group's name must not be blank nor hold '/'; nest groups instead");
       }
       sign("{", "the group's name");
+      constexpr int kDeepest = 50;
+      if (++depth_ > kDeepest) fail("groups are nested more than 50 deep");
       Group& inner = group.sub(name);
       while (!(now().kind == Kind::kSign && now().text == "}")) {
         if (now().kind == Kind::kEnd) fail("group \"" + name + "\" is not closed; a } is missing");
         if (!entry(inner)) fail("expected cmd or group inside a group instead of " + describe(now()));
       }
       take();
+      --depth_;
     } else {
       return false;
     }
@@ -231,6 +234,7 @@ class Parser {
   const std::string& path_;
   std::vector<Token> tokens_;
   std::size_t at_{};
+  int depth_{};                     ///< of groups
   std::map<std::string, int> ids_;  ///< with the line of each
 };
 

@@ -3,11 +3,22 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "common/launch/config.hpp"
 #include "processes/sheriff/office.hpp"
 
 namespace {
+
+/// As given, or of those that are installed: "procman/tank.cfg" is found from anywhere.
+std::string find_config(const std::string& given) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::exists(given, ignored)) return given;
+  const fs::path programs = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  const fs::path installed = programs.parent_path() / "share" / "fathom" / given;
+  return fs::exists(installed, ignored) ? installed.string() : given;
+}
 
 int check(const fathom::launch::LaunchConfig& config) {
   const auto traps = config.traps();
@@ -41,7 +52,7 @@ int main(int argc, char** argv) {
   status->excludes(stop);
   CLI11_PARSE(app, argc, argv);
   try {
-    launch::LaunchConfig config = launch::LaunchConfig::load(options.config);
+    launch::LaunchConfig config = launch::LaunchConfig::load(find_config(options.config));
     if (only_check) return check(config);
     if (!options.script.empty()) (void)config.require_script(options.script);
     const char* url = std::getenv("LCM_DEFAULT_URL");

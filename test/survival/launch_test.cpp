@@ -80,6 +80,16 @@ TEST_CASE("launch: a killed program comes back, a second sheriff adopts what run
   CHECK(ran.says("end 0"));
 }
 
+TEST_CASE("launch: of deputies of one name that start together one stays") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = on_a_network(scratch,
+                                "for i in 1 2 3; do $deputy -i vehicle 2>>deputies.txt & done; sleep 2\n"
+                                "echo \"left $(jobs -r | wc -l)\"; kill $(jobs -p); wait; cat deputies.txt\n");
+  CHECK_MESSAGE(ran.says("left 1\n"), ran.text);
+  CHECK(ran.says("another deputy named vehicle"));
+}
+
 TEST_CASE("launch: a killed deputy takes its programs along, and its successor is given their work") {
   if (!private_network()) return;
   const Scratch scratch;

@@ -122,6 +122,9 @@ TEST_CASE("launch config: every mistake is one line with its place") {
   CHECK(refusal("script \"s\" { wait everything status \"running\"; }\n") ==
         "x.cfg:1: expected cmd or group instead of 'everything'");
   CHECK(refusal("cmd \"a\" {") == "x.cfg:1: cmd \"a\": expected an attribute or } instead of the end of the file");
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "group \"g\" { ";
+  CHECK(refusal(deep) == "x.cfg:1: groups are nested more than 50 deep");
   CHECK(refusal("script \"s\" { wait ms") == "x.cfg:1: wait ms must be a whole number, not the end of the file");
 }
 
