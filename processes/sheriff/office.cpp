@@ -189,6 +189,7 @@ int Office::run() {
     if (interrupted) screen_.say("stops all in order");
     if (!stop_all() && status == 0) status = 1;
     local_.stop();
+    screen_.clear();
   }
   const bool watching = options_.stay || options_.script.empty();  // its end is an interrupt
   return interrupted && !watching ? 130 : status;

@@ -25,6 +25,7 @@ std::size_t Screen::width() const {
 
 void Screen::clear() {
   if (lines_ > 0) std::printf("\033[%dA\033[J", lines_);
+  std::fflush(stdout);
   lines_ = 0;
 }
 

@@ -17,9 +17,10 @@ class Screen {
   void finish(const std::vector<launch::Sheriff::Row>& rows, const launch::HealthBoard& health, double now);
   /// A line above the table.
   void say(const std::string& line);
+  /// Takes the table away.
+  void clear();
 
  private:
-  void clear();
   [[nodiscard]] std::size_t width() const;
 
   bool terminal_{false};
