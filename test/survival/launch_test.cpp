@@ -142,7 +142,7 @@ TEST_CASE(
   const auto ran = on_a_network(
       scratch,
       "export FATHOM_SIMULATION='--duration 26 --speed 1 --seed 4 --order 2=identify'\n"
-      "$sheriff $configs/tank.cfg --script simulated-trial --local >sheriff.txt & s=$!\n"
+      "$sheriff $configs/tank.cfg --script simulated-trial --local -v >sheriff.txt & s=$!\n"
       "until_new fathom-simulator ''; sleep 6\n"
       "for p in estimator identifier; do a=$(pid fathom-$p); kill -9 $a; until_new fathom-$p $a; sleep 1.5; done\n"
       "a=$(pid fathom-identifier); kill -STOP $a; until_new fathom-identifier $a; sleep 1.5\n"
@@ -152,6 +152,8 @@ TEST_CASE(
   CHECK_MESSAGE(ran.says("code 0"), ran.text);
   CHECK_FALSE(ran.says("no new"));
   CHECK(ran.says("identifier on vehicle: running, silent"));
+  CHECK(ran.says("identifier: says no HEALTH for 4 s and does nothing; killed"));
+  CHECK(ran.says("goes on from "));  // with what it had learnt
   CHECK(ran.says("zero thrust: commands have stopped"));
   const Recording run = wire::read_log(scratch.path("trial.lcmlog.00")).recording;
   const auto pushes = [](const Thrusters& t) {
