@@ -21,6 +21,7 @@ void LocalDeputies::start(const std::string& name, const std::string& url) {
   std::string program = fs::exists(installed, ignored) ? installed.string() : (folder / "deputy").string();
   std::vector<std::string> words{program, "--id", name, "--lcmurl", url};
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& each : words) arguments.push_back(each.data());
   arguments.push_back(nullptr);
 
