@@ -5,8 +5,8 @@
 
 namespace fathom::deputy {
 
-/// Own folder first in PATH; FATHOM_SHARE, FATHOM_RUN, FATHOM_OPERATOR, FATHOM_VEHICLE and LCM_DEFAULT_URL where they are not set (see
-/// procman/environment).
+/// Own folder first in PATH; FATHOM_SHARE, FATHOM_RUN, FATHOM_OPERATOR, FATHOM_VEHICLE and LCM_DEFAULT_URL where they
+/// are not set (see procman/environment).
 void set_environment();
 
 /// Value of a variable; empty when it is not set.
