@@ -1,5 +1,5 @@
 # fathom_room(NAME lower rooms and packages...): one library per folder of common/, its sources found by name.
-# fathom_process(NAME rooms...): one executable per folder of processes/.
+# fathom_process(NAME rooms...): one executable per folder of processes/, installed as fathom-NAME.
 
 add_library(fathom_warnings INTERFACE)
 target_compile_options(fathom_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
@@ -43,4 +43,13 @@ function(fathom_process name)
     target_link_libraries(${name} PRIVATE fathom_${need})
   endforeach()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  include(GNUInstallDirs)
+  if(name STREQUAL "fathom")
+    install(TARGETS fathom)
+    return()
+  endif()
+  # Names like "estimator" are too plain for a system's bin folder. Configurations of procman use the installed name.
+  install(PROGRAMS $<TARGET_FILE:${name}> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME fathom-${name})
+  add_custom_command(TARGET ${name} POST_BUILD COMMAND ${CMAKE_COMMAND} -E create_symlink ${name} fathom-${name}
+                     WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/bin VERBATIM)
 endfunction()

@@ -8,37 +8,14 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/event_format.hpp"
 
 namespace fathom {
 namespace {
 
-// Header, big-endian: sync word, int64 event number, int64 time [us], int32 channel length, int32 data length.
-constexpr std::size_t kHeaderSize = 28;
-constexpr std::array<std::uint8_t, 4> kSync{0xED, 0xA1, 0xDA, 0x01};
-constexpr std::uint32_t kLongestChannel = 63;        // liblcm refuses longer names
-constexpr std::uint32_t kLongestMessage = 1U << 28;  // and messages above 256 MB
-
-template <class Unsigned>
-Unsigned big_endian(std::span<const std::uint8_t> bytes) {
-  Unsigned value = 0;
-  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) value = static_cast<Unsigned>(value << 8U) | bytes[i];
-  return value;
-}
-
-struct Header {
-  Utime time{};
-  std::uint32_t channel_length{};
-  std::uint32_t data_length{};
-
-  explicit Header(std::span<const std::uint8_t, kHeaderSize> bytes)
-      : time{static_cast<Utime>(big_endian<std::uint64_t>(bytes.subspan<12>()))},
-        channel_length{big_endian<std::uint32_t>(bytes.subspan<20>())},
-        data_length{big_endian<std::uint32_t>(bytes.subspan<24>())} {}
-  [[nodiscard]] bool plausible() const {
-    return channel_length > 0 && channel_length <= kLongestChannel && data_length <= kLongestMessage;
-  }
-  [[nodiscard]] std::uint64_t body() const { return std::uint64_t{channel_length} + data_length; }
-};
+using event_format::Header;
+using event_format::kHeaderSize;
+using event_format::kSync;
 
 bool begins_with_sync(std::span<const std::uint8_t> bytes) {
   const std::size_t length = std::min(bytes.size(), kSync.size());
@@ -106,7 +83,7 @@ std::string EventLog::place() const {
 }
 
 std::string EventLog::remedy() const {
-  return "keep what is before it with: head -c " + std::to_string(offset_) + " LOG > REPAIRED";
+  return "keep what is before and behind it with: fathom repair-log LOG --out REPAIRED";
 }
 
 // A cut-off event is the last thing in its file. Whole events behind it mean that its length is a lie.

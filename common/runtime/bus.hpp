@@ -117,4 +117,20 @@ class Output {
   std::unique_ptr<lcm::LogFile> log_;
 };
 
+/// Nothing when the bytes are no such message.
+template <class Message>
+[[nodiscard]] std::optional<Message> message_of(std::span<const std::uint8_t> bytes) {
+  Message message{};
+  const int length = static_cast<int>(bytes.size());
+  if (message.decode(bytes.data(), 0, length) != length) return {};
+  return message;
+}
+
+template <class Message>
+void say(Output& output, const std::string& channel, const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  output.write(channel, bytes, message.utime);
+}
+
 }  // namespace fathom::runtime

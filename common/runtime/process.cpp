@@ -2,6 +2,7 @@
 
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +12,6 @@
 #include <iostream>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -19,6 +19,7 @@
 #include "common/runtime/arguments.hpp"
 #include "common/runtime/bus.hpp"
 #include "common/runtime/lockstep.hpp"
+#include "common/runtime/self.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -27,6 +28,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr Utime kRestartJump = 1'000'000;  // us; devices are late by less
 constexpr int kWaitMs = 50;                // half of the promised 100 ms, should a signal miss the descriptor
+constexpr double kFlood = 1000.0;          // messages a second of one channel; five times the fastest instrument
 constexpr char kHealthChannel[] = "HEALTH";
 constexpr char kInfoChannel[] = "PROCESS_INFO";
 
@@ -37,6 +39,7 @@ struct Hearing {
   std::function<bool(std::span<const std::uint8_t>)> deliver;
   std::optional<Utime> newest;
   std::int64_t rejected{};
+  std::int64_t arrived{};  // since the last HEALTH
 };
 
 struct Speech {
@@ -51,9 +54,12 @@ Utime wall_clock() {
 
 std::string content(const std::string& path) {
   std::ifstream file{path};
-  std::ostringstream text;
-  text << "# file " << path << "\n" << file.rdbuf();
-  return text.str();
+  std::string text = "# file " + path + "\n";
+  for (std::string line; std::getline(file, line);) {
+    const auto token = line.find("token:");  // an operator's word is not for the bus, nor for logs
+    text += (token == std::string::npos ? line : line.substr(0, token) + "token: not told") + "\n";
+  }
+  return text;
 }
 
 template <class Channels>
@@ -84,6 +90,9 @@ struct Process::State {
   std::int64_t published{};
   Clock::duration busy{};  // in handlers, since the last HEALTH
   Clock::time_point last_health{};
+  std::string host{host_name()};
+  Usage usage{};
+  Twins twins{name, host, getpid()};
 };
 
 Process::Process(std::string name, Arguments arguments)
@@ -173,6 +182,7 @@ void Process::arrived(const std::string& channel, Utime utime) {
 void Process::deliver(std::size_t index, std::span<const std::uint8_t> bytes) {
   Hearing& hearing = state_->hearings[index];
   const auto begin = Clock::now();
+  ++hearing.arrived;
   if (hearing.deliver(bytes)) {
     ++state_->received;
   } else if (hearing.rejected++ == 0) {
@@ -199,33 +209,55 @@ void Process::report_health(const std::string& state, const std::string& reason)
   fathom_lcm::health_t health{};
   health.utime = wall_clock();
   health.process = state_->name;
+  health.host = state_->host;
+  health.pid = getpid();
+  const Usage::Figures used = state_->usage.measure();
+  health.cpu = used.cpu;
+  health.memory = used.memory;
   health.state = state;
   health.detail = reason;
+  Condition condition;
+  if (state == "running") {
+    if (state_->condition) condition = state_->condition();
+    const std::string twin = state_->twins.complaint(now);
+    if (!twin.empty()) condition.unhealthy = twin + (condition.unhealthy.empty() ? "" : "; " + condition.unhealthy);
+    if (!condition.unhealthy.empty()) {
+      health.state = "unhealthy";
+      health.detail = condition.unhealthy + "; ";
+    }
+  }
   health.received = state_->received;
   health.published = state_->published;
+  const std::chrono::duration<double> elapsed = now - state_->last_health;
   const auto tell = [&](const Hearing& hearing, const char* what, std::int64_t count) {
     if (count > 0) health.detail += hearing.channel + " " + what + " " + std::to_string(count) + "; ";
   };
   for (std::size_t i = 0; i < state_->hearings.size(); ++i) {
-    const Hearing& hearing = state_->hearings[i];
+    Hearing& hearing = state_->hearings[i];
     const auto dropped = state_->live ? static_cast<std::int64_t>(state_->live->dropped(i)) : 0;
     health.dropped += dropped;
     health.rejected += hearing.rejected;
     tell(hearing, "dropped", dropped);
     tell(hearing, "rejected", hearing.rejected);
+    const double rate = static_cast<double>(std::exchange(hearing.arrived, 0)) / std::max(elapsed.count(), 0.1);
+    const bool paced = !state_->follower && hearing.channel != kLockstepAck;  // lockstep is as fast as it can
+    if (rate > kFlood && paced) tell(hearing, "flood, per second", static_cast<std::int64_t>(rate));
   }
-  if (state_->condition && state == "running") {
-    const Condition condition = state_->condition();
-    if (!condition.unhealthy.empty()) health.state = "unhealthy";
-    for (const std::string& each : {condition.unhealthy, condition.detail}) {
-      if (!each.empty()) health.detail += each + "; ";
-    }
-  }
-  const std::chrono::duration<double> elapsed = now - state_->last_health;
+  if (!condition.detail.empty()) health.detail += condition.detail + "; ";
   health.busy = elapsed.count() > 0.0 ? std::chrono::duration<double>(state_->busy) / elapsed : 0.0;
   state_->busy = {};
   state_->last_health = now;
   publish(kHealthChannel, health);
+}
+
+// A second one of this name is told at once: two estimators make nonsense of each other's work.
+void Process::watch_twins(std::span<const std::uint8_t> health) {
+  const auto now = Clock::now();
+  const bool known = !state_->twins.complaint(now).empty();
+  state_->twins.hear(health, now);
+  if (known || state_->twins.complaint(now).empty()) return;
+  state_->logger.warn(state_->twins.complaint(now));
+  report_health("running", "");
 }
 
 std::string Process::interface_text() const {
@@ -283,6 +315,8 @@ void Process::run_logs() {
 void Process::run_live() {
   std::vector<Subscription> subscriptions;
   for (const Hearing& hearing : state_->hearings) subscriptions.push_back({hearing.channel, hearing.capacity});
+  const std::size_t everybody = subscriptions.size();
+  subscriptions.push_back({kHealthChannel, kEverybody});
   state_->out.emplace(state_->arguments.out);
   state_->live.emplace(state_->arguments.in, subscriptions);
   introduce(wall_clock());
@@ -294,7 +328,13 @@ void Process::run_live() {
       descriptors.push_back(state_->stop->descriptor());
       state_->wait(descriptors, state_->live->pending() ? 0 : kWaitMs);
     }
-    if (const auto message = state_->live->next()) deliver(message->subscription, message->bytes);
+    if (const auto message = state_->live->next()) {
+      if (message->subscription < everybody) {
+        deliver(message->subscription, message->bytes);
+      } else {
+        watch_twins(message->bytes);
+      }
+    }
     if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
   }
 }

@@ -87,6 +87,7 @@ class Process {
 
  private:
   static constexpr std::size_t kQueue = 1000;
+  static constexpr std::size_t kEverybody = 200;  ///< HEALTH of others that may wait
   /// Decodes and hands over; false when it cannot be decoded.
   using Deliver = std::function<bool(std::span<const std::uint8_t>)>;
 
@@ -111,6 +112,7 @@ class Process {
   void run_live();
   void run_lockstep();
   void introduce(Utime utime);
+  void watch_twins(std::span<const std::uint8_t> health);
   void report_health(const std::string& state, const std::string& reason);
   [[nodiscard]] std::string interface_text() const;
 

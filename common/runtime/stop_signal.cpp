@@ -12,6 +12,7 @@ StopSignal::StopSignal() {
   sigemptyset(&stop);
   sigaddset(&stop, SIGINT);
   sigaddset(&stop, SIGTERM);
+  sigaddset(&stop, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &stop, &before_);
   descriptor_ = signalfd(-1, &stop, SFD_NONBLOCK | SFD_CLOEXEC);
   if (descriptor_ < 0) throw std::runtime_error("signalfd failed: too many open files?");

@@ -1,4 +1,5 @@
-// SIGINT and SIGTERM as a readable file descriptor, while an object of this class lives. No handler, no global.
+// SIGINT, SIGTERM and SIGHUP (whoever started us is gone) as a readable file descriptor, while an object of this class
+// lives. No handler, no global.
 #pragma once
 
 #include <csignal>

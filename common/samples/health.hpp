@@ -12,12 +12,16 @@ namespace fathom {
 struct Health {
   Utime utime{};  ///< wall clock
   std::string process;
+  std::string host;
+  std::int32_t pid{};       ///< on that host: two processes of one name are told apart
   std::string state;        ///< "running", "unhealthy" (detail begins with the reason), "stopped", "fault"
   std::int64_t received{};  ///< delivered to handlers
   std::int64_t published{};
   std::int64_t dropped{};   ///< lost to a full queue
   std::int64_t rejected{};  ///< undecodable or not plausible
   double busy{};            ///< share of the last second spent in handlers, 0..1
+  double cpu{};             ///< share of one core in the last second
+  std::int64_t memory{};    ///< resident [B]
   std::string detail;       ///< counts per channel; the reason of a fault
 };
 

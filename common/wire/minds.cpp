@@ -263,15 +263,19 @@ fathom_lcm::truth_t encode(const Truth& sample) {
 }
 
 std::optional<Health> decode(const fathom_lcm::health_t& message) {
-  if (!finite(message.busy)) return {};
+  if (!finite(message.busy) || !finite(message.cpu)) return {};
   return Health{.utime = message.utime,
                 .process = message.process,
+                .host = message.host,
+                .pid = message.pid,
                 .state = message.state,
                 .received = message.received,
                 .published = message.published,
                 .dropped = message.dropped,
                 .rejected = message.rejected,
                 .busy = message.busy,
+                .cpu = message.cpu,
+                .memory = message.memory,
                 .detail = message.detail};
 }
 
@@ -279,12 +283,16 @@ fathom_lcm::health_t encode(const Health& sample) {
   fathom_lcm::health_t message{};
   message.utime = sample.utime;
   message.process = sample.process;
+  message.host = sample.host;
+  message.pid = sample.pid;
   message.state = sample.state;
   message.received = sample.received;
   message.published = sample.published;
   message.dropped = sample.dropped;
   message.rejected = sample.rejected;
   message.busy = sample.busy;
+  message.cpu = sample.cpu;
+  message.memory = sample.memory;
   message.detail = sample.detail;
   return message;
 }

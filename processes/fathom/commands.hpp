@@ -23,5 +23,7 @@ void compare_manoeuvre(const std::string& first, const std::string& second, cons
 void add_decode(CLI::App& app);
 void add_emulate(CLI::App& app);
 void add_operator(CLI::App& app);
+void add_doctor(CLI::App& app);
+void add_repair_log(CLI::App& app);
 
 }  // namespace fathom::tool

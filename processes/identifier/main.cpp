@@ -1,4 +1,5 @@
 // identifier: states and thruster commands in, the vehicle's parameters and what they leave unexplained out.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
@@ -41,12 +42,13 @@ void save(const std::string& path, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runtime::main("identifier", argc, argv, [](runtime::Process& process) {
+  std::string saved;
+  const auto setup = [&](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
     const Config config = process.config();
     identification::Identifier identifier{identification::IdentifierSettings::from(config), vehicle};
-    const std::string saved = config.has("save") ? config.text("save") : "";
+    if (config.has("save") && saved.empty()) saved = config.text("save");
     if (!saved.empty()) identifier.offer(content(saved), kResumeWithin);
     Utime last_save{};
     bool resumed = false;
@@ -97,5 +99,8 @@ int main(int argc, char** argv) {
       }
     });
     process.run();
+  };
+  return runtime::main("identifier", argc, argv, setup, [&](CLI::App& app) {
+    app.add_option("--save", saved, "file to go on from after an interruption; instead of the section's key");
   });
 }

@@ -113,9 +113,8 @@ TEST_CASE("event log: rubbish and absurd lengths are refused with place and reme
   const Log rubbish{kFirst + "what is this?" + kFirst};
   CHECK(
       contains(rubbish.reading(), ": byte " + std::to_string(kFirst.size()) +
-                                      " (after 1 events): rubbish where an event should begin; keep what is before it "
-                                      "with: head -c " +
-                                      std::to_string(kFirst.size())));
+                                      " (after 1 events): rubbish where an event should begin; keep what is before and "
+                                      "behind it with: fathom repair-log LOG --out REPAIRED"));
   for (const std::string& absurd : {event(1, 5, "DEPTH", "abc", 64), event(1, 5, "DEPTH", "abc", 0xFFFFFFFF),
                                     event(1, 5, "DEPTH", "abc", 0, 0x10000001), event(1, 5, "", "abc")}) {
     CHECK(contains(Log{kFirst + absurd}.reading(), "absurd length"));

@@ -120,10 +120,8 @@ TEST_CASE("log: rubbish between events is an error that names file, byte and rem
   bytes.insert(kDepthEvent, "xyz");
   test::write_bytes(path, bytes);
   const auto text = complaint_of<InputError>([&] { (void)wire::read_log(path); });
-  CHECK(contains(
-      text,
-      path +
-          ": byte 57 (after 1 events): rubbish where an event should begin; keep what is before it with: head -c 57"));
+  CHECK(contains(text, path + ": byte 57 (after 1 events): rubbish where an event should begin; keep what is before "
+                              "and behind it with: fathom repair-log LOG --out REPAIRED"));
 }
 
 TEST_CASE("log: absurd lengths, and a length that would swallow later events, are errors and not a cut-off end") {

@@ -40,6 +40,9 @@ auto members(const T& s) {
   } else if constexpr (N == 9) {
     const auto& [a, b, c, d, e, f, g, h, i] = s;
     return std::tie(a, b, c, d, e, f, g, h, i);
+  } else if constexpr (N == 13) {
+    const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
   } else {
     const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
@@ -154,7 +157,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 3>();
   check_pair<Truth, 7>();
-  check_pair<Health, 9>();
+  check_pair<Health, 13>();
   check_pair<ProcessInfo, 5>();
 }
 

@@ -1,0 +1,33 @@
+// Takes the whole events out of a damaged log: those before the damage and those behind it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fathom {
+
+struct Salvage {
+  struct Damage {
+    std::uint64_t offset{}, bytes{};  ///< in the damaged log
+    std::uint64_t events_before{};    ///< kept until there
+  };
+  std::uint64_t events{}, bytes{};                ///< kept
+  std::map<std::string, std::uint64_t> channels;  ///< events kept of each
+  std::vector<Damage> damages;                    ///< what was left out, in order
+  [[nodiscard]] std::uint64_t lost() const;       ///< bytes
+};
+
+/// Hands every whole event to `keep`, byte for byte. An event counts as whole when another one or the end of the file
+/// follows it, or rubbish without any whole event inside what the event says is its length.
+[[nodiscard]] Salvage salvage(std::span<const std::uint8_t> log,
+                              const std::function<void(std::span<const std::uint8_t>)>& keep);
+
+/// The same from file to file. InputError when one cannot be read, the other exists or cannot be written, or nothing
+/// whole is in it.
+[[nodiscard]] Salvage salvage(const std::string& from, const std::string& to);
+
+}  // namespace fathom

@@ -1,0 +1,58 @@
+// A sheriff at work: hears deputies and HEALTH, gives orders each second, shows what becomes of them.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/launch/script_run.hpp"
+#include "common/launch/sheriff.hpp"
+#include "common/launch/table.hpp"
+#include "common/runtime/bus.hpp"
+#include "common/runtime/stop_signal.hpp"
+#include "processes/sheriff/local_deputies.hpp"
+#include "processes/sheriff/screen.hpp"
+
+namespace fathom::sheriff {
+
+struct Options {
+  std::string config;
+  std::string script;
+  std::string url;         ///< of procman's channels
+  std::string health_url;  ///< of the programs' HEALTH
+  bool status{false}, stop{false}, stay{false}, local{false}, verbose{false};
+};
+
+class Office {
+ public:
+  Office(Options options, launch::LaunchConfig config);
+  /// Exit status: 0 when all is as it shall be at the end, 1 when not, 130 when interrupted.
+  int run();
+
+ private:
+  void hear();
+  /// One round: waits a little, hears, orders, shows.
+  void round();
+  void rounds(double seconds);
+  [[nodiscard]] bool everybody_heard() const;
+  void gather();
+  bool play(const launch::Script& script, launch::ScriptRun::Care care);
+  bool stop_all();
+  int judge(bool well);
+
+  Options options_;
+  runtime::StopSignal interrupt_;  // before liblcm starts its thread
+  launch::Sheriff mind_;
+  launch::HealthBoard health_;
+  runtime::LiveInput procman_, health_input_;
+  runtime::Output output_;
+  Screen screen_;
+  LocalDeputies local_;
+  double next_order_{};
+  std::string doing_;
+  std::map<std::string, std::string> printed_;  ///< last words of each command
+  std::string rival_told_;
+};
+
+}  // namespace fathom::sheriff
