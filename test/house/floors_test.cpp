@@ -13,7 +13,7 @@
 namespace {
 
 const std::map<std::string, int> kFloors{{"base", 0},           {"samples", 1},    {"model", 2},      {"devices", 2},
-                                         {"vision", 2},         {"tables", 2},     {"link", 3},       {"estimation", 3},
+                                         {"vision", 3},         {"tables", 2},     {"link", 3},       {"estimation", 3},
                                          {"identification", 3}, {"excitation", 3}, {"simulation", 3}, {"diagnosis", 4},
                                          {"report", 4},         {"runtime", 5},    {"wire", 5},       {"driver", 6}};
 
