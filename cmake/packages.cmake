@@ -22,6 +22,7 @@ function(fathom_opencv name)
 endfunction()
 fathom_opencv(plain core imgproc features2d calib3d video)
 fathom_opencv(codecs core imgproc imgcodecs videoio)
+find_package(JPEG REQUIRED)
 pkg_check_modules(APRILTAG REQUIRED IMPORTED_TARGET apriltag)
 
 # Asio without Boost: headers alone.

@@ -23,5 +23,6 @@ void compare_manoeuvre(const std::string& first, const std::string& second, cons
 void add_decode(CLI::App& app);
 void add_emulate(CLI::App& app);
 void add_operator(CLI::App& app);
+void add_pictures(CLI::App& app);
 
 }  // namespace fathom::tool

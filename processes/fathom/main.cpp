@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_decode(app);
   fathom::tool::add_emulate(app);
   fathom::tool::add_operator(app);
+  fathom::tool::add_pictures(app);
   try {
     app.parse(argc, argv);
     return 0;
