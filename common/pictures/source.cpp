@@ -194,6 +194,13 @@ std::unique_ptr<Source> open_camera(const std::string& device, int width, int he
   return std::make_unique<Video>(std::move(capture), device, rate, true);
 }
 
+cv::Mat in_grey(const cv::Mat& picture) {
+  if (picture.channels() != 3) return picture;
+  cv::Mat grey;
+  cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
 void write(const std::string& path, const cv::Mat& picture) {
   bool written = false;
   try {

@@ -35,6 +35,9 @@ class Source {
 /// A camera: "/dev/video0". 0: what the camera likes.
 [[nodiscard]] std::unique_ptr<Source> open_camera(const std::string& device, int width, int height, double rate);
 
+/// The picture itself when it is grey.
+[[nodiscard]] cv::Mat in_grey(const cv::Mat& picture);
+
 /// PNG or JPEG by the name's end; InputError when it cannot be written.
 void write(const std::string& path, const cv::Mat& picture);
 

@@ -11,7 +11,7 @@ constexpr int kRounds = 3;          // each centres the window on the line of th
 constexpr int kMostSamples = 32;    // along an edge
 constexpr double kFree = 0.12;      // share of the edge next to each corner, where the other edge shows
 constexpr double kStep = 0.5;       // px along the normal
-constexpr double kFarthest = 3.0;   // px that a corner may move
+constexpr double kFarthest = 0.9;   // px that a corner may move: further off lies another edge
 constexpr double kLeastRise = 3.0;  // brightness across the edge that counts as one
 
 /// A line as a point and a unit direction.

@@ -72,7 +72,7 @@ struct FlowTracker::State {
   }
 
   void choose_features() {
-    constexpr double kQuality = 0.02;
+    constexpr double kQuality = 0.005;  // of the best: tags outshine a floor by far
     features.clear();
     const double area = static_cast<double>(small.cols) * small.rows;
     const double apart = 0.6 * std::sqrt(area / settings.most_tracks);

@@ -16,8 +16,8 @@ namespace fathom::vision {
 
 struct FlowSettings {
   double reduction{2.0};  ///< features are tracked in pictures so many times smaller
-  int most_tracks{150};
-  int least_tracks{15};          ///< fewer that agree say nothing
+  int most_tracks{200};
+  int least_tracks{10};          ///< fewer that agree say nothing
   double least_share{0.5};       ///< of the tracks that must agree
   double there_and_back{0.6};    ///< px of the reduced picture by which a track may miss its beginning on the way back
   double longest_interval{0.5};  ///< s

@@ -39,6 +39,7 @@ void add(CLI::App& app, const std::string& name, const std::string& what) {
 
 void add_pictures(CLI::App& app) {
   add(app, "track", "tags, camera pose, velocity and laser range from recorded pictures");
+  add(app, "calibrate", "lens and map of tags from a sequence of pictures");
 }
 
 }  // namespace fathom::tool

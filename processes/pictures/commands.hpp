@@ -9,5 +9,6 @@ class App;
 namespace fathom::pictures {
 
 void add_track(CLI::App& app);
+void add_calibrate(CLI::App& app);
 
 }  // namespace fathom::pictures

@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Reads pictures: what `fathom` runs for its subcommands track and calibrate.", "fathom"};
   app.require_subcommand(1);
   fathom::pictures::add_track(app);
+  fathom::pictures::add_calibrate(app);
   try {
     app.parse(argc, argv);
     return 0;

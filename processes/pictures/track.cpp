@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
-#include <opencv2/imgproc.hpp>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -131,13 +131,8 @@ void run(const Options& options) {
       tables.write_unread(frame->name, frame->time);
       continue;
     }
-    vision::Picture picture{.utime = utime_after(0, frame->time)};
-    if (frame->picture.channels() == 3) {
-      picture.bgr = frame->picture;
-      cv::cvtColor(picture.bgr, picture.grey, cv::COLOR_BGR2GRAY);
-    } else {
-      picture.grey = frame->picture;
-    }
+    vision::Picture picture{.utime = utime_after(0, frame->time), .grey = in_grey(frame->picture)};
+    if (frame->picture.channels() == 3) picture.bgr = frame->picture;
     const vision::Sight& sight = front_end.step(picture, std::nullopt);
     if (sight.picture == vision::PictureState::kOtherSize && !told_size) {
       told_size = true;
