@@ -56,6 +56,8 @@ class FrontEnd {
 
   /// `R_WC`: the camera's attitude from a sensor; left out, tags stand in where both pictures have some.
   const Sight& step(const Picture& picture, const std::optional<Eigen::Matrix3d>& R_WC);
+  /// There was a picture that could not be read: nothing is told of it.
+  void skip() { sight_ = {}; }
   void reset();
 
   /// As messages have them; flow and laser only when valid, tags only when accepted and their pose is no guess.
