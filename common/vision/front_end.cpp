@@ -1,6 +1,7 @@
 #include "common/vision/front_end.hpp"
 
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -57,6 +58,11 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
       detector_{settings.detector},
       locator_{site, lens, settings.locator},
       floor_{site.floor} {
+  if (settings.detector.decimation > 1.0) {
+    DetectorSettings near = settings.detector;
+    near.decimation = 1.0;
+    near_detector_.emplace(near);
+  }
   if (lens) tracker_.emplace(*lens, settings.flow);
   if (lens && laser) laser_.emplace(*lens, *laser, settings.laser);
   if (site.floor <= site.surface && !site.tags.empty()) {  // no water stated: the tags lie on it
@@ -79,6 +85,35 @@ void FrontEnd::reset() {
 const std::vector<Track>& FrontEnd::tracks() const {
   static const std::vector<Track> none;
   return tracker_ ? tracker_->tracks() : none;
+}
+
+// Tags that must be there and were not found at reduced resolution: looked for at full resolution where they must be.
+bool FrontEnd::look_again(const cv::Mat& grey) {
+  constexpr double kSmallest = 14.0, kMargin = 0.6;  // px; share of the tag's extent
+  constexpr std::size_t kMost = 3;                   // regions in a picture: time
+  bool more = false;
+  std::size_t looked = 0;
+  for (const auto& [id, corners] : locator_.missing(*sight_.fix, sight_.tags)) {
+    Eigen::Vector2d low = corners[0], high = corners[0];
+    for (const Eigen::Vector2d& each : corners) {
+      low = low.cwiseMin(each);
+      high = high.cwiseMax(each);
+    }
+    if ((high - low).minCoeff() < kSmallest || ++looked > kMost) continue;
+    const double margin = kMargin * (high - low).maxCoeff();
+    const cv::Rect whole{0, 0, grey.cols, grey.rows};
+    const cv::Rect region =
+        whole & cv::Rect{cv::Point{static_cast<int>(low.x() - margin), static_cast<int>(low.y() - margin)},
+                         cv::Point{static_cast<int>(high.x() + margin) + 1, static_cast<int>(high.y() + margin) + 1}};
+    for (TagSighting tag : near_detector_->step(grey(region).clone())) {
+      if (tag.id != id) continue;
+      for (Eigen::Vector2d& corner : tag.corners) corner += Eigen::Vector2d{region.x, region.y};
+      sight_.tags.push_back(tag);
+      more = true;
+      break;
+    }
+  }
+  return more;
 }
 
 // Distance along the axis to the floor. The laser's dot lies elsewhere on it: the floor's normal leads there.
@@ -121,6 +156,9 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   std::optional<Eigen::Vector3d> down_C;
   if (R_WC) down_C = R_WC->row(2);
   sight_.fix = locator_.step(picture.utime, sight_.tags, down_C);
+  if (sight_.fix && !sight_.fix->ambiguous && near_detector_ && look_again(picture.grey)) {
+    sight_.fix = locator_.step(picture.utime, sight_.tags, down_C);
+  }
   if (!lens_) return sight_;
   std::optional<Eigen::Matrix3d> fixed;
   if (sight_.fix && !sight_.fix->ambiguous) fixed = sight_.fix->pose.R_WC;

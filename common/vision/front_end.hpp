@@ -70,12 +70,14 @@ class FrontEnd {
   [[nodiscard]] const LaserFinder* laser() const { return laser_ ? &*laser_ : nullptr; }
 
  private:
+  [[nodiscard]] bool look_again(const cv::Mat& grey);
   void find_range(const std::optional<Eigen::Vector3d>& normal_C);
 
   model::Site site_;
   std::optional<model::Lens> lens_;
   FrontEndSettings settings_;
   TagDetector detector_;
+  std::optional<TagDetector> near_detector_;  ///< at full resolution, for regions alone
   TagLocator locator_;
   std::optional<FlowTracker> tracker_;
   std::optional<LaserFinder> laser_;

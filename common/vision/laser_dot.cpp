@@ -13,20 +13,21 @@ constexpr double kRival = 0.6;        // share of the strongest from which anoth
 constexpr double kOutstanding = 8.0;  // spreads of the strip's greenness
 constexpr double kRoundest = 3.0;     // ratio of a dot's axes; seen slanting it is an ellipse
 
-// How much greener than the other colours. Where all are saturated, the dot's core is told by its green ring: the
-// greenest of four points around.
-double greenness(const cv::Mat& bgr, int x, int y) {
+// How much greener than the other colours, against `tint`, the water's: what is lit by daylight has the same share of
+// green everywhere, white paper and dark floor alike. Where all are saturated, the dot's core is told by its green
+// ring: the greenest of four points around.
+double greenness(const cv::Mat& bgr, double tint, int x, int y) {
   const auto at = [&](int u, int v) {
     const cv::Vec3b c = bgr.at<cv::Vec3b>(std::clamp(v, 0, bgr.rows - 1), std::clamp(u, 0, bgr.cols - 1));
-    return std::pair{c[1] - std::max<int>(c[0], c[2]), std::min({c[0], c[1], c[2]}) >= kSaturated};
+    return std::pair{c[1] - tint * std::max(c[0], c[2]), std::min({c[0], c[1], c[2]}) >= kSaturated};
   };
   const auto [own, white] = at(x, y);
   if (!white) return own;
   // A dot's core is small: green must be near on every side, which a tag's white square lacks.
   constexpr int kCore = 4;
-  int least = 255;
+  double least = 255.0;
   for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-    int best = 0;
+    double best = 0.0;
     for (int r = 1; r <= kCore; ++r) best = std::max(best, at(x + r * dx, y + r * dy).first);
     least = std::min(least, best);
   }
@@ -71,6 +72,22 @@ LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount
   }
 }
 
+// Median share of green along the line: the dot and a few tags do not move it.
+void LaserFinder::find_tint(const cv::Mat& bgr) {
+  constexpr double kMost = 3.0, kDark = 8.0;
+  sorted_.clear();
+  for (const Eigen::Vector2d& p : line_) {
+    const cv::Vec3b c = bgr.at<cv::Vec3b>(static_cast<int>(std::lround(p.y())), static_cast<int>(std::lround(p.x())));
+    const double other = std::max(c[0], c[2]);
+    if (other > kDark && c[1] < kSaturated) sorted_.push_back(c[1] / other);
+  }
+  tint_ = 1.0;
+  if (sorted_.empty()) return;
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  tint_ = std::clamp(*middle, 1.0, kMost);
+}
+
 void LaserFinder::measure_strip(const cv::Mat& bgr) {
   strip_.clear();
   const int half = static_cast<int>(std::ceil(settings_.strip));
@@ -82,7 +99,8 @@ void LaserFinder::measure_strip(const cv::Mat& bgr) {
     for (int k = -half; k <= half; ++k) {
       const Eigen::Vector2d p = line_[i] + k * across;
       if (!projection_.inside(p, 1.0)) continue;
-      const double g = greenness(bgr, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+      const double g =
+          greenness(bgr, tint_, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
       if (g > best) {
         best = g;
         where = p;
@@ -107,7 +125,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
       const int x = u + static_cast<int>(std::lround(radius * std::cos(angle)));
       const int y = v + static_cast<int>(std::lround(radius * std::sin(angle)));
       if (x < 0 || y < 0 || x >= bgr.cols || y >= bgr.rows) continue;
-      ring += greenness(bgr, x, y);
+      ring += greenness(bgr, tint_, x, y);
       ++n_ring;
     }
     ring = n_ring > 0 ? ring / n_ring : 0.0;
@@ -117,7 +135,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
     Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
     for (int y = std::max(v - radius, 0); y <= std::min(v + radius, bgr.rows - 1); ++y) {
       for (int x = std::max(u - radius, 0); x <= std::min(u + radius, bgr.cols - 1); ++x) {
-        const double w = greenness(bgr, x, y) - floor;
+        const double w = greenness(bgr, tint_, x, y) - floor;
         if (w <= 0.0) continue;
         const Eigen::Vector2d p{x, y};
         sum += w;
@@ -155,6 +173,8 @@ LaserDot LaserFinder::step(const cv::Mat& bgr) {
     dot.state = LaserState::kOutOfRange;
     return dot;
   }
+  if (bgr.cols != projection_.lens().width || bgr.rows != projection_.lens().height) return dot;
+  find_tint(bgr);
   measure_strip(bgr);
   sorted_.clear();
   for (const Spot& each : strip_) sorted_.push_back(each.strength);

@@ -43,6 +43,7 @@ class LaserFinder {
     Eigen::Vector2d pixel;
     double strength{};
   };
+  void find_tint(const cv::Mat& bgr);
   void measure_strip(const cv::Mat& bgr);
   [[nodiscard]] bool refine(const cv::Mat& bgr, LaserDot& dot) const;
   [[nodiscard]] double along_beam(const Eigen::Vector2d& pixel) const;
@@ -53,6 +54,7 @@ class LaserFinder {
   std::vector<Eigen::Vector2d> line_;  ///< px, from far to near, a pixel apart
   std::vector<Spot> strip_;
   std::vector<double> sorted_;
+  double tint_{1.0};  ///< green over the stronger other colour of what daylight shows in this water
 };
 
 }  // namespace fathom::vision

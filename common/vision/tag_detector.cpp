@@ -14,10 +14,10 @@ extern "C" {
 }
 
 #include <algorithm>
-#include <cstring>
+#include <cstdlib>
+#include <tuple>
 
 #include "common/base/error.hpp"
-#include "common/base/near_name.hpp"
 #include "common/vision/corner_fit.hpp"
 
 namespace fathom::vision {
@@ -49,6 +49,14 @@ const Family* family(const std::string& name) {
     return each.name == name || std::string{each.name} == "tag" + name;
   });
   return found == kFamilies.end() ? nullptr : &*found;
+}
+
+const Family* need_family(const std::string& wanted) {
+  const Family* known = family(wanted);
+  if (known != nullptr) return known;
+  std::string all;
+  for (const Family& each : kFamilies) all += (all.empty() ? "" : ", ") + std::string{each.name};
+  throw InputError("no family of tags is called '" + wanted + "'; known are " + all);
 }
 
 double mean_edge(const std::array<Eigen::Vector2d, 4>& corners) {
@@ -107,12 +115,7 @@ TagDetector::TagDetector(const DetectorSettings& settings) : state_{std::make_un
   state_->detector->quad_decimate = static_cast<float>(settings.decimation);
   state_->refine = settings.refine;
   for (const std::string& wanted : settings.families) {
-    const Family* known = family(wanted);
-    if (known == nullptr) {
-      std::string all;
-      for (const Family& each : kFamilies) all += (all.empty() ? "" : ", ") + std::string{each.name};
-      throw InputError("no family of tags is called '" + wanted + "'; known are " + all);
-    }
+    const Family* known = need_family(wanted);
     const bool twice = std::any_of(state_->families.begin(), state_->families.end(),
                                    [&](const auto& each) { return each.first == known; });
     if (twice) continue;
@@ -151,6 +154,25 @@ const std::vector<TagSighting>& TagDetector::step(const cv::Mat& grey) {
     return std::tie(a.family, a.id, b.margin) < std::tie(b.family, b.id, a.margin);
   });
   return state.found;
+}
+
+TagCells tag_cells(const std::string& name, int id) {
+  const Family* known = need_family(name);
+  apriltag_family_t* made = known->create();
+  TagCells tag{.border = made->width_at_border};
+  if (id < 0 || id >= static_cast<int>(made->ncodes)) {
+    known->destroy(made);
+    throw InputError(std::string{known->name} + " has no tag of number " + std::to_string(id));
+  }
+  image_u8_t* image = apriltag_to_image(made, static_cast<uint32_t>(id));
+  tag.cells.create(image->height, image->width, CV_8UC1);
+  for (int y = 0; y < image->height; ++y) {
+    std::copy_n(image->buf + y * image->stride, image->width, tag.cells.ptr<std::uint8_t>(y));
+  }
+  std::free(image->buf);  // the library exports no destructor of it
+  std::free(image);
+  known->destroy(made);
+  return tag;
 }
 
 }  // namespace fathom::vision

@@ -62,4 +62,12 @@ class TagDetector {
 /// families.
 [[nodiscard]] double least_margin(const std::string& family);
 
+/// A tag as it is printed: one pixel per cell, 0 or 255, with what of a white border belongs to the family.
+struct TagCells {
+  cv::Mat cells;
+  int border{};  ///< cells along the edge of the square whose corners are detected
+};
+/// InputError for a family or a number that there is none of.
+[[nodiscard]] TagCells tag_cells(const std::string& family, int id);
+
 }  // namespace fathom::vision

@@ -247,6 +247,30 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
   return fix;
 }
 
+std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> TagLocator::missing(
+    const CameraFix& fix, const std::vector<TagSighting>& seen) const {
+  constexpr double kBorder = 2.0, kSteepest = 0.3;
+  std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> result;
+  for (const model::Tag& tag : site_.tags) {
+    const bool known =
+        std::any_of(seen.begin(), seen.end(), [&](const TagSighting& each) { return each.id == tag.id; });
+    const Eigen::Vector3d to = tag.p_WT - fix.pose.p_WC;
+    if (known || to.dot(tag.R_WT.col(2)) < kSteepest * to.norm()) continue;
+    std::array<Eigen::Vector2d, 4> corners;
+    bool whole = true;
+    const auto points = corners_W(tag);
+    for (std::size_t i = 0; i < 4 && whole; ++i) {
+      const Eigen::Vector3d p_C = fix.pose.R_WC.transpose() * (points[i] - fix.pose.p_WC);
+      whole = p_C.z() > 1e-2;
+      if (!whole) break;
+      corners[i] = projection_->pixel(p_C);
+      whole = projection_->inside(corners[i], kBorder);
+    }
+    if (whole) result.emplace_back(tag.id, corners);
+  }
+  return result;
+}
+
 std::pair<Eigen::Vector3d, Eigen::Matrix3d> TagLocator::in_camera(const CameraFix& fix, int id) const {
   const model::Tag& tag = *site_.tag(id);
   return {fix.pose.R_WC.transpose() * (tag.p_WT - fix.pose.p_WC), fix.pose.R_WC.transpose() * tag.R_WT};

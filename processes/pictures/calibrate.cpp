@@ -1,6 +1,7 @@
 // fathom calibrate: lens and map of tags from a sequence of pictures, by bundle adjustment; what is left of every
 // corner before and after, in numbers and in a picture.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -91,6 +92,10 @@ void run(const Options& options) {
   const model::Lens& lens = *result.site.lens;
   std::printf("focal %.2f %.2f px (sigma %.2f %.2f), centre %.2f %.2f px (sigma %.2f %.2f)\n", lens.fx, lens.fy,
               result.lens_sigma[0], result.lens_sigma[1], lens.cx, lens.cy, result.lens_sigma[2], result.lens_sigma[3]);
+  const double moved = std::abs(lens.focal() / site.lens->focal() - 1.0);
+  if (settings.lens && (moved > 0.25 || result.lens_sigma[0] > 0.1 * lens.fx)) {
+    std::printf("these pictures hardly determine the focal length: add some from other distances and tilts\n");
+  }
   std::printf("distortion %.5f %.5f %.5f %.5f %.5f\n", lens.distortion[0], lens.distortion[1], lens.distortion[2],
               lens.distortion[3], lens.distortion[4]);
   for (const model::Tag& tag : result.site.tags) {

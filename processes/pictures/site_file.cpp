@@ -1,12 +1,33 @@
 #include "processes/pictures/site_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/spatial.hpp"
 
 namespace fathom::pictures {
+
+namespace {
+
+constexpr double kLeast = 2e-3;  // m
+
+// What of the corners' errors is left, at the distance they were seen from: an error of the map as far as gates care.
+double map_error(const vision::Calibration& calibration) {
+  std::vector<double> distances;
+  for (const vision::Residual& each : calibration.after.residuals) {
+    const model::Tag* tag = calibration.site.tag(each.tag);
+    distances.push_back((calibration.after.poses[each.view].p_WC - tag->p_WT).norm());
+  }
+  if (distances.empty()) return kLeast;
+  std::sort(distances.begin(), distances.end());
+  return std::max(kLeast, calibration.after.high * distances[distances.size() / 2] / calibration.site.lens->focal());
+}
+
+}  // namespace
 
 void write_site(const std::string& path, const vision::Calibration& calibration, const std::string& source) {
   std::FILE* out = std::fopen(path.c_str(), "w");
@@ -16,13 +37,13 @@ void write_site(const std::string& path, const vision::Calibration& calibration,
   std::fprintf(out,
                "# Written by fathom calibrate from %s: %d pictures, %d corners, reprojection %.3f px before, %.3f px "
                "after (medians).\n",
-               source.c_str(), calibration.n_views, calibration.n_corners, calibration.before.median,
+               std::filesystem::path{source}.filename().c_str(), calibration.n_views, calibration.n_corners, calibration.before.median,
                calibration.after.median);
   std::fprintf(out, "site: %s\ntag_search: {families: [", site.name.c_str());
   for (std::size_t i = 0; i < site.search.families.size(); ++i) {
     std::fprintf(out, "%s%s", i > 0 ? ", " : "", site.search.families[i].c_str());
   }
-  std::fprintf(out, "], map_sigma: 2 mm");
+  std::fprintf(out, "], map_sigma: %.1f mm", 1e3 * map_error(calibration));
   if (site.search.least_margin) std::fprintf(out, ", least_margin: %g", *site.search.least_margin);
   std::fprintf(out, "}\ncamera:\n  width: %d\n  height: %d\n  focal: %.3f %.3f\n  centre: %.3f %.3f\n", lens.width,
                lens.height, lens.fx, lens.fy, lens.cx, lens.cy);
