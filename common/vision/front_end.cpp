@@ -57,6 +57,7 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
       settings_{settings},
       detector_{settings.detector},
       locator_{site, lens, settings.locator},
+      loose_locator_{site, std::nullopt, settings.locator},
       floor_{site.floor} {
   if (settings.detector.decimation > 1.0) {
     DetectorSettings near = settings.detector;
@@ -77,7 +78,7 @@ void FrontEnd::reset() {
   check_.reset();
   attitude_before_.reset();
   fix_before_.reset();
-  range_utime_ = 0;
+  range_utime_.reset();
   utime_ = 0;
   last_range_ = 0.0;
 }
@@ -150,6 +151,9 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
     if (tracker_) tracker_->reset();
     attitude_before_.reset();
     fix_before_.reset();
+    if (same_size) return sight_;
+    sight_.tags = detector_.step(picture.grey);
+    static_cast<void>(loose_locator_.step(picture.utime, sight_.tags, std::nullopt));
     return sight_;
   }
   sight_.tags = detector_.step(picture.grey);
@@ -175,7 +179,7 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   attitude_before_ = R_WC;
   fix_before_ = fixed;
   sight_.flow = tracker_->step(picture.utime, picture.grey, R_01, down_C);
-  const bool fresh = range_utime_ > 0 && seconds_between(range_utime_, picture.utime) <= settings_.range_memory;
+  const bool fresh = range_utime_ && seconds_between(*range_utime_, picture.utime) <= settings_.range_memory;
   if (sight_.flow.state == FlowState::kValid && fresh) {
     // To the middle between the pictures.
     const double z = last_range_ * (1.0 + 0.5 * sight_.flow.rate.z() * sight_.flow.interval);

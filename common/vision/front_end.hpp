@@ -79,12 +79,14 @@ class FrontEnd {
   TagDetector detector_;
   std::optional<TagDetector> near_detector_;  ///< at full resolution, for regions alone
   TagLocator locator_;
+  TagLocator loose_locator_;  ///< for pictures that the lens does not fit: verdicts without a pose
   std::optional<FlowTracker> tracker_;
   std::optional<LaserFinder> laser_;
   PictureCheck check_;
   std::optional<Eigen::Matrix3d> attitude_before_, fix_before_;  ///< R_WC of the picture before
   double floor_{};
-  Utime utime_{}, range_utime_{};
+  Utime utime_{};
+  std::optional<Utime> range_utime_;
   double last_range_{}, last_range_sigma_{};
   Sight sight_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "common/base/config.hpp"
 #include "common/vision/tag_detector.hpp"
@@ -20,10 +21,12 @@ constexpr int kNoiseSide = 1024;  // px of the noise that every picture gets a p
 
 RenderSettings RenderSettings::from(const Config& config) {
   RenderSettings s;
+  std::vector<std::string> known{"grain"};
   const auto read = [&](const char* key, const char* unit, double& to) {
+    known.emplace_back(key);
     if (config.has(key)) to = config.not_negative(key, unit);
   };
-  read("attenuation", "1/m", s.attenuation);
+  read("attenuation", "m^-1", s.attenuation);
   read("blur", "", s.blur);
   read("vignetting", "", s.vignetting);
   read("noise", "", s.noise);
@@ -33,6 +36,9 @@ RenderSettings RenderSettings::from(const Config& config) {
   read("dot", "m", s.dot);
   read("laser", "", s.laser);
   if (config.has("grain")) s.grain = config.positive("grain", "m");
+  for (const std::string& key : config.keys()) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) config.fail(key, "unknown key '" + key + "'");
+  }
   return s;
 }
 
@@ -215,6 +221,10 @@ void Renderer::add_dot(const Pose& pose) {
 }
 
 const cv::Mat& Renderer::step(double t, const Pose& pose) {
+  if (!pose.p_WC.allFinite() || !pose.R_WC.allFinite()) {  // nobody knows what it sees
+    bgr_ = cv::Mat::zeros(rays_.size(), CV_8UC3);
+    return bgr_;
+  }
   map_floor(pose);
   light(t);
   cv::Mat lit;

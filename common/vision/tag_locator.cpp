@@ -40,7 +40,10 @@ void TagLocator::judge_by_map(std::vector<TagSighting>& tags) {
     const bool clear = tag.margin >= site_.search.least_margin.value_or(least_margin(tag.family));
     const bool doubtful =
         std::find(site_.doubtful_tags.begin(), site_.doubtful_tags.end(), tag.id) != site_.doubtful_tags.end();
-    const model::Tag* known = site_.tag(tag.id);
+    // A map's numbers are those of the first family.
+    const std::string& first = site_.search.families.front();
+    const bool of_map = tag.family == first || tag.family == "tag" + first;
+    const model::Tag* known = of_map ? site_.tag(tag.id) : nullptr;
     if (doubtful) {
       tag.verdict = TagVerdict::kDoubtful;
     } else if (known == nullptr && !site_.tags.empty()) {
