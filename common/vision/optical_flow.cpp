@@ -14,6 +14,8 @@ namespace fathom::vision {
 
 const char* name(FlowState state) {
   switch (state) {
+    case FlowState::kNone:
+      return "none";
     case FlowState::kValid:
       return "valid";
     case FlowState::kFirst:

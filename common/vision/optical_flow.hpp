@@ -24,7 +24,7 @@ struct FlowSettings {
   double rotation_sigma{2e-3};   ///< rad/s, error of the rotation that is taken out
 };
 
-enum class FlowState { kValid, kFirst, kPause, kNoTexture, kLost, kDisagree, kNoRotation };
+enum class FlowState { kNone, kValid, kFirst, kPause, kNoTexture, kLost, kDisagree, kNoRotation };
 [[nodiscard]] const char* name(FlowState state);
 
 /// A feature in two pictures [px].
@@ -34,7 +34,7 @@ struct Track {
 };
 
 struct Flow {
-  FlowState state{FlowState::kFirst};
+  FlowState state{FlowState::kNone};
   Utime utime{};      ///< middle between the pictures
   double interval{};  ///< s
   /// v_C / z_C [1/s]: camera's velocity in C, over its distance to the floor along its axis; both in the middle. The

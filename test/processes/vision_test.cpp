@@ -1,8 +1,10 @@
 // Pictures through the processes: camera_driver reads a folder, vision its log, and fathom track the same without LCM.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "common/base/event_log.hpp"
@@ -151,6 +153,40 @@ TEST_CASE("fathom track: without map or lens there are detections; nonsense is o
   }
   CHECK(shell(program("fathom") + " track").code == 2);
   CHECK(shell(program("fathom") + " track --help").says("--csv"));
+}
+
+TEST_CASE("vision: in a simulated tank the estimator flies by rendered pictures as well as it says") {
+  if (shell("unshare -rn ip link set lo up").code != 0) {
+    MESSAGE("skipped: this machine allows no private network (unshare -rn)");
+    return;
+  }
+  const Scratch scratch;
+  const std::string all = kConfig + " --config " + file("config/operators/simulated.yaml") + " --config " +
+                          file("config/corrections/none.yaml");
+  const std::string script =
+      "ip link set lo up; ip route add 224.0.0.0/4 dev lo; "
+      "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152'\n" +
+      program("vision") + " --lockstep" + all + " &\n" + program("estimator") + " --lockstep" + all + " &\n" +
+      program("recorder") + " --lockstep --file " + scratch.path("run.lcmlog") + " &\n" + program("simulator") + all +
+      " --config " + file("config/simulation/seabotix_lbv150.yaml") +
+      " --camera --speed 0 --duration 8 --seed 3 --wait-for vision,estimator,recorder\ncode=\\$?\nwait\nexit \\$code";
+  const auto ran = shell("timeout 120 unshare -rn sh -c \"" + script + "\"");
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const Recording run = wire::read_log(scratch.path("run.lcmlog")).recording;
+  CHECK(run.tag_pose.size() > 400);
+  CHECK(run.optical_flow.size() > 150);
+  CHECK(run.laser_range.size() > 150);
+  REQUIRE(run.truth.size() > 100);
+  constexpr double kSettled = 3.0, kNear = 0.04;  // s; m: what the pipeline states for tags, four times
+  std::size_t compared = 0;
+  for (const StateEstimate& state : run.state) {
+    const auto truth =
+        std::find_if(run.truth.begin(), run.truth.end(), [&](const Truth& each) { return each.utime == state.utime; });
+    if (truth == run.truth.end() || seconds_between(run.truth.front().utime, state.utime) < kSettled) continue;
+    ++compared;
+    CHECK((state.p_WB - truth->p_WB).norm() < kNear);
+  }
+  CHECK(compared > 20);
 }
 
 }  // namespace fathom
