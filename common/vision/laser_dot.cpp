@@ -2,36 +2,23 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
 
 namespace fathom::vision {
 namespace {
 
 constexpr int kSaturated = 250;
 constexpr double kRival = 0.6;        // share of the strongest from which another spot is a rival
-constexpr double kOutstanding = 8.0;  // spreads of the strip's greenness
+constexpr double kOutstanding = 8.0;  // spreads of the strip's excess
 constexpr double kRoundest = 3.0;     // ratio of a dot's axes; seen slanting it is an ellipse
 
-// How much greener than the other colours, against `tint`, the water's: what is lit by daylight has the same share of
-// green everywhere, white paper and dark floor alike. Where all are saturated, the dot's core is told by its green
-// ring: the greenest of four points around.
-double greenness(const cv::Mat& bgr, double tint, int x, int y) {
-  const auto at = [&](int u, int v) {
-    const cv::Vec3b c = bgr.at<cv::Vec3b>(std::clamp(v, 0, bgr.rows - 1), std::clamp(u, 0, bgr.cols - 1));
-    return std::pair{c[1] - tint * std::max(c[0], c[2]), std::min({c[0], c[1], c[2]}) >= kSaturated};
-  };
-  const auto [own, white] = at(x, y);
-  if (!white) return own;
-  // A dot's core is small: green must be near on every side, which a tag's white square lacks.
-  constexpr int kCore = 4;
-  double least = 255.0;
-  for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-    double best = 0.0;
-    for (int r = 1; r <= kCore; ++r) best = std::max(best, at(x + r * dx, y + r * dy).first);
-    least = std::min(least, best);
-  }
-  return least;
+// How much a pixel is more than daylight: greener than `tint`, the water's share of green, which white paper and dark
+// floor have alike, or brighter than the picture's white. The first shows on a floor; on paper the dot clips, JPEG
+// smears its colour, and the second remains.
+double excess(const cv::Mat& bgr, double tint, double white, int x, int y) {
+  const cv::Vec3b c = bgr.at<cv::Vec3b>(std::clamp(y, 0, bgr.rows - 1), std::clamp(x, 0, bgr.cols - 1));
+  return std::max(c[1] - tint * std::max(c[0], c[2]), 0.0) + std::max(c[1] - white, 0.0);
 }
 
 }  // namespace
@@ -72,8 +59,20 @@ LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount
   }
 }
 
-// Median share of green along the line: the dot and a few tags do not move it.
-void LaserFinder::find_tint(const cv::Mat& bgr) {
+// White is what one pixel of a hundred exceeds; the tint is the median share of green along the line. The dot moves
+// neither.
+void LaserFinder::find_daylight(const cv::Mat& bgr) {
+  constexpr int kEvery = 5;
+  constexpr double kBrighter = 0.01;
+  std::array<int, 256> count{};
+  int n = 0;
+  for (int y = 0; y < bgr.rows; y += kEvery) {
+    const cv::Vec3b* row = bgr.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < bgr.cols; x += kEvery, ++n) ++count[row[x][1]];
+  }
+  int white = 255;
+  for (int above = count[255]; white > 0 && above < kBrighter * n;) above += count[static_cast<std::size_t>(--white)];
+  white_ = white;
   constexpr double kMost = 3.0, kDark = 8.0;
   sorted_.clear();
   for (const Eigen::Vector2d& p : line_) {
@@ -100,7 +99,7 @@ void LaserFinder::measure_strip(const cv::Mat& bgr) {
       const Eigen::Vector2d p = line_[i] + k * across;
       if (!projection_.inside(p, 1.0)) continue;
       const double g =
-          greenness(bgr, tint_, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+          excess(bgr, tint_, white_, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
       if (g > best) {
         best = g;
         where = p;
@@ -125,7 +124,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
       const int x = u + static_cast<int>(std::lround(radius * std::cos(angle)));
       const int y = v + static_cast<int>(std::lround(radius * std::sin(angle)));
       if (x < 0 || y < 0 || x >= bgr.cols || y >= bgr.rows) continue;
-      ring += greenness(bgr, tint_, x, y);
+      ring += excess(bgr, tint_, white_, x, y);
       ++n_ring;
     }
     ring = n_ring > 0 ? ring / n_ring : 0.0;
@@ -135,7 +134,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
     Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
     for (int y = std::max(v - radius, 0); y <= std::min(v + radius, bgr.rows - 1); ++y) {
       for (int x = std::max(u - radius, 0); x <= std::min(u + radius, bgr.cols - 1); ++x) {
-        const double w = greenness(bgr, tint_, x, y) - floor;
+        const double w = excess(bgr, tint_, white_, x, y) - floor;
         if (w <= 0.0) continue;
         const Eigen::Vector2d p{x, y};
         sum += w;
@@ -174,7 +173,7 @@ LaserDot LaserFinder::step(const cv::Mat& bgr) {
     return dot;
   }
   if (bgr.cols != projection_.lens().width || bgr.rows != projection_.lens().height) return dot;
-  find_tint(bgr);
+  find_daylight(bgr);
   measure_strip(bgr);
   sorted_.clear();
   for (const Spot& each : strip_) sorted_.push_back(each.strength);

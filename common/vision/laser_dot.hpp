@@ -15,7 +15,7 @@ struct LaserSettings {
   double nearest{0.2};          ///< m, of the dot along the camera's axis
   double farthest{4.0};         ///< m
   double strip{4.0};            ///< px to either side of the beam's line that are searched
-  double least_contrast{18.0};  ///< green above the other colours and above its surroundings, in brightness
+  double least_contrast{18.0};  ///< above what daylight shows along the beam's line, in brightness
   double largest{9.0};          ///< px, radius of a dot
   double pixel_sigma{0.3};      ///< px, error of its middle along the line
 };
@@ -43,7 +43,7 @@ class LaserFinder {
     Eigen::Vector2d pixel;
     double strength{};
   };
-  void find_tint(const cv::Mat& bgr);
+  void find_daylight(const cv::Mat& bgr);
   void measure_strip(const cv::Mat& bgr);
   [[nodiscard]] bool refine(const cv::Mat& bgr, LaserDot& dot) const;
   [[nodiscard]] double along_beam(const Eigen::Vector2d& pixel) const;
@@ -54,7 +54,8 @@ class LaserFinder {
   std::vector<Eigen::Vector2d> line_;  ///< px, from far to near, a pixel apart
   std::vector<Spot> strip_;
   std::vector<double> sorted_;
-  double tint_{1.0};  ///< green over the stronger other colour of what daylight shows in this water
+  double white_{255.0};  ///< brightness in green
+  double tint_{1.0};     ///< green over the stronger other colour of what daylight shows in this water
 };
 
 }  // namespace fathom::vision

@@ -252,7 +252,7 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
 
 std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> TagLocator::missing(
     const CameraFix& fix, const std::vector<TagSighting>& seen) const {
-  constexpr double kBorder = 2.0, kSteepest = 0.3;
+  constexpr double kBorder = -5.0, kSteepest = 0.3;  // px: the prediction errs, at the picture's edge too
   std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> result;
   for (const model::Tag& tag : site_.tags) {
     const bool known =

