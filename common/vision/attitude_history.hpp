@@ -13,6 +13,9 @@ class AttitudeHistory {
   void hear(const Ahrs& sample);
   /// q_WB; nothing where the sensor was silent around that time.
   [[nodiscard]] std::optional<Eigen::Quaterniond> at(Utime utime) const;
+  /// Axes of the body at `to` in those at `from`, by its rates: over the short time between two pictures a gyro errs
+  /// far less than the difference of two attitudes. Nothing without rates throughout.
+  [[nodiscard]] std::optional<Eigen::Quaterniond> turn(Utime from, Utime to) const;
   void reset() { samples_.clear(); }
 
  private:

@@ -141,7 +141,8 @@ void FrontEnd::find_range(const std::optional<Eigen::Vector3d>& normal_C) {
   }
 }
 
-const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::Matrix3d>& R_WC) {
+const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::Matrix3d>& R_WC,
+                            const std::optional<Eigen::Matrix3d>& gyro_R_01) {
   const bool same_size = !lens_ || (picture.grey.cols == lens_->width && picture.grey.rows == lens_->height);
   sight_ = {};
   utime_ = picture.utime;
@@ -171,7 +172,9 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   find_range(down_C);
 
   std::optional<Eigen::Matrix3d> R_01;
-  if (R_WC && attitude_before_) {
+  if (gyro_R_01) {
+    R_01 = gyro_R_01;
+  } else if (R_WC && attitude_before_) {
     R_01 = attitude_before_->transpose() * *R_WC;
   } else if (!R_WC && fixed && fix_before_) {
     R_01 = fix_before_->transpose() * *fixed;

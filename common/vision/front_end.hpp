@@ -54,8 +54,10 @@ class FrontEnd {
   FrontEnd(const model::Site& site, const std::optional<model::Lens>& lens,
            const std::optional<model::LaserMount>& laser, const FrontEndSettings& settings);
 
-  /// `R_WC`: the camera's attitude from a sensor; left out, tags stand in where both pictures have some.
-  const Sight& step(const Picture& picture, const std::optional<Eigen::Matrix3d>& R_WC);
+  /// `R_WC`: the camera's attitude from a sensor; left out, tags stand in where both pictures have some. `gyro_R_01`:
+  /// its axes in those of the picture before, from a gyro; left out: the difference of two attitudes.
+  const Sight& step(const Picture& picture, const std::optional<Eigen::Matrix3d>& R_WC,
+                    const std::optional<Eigen::Matrix3d>& gyro_R_01 = std::nullopt);
   /// There was a picture that could not be read: nothing is told of it.
   void skip() { sight_ = {}; }
   void reset();

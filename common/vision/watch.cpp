@@ -42,11 +42,15 @@ bool Watch::see(const Camera& sample) {
     front_end_.skip();
     return true;
   }
+  std::optional<Eigen::Matrix3d> R_WC, R_01;
+  const Eigen::Matrix3d& R_BC = camera_.mount.R_BS;
+  if (const auto turn = attitudes_.turn(tracked_, sample.utime))
+    R_01 = R_BC.transpose() * turn->toRotationMatrix() * R_BC;
   last_ = sample.utime;
   picture_.utime = sample.utime;
-  std::optional<Eigen::Matrix3d> R_WC;
-  if (const auto q_WB = attitudes_.at(sample.utime)) R_WC = q_WB->toRotationMatrix() * camera_.mount.R_BS;
-  const Sight& sight = front_end_.step(picture_, R_WC);
+  if (const auto q_WB = attitudes_.at(sample.utime)) R_WC = q_WB->toRotationMatrix() * R_BC;
+  const Sight& sight = front_end_.step(picture_, R_WC, R_01);
+  tracked_ = sample.utime;
   complaint_ = map_complaint_;
   if (sight.picture == PictureState::kOtherSize) {
     complaint_ = "pictures have " + std::to_string(picture_.grey.cols) + " x " + std::to_string(picture_.grey.rows) +
@@ -72,6 +76,7 @@ void Watch::reset() {
   front_end_.reset();
   attitudes_.reset();
   last_ = 0;
+  tracked_ = 0;
 }
 
 std::optional<Camera> Watch::drawing(int quality) const {

@@ -41,7 +41,7 @@ class Watch {
   AttitudeHistory attitudes_;
   Picture picture_;
   bool readable_{false};
-  Utime last_{};
+  Utime last_{}, tracked_{};  ///< of the last picture that came, and that was read
   std::string complaint_;
   std::map<std::string, std::int64_t> counts_;
 };

@@ -102,6 +102,31 @@ TEST_CASE("watch: flow needs the attitude sensor where tags are missing, and is 
   CHECK(watch.drawing(80));
 }
 
+TEST_CASE("attitude: between samples, a little ahead, by rates; nothing where the sensor was silent") {
+  constexpr double kExact = 1e-9;
+  AttitudeHistory history;
+  const Eigen::Vector3d w{0.1, -0.2, 0.5};
+  for (int i = 0; i <= 20; ++i) {
+    history.hear({.utime = 10'000 * i,
+                  .w_WB_B = w,
+                  .q_WB = quaternion_from_rotation_vector(0.01 * i * w),
+                  .has_rates = true,
+                  .has_attitude = true});
+  }
+  const auto angle = [](const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return a.angularDistance(b); };
+  REQUIRE(history.at(123'456));
+  CHECK(angle(*history.at(123'456), quaternion_from_rotation_vector(0.123456 * w)) < kExact);
+  REQUIRE(history.at(230'000));
+  CHECK(angle(*history.at(230'000), quaternion_from_rotation_vector(0.23 * w)) < kExact);
+  CHECK_FALSE(history.at(400'000));
+  REQUIRE(history.turn(33'333, 166'667));
+  CHECK(angle(*history.turn(33'333, 166'667), quaternion_from_rotation_vector(0.133334 * w)) < kExact);
+  REQUIRE(history.turn(190'000, 220'000));
+  CHECK(angle(*history.turn(190'000, 220'000), quaternion_from_rotation_vector(0.03 * w)) < kExact);
+  CHECK_FALSE(history.turn(-5'000, 50'000));
+  CHECK_FALSE(history.turn(100'000, 300'000));
+}
+
 TEST_CASE("watch: two tags of one number in the map cost these two and are said") {
   model::Site place = site();
   place.doubtful_tags = {12};
