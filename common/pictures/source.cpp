@@ -116,8 +116,8 @@ class Folder final : public Source {
 
 class Video final : public Source {
  public:
-  Video(cv::VideoCapture capture, std::string name, double rate, bool live)
-      : capture_{std::move(capture)}, name_{std::move(name)}, rate_{rate}, live_{live} {}
+  Video(const cv::VideoCapture& capture, std::string name, double rate, bool live)
+      : capture_{capture}, name_{std::move(name)}, rate_{rate}, live_{live} {}
 
   std::optional<Frame> next() override {
     Frame frame;
@@ -175,8 +175,7 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
   if (!capture.isOpened()) throw InputError(path + ": neither a folder of pictures nor a video that OpenCV can read");
   const double stated = capture.get(cv::CAP_PROP_FPS);
   const bool sensible = std::isfinite(stated) && stated > 0.01 && stated < 10000.0;
-  return std::make_unique<Video>(std::move(capture), path, rate > 0.0 ? rate : (sensible ? stated : kFolderRate),
-                                 false);
+  return std::make_unique<Video>(capture, path, rate > 0.0 ? rate : (sensible ? stated : kFolderRate), false);
 }
 
 std::unique_ptr<Source> open_camera(const std::string& device, int width, int height, double rate) {
@@ -191,7 +190,7 @@ std::unique_ptr<Source> open_camera(const std::string& device, int width, int he
   if (height > 0) capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
   if (rate > 0.0) capture.set(cv::CAP_PROP_FPS, rate);
   capture.set(cv::CAP_PROP_BUFFERSIZE, 1);
-  return std::make_unique<Video>(std::move(capture), device, rate, true);
+  return std::make_unique<Video>(capture, device, rate, true);
 }
 
 cv::Mat in_grey(const cv::Mat& picture) {

@@ -26,9 +26,9 @@ struct Corner {
 
   template <class T>
   bool operator()(const T* f, const T* k, const T* X_CW, const T* X_WT, T* residual) const {
-    const T p_T_own[3] = {T{p_T.x()}, T{p_T.y()}, T{p_T.z()}};
+    const T corner[3] = {T{p_T.x()}, T{p_T.y()}, T{p_T.z()}};
     T p_W[3], p_C[3];
-    ceres::AngleAxisRotatePoint(X_WT, p_T_own, p_W);
+    ceres::AngleAxisRotatePoint(X_WT, corner, p_W);
     for (int i = 0; i < 3; ++i) p_W[i] += X_WT[3 + i];
     ceres::AngleAxisRotatePoint(X_CW, p_W, p_C);
     for (int i = 0; i < 3; ++i) p_C[i] += X_CW[3 + i];

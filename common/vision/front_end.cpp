@@ -171,17 +171,17 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   if (!down_C && fixed) down_C = fixed->row(2);
   find_range(down_C);
 
-  std::optional<Eigen::Matrix3d> R_01;
+  std::optional<Eigen::Matrix3d> turn;
   if (gyro_R_01) {
-    R_01 = gyro_R_01;
+    turn = gyro_R_01;
   } else if (R_WC && attitude_before_) {
-    R_01 = attitude_before_->transpose() * *R_WC;
+    turn = attitude_before_->transpose() * *R_WC;
   } else if (!R_WC && fixed && fix_before_) {
-    R_01 = fix_before_->transpose() * *fixed;
+    turn = fix_before_->transpose() * *fixed;
   }
   attitude_before_ = R_WC;
   fix_before_ = fixed;
-  sight_.flow = tracker_->step(picture.utime, picture.grey, R_01, down_C);
+  sight_.flow = tracker_->step(picture.utime, picture.grey, turn, down_C);
   const bool fresh = range_utime_ && seconds_between(*range_utime_, picture.utime) <= settings_.range_memory;
   if (sight_.flow.state == FlowState::kValid && fresh) {
     // To the middle between the pictures.

@@ -76,7 +76,7 @@ void LaserFinder::find_daylight(const cv::Mat& bgr) {
   constexpr double kMost = 3.0, kDark = 8.0;
   sorted_.clear();
   for (const Eigen::Vector2d& p : line_) {
-    const cv::Vec3b c = bgr.at<cv::Vec3b>(static_cast<int>(std::lround(p.y())), static_cast<int>(std::lround(p.x())));
+    const cv::Vec3b& c = bgr.at<cv::Vec3b>(static_cast<int>(std::lround(p.y())), static_cast<int>(std::lround(p.x())));
     const double other = std::max(c[0], c[2]);
     if (other > kDark && c[1] < kSaturated) sorted_.push_back(c[1] / other);
   }

@@ -175,8 +175,8 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       flow.residual = plane.spread * focal;
       // From the first camera's distance and axes to those in the middle.
       const Eigen::Vector3d half = 0.5 * rotation_vector_from_quaternion(Eigen::Quaterniond{*R_01});
-      const Eigen::Matrix3d R_m0 = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();
-      flow.rate = R_m0 * plane.tau / (flow.interval * (1.0 - 0.5 * plane.tau.z()));
+      const Eigen::Matrix3d to_middle = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();
+      flow.rate = to_middle * plane.tau / (flow.interval * (1.0 - 0.5 * plane.tau.z()));
       flow.covariance = plane.covariance / (flow.interval * flow.interval);
       const double turning = state.settings.rotation_sigma * state.settings.rotation_sigma;
       flow.covariance.diagonal() += Eigen::Vector3d{turning, turning, 0.0};

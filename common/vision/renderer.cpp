@@ -117,7 +117,8 @@ void Renderer::paint_tag(const model::Tag& tag) {
       if (x < 0 || y < 0 || x >= picture.cols || y >= picture.rows) continue;
       double sum = 0.0;
       for (int k = 0; k < kFine * kFine; ++k) {
-        const Eigen::Vector2d fine{(k % kFine + 0.5) / kFine - 0.5, (k / kFine + 0.5) / kFine - 0.5};
+        const int row = k / kFine, column = k % kFine;
+        const Eigen::Vector2d fine{(column + 0.5) / kFine - 0.5, (row + 0.5) / kFine - 0.5};
         const Eigen::Vector2d p_W = corner_ + settings_.grain * (Eigen::Vector2d{x, y} + fine);
         const Eigen::Vector2d p_T = R_TW * (p_W - tag.p_WT.head<2>());
         if (p_T.cwiseAbs().maxCoeff() > half) {

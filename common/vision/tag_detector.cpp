@@ -164,7 +164,7 @@ TagCells tag_cells(const std::string& name, int id) {
     known->destroy(made);
     throw InputError(std::string{known->name} + " has no tag of number " + std::to_string(id));
   }
-  image_u8_t* image = apriltag_to_image(made, static_cast<uint32_t>(id));
+  image_u8_t* image = apriltag_to_image(made, id);
   tag.cells.create(image->height, image->width, CV_8UC1);
   for (int y = 0; y < image->height; ++y) {
     std::copy_n(image->buf + y * image->stride, image->width, tag.cells.ptr<std::uint8_t>(y));

@@ -9,11 +9,11 @@ namespace {
 
 constexpr int kOutvoted = 5;  // lone tags in a row that contradict the memory: the memory is wrong
 
-std::array<Eigen::Vector3d, 4> corners_W(const model::Tag& tag) {
+std::array<Eigen::Vector3d, 4> world_corners(const model::Tag& tag) {
   const double h = 0.5 * tag.size;
-  const std::array<Eigen::Vector3d, 4> corners_T{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+  const std::array<Eigen::Vector3d, 4> own{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
   std::array<Eigen::Vector3d, 4> corners;
-  for (std::size_t i = 0; i < 4; ++i) corners[i] = tag.p_WT + tag.R_WT * corners_T[i];
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = tag.p_WT + tag.R_WT * own[i];
   return corners;
 }
 
@@ -52,7 +52,7 @@ void TagLocator::judge_by_map(std::vector<TagSighting>& tags) {
       tag.verdict = clear ? TagVerdict::kAccepted : TagVerdict::kLowMargin;
     } else {
       Candidate candidate{.tag = &tag, .clear = clear};
-      const auto corners = corners_W(*known);
+      const auto corners = world_corners(*known);
       for (std::size_t i = 0; i < 4; ++i) candidate.corners.push_back({corners[i], tag.corners[i]});
       candidates_.push_back(std::move(candidate));
     }
@@ -159,8 +159,8 @@ void TagLocator::look_for_second(Utime utime, const std::vector<Correspondence>&
   constexpr double kDecided = 16.0;  // difference of squared errors in variances: odds of 3000 to 1
   const double dof = std::max(2.0 * static_cast<double>(points.size()) - 6.0, 1.0);
   const double scale = 3.0 * settings_.corner_sigma;
-  const Eigen::Vector3d normal_W = (points[1].p_W - points[0].p_W).cross(points[2].p_W - points[1].p_W).normalized();
-  const auto second = fit_pose(*projection_, points, mirrored(fitted.pose, points, normal_W), scale);
+  const Eigen::Vector3d normal = (points[1].p_W - points[0].p_W).cross(points[2].p_W - points[1].p_W).normalized();
+  const auto second = fit_pose(*projection_, points, mirrored(fitted.pose, points, normal), scale);
   if (!second) return;
   const auto tilt = [](const Pose& a, const Eigen::Vector3d& down) {
     return std::acos(std::clamp(down.dot(a.R_WC.row(2)), -1.0, 1.0));
@@ -261,7 +261,7 @@ std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> TagLocator::missing(
     if (known || to.dot(tag.R_WT.col(2)) < kSteepest * to.norm()) continue;
     std::array<Eigen::Vector2d, 4> corners;
     bool whole = true;
-    const auto points = corners_W(tag);
+    const auto points = world_corners(tag);
     for (std::size_t i = 0; i < 4 && whole; ++i) {
       const Eigen::Vector3d p_C = fix.pose.R_WC.transpose() * (points[i] - fix.pose.p_WC);
       whole = p_C.z() > 1e-2;

@@ -42,14 +42,14 @@ bool Watch::see(const Camera& sample) {
     front_end_.skip();
     return true;
   }
-  std::optional<Eigen::Matrix3d> R_WC, R_01;
+  std::optional<Eigen::Matrix3d> R_WC, turned;
   const Eigen::Matrix3d& R_BC = camera_.mount.R_BS;
   if (const auto turn = attitudes_.turn(tracked_, sample.utime))
-    R_01 = R_BC.transpose() * turn->toRotationMatrix() * R_BC;
+    turned = R_BC.transpose() * turn->toRotationMatrix() * R_BC;
   last_ = sample.utime;
   picture_.utime = sample.utime;
   if (const auto q_WB = attitudes_.at(sample.utime)) R_WC = q_WB->toRotationMatrix() * R_BC;
-  const Sight& sight = front_end_.step(picture_, R_WC, R_01);
+  const Sight& sight = front_end_.step(picture_, R_WC, turned);
   tracked_ = sample.utime;
   complaint_ = map_complaint_;
   if (sight.picture == PictureState::kOtherSize) {
