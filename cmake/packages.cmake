@@ -9,6 +9,22 @@ find_package(Ceres REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 
+# OpenCV by its parts: Debian's configuration file comes with the whole, some hundred packages more. `codecs` reads and
+# writes pictures and videos and loads 200 libraries at every start; programs that need none of that do without.
+find_path(OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+function(fathom_opencv name)
+  add_library(opencv_${name} INTERFACE)
+  target_include_directories(opencv_${name} SYSTEM INTERFACE ${OPENCV_INCLUDE})
+  foreach(part ${ARGN})
+    find_library(OPENCV_${part} opencv_${part} REQUIRED)
+    target_link_libraries(opencv_${name} INTERFACE ${OPENCV_${part}})
+  endforeach()
+endfunction()
+fathom_opencv(plain core imgproc features2d calib3d video)
+fathom_opencv(codecs core imgproc imgcodecs videoio)
+find_package(JPEG REQUIRED)
+pkg_check_modules(APRILTAG REQUIRED IMPORTED_TARGET apriltag)
+
 # Asio without Boost: headers alone.
 find_path(ASIO_INCLUDE asio.hpp REQUIRED)
 add_library(asio INTERFACE)

@@ -25,13 +25,10 @@ Mount mount(const Config& config) {
 }
 
 CameraMount camera_mount(const Config& config) {
-  CameraMount camera{.name = config.text("name"),
-                     .mount = mount(config),
-                     .width = config.integer("width"),
-                     .height = config.integer("height"),
-                     .focal = config.positive("focal", "")};
-  if (camera.width <= 0) config.fail("width", "'width' must be positive");
-  if (camera.height <= 0) config.fail("height", "'height' must be positive");
+  CameraMount camera{.name = config.text("name"), .mount = mount(config), .lens = Lens::from(config)};
+  camera.width = camera.lens.width;
+  camera.height = camera.lens.height;
+  camera.focal = camera.lens.focal();
   return camera;
 }
 

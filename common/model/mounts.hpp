@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/model/lens.hpp"
+
 namespace fathom {
 class Config;
 }
@@ -24,13 +26,14 @@ struct DvlMount {
   double beam_angle{};  ///< rad, of the four beams to the instrument's down axis
 };
 
-/// A camera without distortion; its axis goes through the middle of the picture.
+/// A camera. The simulator's measurements take it to be without distortion, its axis through the picture's middle.
 struct CameraMount {
   std::string name;
   Mount mount;
   int width{};     ///< px
   int height{};    ///< px
-  double focal{};  ///< px
+  double focal{};  ///< px, mean of both directions
+  Lens lens{};     ///< all that is known of it
 };
 
 /// A laser that draws a dot into the picture of a camera.

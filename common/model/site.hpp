@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "common/model/lens.hpp"
+
 namespace fathom::model {
 
 /// A fiducial tag. Frame T: origin in its middle, x to the right and y down as one reads it, z into it.
@@ -24,6 +26,15 @@ struct Transponder {
   Eigen::Vector3d p_W{Eigen::Vector3d::Zero()};  ///< m
 };
 
+/// How tags are looked for in pictures of this place.
+struct TagSearch {
+  std::vector<std::string> families{"tag36h11"};  ///< as the AprilTag library names them
+  /// Decision margin below which a tag is believed only where others say it must be; left out: by the family's
+  /// strength.
+  std::optional<double> least_margin;
+  double map_sigma{2e-3};  ///< m, error of the tags' surveyed places
+};
+
 struct Site {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -37,12 +48,18 @@ struct Site {
   double east{kNone}, west{-kNone};    ///< m, y of the walls
   double declination{};                ///< rad, heading of magnetic north in W
   std::vector<Tag> tags;
-  std::vector<Transponder> transponders;         ///< order of RANGES
+  std::vector<int> doubtful_tags;  ///< numbers that stand twice in the map: pictures cannot tell which; not in `tags`
+  TagSearch search;
+  std::optional<Lens> lens;               ///< of the camera that took pictures here, where no vehicle file states it
+  std::vector<Transponder> transponders;  ///< order of RANGES
   std::optional<Eigen::Vector3d> transceiver;    ///< m, of the USBL, in W
   std::optional<Eigen::Vector3d> tether_anchor;  ///< m, in W
 
   /// InputError with file and line when anything is missing, unknown, or in a wrong unit.
   [[nodiscard]] static Site load(const std::string& path);
+  /// The same for recorded pictures alone: water and declination may be left out,
+  /// and a number that two tags have costs these two, not the site.
+  [[nodiscard]] static Site load_for_pictures(const std::string& path);
   /// The tag of that number, or nullptr.
   [[nodiscard]] const Tag* tag(int id) const;
   [[nodiscard]] double depth() const { return floor - surface; }

@@ -43,9 +43,10 @@ const std::vector<SensorKind>& sensor_kinds() {
                                               {"usbl", make_usbl},
                                               {"ranges", make_ranges},
                                               {"pose_capture", make_pose_capture},
-                                              {"tag_pose", make_tag_pose},
-                                              {"optical_flow", make_optical_flow},
-                                              {"laser_range", make_laser_range}};
+                                              {"tag_pose", make_tag_pose, SensorKind::Pictures::kWithout},
+                                              {"optical_flow", make_optical_flow, SensorKind::Pictures::kWithout},
+                                              {"laser_range", make_laser_range, SensorKind::Pictures::kWithout},
+                                              {"camera", make_camera, SensorKind::Pictures::kWith}};
   return kKinds;
 }
 

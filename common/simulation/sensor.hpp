@@ -21,8 +21,16 @@ class Config;
 
 namespace fathom::simulation {
 
+/// The camera's shutter: where it was. The picture is made by who has a renderer.
+struct Exposure {
+  Utime utime{};
+  std::string camera;                             ///< name in the vehicle file
+  Eigen::Vector3d p_WC{Eigen::Vector3d::Zero()};  ///< m
+  Eigen::Matrix3d R_WC{Eigen::Matrix3d::Identity()};
+};
+
 using Sample = std::variant<Thrusters, Battery, Loads, Ahrs, Dvl, Depth, Usbl, Ranges, PoseCapture, TagPose,
-                            OpticalFlow, LaserRange, Truth>;
+                            OpticalFlow, LaserRange, Truth, Exposure>;
 
 /// The truth at one instant.
 struct Moment {
@@ -83,11 +91,14 @@ using MakeSensor = std::unique_ptr<Sensor> (*)(const Config& config, const Surro
 struct SensorKind {
   const char* name;
   MakeSensor make;  ///< nullptr result: the site has nothing for it to see
+  /// Pictures take the place of what is measured in them.
+  enum class Pictures { kEither, kWithout, kWith } pictures{Pictures::kEither};
 };
 [[nodiscard]] const std::vector<SensorKind>& sensor_kinds();
 
 [[nodiscard]] std::unique_ptr<Sensor> make_ahrs(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_battery(const Config&, const Surroundings&);
+[[nodiscard]] std::unique_ptr<Sensor> make_camera(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_depth(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_dvl(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_laser_range(const Config&, const Surroundings&);

@@ -179,8 +179,13 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
     const Config one = sensors.section(kind.name);
     const Timing timing{one, kind.name, setup.seed};
     auto sensor = kind.make(one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_});
-    if (!carried_at(one, site_)) sensor.reset();
+    using Pictures = SensorKind::Pictures;
+    const bool replaced = kind.pictures == (setup.pictures ? Pictures::kWithout : Pictures::kWith);
+    if (!carried_at(one, site_) || replaced) sensor.reset();
     if (sensor) slots_.push_back({kind.name, timing, std::move(sensor)});
+  }
+  if (setup.pictures && std::none_of(slots_.begin(), slots_.end(), [](const Slot& s) { return s.name == "camera"; })) {
+    sensors.fail("camera", "pictures are wanted, and no camera is carried at " + site_.name);
   }
   for (const Failure& failure : failures_) {
     if (std::none_of(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.name == failure.sensor; })) {

@@ -26,6 +26,7 @@ struct Setup {
   std::uint64_t seed{1};
   std::vector<std::string> hide{};      ///< as hidden_effect() reads them
   std::vector<std::string> fail{};      ///< as Failure::parse() reads them
+  bool pictures{false};                 ///< the camera's exposures in place of tags, flow and laser range
   double duration{330.0};               ///< s, planned: only moments of hidden effects depend on it
   Utime origin{1'700'000'000'000'000};  ///< us, of the run's start
 };

@@ -5,6 +5,7 @@ namespace fathom::wire {
 
 inline constexpr char kAhrs[] = "AHRS";
 inline constexpr char kCamera[] = "CAMERA";
+inline constexpr char kCameraDebug[] = "CAMERA_DEBUG";
 inline constexpr char kDvl[] = "DVL";
 inline constexpr char kUsbl[] = "USBL";
 inline constexpr char kDepth[] = "DEPTH";

@@ -25,5 +25,6 @@ void add_emulate(CLI::App& app);
 void add_operator(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_repair_log(CLI::App& app);
+void add_pictures(CLI::App& app);
 
 }  // namespace fathom::tool

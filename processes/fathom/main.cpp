@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_operator(app);
   fathom::tool::add_doctor(app);
   fathom::tool::add_repair_log(app);
+  fathom::tool::add_pictures(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -1,6 +1,7 @@
 // simulator: WRENCH_COMMAND and OPERATOR in; every instrument's channel, THRUSTERS, and TRUTH for plots out.
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
@@ -15,6 +16,7 @@
 #include <fathom_lcm/usbl_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 
+#include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/operator_token.hpp"
 #include "common/wire/channels.hpp"
@@ -39,6 +41,7 @@ void declare(runtime::Process& process) {
   process.publishes<fathom_lcm::tag_pose_t>(wire::kTagPose);
   process.publishes<fathom_lcm::optical_flow_t>(wire::kOpticalFlow);
   process.publishes<fathom_lcm::laser_range_t>(wire::kLaserRange);
+  process.publishes<fathom_lcm::camera_t>(wire::kCamera);
   process.publishes<fathom_lcm::truth_t>(wire::kTruth);
   process.publishes<fathom_lcm::operator_t>(wire::kOperator);
   process.publishes<fathom_lcm::lockstep_t>(runtime::kLockstep);
@@ -55,8 +58,10 @@ int main(int argc, char** argv) {
         options.token = operator_token(process.config_path("operator"));
         const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
         const model::Site site = model::Site::load(process.config_path("site"));
-        simulation::Simulator simulator{vehicle, site, process.config(), options.setup};
-        simulator::Stage stage{process, simulator, options};
+        const Config config = process.config();
+        simulation::Simulator simulator{vehicle, site, config, options.setup};
+        simulator::Darkroom darkroom{vehicle, site, config, options.setup};
+        simulator::Stage stage{process, simulator, darkroom, options};
         declare(process);
         process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
           stage.count_command();

@@ -18,6 +18,7 @@ void Options::add_to(CLI::App& app) {
                  "an instrument that fails: NAME=silent|frozen|nan|delay|jump[,from:S][,to:S][,by:S]")
       ->take_all()
       ->expected(1);
+  app.add_flag("--camera", setup.pictures, "pictures on CAMERA in place of what is measured in them");
   app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
       ->check(CLI::NonNegativeNumber);

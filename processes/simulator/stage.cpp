@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
@@ -45,6 +46,7 @@ const char* channel_of(const PoseCapture&) { return wire::kPoseCapture; }
 const char* channel_of(const TagPose&) { return wire::kTagPose; }
 const char* channel_of(const OpticalFlow&) { return wire::kOpticalFlow; }
 const char* channel_of(const LaserRange&) { return wire::kLaserRange; }
+const char* channel_of(const simulation::Exposure&) { return wire::kCamera; }
 const char* channel_of(const Truth&) { return wire::kTruth; }
 
 void poll_for(std::span<const int> descriptors, int milliseconds) {
@@ -58,8 +60,13 @@ double seconds(std::chrono::steady_clock::duration duration) { return std::chron
 
 }  // namespace
 
-Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, const Options& options)
-    : process_{process}, simulator_{simulator}, options_{options}, schedule_{options.schedule()}, gate_{options.token} {
+Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options)
+    : process_{process},
+      simulator_{simulator},
+      darkroom_{darkroom},
+      options_{options},
+      schedule_{options.schedule()},
+      gate_{options.token} {
   if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
 }
 
@@ -182,7 +189,11 @@ void Stage::give_orders() {
 void Stage::publish(const simulation::Sample& sample) {
   std::visit(
       [&](const auto& one) {
-        process_.publish(channel_of(one), wire::encode(one));
+        if constexpr (std::is_same_v<std::decay_t<decltype(one)>, simulation::Exposure>) {
+          process_.publish(channel_of(one), wire::encode(darkroom_.develop(one)));
+        } else {
+          process_.publish(channel_of(one), wire::encode(one));
+        }
         if (conductor_) said_.emplace_back(channel_of(one));
       },
       sample);

@@ -16,13 +16,14 @@
 #include "common/runtime/lockstep.hpp"
 #include "common/runtime/process.hpp"
 #include "common/simulation/simulator.hpp"
+#include "processes/simulator/darkroom.hpp"
 #include "processes/simulator/options.hpp"
 
 namespace fathom::simulator {
 
 class Stage {
  public:
-  Stage(runtime::Process& process, simulation::Simulator& simulator, const Options& options);
+  Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options);
 
   /// A command has arrived, good or not.
   void count_command() { ++commands_; }
@@ -53,6 +54,7 @@ class Stage {
 
   runtime::Process& process_;
   simulation::Simulator& simulator_;
+  Darkroom& darkroom_;
   Options options_;
   std::vector<Operator> schedule_;
   std::size_t next_order_{};

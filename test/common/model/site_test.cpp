@@ -55,6 +55,26 @@ TEST_CASE("site: the paper's tank, its poster on the floor readable from above w
   CHECK(tank.tag(45) == nullptr);
 }
 
+TEST_CASE("site: for pictures alone water may be missing, and a number that two tags have costs these two") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("site.yaml");
+  const std::string tag = ", size: 0.1 m, position: 1 2 0 m, rotation: 0 0 0 deg}\n";
+  test::write_bytes(path,
+                    "site: x\ntag_search: {families: [tag16h5], map_sigma: 1 cm, least_margin: 9}\n"
+                    "camera: {width: 640, height: 480, focal: 500}\ntags:\n  - {id: 3" +
+                        tag + "  - {id: 4" + tag + "  - {id: 3" + tag);
+  CHECK_THROWS_AS(static_cast<void>(Site::load(path)), InputError);
+  const Site site = Site::load_for_pictures(path);
+  CHECK(site.search.families == std::vector<std::string>{"tag16h5"});
+  CHECK(site.search.map_sigma == 0.01);
+  CHECK(site.search.least_margin == 9.0);
+  REQUIRE(site.lens);
+  CHECK(site.lens->cx == 319.5);
+  CHECK(site.doubtful_tags == std::vector<int>{3});
+  REQUIRE(site.tags.size() == 1);
+  CHECK(site.tags.front().id == 4);
+}
+
 TEST_CASE("site: open water has no walls, a transceiver and transponders") {
   const Site deep = Site::load(kSites + "deep.yaml");
   CHECK(std::isinf(deep.north));

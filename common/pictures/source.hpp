@@ -1,0 +1,44 @@
+// Pictures from a folder, a video file or a camera of the machine, one after the other.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fathom::pictures {
+
+struct Frame {
+  std::string name;                ///< the file's, or six digits of a video's count
+  double time{};                   ///< s since the first picture
+  cv::Mat picture;                 ///< 8 bit, grey or colour in OpenCV's order; empty when `problem` says why
+  std::string problem;             ///< one line; empty when all is well
+  std::vector<std::uint8_t> jpeg;  ///< the file's own bytes, where it is a JPEG
+};
+
+class Source {
+ public:
+  virtual ~Source() = default;
+  /// Nothing: the end.
+  virtual std::optional<Frame> next() = 0;
+  [[nodiscard]] virtual double rate() const = 0;  ///< Hz
+  [[nodiscard]] virtual bool live() const { return false; }
+};
+
+/// Folder (its pictures in the order of their names, numbers by value), single picture, or video. `rate` [Hz]: of a
+/// folder's pictures, or instead of what a video says; 0: what the video says, 10 Hz for a folder. InputError when
+/// there is nothing to read.
+[[nodiscard]] std::unique_ptr<Source> open(const std::string& path, double rate);
+
+/// A camera: "/dev/video0". 0: what the camera likes.
+[[nodiscard]] std::unique_ptr<Source> open_camera(const std::string& device, int width, int height, double rate);
+
+/// The picture itself when it is grey.
+[[nodiscard]] cv::Mat in_grey(const cv::Mat& picture);
+
+/// PNG or JPEG by the name's end; InputError when it cannot be written.
+void write(const std::string& path, const cv::Mat& picture);
+
+}  // namespace fathom::pictures

@@ -1,0 +1,219 @@
+#include "common/vision/laser_dot.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fathom::vision {
+namespace {
+
+constexpr int kSaturated = 250;
+constexpr double kRival = 0.6;        // share of the strongest from which another spot is a rival
+constexpr double kOutstanding = 8.0;  // spreads of the strip's excess
+constexpr double kRoundest = 3.0;     // ratio of a dot's axes; seen slanting it is an ellipse
+
+// How much a pixel is more than daylight: greener than `tint`, the water's share of green, which white paper and dark
+// floor have alike, or brighter than the picture's white. The first shows on a floor; on paper the dot clips, JPEG
+// smears its colour, and the second remains.
+double excess(const cv::Mat& bgr, double tint, double white, int x, int y) {
+  const cv::Vec3b c = bgr.at<cv::Vec3b>(std::clamp(y, 0, bgr.rows - 1), std::clamp(x, 0, bgr.cols - 1));
+  return std::max(c[1] - tint * std::max(c[0], c[2]), 0.0) + std::max(c[1] - white, 0.0);
+}
+
+}  // namespace
+
+const char* name(LaserState state) {
+  switch (state) {
+    case LaserState::kFound:
+      return "found";
+    case LaserState::kNoColour:
+      return "grey picture";
+    case LaserState::kDark:
+      return "no green spot";
+    case LaserState::kTwo:
+      return "more than one spot";
+    case LaserState::kNotRound:
+      return "not a dot";
+    case LaserState::kOffLine:
+      return "not on the beam";
+    case LaserState::kOutOfRange:
+      return "out of range";
+  }
+  return "";
+}
+
+LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount, const LaserSettings& settings)
+    : projection_{lens}, mount_{mount}, settings_{settings} {
+  // Equal steps of inverse distance are nearly equal steps in the picture.
+  constexpr int kSteps = 4000;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double inverse =
+        1.0 / settings.farthest + (1.0 / settings.nearest - 1.0 / settings.farthest) * static_cast<double>(i) / kSteps;
+    const double s = (1.0 / inverse - mount.p_CE.z()) / mount.axis_C.z();
+    const Eigen::Vector3d p_C = mount.p_CE + s * mount.axis_C;
+    if (!(s > 0.0) || !(p_C.z() > 0.0)) continue;
+    const Eigen::Vector2d pixel = projection_.pixel(p_C);
+    if (!projection_.inside(pixel, 1.0)) continue;
+    if (line_.empty() || (pixel - line_.back()).norm() >= 1.0) line_.push_back(pixel);
+  }
+}
+
+// White is what one pixel of a hundred exceeds; the tint is the median share of green along the line. The dot moves
+// neither.
+void LaserFinder::find_daylight(const cv::Mat& bgr) {
+  constexpr int kEvery = 5;
+  constexpr double kBrighter = 0.01;
+  std::array<int, 256> count{};
+  int n = 0;
+  for (int y = 0; y < bgr.rows; y += kEvery) {
+    const cv::Vec3b* row = bgr.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < bgr.cols; x += kEvery, ++n) ++count[row[x][1]];
+  }
+  int white = 255;
+  for (int above = count[255]; white > 0 && above < kBrighter * n;) above += count[static_cast<std::size_t>(--white)];
+  white_ = white;
+  constexpr double kMost = 3.0, kDark = 8.0;
+  sorted_.clear();
+  for (const Eigen::Vector2d& p : line_) {
+    const cv::Vec3b& c = bgr.at<cv::Vec3b>(static_cast<int>(std::lround(p.y())), static_cast<int>(std::lround(p.x())));
+    const double other = std::max(c[0], c[2]);
+    if (other > kDark && c[1] < kSaturated) sorted_.push_back(c[1] / other);
+  }
+  tint_ = 1.0;
+  if (sorted_.empty()) return;
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  tint_ = std::clamp(*middle, 1.0, kMost);
+}
+
+void LaserFinder::measure_strip(const cv::Mat& bgr) {
+  strip_.clear();
+  const int half = static_cast<int>(std::ceil(settings_.strip));
+  for (std::size_t i = 0; i < line_.size(); ++i) {
+    const Eigen::Vector2d along = (line_[std::min(i + 1, line_.size() - 1)] - line_[i > 0 ? i - 1 : 0]).normalized();
+    const Eigen::Vector2d across{-along.y(), along.x()};
+    double best = -255.0;
+    Eigen::Vector2d where = line_[i];
+    for (int k = -half; k <= half; ++k) {
+      const Eigen::Vector2d p = line_[i] + k * across;
+      if (!projection_.inside(p, 1.0)) continue;
+      const double g =
+          excess(bgr, tint_, white_, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+      if (g > best) {
+        best = g;
+        where = p;
+      }
+    }
+    strip_.push_back({where, best});
+  }
+}
+
+// Middle of what stands out around the spot, weighted by how much; false when it is no dot.
+bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
+  const int radius = static_cast<int>(std::lround(1.5 * settings_.largest));
+  Eigen::Vector2d middle = dot.pixel;
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (int round = 0; round < 3; ++round) {
+    const int u = static_cast<int>(std::lround(middle.x())), v = static_cast<int>(std::lround(middle.y()));
+    // The surroundings: mean on a ring.
+    double ring = 0.0;
+    int n_ring = 0;
+    for (int k = 0; k < 24; ++k) {
+      const double angle = k * 2.0 * M_PI / 24.0;
+      const int x = u + static_cast<int>(std::lround(radius * std::cos(angle)));
+      const int y = v + static_cast<int>(std::lround(radius * std::sin(angle)));
+      if (x < 0 || y < 0 || x >= bgr.cols || y >= bgr.rows) continue;
+      ring += excess(bgr, tint_, white_, x, y);
+      ++n_ring;
+    }
+    ring = n_ring > 0 ? ring / n_ring : 0.0;
+    const double floor = ring + 0.3 * (dot.contrast);
+    double sum = 0.0;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+    for (int y = std::max(v - radius, 0); y <= std::min(v + radius, bgr.rows - 1); ++y) {
+      for (int x = std::max(u - radius, 0); x <= std::min(u + radius, bgr.cols - 1); ++x) {
+        const double w = excess(bgr, tint_, white_, x, y) - floor;
+        if (w <= 0.0) continue;
+        const Eigen::Vector2d p{x, y};
+        sum += w;
+        mean += w * p;
+        second += w * p * p.transpose();
+      }
+    }
+    if (sum <= 0.0) return false;
+    middle = mean / sum;
+    spread = second / sum - middle * middle.transpose();
+  }
+  dot.pixel = middle;
+  const double trace = spread.trace(), root = std::sqrt(std::max(0.25 * trace * trace - spread.determinant(), 0.0));
+  const double large = 0.5 * trace + root, small = std::max(0.5 * trace - root, 1.0 / 12.0);
+  return std::sqrt(large) < 0.5 * settings_.largest && std::sqrt(large / small) < kRoundest;
+}
+
+// Distance along the beam where it comes nearest to the pixel's line of sight.
+double LaserFinder::along_beam(const Eigen::Vector2d& pixel) const {
+  const Ray ray = projection_.ray(pixel);
+  const Eigen::Vector3d between = ray.origin - mount_.p_CE;
+  const double cosine = ray.direction.dot(mount_.axis_C);
+  const double bottom = 1.0 - cosine * cosine;
+  if (bottom < 1e-12) return -1.0;
+  return (between.dot(mount_.axis_C) - cosine * between.dot(ray.direction)) / bottom;
+}
+
+LaserDot LaserFinder::step(const cv::Mat& bgr) {
+  LaserDot dot;
+  if (bgr.channels() != 3) {
+    dot.state = LaserState::kNoColour;
+    return dot;
+  }
+  if (line_.size() < 2) {
+    dot.state = LaserState::kOutOfRange;
+    return dot;
+  }
+  if (bgr.cols != projection_.lens().width || bgr.rows != projection_.lens().height) return dot;
+  find_daylight(bgr);
+  measure_strip(bgr);
+  sorted_.clear();
+  for (const Spot& each : strip_) sorted_.push_back(each.strength);
+  std::sort(sorted_.begin(), sorted_.end());
+  const double typical = sorted_[sorted_.size() / 2];
+  const double spread = sorted_[sorted_.size() * 3 / 4] - sorted_[sorted_.size() / 4];
+  const auto best = std::max_element(strip_.begin(), strip_.end(),
+                                     [](const Spot& a, const Spot& b) { return a.strength < b.strength; });
+  dot.pixel = best->pixel;
+  dot.contrast = best->strength - typical;
+  if (dot.contrast < std::max(settings_.least_contrast, kOutstanding * spread / 1.35)) return dot;
+  const bool rival = std::any_of(strip_.begin(), strip_.end(), [&](const Spot& each) {
+    return each.strength - typical > kRival * dot.contrast &&
+           (each.pixel - best->pixel).norm() > 2.0 * settings_.largest;
+  });
+  if (rival) {
+    dot.state = LaserState::kTwo;
+    return dot;
+  }
+  if (!refine(bgr, dot)) {
+    dot.state = LaserState::kNotRound;
+    return dot;
+  }
+  const double s = along_beam(dot.pixel);
+  const Eigen::Vector3d p_C = mount_.p_CE + s * mount_.axis_C;
+  if (!(s > 0.0) || p_C.z() < settings_.nearest || p_C.z() > settings_.farthest) {
+    dot.state = LaserState::kOutOfRange;
+    return dot;
+  }
+  const Eigen::Vector2d on_line = projection_.pixel(p_C);
+  if ((on_line - dot.pixel).norm() > settings_.strip) {
+    dot.state = LaserState::kOffLine;
+    return dot;
+  }
+  const double step = 1e-3 * s;
+  const Eigen::Vector2d moved = projection_.pixel(p_C + step * mount_.axis_C);
+  dot.p_CL = p_C;
+  dot.sigma_range = settings_.pixel_sigma * step / std::max((moved - on_line).norm(), 1e-9);
+  dot.state = LaserState::kFound;
+  return dot;
+}
+
+}  // namespace fathom::vision

@@ -1,0 +1,61 @@
+// The dot of a green laser: looked for along the line in the picture where the beam can be, told from everything else
+// that is green or bright, and triangulated.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "common/model/mounts.hpp"
+#include "common/vision/projection.hpp"
+
+namespace fathom::vision {
+
+struct LaserSettings {
+  double nearest{0.2};          ///< m, of the dot along the camera's axis
+  double farthest{4.0};         ///< m
+  double strip{4.0};            ///< px to either side of the beam's line that are searched
+  double least_contrast{18.0};  ///< above what daylight shows along the beam's line, in brightness
+  double largest{9.0};          ///< px, radius of a dot
+  double pixel_sigma{0.3};      ///< px, error of its middle along the line
+};
+
+enum class LaserState { kFound, kNoColour, kDark, kTwo, kNotRound, kOffLine, kOutOfRange };
+[[nodiscard]] const char* name(LaserState state);
+
+struct LaserDot {
+  LaserState state{LaserState::kDark};
+  Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};
+  Eigen::Vector3d p_CL{Eigen::Vector3d::Zero()};  ///< m, the dot in C
+  double sigma_range{};                           ///< m, along the line of sight
+  double contrast{};
+};
+
+class LaserFinder {
+ public:
+  LaserFinder(const model::Lens& lens, const model::LaserMount& mount, const LaserSettings& settings);
+  /// `bgr`: colours in OpenCV's order; a grey picture has no green.
+  LaserDot step(const cv::Mat& bgr);
+  [[nodiscard]] const std::vector<Eigen::Vector2d>& line() const { return line_; }
+
+ private:
+  struct Spot {
+    Eigen::Vector2d pixel;
+    double strength{};
+  };
+  void find_daylight(const cv::Mat& bgr);
+  void measure_strip(const cv::Mat& bgr);
+  [[nodiscard]] bool refine(const cv::Mat& bgr, LaserDot& dot) const;
+  [[nodiscard]] double along_beam(const Eigen::Vector2d& pixel) const;
+
+  Projection projection_;
+  model::LaserMount mount_;
+  LaserSettings settings_;
+  std::vector<Eigen::Vector2d> line_;  ///< px, from far to near, a pixel apart
+  std::vector<Spot> strip_;
+  std::vector<double> sorted_;
+  double white_{255.0};  ///< brightness in green
+  double tint_{1.0};     ///< green over the stronger other colour of what daylight shows in this water
+};
+
+}  // namespace fathom::vision

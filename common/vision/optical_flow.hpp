@@ -1,0 +1,68 @@
+// Motion of the scene between two pictures: tracked features, the camera's rotation taken out, a plane fitted robustly.
+// With tau = t / z_C, the camera's shift in units of its distance to the plane along its axis, and s the inverse depth
+// along a feature's ray in the same units, features move by d = s (-tau_xy + y tau_z) to y, exactly (K-053 corrected).
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/vision/projection.hpp"
+
+namespace fathom::vision {
+
+struct FlowSettings {
+  double reduction{2.0};  ///< features are tracked in pictures so many times smaller
+  int most_tracks{200};
+  int least_tracks{10};          ///< fewer that agree say nothing
+  double least_share{0.5};       ///< of the tracks that must agree
+  double there_and_back{0.6};    ///< px of the reduced picture by which a track may miss its beginning on the way back
+  double longest_interval{0.5};  ///< s
+  double rotation_sigma{2e-3};   ///< rad/s, error of the rotation that is taken out
+};
+
+enum class FlowState { kNone, kValid, kFirst, kPause, kNoTexture, kLost, kDisagree, kNoRotation };
+[[nodiscard]] const char* name(FlowState state);
+
+/// A feature in two pictures [px].
+struct Track {
+  Eigen::Vector2d from, to;
+  bool agrees{false};
+};
+
+struct Flow {
+  FlowState state{FlowState::kNone};
+  Utime utime{};      ///< middle between the pictures
+  double interval{};  ///< s
+  /// v_C / z_C [1/s]: camera's velocity in C, over its distance to the floor along its axis; both in the middle. The
+  /// third one is the picture's divergence. Flow as the messages have it is minus the first two.
+  Eigen::Vector3d rate{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  int n_tracks{}, n_agreed{};
+  double residual{};  ///< px, spread of those that agree
+};
+
+class FlowTracker {
+ public:
+  FlowTracker(const model::Lens& lens, const FlowSettings& settings);
+  ~FlowTracker();
+  FlowTracker(FlowTracker&&) noexcept;
+  FlowTracker& operator=(FlowTracker&&) noexcept;
+
+  /// `R_01`: axes of this picture's camera in those of the one before; without it there is no valid flow.
+  /// `normal_C`: the floor's normal in this picture's camera, unit, either sense; left out: the optical axis.
+  Flow step(Utime utime, const cv::Mat& grey, const std::optional<Eigen::Matrix3d>& R_01,
+            const std::optional<Eigen::Vector3d>& normal_C);
+  /// Of the last step.
+  [[nodiscard]] const std::vector<Track>& tracks() const;
+  void reset();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace fathom::vision

@@ -1,0 +1,76 @@
+#include "common/vision/plane_flow.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::vision {
+namespace {
+
+constexpr int kRounds = 10;
+constexpr double kTukey = 4.685;    // 95 % efficient on normal errors
+constexpr double kSmallest = 2e-5;  // spread below which nothing is measured: 0.01 px at 500 px
+
+Eigen::Matrix<double, 2, 3> jacobian(const FlowRow& row) {
+  Eigen::Matrix<double, 2, 3> a;
+  a << -row.s, 0.0, row.s * row.y.x(), 0.0, -row.s, row.s * row.y.y();
+  return a;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+PlaneFlow fit_plane_flow(const std::vector<FlowRow>& rows) {
+  PlaneFlow result;
+  const std::size_t n = rows.size();
+  result.agrees.assign(n, false);
+  if (n < 3) return result;
+  // A start that half of the tracks cannot spoil: the median shift.
+  std::vector<double> values(n);
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    for (std::size_t i = 0; i < n; ++i) values[i] = -rows[i].d[axis] / rows[i].s;
+    result.tau[axis] = median(values);
+  }
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double sigma = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < n; ++i) values[i] = (jacobian(rows[i]) * result.tau - rows[i].d).norm();
+    // The median length of a plane error is 1.177 standard deviations of one axis.
+    std::vector<double> sorted = values;
+    sigma = std::max(median(sorted) / 1.1774, kSmallest);
+    information.setZero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double u = values[i] / (kTukey * sigma);
+      if (u >= 1.0) continue;
+      const double weight = (1.0 - u * u) * (1.0 - u * u);
+      const auto a = jacobian(rows[i]);
+      information += weight * a.transpose() * a;
+      right += weight * a.transpose() * rows[i].d;
+    }
+    const Eigen::Vector3d tau = information.ldlt().solve(right);
+    if (!tau.allFinite()) return {.agrees = std::vector<bool>(n, false)};
+    const double moved = (tau - result.tau).norm();
+    result.tau = tau;
+    if (moved < 1e-9) break;
+  }
+  double squares = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double e = (jacobian(rows[i]) * result.tau - rows[i].d).norm();
+    result.agrees[i] = e < 3.5 * sigma;
+    if (!result.agrees[i]) continue;
+    ++result.n_agreed;
+    squares += e * e;
+  }
+  result.spread = std::max(std::sqrt(squares / std::max(2.0 * result.n_agreed - 3.0, 1.0)), kSmallest);
+  result.covariance = result.spread * result.spread * information.inverse();
+  return result;
+}
+
+}  // namespace fathom::vision

@@ -1,0 +1,37 @@
+// Points to pixels and pixels to rays, through a lens and a housing's flat window. Frame C: x right, y down, z out.
+// Pixels count from the middle of the first one, as OpenCV does.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "common/model/lens.hpp"
+
+namespace fathom::vision {
+
+/// A line of sight. Without a port it begins in the lens.
+struct Ray {
+  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};      ///< m, in C
+  Eigen::Vector3d direction{Eigen::Vector3d::UnitZ()};  ///< unit, in C
+};
+
+class Projection {
+ public:
+  explicit Projection(const model::Lens& lens) : lens_{lens} {}
+
+  /// Pixel of a point before the camera (z > 0).
+  [[nodiscard]] Eigen::Vector2d pixel(const Eigen::Vector3d& p_C) const;
+  /// Its derivative by p_C [px/m].
+  [[nodiscard]] Eigen::Matrix<double, 2, 3> derivative(const Eigen::Vector3d& p_C) const;
+  /// The line of sight of a pixel, in water where there is a port.
+  [[nodiscard]] Ray ray(const Eigen::Vector2d& pixel) const;
+  /// The same as a point at z = 1, a port's offset neglected: small against what a camera sees.
+  [[nodiscard]] Eigen::Vector2d normalized(const Eigen::Vector2d& pixel) const;
+  [[nodiscard]] bool inside(const Eigen::Vector2d& pixel, double border = 0.0) const;
+  [[nodiscard]] const model::Lens& lens() const { return lens_; }
+
+ private:
+  [[nodiscard]] Eigen::Vector2d undistorted(const Eigen::Vector2d& pixel) const;
+  model::Lens lens_;
+};
+
+}  // namespace fathom::vision

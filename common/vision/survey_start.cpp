@@ -1,0 +1,85 @@
+#include "common/vision/survey_start.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "common/vision/tag_locator.hpp"
+
+namespace fathom::vision {
+namespace {
+
+constexpr int kLeastSightings = 3;  // fewer may be a false tag
+
+// Pose of a tag from one picture whose camera's pose is known: the better of a plane's two.
+std::optional<Pose> place(const Projection& projection, const TagSighting& tag, double size, const Pose& camera) {
+  const double h = 0.5 * size;
+  const std::array<Eigen::Vector3d, 4> corners_T{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+  std::vector<Correspondence> points;
+  for (std::size_t i = 0; i < 4; ++i) points.push_back({corners_T[i], tag.corners[i]});
+  const std::vector<Pose> seen = planar_poses(projection, points);  // the camera in T
+  if (seen.empty()) return {};
+  // Of the two the one that lies flatter: tags lie on a floor.
+  Pose best;
+  double flattest = -2.0;
+  for (const Pose& X_TC : seen) {
+    const Eigen::Matrix3d R_WT = camera.R_WC * X_TC.R_WC.transpose();
+    if (R_WT(2, 2) <= flattest) continue;
+    flattest = R_WT(2, 2);
+    best = {.p_WC = camera.p_WC - R_WT * X_TC.p_WC, .R_WC = R_WT};
+  }
+  return best;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size) {
+  SurveyStart start{.site = site, .surveyed = {}};
+  for (const model::Tag& tag : site.tags) start.surveyed.push_back(tag.id);
+  if (size <= 0.0) return start;
+  std::map<int, int> sightings;
+  for (const View& view : views) {
+    for (const TagSighting& tag : view.tags) sightings[tag.id] += tag.margin >= least_margin(tag.family) ? 1 : 0;
+  }
+  if (start.site.tags.empty() && !sightings.empty()) {
+    const auto most = std::max_element(sightings.begin(), sightings.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    start.site.tags.push_back({.id = most->first, .size = size});
+  }
+  // Each round places the tags that were seen together with known ones.
+  const Projection projection{*site.lens};
+  for (bool more = true; more;) {
+    more = false;
+    std::map<int, std::vector<Pose>> placed;
+    TagLocator locator{start.site, site.lens, {}};
+    for (const View& view : views) {
+      std::vector<TagSighting> tags = view.tags;
+      locator.reset();
+      const auto fix = locator.step(0, tags, std::nullopt);
+      if (!fix) continue;
+      for (const TagSighting& tag : tags) {
+        if (tag.verdict != TagVerdict::kOutsideMap || sightings[tag.id] < kLeastSightings) continue;
+        if (const auto pose = place(projection, tag, size, fix->pose)) placed[tag.id].push_back(*pose);
+      }
+    }
+    for (const auto& [id, poses] : placed) {
+      if (static_cast<int>(poses.size()) < kLeastSightings) continue;
+      model::Tag tag{.id = id, .size = size};
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        std::vector<double> values;
+        for (const Pose& each : poses) values.push_back(each.p_WC[axis]);
+        tag.p_WT[axis] = median(values);
+      }
+      tag.R_WT = poses[poses.size() / 2].R_WC;
+      start.site.tags.push_back(tag);
+      more = true;
+    }
+  }
+  return start;
+}
+
+}  // namespace fathom::vision

@@ -1,0 +1,19 @@
+// Where a survey begins: every tag and every camera placed one after the other, from what is known already.
+#pragma once
+
+#include <vector>
+
+#include "common/vision/calibration.hpp"
+
+namespace fathom::vision {
+
+struct SurveyStart {
+  model::Site site;           ///< with the tags that were not in the map
+  std::vector<int> surveyed;  ///< numbers that were
+};
+
+/// `size`: of tags that are not in the map [m]; 0: they are left out. Without any map the tag that is seen most is the
+/// origin and lies flat.
+[[nodiscard]] SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size);
+
+}  // namespace fathom::vision

@@ -1,0 +1,178 @@
+#include "common/vision/tag_detector.hpp"
+
+extern "C" {
+#include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+#include <apriltag/tag25h9.h>
+#include <apriltag/tag36h10.h>
+#include <apriltag/tag36h11.h>
+#include <apriltag/tagCircle21h7.h>
+#include <apriltag/tagCircle49h12.h>
+#include <apriltag/tagCustom48h12.h>
+#include <apriltag/tagStandard41h12.h>
+#include <apriltag/tagStandard52h13.h>
+}
+
+#include <algorithm>
+#include <cstdlib>
+#include <tuple>
+
+#include "common/base/error.hpp"
+#include "common/vision/corner_fit.hpp"
+
+namespace fathom::vision {
+namespace {
+
+struct Family {
+  const char* name;
+  apriltag_family_t* (*create)();
+  void (*destroy)(apriltag_family_t*);
+  int correctable;  // bits; more than the library's own limit of 2 costs memory and lets false tags pass
+  double least_margin;
+};
+
+constexpr std::array<Family, 9> kFamilies{{
+    {"tag16h5", tag16h5_create, tag16h5_destroy, 0, 11.0},
+    {"tag25h9", tag25h9_create, tag25h9_destroy, 1, 6.0},
+    {"tag36h10", tag36h10_create, tag36h10_destroy, 1, 3.0},
+    {"tag36h11", tag36h11_create, tag36h11_destroy, 2, 3.0},
+    {"tagCircle21h7", tagCircle21h7_create, tagCircle21h7_destroy, 0, 11.0},
+    {"tagCircle49h12", tagCircle49h12_create, tagCircle49h12_destroy, 1, 3.0},
+    {"tagCustom48h12", tagCustom48h12_create, tagCustom48h12_destroy, 1, 3.0},
+    {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy, 1, 3.0},
+    {"tagStandard52h13", tagStandard52h13_create, tagStandard52h13_destroy, 1, 3.0},
+}};
+
+// As the library names them, or with its part before the digits left out: "36h11".
+const Family* family(const std::string& name) {
+  const auto found = std::find_if(kFamilies.begin(), kFamilies.end(), [&](const Family& each) {
+    return each.name == name || std::string{each.name} == "tag" + name;
+  });
+  return found == kFamilies.end() ? nullptr : &*found;
+}
+
+const Family* need_family(const std::string& wanted) {
+  const Family* known = family(wanted);
+  if (known != nullptr) return known;
+  std::string all;
+  for (const Family& each : kFamilies) all += (all.empty() ? "" : ", ") + std::string{each.name};
+  throw InputError("no family of tags is called '" + wanted + "'; known are " + all);
+}
+
+double mean_edge(const std::array<Eigen::Vector2d, 4>& corners) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) sum += (corners[(i + 1) % 4] - corners[i]).norm();
+  return 0.25 * sum;
+}
+
+}  // namespace
+
+const char* name(TagVerdict verdict) {
+  switch (verdict) {
+    case TagVerdict::kAccepted:
+      return "accepted";
+    case TagVerdict::kLowMargin:
+      return "low margin";
+    case TagVerdict::kOutsideMap:
+      return "outside the map";
+    case TagVerdict::kDoubtful:
+      return "twice in the map";
+    case TagVerdict::kTwice:
+      return "seen twice";
+    case TagVerdict::kGeometry:
+      return "inconsistent geometry";
+    case TagVerdict::kDisagree:
+      return "tags disagree";
+    case TagVerdict::kImplausible:
+      return "implausible pose";
+  }
+  return "";
+}
+
+double least_margin(const std::string& name) {
+  const Family* known = family(name);
+  return known == nullptr ? 0.0 : known->least_margin;
+}
+
+struct TagDetector::State {
+  apriltag_detector_t* detector{};
+  std::vector<std::pair<const Family*, apriltag_family_t*>> families;
+  bool refine{};
+  std::vector<TagSighting> found;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (detector != nullptr) apriltag_detector_destroy(detector);
+    for (const auto& [known, made] : families) known->destroy(made);
+  }
+};
+
+TagDetector::TagDetector(const DetectorSettings& settings) : state_{std::make_unique<State>()} {
+  state_->detector = apriltag_detector_create();
+  state_->detector->nthreads = 1;
+  state_->detector->quad_decimate = static_cast<float>(settings.decimation);
+  state_->refine = settings.refine;
+  for (const std::string& wanted : settings.families) {
+    const Family* known = need_family(wanted);
+    const bool twice = std::any_of(state_->families.begin(), state_->families.end(),
+                                   [&](const auto& each) { return each.first == known; });
+    if (twice) continue;
+    state_->families.emplace_back(known, known->create());
+    apriltag_detector_add_family_bits(state_->detector, state_->families.back().second, known->correctable);
+  }
+}
+
+TagDetector::~TagDetector() = default;
+TagDetector::TagDetector(TagDetector&&) noexcept = default;
+TagDetector& TagDetector::operator=(TagDetector&&) noexcept = default;
+
+const std::vector<TagSighting>& TagDetector::step(const cv::Mat& grey) {
+  State& state = *state_;
+  state.found.clear();
+  constexpr int kSmallest = 16;  // px: below, no family's cells are pixels any more, and the library's tiles break
+  if (grey.cols < kSmallest || grey.rows < kSmallest) return state.found;
+  image_u8_t image{grey.cols, grey.rows, static_cast<int32_t>(grey.step), grey.data};
+  zarray_t* detections = apriltag_detector_detect(state.detector, &image);
+  for (int i = 0; i < zarray_size(detections); ++i) {
+    apriltag_detection_t* each = nullptr;
+    zarray_get(detections, i, static_cast<void*>(&each));
+    TagSighting tag;
+    tag.family = each->family->name;
+    tag.id = each->id;
+    tag.hamming = each->hamming;
+    tag.margin = static_cast<double>(each->decision_margin);
+    // The library counts from the outer corner of the first pixel.
+    for (std::size_t k = 0; k < 4; ++k) tag.corners[k] = {each->p[k][0] - 0.5, each->p[k][1] - 0.5};
+    tag.edge = mean_edge(tag.corners);
+    if (state.refine) fit_corners(grey, each->family->reversed_border, tag.corners);
+    state.found.push_back(tag);
+  }
+  apriltag_detections_destroy(detections);
+  std::sort(state.found.begin(), state.found.end(), [](const TagSighting& a, const TagSighting& b) {
+    return std::tie(a.family, a.id, b.margin) < std::tie(b.family, b.id, a.margin);
+  });
+  return state.found;
+}
+
+TagCells tag_cells(const std::string& name, int id) {
+  const Family* known = need_family(name);
+  apriltag_family_t* made = known->create();
+  TagCells tag{.border = made->width_at_border};
+  if (id < 0 || id >= static_cast<int>(made->ncodes)) {
+    known->destroy(made);
+    throw InputError(std::string{known->name} + " has no tag of number " + std::to_string(id));
+  }
+  image_u8_t* image = apriltag_to_image(made, id);
+  tag.cells.create(image->height, image->width, CV_8UC1);
+  for (int y = 0; y < image->height; ++y) {
+    std::copy_n(image->buf + y * image->stride, image->width, tag.cells.ptr<std::uint8_t>(y));
+  }
+  std::free(image->buf);  // the library exports no destructor of it
+  std::free(image);
+  known->destroy(made);
+  return tag;
+}
+
+}  // namespace fathom::vision

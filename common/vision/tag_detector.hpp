@@ -1,0 +1,73 @@
+// Tags in a picture: found by the AprilTag library at reduced resolution, their corners fitted at full resolution.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+namespace fathom::vision {
+
+/// What became of a tag.
+enum class TagVerdict {
+  kAccepted,
+  kLowMargin,    ///< nobody else says it must be there
+  kOutsideMap,   ///< the site has no such tag
+  kDoubtful,     ///< the site has two of this number
+  kTwice,        ///< seen twice in one picture, and this is not the one that fits
+  kGeometry,     ///< not where the others say it must be
+  kDisagree,     ///< two or more, each alone possible, and nothing says which is right
+  kImplausible,  ///< alone, and far from where the camera was just before
+};
+[[nodiscard]] const char* name(TagVerdict verdict);
+
+/// One tag in one picture.
+struct TagSighting {
+  std::string family;
+  int id{};
+  int hamming{};    ///< bits that were corrected
+  double margin{};  ///< decision margin of the library, in brightness
+  /// px, middle of the first pixel is (0, 0); in the order of the library: T's (-x, +y), (+x, +y), (+x, -y), (-x, -y).
+  std::array<Eigen::Vector2d, 4> corners;
+  double edge{};  ///< px, mean length of the edges
+  TagVerdict verdict{TagVerdict::kAccepted};
+  double reprojection{-1.0};  ///< px, root mean square over the corners; negative where no pose is known
+};
+
+struct DetectorSettings {
+  std::vector<std::string> families{"tag36h11"};
+  double decimation{2.0};  ///< search in pictures so many times smaller; corners are fitted at full resolution
+  bool refine{true};       ///< fit the edges anew at full resolution
+};
+
+class TagDetector {
+ public:
+  /// InputError for a family that the library does not know.
+  explicit TagDetector(const DetectorSettings& settings);
+  ~TagDetector();
+  TagDetector(TagDetector&&) noexcept;
+  TagDetector& operator=(TagDetector&&) noexcept;
+
+  /// All tags of a grey picture, in the order of family and number. The reference is good until the next call.
+  const std::vector<TagSighting>& step(const cv::Mat& grey);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Decision margin that a tag of this family needs when nothing else supports it: random squares pass for tags of weak
+/// families.
+[[nodiscard]] double least_margin(const std::string& family);
+
+/// A tag as it is printed: one pixel per cell, 0 or 255, with what of a white border belongs to the family.
+struct TagCells {
+  cv::Mat cells;
+  int border{};  ///< cells along the edge of the square whose corners are detected
+};
+/// InputError for a family or a number that there is none of.
+[[nodiscard]] TagCells tag_cells(const std::string& family, int id);
+
+}  // namespace fathom::vision

@@ -1,0 +1,282 @@
+#include "common/vision/tag_locator.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::vision {
+namespace {
+
+constexpr int kOutvoted = 5;  // lone tags in a row that contradict the memory: the memory is wrong
+
+std::array<Eigen::Vector3d, 4> world_corners(const model::Tag& tag) {
+  const double h = 0.5 * tag.size;
+  const std::array<Eigen::Vector3d, 4> own{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+  std::array<Eigen::Vector3d, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = tag.p_WT + tag.R_WT * own[i];
+  return corners;
+}
+
+}  // namespace
+
+TagLocator::TagLocator(const model::Site& site, const std::optional<model::Lens>& lens, const LocatorSettings& settings)
+    : site_{site}, settings_{settings} {
+  if (lens) projection_.emplace(*lens);
+}
+
+void TagLocator::reset() {
+  last_.reset();
+  implausible_ = 0;
+}
+
+bool TagLocator::recent(Utime utime) const {
+  return last_ && utime >= last_utime_ && seconds_between(last_utime_, utime) <= settings_.memory;
+}
+
+void TagLocator::judge_by_map(std::vector<TagSighting>& tags) {
+  candidates_.clear();
+  for (TagSighting& tag : tags) {
+    tag.reprojection = -1.0;
+    const bool clear = tag.margin >= site_.search.least_margin.value_or(least_margin(tag.family));
+    const bool doubtful =
+        std::find(site_.doubtful_tags.begin(), site_.doubtful_tags.end(), tag.id) != site_.doubtful_tags.end();
+    // A map's numbers are those of the first family.
+    const std::string& first = site_.search.families.front();
+    const bool of_map = tag.family == first || tag.family == "tag" + first;
+    const model::Tag* known = of_map ? site_.tag(tag.id) : nullptr;
+    if (doubtful) {
+      tag.verdict = TagVerdict::kDoubtful;
+    } else if (known == nullptr && !site_.tags.empty()) {
+      tag.verdict = TagVerdict::kOutsideMap;
+    } else if (known == nullptr || !projection_) {
+      tag.verdict = clear ? TagVerdict::kAccepted : TagVerdict::kLowMargin;
+    } else {
+      Candidate candidate{.tag = &tag, .clear = clear};
+      const auto corners = world_corners(*known);
+      for (std::size_t i = 0; i < 4; ++i) candidate.corners.push_back({corners[i], tag.corners[i]});
+      candidates_.push_back(std::move(candidate));
+    }
+  }
+}
+
+double TagLocator::error(const Candidate& candidate, const Pose& pose) const {
+  double squares = 0.0;
+  for (const Correspondence& each : candidate.corners) {
+    const Eigen::Vector3d p_C = pose.R_WC.transpose() * (each.p_W - pose.p_WC);
+    if (!(p_C.z() > 1e-3)) return 1e9;
+    squares += (projection_->pixel(p_C) - each.pixel).squaredNorm();
+  }
+  return std::sqrt(0.25 * squares);
+}
+
+double TagLocator::gate(const Candidate& candidate, const Pose& pose) const {
+  const double distance = (candidate.corners.front().p_W - pose.p_WC).norm();
+  const double by_map = projection_->lens().focal() * site_.search.map_sigma / std::max(distance, 1e-3);
+  const double sigma = std::sqrt(2.0) * std::hypot(settings_.corner_sigma, by_map);
+  return std::min(settings_.gate * sigma, 0.4 * candidate.tag->edge);
+}
+
+std::vector<Correspondence> TagLocator::corners_of(const std::vector<bool>& chosen) const {
+  std::vector<Correspondence> points;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (chosen[i]) points.insert(points.end(), candidates_[i].corners.begin(), candidates_[i].corners.end());
+  }
+  return points;
+}
+
+// From a pose that explains one tag to the largest set of tags that one pose explains: first roughly, since the tilt of
+// one small tag says little of the next one's place, then within the gate. Of two with one number the nearer counts.
+std::optional<TagLocator::Consensus> TagLocator::grow(const Pose& seed) const {
+  Consensus found;
+  found.fitted.pose = seed;
+  constexpr std::array<double, 4> kRough{1.0, 0.5, 0.0, 0.0};  // in edges; 0: the gate itself
+  for (const double rough : kRough) {
+    found.agrees.assign(candidates_.size(), false);
+    found.n = 0;
+    found.margin = 0.0;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const double e = error(candidates_[i], found.fitted.pose);
+      const double limit = std::max(gate(candidates_[i], found.fitted.pose), rough * candidates_[i].tag->edge);
+      if (e > limit) continue;
+      const bool rival = std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
+        return each.tag != candidates_[i].tag && each.tag->id == candidates_[i].tag->id &&
+               error(each, found.fitted.pose) < e;
+      });
+      if (rival) continue;
+      found.agrees[i] = true;
+      ++found.n;
+      found.margin += candidates_[i].tag->margin;
+    }
+    if (found.n == 0) return {};
+    const auto fitted = fit_pose(*projection_, corners_of(found.agrees), found.fitted.pose,
+                                 rough > 0.0 ? 0.0 : 3.0 * settings_.corner_sigma);
+    if (!fitted) return {};
+    found.fitted = *fitted;
+  }
+  return found;
+}
+
+std::optional<TagLocator::Consensus> TagLocator::best_consensus(Utime utime) const {
+  std::optional<Consensus> best;
+  const auto try_seed = [&](const Pose& seed) {
+    const auto found = grow(seed);
+    if (!found) return;
+    const bool better =
+        !best || found->n > best->n ||
+        (found->n == best->n && (found->margin > best->margin + 1e-9 ||
+                                 (found->margin > best->margin - 1e-9 && found->fitted.rms < best->fitted.rms - 1e-9)));
+    if (better) best = found;
+  };
+  const auto complete = [&] { return best && best->n == static_cast<int>(candidates_.size()); };
+  if (recent(utime)) try_seed(*last_);
+  if (complete() && best->n > 1) return best;
+  for (const Candidate& each : candidates_) {
+    for (const Pose& pose : planar_poses(*projection_, each.corners)) try_seed(pose);
+    if (complete() && best->n > 2) return best;
+  }
+  return best;
+}
+
+bool TagLocator::alone_is_plausible(Utime utime, const Pose& pose, const std::optional<Eigen::Vector3d>& down_C) {
+  constexpr double kSteady = 0.3;        // m: what a lone tag's pose may err
+  constexpr double kWrongSideUp = 0.45;  // rad
+  bool plausible = true;
+  if (recent(utime)) {
+    const double reach = kSteady + settings_.largest_speed * seconds_between(last_utime_, utime);
+    plausible = (pose.p_WC - last_->p_WC).norm() < reach;
+  }
+  if (down_C) plausible = plausible && std::acos(std::clamp(down_C->dot(pose.R_WC.row(2)), -1.0, 1.0)) < kWrongSideUp;
+  implausible_ = plausible ? 0 : implausible_ + 1;
+  return plausible || (implausible_ > kOutvoted && !down_C);
+}
+
+// A plane's second pose: its normal mirrored at the line of sight. Both explain the corners when the picture's
+// perspective is smaller than the corners' error. Gravity, or a pose known just before, decides where it can.
+void TagLocator::look_for_second(Utime utime, const std::vector<Correspondence>& points,
+                                 const std::optional<Eigen::Vector3d>& down_C, FittedPose& fitted,
+                                 CameraFix& fix) const {
+  constexpr double kSame = 0.035;    // rad: nearer than that they are one
+  constexpr double kDecided = 16.0;  // difference of squared errors in variances: odds of 3000 to 1
+  const double dof = std::max(2.0 * static_cast<double>(points.size()) - 6.0, 1.0);
+  const double scale = 3.0 * settings_.corner_sigma;
+  const Eigen::Vector3d normal = (points[1].p_W - points[0].p_W).cross(points[2].p_W - points[1].p_W).normalized();
+  const auto second = fit_pose(*projection_, points, mirrored(fitted.pose, points, normal), scale);
+  if (!second) return;
+  const auto tilt = [](const Pose& a, const Eigen::Vector3d& down) {
+    return std::acos(std::clamp(down.dot(a.R_WC.row(2)), -1.0, 1.0));
+  };
+  const Eigen::Vector3d first_down = fitted.pose.R_WC.row(2);
+  if (tilt(second->pose, first_down) < kSame) return;
+  const double variance =
+      std::max(settings_.corner_sigma * settings_.corner_sigma, std::min(fitted.cost, second->cost) / dof);
+  if (std::abs(second->cost - fitted.cost) > kDecided * variance) {
+    if (second->cost < fitted.cost) fitted = *second;
+    return;
+  }
+  std::optional<Eigen::Vector3d> down = down_C;
+  double sigma = settings_.attitude_sigma;
+  if (!down && recent(utime)) {
+    down = last_->R_WC.row(2);
+    sigma += seconds_between(last_utime_, utime) * 0.5;  // rad/s that the camera may have tilted with
+  }
+  if (down) {
+    const double one = tilt(fitted.pose, *down), two = tilt(second->pose, *down);
+    if (std::abs(one - two) > 2.0 * sigma) {
+      if (two < one) fitted = *second;
+      return;
+    }
+  }
+  fix.ambiguous = true;
+  fix.other = second->pose;
+  if (second->cost < fitted.cost) {
+    fix.other = fitted.pose;
+    fitted = *second;
+  }
+}
+
+std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>& tags,
+                                          const std::optional<Eigen::Vector3d>& down_C) {
+  judge_by_map(tags);
+  if (candidates_.empty()) return {};
+  auto best = best_consensus(utime);
+  for (Candidate& each : candidates_) {
+    each.tag->verdict = each.clear ? TagVerdict::kGeometry : TagVerdict::kLowMargin;
+    if (best) each.tag->reprojection = error(each, best->fitted.pose);
+  }
+  if (!best) return {};
+  const std::size_t n = candidates_.size();
+  const auto first =
+      static_cast<std::size_t>(std::find(best->agrees.begin(), best->agrees.end(), true) - best->agrees.begin());
+  if (best->n == 1) {
+    const auto clear = std::count_if(candidates_.begin(), candidates_.end(), [](const auto& c) { return c.clear; });
+    if (!candidates_[first].clear && !recent(utime)) return {};
+    if (clear > 1 && !recent(utime)) {
+      for (Candidate& each : candidates_) {
+        if (each.clear) each.tag->verdict = TagVerdict::kDisagree;
+      }
+      return {};
+    }
+  }
+  CameraFix fix;
+  const std::vector<Correspondence> points = corners_of(best->agrees);
+  look_for_second(utime, points, down_C, best->fitted, fix);
+  if (best->n == 1 && !alone_is_plausible(utime, best->fitted.pose, down_C)) {
+    candidates_[first].tag->verdict = TagVerdict::kImplausible;
+    return {};
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    Candidate& each = candidates_[i];
+    each.tag->reprojection = error(each, best->fitted.pose);
+    if (best->agrees[i]) {
+      each.tag->verdict = TagVerdict::kAccepted;
+      continue;
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      if (best->agrees[k] && candidates_[k].tag->id == each.tag->id) each.tag->verdict = TagVerdict::kTwice;
+    }
+  }
+  const double dof = 2.0 * static_cast<double>(points.size()) - 6.0;
+  const double variance =
+      std::max(settings_.corner_sigma * settings_.corner_sigma, best->n > 1 ? best->fitted.cost / dof : 0.0);
+  fix.pose = best->fitted.pose;
+  fix.rms = best->fitted.rms;
+  fix.n_tags = best->n;
+  fix.covariance = variance * best->fitted.information.inverse();
+  if (!fix.covariance.allFinite()) return {};
+  if (!fix.ambiguous) {
+    last_ = fix.pose;
+    last_utime_ = utime;
+  }
+  return fix;
+}
+
+std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> TagLocator::missing(
+    const CameraFix& fix, const std::vector<TagSighting>& seen) const {
+  constexpr double kBorder = -5.0, kSteepest = 0.3;  // px: the prediction errs, at the picture's edge too
+  std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> result;
+  for (const model::Tag& tag : site_.tags) {
+    const bool known =
+        std::any_of(seen.begin(), seen.end(), [&](const TagSighting& each) { return each.id == tag.id; });
+    const Eigen::Vector3d to = tag.p_WT - fix.pose.p_WC;
+    if (known || to.dot(tag.R_WT.col(2)) < kSteepest * to.norm()) continue;
+    std::array<Eigen::Vector2d, 4> corners;
+    bool whole = true;
+    const auto points = world_corners(tag);
+    for (std::size_t i = 0; i < 4 && whole; ++i) {
+      const Eigen::Vector3d p_C = fix.pose.R_WC.transpose() * (points[i] - fix.pose.p_WC);
+      whole = p_C.z() > 1e-2;
+      if (!whole) break;
+      corners[i] = projection_->pixel(p_C);
+      whole = projection_->inside(corners[i], kBorder);
+    }
+    if (whole) result.emplace_back(tag.id, corners);
+  }
+  return result;
+}
+
+std::pair<Eigen::Vector3d, Eigen::Matrix3d> TagLocator::in_camera(const CameraFix& fix, int id) const {
+  const model::Tag& tag = *site_.tag(id);
+  return {fix.pose.R_WC.transpose() * (tag.p_WT - fix.pose.p_WC), fix.pose.R_WC.transpose() * tag.R_WT};
+}
+
+}  // namespace fathom::vision

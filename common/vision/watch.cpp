@@ -1,0 +1,98 @@
+#include "common/vision/watch.hpp"
+
+#include "common/vision/drawing.hpp"
+#include "common/vision/jpeg.hpp"
+
+namespace fathom::vision {
+namespace {
+
+FrontEndSettings with_families(FrontEndSettings settings, const model::Site& site) {
+  settings.detector.families = site.search.families;
+  return settings;
+}
+
+std::string doubts(const model::Site& site) {
+  std::string numbers;
+  for (const int id : site.doubtful_tags) numbers += (numbers.empty() ? "" : ", ") + std::to_string(id);
+  return numbers.empty() ? "" : "the site's map has two tags of number " + numbers + ": neither is used";
+}
+
+}  // namespace
+
+Watch::Watch(const model::Site& site, const model::CameraMount& camera, const std::optional<model::LaserMount>& laser,
+             FrontEndSettings settings)
+    : camera_{camera},
+      map_complaint_{doubts(site)},
+      front_end_{site, camera.lens, laser, with_families(std::move(settings), site)},
+      complaint_{map_complaint_} {}
+
+bool Watch::see(const Camera& sample) {
+  ++counts_["pictures"];
+  const bool colour = front_end_.laser() != nullptr;
+  std::string problem = decode_jpeg(sample.jpeg, colour, picture_.grey, picture_.bgr);
+  readable_ = problem.empty();
+  if (!readable_) {
+    ++counts_["corrupt"];
+    complaint_ = problem + "; see the camera's line and driver";
+    front_end_.skip();
+    return false;
+  }
+  if (sample.utime <= last_) {
+    ++counts_["out of order"];
+    front_end_.skip();
+    return true;
+  }
+  std::optional<Eigen::Matrix3d> R_WC, turned;
+  const Eigen::Matrix3d& R_BC = camera_.mount.R_BS;
+  if (const auto turn = attitudes_.turn(tracked_, sample.utime))
+    turned = R_BC.transpose() * turn->toRotationMatrix() * R_BC;
+  last_ = sample.utime;
+  picture_.utime = sample.utime;
+  if (const auto q_WB = attitudes_.at(sample.utime)) R_WC = q_WB->toRotationMatrix() * R_BC;
+  const Sight& sight = front_end_.step(picture_, R_WC, turned);
+  tracked_ = sample.utime;
+  complaint_ = map_complaint_;
+  if (sight.picture == PictureState::kOtherSize) {
+    complaint_ = "pictures have " + std::to_string(picture_.grey.cols) + " x " + std::to_string(picture_.grey.rows) +
+                 " pixels, camera '" + camera_.name + "' of the vehicle file " + std::to_string(camera_.width) + " x " +
+                 std::to_string(camera_.height);
+  } else if (sight.picture != PictureState::kGood) {
+    complaint_ = std::string{"pictures of camera '"} + camera_.name + "' are " + name(sight.picture);
+  }
+  count();
+  return true;
+}
+
+void Watch::count() {
+  const Sight& sight = front_end_.sight();
+  if (sight.picture != PictureState::kGood) ++counts_[name(sight.picture)];
+  for (const TagSighting& tag : sight.tags) ++counts_[std::string{"tags "} + name(tag.verdict)];
+  if (sight.fix) ++counts_[sight.fix->ambiguous ? "poses ambiguous" : "poses"];
+  ++counts_[std::string{"flow "} + name(sight.flow.state)];
+  if (sight.laser) ++counts_[std::string{"laser "} + name(sight.laser->state)];
+}
+
+void Watch::reset() {
+  front_end_.reset();
+  attitudes_.reset();
+  last_ = 0;
+  tracked_ = 0;
+}
+
+std::optional<Camera> Watch::drawing(int quality) const {
+  if (!readable_) return {};
+  const cv::Mat drawn = draw(picture_, front_end_);
+  return Camera{.utime = picture_.utime,
+                .camera = camera_.name,
+                .width = drawn.cols,
+                .height = drawn.rows,
+                .jpeg = encode_jpeg(drawn, quality)};
+}
+
+std::string Watch::counts() const {
+  std::string text;
+  for (const auto& [what, n] : counts_) text += (text.empty() ? "" : ", ") + what + " " + std::to_string(n);
+  return text;
+}
+
+}  // namespace fathom::vision

@@ -1,0 +1,138 @@
+// fathom calibrate: lens and map of tags from a sequence of pictures, by bundle adjustment; what is left of every
+// corner before and after, in numbers and in a picture.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/model/site.hpp"
+#include "common/pictures/source.hpp"
+#include "common/vision/calibration.hpp"
+#include "common/vision/calibration_drawing.hpp"
+#include "processes/pictures/commands.hpp"
+#include "processes/pictures/site_file.hpp"
+
+namespace fathom::pictures {
+namespace {
+
+struct Options {
+  std::string source, site, out, picture, what{"all"};
+  int distortion{2}, every{1}, held_out{0};
+  double size{0.0}, map_sigma{0.0}, focal{0.0};
+  bool not_flat{false};
+  std::vector<std::string> families;
+};
+
+std::vector<vision::View> look(const Options& options, model::Site& site) {
+  vision::TagDetector detector{{.families = site.search.families, .decimation = 1.0}};
+  const auto source = open(options.source, 0.0);
+  std::vector<vision::View> views;
+  int count = 0;
+  while (auto frame = source->next()) {
+    if (count++ % options.every != 0) continue;
+    if (!frame->problem.empty()) {
+      std::fprintf(stderr, "fathom: %s; the picture is left out\n", frame->problem.c_str());
+      continue;
+    }
+    const cv::Mat grey = in_grey(frame->picture);
+    if (!site.lens) {
+      if (options.focal <= 0.0) {
+        throw InputError((options.site.empty() ? options.source : options.site) +
+                         ": no lens to begin with; state 'camera' in the site's file, or --focal in pixels");
+      }
+      site.lens = model::Lens{.width = grey.cols, .height = grey.rows, .fx = options.focal, .fy = options.focal};
+      site.lens->cx = 0.5 * (grey.cols - 1);
+      site.lens->cy = 0.5 * (grey.rows - 1);
+    }
+    if (grey.cols != site.lens->width || grey.rows != site.lens->height) {
+      throw InputError(frame->name + ": " + std::to_string(grey.cols) + " x " + std::to_string(grey.rows) +
+                       " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
+                       std::to_string(site.lens->height));
+    }
+    views.push_back({frame->name, detector.step(grey)});
+  }
+  return views;
+}
+
+void print(const char* what, const vision::Reprojection& error) {
+  std::printf("%-30s median %.3f px, 95 %% below %.3f px (%zu pictures with two tags or more)\n", what, error.median,
+              error.high, error.per_view.size());
+}
+
+void run(const Options& options) {
+  model::Site site;
+  if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
+  if (!options.families.empty()) site.search.families = options.families;
+  if (site.name.empty()) site.name = "surveyed";
+  std::vector<vision::View> views = look(options, site), held;
+  if (options.held_out > 1) {
+    std::vector<vision::View> kept;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const bool out = i % static_cast<std::size_t>(options.held_out) == 0;
+      (out ? held : kept).push_back(std::move(views[i]));
+    }
+    views = std::move(kept);
+  }
+  vision::CalibrationSettings settings{.lens = options.what != "map",
+                                       .distortion = options.distortion,
+                                       .map = options.what != "lens",
+                                       .flat = !options.not_flat,
+                                       .map_sigma = options.map_sigma > 0.0 ? options.map_sigma : site.search.map_sigma,
+                                       .size = options.size};
+  const vision::Calibration result = vision::calibrate(site, views, settings);
+  std::printf("%d pictures, %d corners; %s\n", result.n_views, result.n_corners,
+              result.converged ? "converged" : ("not converged: " + result.message).c_str());
+  print("before", result.before);
+  print("after", result.after);
+  if (!held.empty()) {
+    print("held out, before", vision::reproject(site, held));
+    print("held out, after", vision::reproject(result.site, held));
+  }
+  const model::Lens& lens = *result.site.lens;
+  std::printf("focal %.2f %.2f px (sigma %.2f %.2f), centre %.2f %.2f px (sigma %.2f %.2f)\n", lens.fx, lens.fy,
+              result.lens_sigma[0], result.lens_sigma[1], lens.cx, lens.cy, result.lens_sigma[2], result.lens_sigma[3]);
+  const double moved = std::abs(lens.focal() / site.lens->focal() - 1.0);
+  if (settings.lens && (moved > 0.25 || result.lens_sigma[0] > 0.1 * lens.fx)) {
+    std::printf("these pictures hardly determine the focal length: add some from other distances and tilts\n");
+  }
+  std::printf("distortion %.5f %.5f %.5f %.5f %.5f\n", lens.distortion[0], lens.distortion[1], lens.distortion[2],
+              lens.distortion[3], lens.distortion[4]);
+  for (const model::Tag& tag : result.site.tags) {
+    const model::Tag* was = site.tag(tag.id);
+    std::printf("tag %-4d %9.4f %9.4f %9.4f m", tag.id, tag.p_WT.x(), tag.p_WT.y(), tag.p_WT.z());
+    if (was != nullptr) std::printf(", moved %.1f mm", 1e3 * (tag.p_WT - was->p_WT).norm());
+    std::printf("\n");
+  }
+  write_site(options.out, result, options.source);
+  if (!options.picture.empty()) write(options.picture, vision::draw_calibration(result, site));
+  std::printf("written: %s%s%s\n", options.out.c_str(), options.picture.empty() ? "" : ", ", options.picture.c_str());
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("calibrate", "lens and map of tags from a sequence of pictures");
+  command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
+  command->add_option("--site", options->site, "what is known: tags or board, a lens to begin with");
+  command->add_option("--out", options->out, "site file to write: lens and tags as adjusted")->required();
+  command->add_option("--picture", options->picture, "PNG: what is left of every corner, and the map");
+  command
+      ->add_option("--adjust", options->what, "all; lens: the tags are a board, known exactly; map: the lens is known")
+      ->check(CLI::IsMember({"all", "lens", "map"}));
+  command->add_option("--distortion", options->distortion, "coefficients that are adjusted: 0, 2, 4 or 5")
+      ->check(CLI::IsMember({0, 2, 4, 5}));
+  command->add_option("--size", options->size, "m, edge of tags that are not in the map; left out: they stay outside")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--map-sigma", options->map_sigma, "m, how well the map is known; left out: the site's")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--focal", options->focal, "px, a focal length to begin with")->check(CLI::PositiveNumber);
+  command->add_option("--every", options->every, "use every n-th picture")->check(CLI::PositiveNumber);
+  command->add_option("--hold-out", options->held_out, "keep every n-th picture back and judge by it");
+  command->add_option("--families", options->families, "families of tags in place of the site's");
+  command->add_flag("--not-flat", options->not_flat, "the tags do not lie in one plane");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::pictures

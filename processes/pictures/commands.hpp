@@ -1,0 +1,14 @@
+// The subcommands of `fathom` that read pictures. They live in a program of their own beside it, which `fathom` starts:
+// OpenCV's readers of pictures and videos load some 200 libraries, and the other commands shall not wait for them.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace fathom::pictures {
+
+void add_track(CLI::App& app);
+void add_calibrate(CLI::App& app);
+
+}  // namespace fathom::pictures

@@ -1,0 +1,41 @@
+#include "processes/simulator/darkroom.hpp"
+
+#include "common/base/config.hpp"
+#include "common/vision/jpeg.hpp"
+
+namespace fathom::simulator {
+namespace {
+
+constexpr int kQuality = 90;
+
+// The keys are read whether pictures are wanted or not: none shall count as unknown.
+vision::RenderSettings look_of(const Config& config) {
+  const Config sensors = config.section("sensors");
+  if (!sensors.has("camera")) return {};
+  const Config camera = sensors.section("camera");
+  return camera.has("look") ? vision::RenderSettings::from(camera.section("look")) : vision::RenderSettings{};
+}
+
+}  // namespace
+
+Darkroom::Darkroom(const model::Vehicle& vehicle, const model::Site& site, const Config& config,
+                   const simulation::Setup& setup)
+    : origin_{setup.origin} {
+  const vision::RenderSettings look = look_of(config);
+  if (!setup.pictures) return;
+  const model::CameraMount& camera = vehicle.mounts.cameras.front();
+  const auto& laser = vehicle.mounts.laser;
+  renderer_.emplace(site, camera.lens, laser && laser->camera == camera.name ? laser : std::nullopt, look, setup.seed);
+}
+
+Camera Darkroom::develop(const simulation::Exposure& exposure) {
+  const double t = seconds_between(origin_, exposure.utime);
+  const cv::Mat& picture = renderer_->step(t, {.p_WC = exposure.p_WC, .R_WC = exposure.R_WC});
+  return {.utime = exposure.utime,
+          .camera = exposure.camera,
+          .width = picture.cols,
+          .height = picture.rows,
+          .jpeg = vision::encode_jpeg(picture, kQuality)};
+}
+
+}  // namespace fathom::simulator

@@ -1,0 +1,137 @@
+// Optical flow and the laser's dot in rendered pictures, where the truth is known.
+#include <doctest/doctest.h>
+
+#include "common/vision/plane_flow.hpp"
+#include "test/common/vision/scene.hpp"
+
+namespace fathom::vision {
+namespace {
+
+using namespace test_scene;
+
+constexpr double kPeriod = 1.0 / 30.0;
+constexpr double kRate = 0.012;  // 1/s: 0.2 px of 540 in a thirtieth second
+constexpr double kDivergence = 0.03;
+constexpr double kRange = 0.01;  // of the range: 0.25 px of the dot at 1.2 m on a baseline of 6 cm
+
+/// The camera on its way: velocity [m/s, in W] and turning rate [rad/s, in C].
+struct Way {
+  Eigen::Vector3d v_W, w_C;
+};
+
+Pose along(const Pose& start, const Way& way, double t) {
+  return {.p_WC = start.p_WC + t * way.v_W,
+          .R_WC = start.R_WC * quaternion_from_rotation_vector(t * way.w_C).toRotationMatrix()};
+}
+
+}  // namespace
+
+TEST_CASE("flow: velocity over distance in all three directions while the camera turns and looks aslant") {
+  const model::Site place = site();
+  const std::vector<Way> ways{{{0.3, -0.2, 0.0}, {0.0, 0.0, 0.0}},
+                              {{0.0, 0.0, 0.2}, {0.0, 0.0, 0.0}},
+                              {{0.1, 0.15, -0.1}, {0.3, -0.2, 0.6}},
+                              {{0.0, 0.0, 0.0}, {0.5, 0.4, -0.8}}};
+  for (const double reduction : {1.0, 2.0}) {
+    for (const Way& way : ways) {
+      CAPTURE(way.v_W.transpose());
+      CAPTURE(reduction);
+      RenderSettings look;
+      look.caustics = 0.0;
+      Renderer renderer{place, lens(), std::nullopt, look, 8};
+      FlowTracker tracker{lens(), {.reduction = reduction}};
+      const Pose start = pose({0.1, 0.0, 0.4}, 0.15, -0.1, 0.5);
+      int valid = 0;
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero(), wanted = Eigen::Vector3d::Zero();
+      constexpr int kPictures = 8;
+      for (int i = 0; i < kPictures; ++i) {
+        const Pose now = along(start, way, i * kPeriod), before = along(start, way, (i - 1) * kPeriod);
+        const Eigen::Vector3d normal_C = now.R_WC.row(2);
+        const Eigen::Matrix3d R_01 = before.R_WC.transpose() * now.R_WC;
+        const Picture seen = picture(renderer, i * kPeriod, now);
+        const Flow flow = tracker.step(seen.utime, seen.grey, R_01, normal_C);
+        if (i == 0) {
+          CHECK(flow.state == FlowState::kFirst);
+          continue;
+        }
+        REQUIRE(flow.state == FlowState::kValid);
+        const Pose middle = along(start, way, (i - 0.5) * kPeriod);
+        const double z = (place.floor - middle.p_WC.z()) / middle.R_WC(2, 2);
+        sum += flow.rate;
+        wanted += middle.R_WC.transpose() * way.v_W / z;
+        ++valid;
+      }
+      const Eigen::Vector3d error = (sum - wanted) / valid;
+      CHECK(error.head<2>().norm() < kRate);
+      CHECK(std::abs(error.z()) < kDivergence);
+    }
+  }
+}
+
+TEST_CASE("flow: no valid flow without texture, rotation, or after a pause") {
+  FlowTracker tracker{lens(), {}};
+  const cv::Mat blank(480, 640, CV_8UC1, cv::Scalar{80});
+  const Eigen::Matrix3d still = Eigen::Matrix3d::Identity();
+  CHECK(tracker.step(0, blank, still, std::nullopt).state == FlowState::kFirst);
+  CHECK(tracker.step(33'000, blank, still, std::nullopt).state == FlowState::kNoTexture);
+  Renderer renderer{site(), lens(), std::nullopt, {}, 9};
+  const Pose at = pose({0.1, 0.0, 0.4});
+  tracker.reset();
+  CHECK(tracker.step(0, picture(renderer, 0.0, at).grey, still, std::nullopt).state == FlowState::kFirst);
+  CHECK(tracker.step(33'000, picture(renderer, 0.033, at).grey, std::nullopt, std::nullopt).state ==
+        FlowState::kNoRotation);
+  CHECK(tracker.step(2'000'000, picture(renderer, 2.0, at).grey, still, std::nullopt).state == FlowState::kPause);
+}
+
+TEST_CASE("flow: a third of the tracks going elsewhere does not spoil the rest") {
+  std::vector<FlowRow> rows;
+  const Eigen::Vector3d tau{0.02, -0.01, 0.015};
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector2d x{0.1 * (i % 8) - 0.35, 0.08 * (i / 8) - 0.3};
+    const double s = 1.0 + 0.1 * x.x();
+    // Exact by geometry: a point at depth 1 / s moves to where the shifted camera sees it.
+    const Eigen::Vector2d y = (x / s - tau.head<2>()) / (1.0 / s - tau.z());
+    Eigen::Vector2d d = y - x;
+    if (i % 3 == 0) d += Eigen::Vector2d{0.03, 0.02};
+    rows.push_back({.d = d, .y = x + d, .s = s});
+  }
+  const PlaneFlow flow = fit_plane_flow(rows);
+  CHECK((flow.tau - tau).norm() < 1e-6);
+  CHECK(flow.n_agreed == 40);
+}
+
+TEST_CASE("laser: the dot's range is the truth, at every distance, tilted, over tags and through caustics") {
+  Renderer renderer{site(), lens(), laser(), {.caustics = 0.4}, 10};
+  LaserFinder finder{lens(), laser(), {}};
+  int found = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose at = pose({0.02 * i - 0.6, 0.013 * i - 0.4, 0.1 + 0.015 * i}, 0.002 * i, 0.1 - 0.003 * i, 0.1 * i);
+    const auto truth = renderer.dot(at);
+    const LaserDot dot = finder.step(renderer.step(0.1 * i, at));
+    if (!truth) continue;
+    if (dot.state != LaserState::kFound) continue;
+    ++found;
+    CAPTURE(i);
+    CHECK(std::abs(dot.p_CL.z() - truth->z()) < std::max(kRange * truth->z(), 4.0 * dot.sigma_range));
+  }
+  CHECK(found >= 54);
+}
+
+TEST_CASE("laser: nothing is found where there is no dot, a second one, or no colour") {
+  Renderer dark{site(), lens(), std::nullopt, {.caustics = 0.4}, 11};
+  LaserFinder finder{lens(), laser(), {}};
+  for (int i = 0; i < 60; ++i) {
+    const Pose at = pose({0.02 * i - 0.6, 0.013 * i - 0.4, 0.1 + 0.015 * i}, 0.002 * i, 0.1 - 0.003 * i, 0.1 * i);
+    CHECK(finder.step(dark.step(0.1 * i, at)).state != LaserState::kFound);
+  }
+  Renderer renderer{site(), lens(), laser(), {}, 12};
+  const Pose at = pose({0.1, 0.1, 0.5});
+  cv::Mat two = renderer.step(0.0, at).clone();
+  const Eigen::Vector2d own = Projection{lens()}.pixel(*renderer.dot(at));
+  const int u = static_cast<int>(own.x()), v = static_cast<int>(own.y());
+  two(cv::Rect{u - 8, v - 8, 17, 17}).copyTo(two(cv::Rect{u + 32, v - 8, 17, 17}));  // its reflection
+  CHECK(finder.step(two).state == LaserState::kTwo);
+  CHECK(finder.step(grey_of(two)).state == LaserState::kNoColour);
+}
+
+}  // namespace fathom::vision

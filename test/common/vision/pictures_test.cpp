@@ -1,0 +1,141 @@
+// Bad pictures: each costs itself alone.
+#include <doctest/doctest.h>
+
+#include "common/vision/jpeg.hpp"
+#include "common/vision/watch.hpp"
+#include "test/common/vision/scene.hpp"
+
+namespace fathom::vision {
+namespace {
+
+using namespace test_scene;
+
+Camera compressed(const cv::Mat& picture, Utime utime) {
+  return {.utime = utime,
+          .camera = "down",
+          .width = picture.cols,
+          .height = picture.rows,
+          .jpeg = encode_jpeg(picture, 90)};
+}
+
+model::CameraMount mount() { return {.name = "down", .width = 640, .height = 480, .focal = 540, .lens = lens()}; }
+
+}  // namespace
+
+TEST_CASE("JPEG: what was written is read, colour and grey") {
+  Renderer renderer{site(), lens(), laser(), {}, 13};
+  const cv::Mat bgr = renderer.step(0.0, pose({0, 0, 0.4})).clone();
+  cv::Mat grey, back;
+  CHECK(decode_jpeg(encode_jpeg(bgr, 95), true, grey, back).empty());
+  CHECK(cv::norm(bgr, back, cv::NORM_L1) / (640.0 * 480 * 3) < 4.0);  // brightness: noise and colour at half resolution
+  CHECK(decode_jpeg(encode_jpeg(grey, 95), true, grey, back).empty());
+  CHECK(back.empty());
+  CHECK(grey.cols == 640);
+}
+
+TEST_CASE("JPEG: damaged bytes are told as such, wherever the damage is") {
+  Renderer renderer{site(), lens(), std::nullopt, {}, 14};
+  const std::vector<std::uint8_t> good = encode_jpeg(renderer.step(0.0, pose({0, 0, 0.4})), 90);
+  cv::Mat grey, bgr;
+  CHECK_FALSE(decode_jpeg({}, true, grey, bgr).empty());
+  CHECK_FALSE(decode_jpeg(std::vector<std::uint8_t>{1, 2, 3, 4}, true, grey, bgr).empty());
+  for (const double share : {0.01, 0.3, 0.9, 0.999}) {
+    const auto length = static_cast<std::size_t>(share * static_cast<double>(good.size()));
+    CHECK_FALSE(decode_jpeg(std::span{good}.first(length), true, grey, bgr).empty());
+  }
+  std::vector<std::uint8_t> bad = good;
+  for (std::size_t i = bad.size() / 2; i < bad.size() / 2 + 400; ++i) bad[i] = 0xff;
+  CHECK_FALSE(decode_jpeg(bad, true, grey, bgr).empty());
+}
+
+TEST_CASE("watch: corrupt, black, saturated, frozen and other pictures are said, and the next good one is read") {
+  const model::Site place = site();
+  Renderer renderer{place, lens(), laser(), {}, 15};
+  Watch watch{place, mount(), laser(), {}};
+  const auto good = [&](double t) { return renderer.step(t, pose({0.05, 0.0, 0.4}, 0.05, 0.0, 0.2)).clone(); };
+  Utime utime = 1'000'000;
+  const auto see = [&](const cv::Mat& picture) { return watch.see(compressed(picture, utime += 33'000)); };
+  CHECK(see(good(0.0)));
+  CHECK(watch.complaint().empty());
+  CHECK(watch.front_end().tag_poses("down").size() >= 2);
+  CHECK(watch.front_end().laser_range("down"));
+
+  Camera broken = compressed(good(0.1), utime += 33'000);
+  broken.jpeg.resize(broken.jpeg.size() / 2);
+  CHECK_FALSE(watch.see(broken));
+  CHECK(watch.complaint().starts_with("corrupt JPEG"));
+  CHECK(watch.front_end().tag_poses("down").empty());
+
+  CHECK(see(cv::Mat(480, 640, CV_8UC3, cv::Scalar{1, 2, 1})));
+  CHECK(watch.complaint().find("black") != std::string::npos);
+  CHECK(see(cv::Mat(480, 640, CV_8UC3, cv::Scalar{255, 255, 255})));
+  CHECK(watch.complaint().find("saturated") != std::string::npos);
+  CHECK(see(cv::Mat(240, 320, CV_8UC3, cv::Scalar{90, 120, 60})));
+  CHECK(watch.complaint().find("320 x 240") != std::string::npos);
+  CHECK(see(good(0.2)));
+  CHECK(watch.complaint().empty());
+  const cv::Mat still = good(0.3);
+  for (int i = 0; i < 4; ++i) CHECK(see(still));
+  CHECK(watch.complaint().find("frozen") != std::string::npos);
+  CHECK(watch.front_end().tag_poses("down").empty());
+  CHECK(see(good(0.4)));
+  CHECK(watch.complaint().empty());
+  CHECK_FALSE(watch.front_end().tag_poses("down").empty());
+}
+
+TEST_CASE("watch: flow needs the attitude sensor where tags are missing, and is then the camera's motion") {
+  model::Site bare = site();
+  bare.tags.clear();
+  Renderer renderer{bare, lens(), laser(), {.caustics = 0.0}, 16};
+  Watch watch{bare, mount(), laser(), {}};
+  Utime utime = 1'000'000;
+  for (int i = 0; i < 6; ++i) {
+    utime += 33'333;
+    watch.hear({.utime = utime, .has_attitude = true});
+    watch.see(compressed(renderer.step(i / 30.0, pose({0.01 * i, 0.0, 0.4})), utime));
+  }
+  const auto flow = watch.front_end().optical_flow("down");
+  REQUIRE(flow);
+  CHECK(flow->flow_C.x() == doctest::Approx(-0.3 / 1.1).epsilon(0.05));  // -v / z
+  REQUIRE(watch.front_end().sight().v_C);
+  CHECK(watch.front_end().sight().v_C->x() == doctest::Approx(0.3).epsilon(0.05));
+  CHECK(watch.drawing(80));
+}
+
+TEST_CASE("attitude: between samples, a little ahead, by rates; nothing where the sensor was silent") {
+  constexpr double kExact = 1e-9;
+  AttitudeHistory history;
+  const Eigen::Vector3d w{0.1, -0.2, 0.5};
+  for (int i = 0; i <= 20; ++i) {
+    history.hear({.utime = 10'000 * i,
+                  .w_WB_B = w,
+                  .q_WB = quaternion_from_rotation_vector(0.01 * i * w),
+                  .has_rates = true,
+                  .has_attitude = true});
+  }
+  const auto angle = [](const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return a.angularDistance(b); };
+  REQUIRE(history.at(123'456));
+  CHECK(angle(*history.at(123'456), quaternion_from_rotation_vector(0.123456 * w)) < kExact);
+  REQUIRE(history.at(230'000));
+  CHECK(angle(*history.at(230'000), quaternion_from_rotation_vector(0.23 * w)) < kExact);
+  CHECK_FALSE(history.at(400'000));
+  REQUIRE(history.turn(33'333, 166'667));
+  CHECK(angle(*history.turn(33'333, 166'667), quaternion_from_rotation_vector(0.133334 * w)) < kExact);
+  REQUIRE(history.turn(190'000, 220'000));
+  CHECK(angle(*history.turn(190'000, 220'000), quaternion_from_rotation_vector(0.03 * w)) < kExact);
+  CHECK_FALSE(history.turn(-5'000, 50'000));
+  CHECK_FALSE(history.turn(100'000, 300'000));
+}
+
+TEST_CASE("watch: two tags of one number in the map cost these two and are said") {
+  model::Site place = site();
+  place.doubtful_tags = {12};
+  std::erase_if(place.tags, [](const model::Tag& t) { return t.id == 12; });
+  Renderer renderer{site(), lens(), std::nullopt, {}, 17};
+  Watch watch{place, mount(), std::nullopt, {}};
+  CHECK(watch.see(compressed(renderer.step(0.0, pose({0, 0, 0.4})), 1'000'000)));
+  CHECK(watch.complaint().find("12") != std::string::npos);
+  CHECK(watch.front_end().tag_poses("down").size() >= 2);
+}
+
+}  // namespace fathom::vision

@@ -1,0 +1,169 @@
+// Tags in rendered pictures, where the truth is known.
+#include <doctest/doctest.h>
+
+#include <Eigen/LU>
+
+#include "common/base/error.hpp"
+#include "test/common/vision/scene.hpp"
+
+namespace fathom::vision {
+namespace {
+
+using namespace test_scene;
+
+constexpr double kCorner = 0.25;  // px: blur 0.6 px, noise 2 of 255, fitted over edges of 50 px
+constexpr double kPlace = 0.006;  // m: a few tags at 1 m, 0.1 px, and the tilt that goes with it
+constexpr double kTurn = 0.006;   // rad
+
+std::vector<TagSighting> detected(const cv::Mat& grey, const std::string& family, double decimation = 2.0) {
+  TagDetector detector{{.families = {family}, .decimation = decimation}};
+  return detector.step(grey);
+}
+
+double corner_error(const std::vector<TagSighting>& tags, const model::Site& site, const Projection& projection,
+                    const Pose& truth) {
+  double worst = 0.0;
+  for (const TagSighting& tag : tags) {
+    const model::Tag* mapped = site.tag(tag.id);
+    REQUIRE(mapped != nullptr);
+    const double h = 0.5 * mapped->size;
+    const std::array<Eigen::Vector3d, 4> corners{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Eigen::Vector3d p_C = truth.R_WC.transpose() * (mapped->p_WT + mapped->R_WT * corners[i] - truth.p_WC);
+      worst = std::max(worst, (projection.pixel(p_C) - tag.corners[i]).norm());
+    }
+  }
+  return worst;
+}
+
+double turn_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return rotation_vector_from_quaternion(Eigen::Quaterniond{a.transpose() * b}).norm();
+}
+
+}  // namespace
+
+TEST_CASE("tags: corners lie where they are, at half resolution of the search too, for strong and weak families") {
+  for (const std::string family : {"tag36h11", "tag16h5", "tagStandard41h12"}) {
+    CAPTURE(family);
+    const model::Site place = site(family);
+    Renderer renderer{place, lens(), std::nullopt, {}, 3};
+    for (const Pose& truth : {pose({0.03, -0.02, 0.4}), pose({0.2, 0.1, 0.5}, 0.12, -0.1, 0.8)}) {
+      const cv::Mat grey = grey_of(renderer.step(0.0, truth));
+      for (const double decimation : {1.0, 2.0}) {
+        CAPTURE(decimation);
+        const auto tags = detected(grey, family, decimation);
+        CHECK(tags.size() >= 3);
+        CHECK(corner_error(tags, place, Projection{lens()}, truth) < kCorner);
+      }
+    }
+  }
+}
+
+TEST_CASE("tags: the joint pose is the truth within its covariance, through a distorting lens and a port too") {
+  model::Lens bent = lens();
+  bent.distortion = {-0.2, 0.06, 1e-3, -5e-4, 0.0};
+  model::Lens behind = lens();
+  behind.port = model::FlatPort{.distance = 0.01, .thickness = 0.005};
+  const model::Site place = site();
+  for (const model::Lens& l : {lens(), bent, behind}) {
+    Renderer renderer{place, l, std::nullopt, {}, 4};
+    TagLocator locator{place, l, {}};
+    double normalized = 0.0;
+    int n = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Pose truth = pose({0.1 * i - 0.3, 0.05 * i, 0.3 + 0.03 * i}, 0.02 * i, -0.015 * i, 0.4 * i);
+      auto tags = detected(grey_of(renderer.step(0.1 * i, truth)), "tag36h11");
+      locator.reset();
+      const auto fix = locator.step(i, tags, std::nullopt);
+      REQUIRE(fix);
+      CHECK_FALSE(fix->ambiguous);
+      CHECK((fix->pose.p_WC - truth.p_WC).norm() < kPlace);
+      CHECK(turn_between(fix->pose.R_WC, truth.R_WC) < kTurn);
+      Vector6d error;
+      error.head<3>() = fix->pose.p_WC - truth.p_WC;
+      error.tail<3>() = rotation_vector_from_quaternion(Eigen::Quaterniond{truth.R_WC.transpose() * fix->pose.R_WC});
+      normalized += error.dot(fix->covariance.inverse() * error);
+      ++n;
+    }
+    CHECK(normalized / n < 12.6);  // six numbers: 95 % of single pictures lie below
+  }
+}
+
+TEST_CASE("tags: a tag that was moved, one twice in the picture and one outside the map are refused with the reason") {
+  const model::Site truth_site = site();
+  model::Site map = truth_site;
+  map.tags[12].p_WT.x() += 0.05;  // the tag in the middle is not where the map says
+  std::erase_if(map.tags, [](const model::Tag& t) { return t.id == 13; });  // and its neighbour is not in it
+  model::Site printed = truth_site;
+  printed.tags[7].id = 11;  // two of number 11 lie there, the map knows one
+  std::erase_if(map.tags, [](const model::Tag& t) { return t.id == 7; });
+  Renderer renderer{printed, lens(), std::nullopt, {}, 5};
+  const Pose truth = pose({0.0, 0.0, -0.2}, 0.03, 0.02, 0.1);
+  auto tags = detected(grey_of(renderer.step(0.0, truth)), "tag36h11");
+  TagLocator locator{map, lens(), {}};
+  const auto fix = locator.step(0, tags, std::nullopt);
+  REQUIRE(fix);
+  CHECK((fix->pose.p_WC - truth.p_WC).norm() < kPlace);
+  int accepted_11 = 0;
+  for (const TagSighting& tag : tags) {
+    if (tag.id == 12) CHECK(tag.verdict == TagVerdict::kGeometry);
+    if (tag.id == 13) CHECK(tag.verdict == TagVerdict::kOutsideMap);
+    if (tag.id == 11) accepted_11 += tag.verdict == TagVerdict::kAccepted ? 1 : 0;
+    if (tag.id == 11) CHECK((tag.verdict == TagVerdict::kAccepted || tag.verdict == TagVerdict::kTwice));
+  }
+  CHECK(accepted_11 == 1);
+}
+
+TEST_CASE("tags: a small tag seen aslant from afar is ambiguous, and said to be; gravity decides which way it leans") {
+  model::Site place = site();
+  std::erase_if(place.tags, [](const model::Tag& t) { return t.id != 12; });
+  int wrong_first = 0;
+  for (const unsigned seed : {6U, 7U, 8U, 9U}) {
+    Renderer renderer{place, lens(), std::nullopt, {}, seed};
+    const Pose truth = pose({0.9, 0.45, -2.0}, 0.0, 0.0, 0.3);  // 3.6 m away: the tag is 23 px wide
+    auto tags = detected(grey_of(renderer.step(0.0, truth)), "tag36h11");
+    REQUIRE(tags.size() == 1);
+    TagLocator locator{place, lens(), {}};
+    const Eigen::Vector3d down_C = truth.R_WC.row(2);
+    const auto tilt = [&](const Pose& pose) { return std::acos(std::min(1.0, down_C.dot(pose.R_WC.row(2)))); };
+    const auto blind = locator.step(0, tags, std::nullopt);
+    REQUIRE(blind);
+    CHECK(blind->ambiguous);
+    REQUIRE(blind->other);
+    wrong_first += tilt(blind->pose) > tilt(*blind->other) ? 1 : 0;
+    locator.reset();
+    const auto told = locator.step(0, tags, down_C);
+    REQUIRE(told);
+    CHECK_FALSE(told->ambiguous);
+    CHECK(tilt(told->pose) < 0.12);  // the right one of two that differ by 0.5
+  }
+  CHECK(wrong_first > 0);  // the smaller error is no proof: a guess would have been wrong
+}
+
+TEST_CASE("tags: a lone false tag far from where the camera was just before gives no pose") {
+  const model::Site place = site();
+  Renderer renderer{place, lens(), std::nullopt, {}, 7};
+  TagLocator locator{place, lens(), {}};
+  auto tags = detected(grey_of(renderer.step(0.0, pose({0.0, 0.0, 0.5}))), "tag36h11");
+  REQUIRE(locator.step(0, tags, std::nullopt));
+  tags.resize(1);
+  tags[0].id = 24;  // elsewhere
+  CHECK_FALSE(locator.step(33'000, tags, std::nullopt));
+  CHECK(tags[0].verdict == TagVerdict::kImplausible);
+}
+
+TEST_CASE("tags: without map or lens there are verdicts and no pose; tiny and empty pictures hold nothing") {
+  model::Site nothing;
+  TagLocator locator{nothing, std::nullopt, {}};
+  std::vector<TagSighting> tags(1);
+  tags[0].family = "tag36h11";
+  tags[0].margin = 50.0;
+  CHECK_FALSE(locator.step(0, tags, std::nullopt));
+  CHECK(tags[0].verdict == TagVerdict::kAccepted);
+  CHECK(detected(cv::Mat(480, 640, CV_8UC1, cv::Scalar{90}), "tag36h11").empty());
+  CHECK(detected(cv::Mat(8, 8, CV_8UC1, cv::Scalar{90}), "tag36h11").empty());
+  CHECK(detected(cv::Mat(17, 33, CV_8UC1, cv::Scalar{90}), "36h11").empty());
+  CHECK_THROWS_AS(detected(cv::Mat(), "tag99h99"), InputError);
+}
+
+}  // namespace fathom::vision
