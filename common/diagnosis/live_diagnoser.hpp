@@ -31,7 +31,7 @@ struct LiveSettings {
   double block{10.0};                ///< s; blocks count as independent, and a ranking follows each
   int fewest_blocks{6};              ///< before any verdict
   int most_blocks{200};              ///< then pairs are merged
-  double accept_log_odds{3.0};       ///< 20 to 1, after paying for parameters and candidates
+  double accept_log_odds{5.0};       ///< 150 to 1, after paying for parameters and candidates; as offline
   double smallest_reduction{0.005};  ///< of the residual (RMS): less changes no prediction
   double alias_correlation{0.9};     ///< of two effects' signatures
   double alternative_log_odds{3.0};  ///< closer than this, two look-alikes are not told apart

@@ -124,7 +124,9 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
     best.push_back(&suspicion);
     ranking.candidates.push_back({.name = std::string{effect_of(suspicion)->name()},
                                   .log_odds = suspicion.log_odds,
-                                  .error_reduction = suspicion.error_reduction});
+                                  .error_reduction = suspicion.error_reduction,
+                                  .variant = forms()[static_cast<std::size_t>(suspicion.form)].variant_name,
+                                  .numbers = suspicion.theta});
   }
   if (best.empty() || !convinces(*best.front())) {
     ranking.verdict = evidence.structured() ? "unexplained" : "adequate";

@@ -241,7 +241,9 @@ void Supervisor::judge(double now) {
   if (model_ && model_is_new_) {
     model_is_new_ = false;
     verdict_ = may_leave(mode(), *model_, vehicle_, settings_.leaving);
-    if (!verdict_.missing.empty() && !suspect_.empty()) verdict_.missing.push_back("suspected: " + suspect_);
+    const bool adopted = std::find(model_->effects.begin(), model_->effects.end(), suspect_) != model_->effects.end();
+    if (!verdict_.missing.empty() && !suspect_.empty() && !adopted)
+      verdict_.missing.push_back("suspected: " + suspect_);
     if (verdict_.missing.empty() && dwell_ >= settings_.least_dwell) {
       finish_mode(true, "");
       return;

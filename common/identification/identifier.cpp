@@ -67,7 +67,7 @@ RecursiveSettings recursive_settings(const IdentifierSettings& settings, const m
 
 Identifier::Identifier(const IdentifierSettings& settings, const model::Vehicle& vehicle)
     : settings_{settings},
-      allocation_{vehicle.allocation},
+      vehicle_{std::make_unique<const model::Vehicle>(vehicle)},
       parameters_{columns_of(vehicle)},
       regressor_{integral_settings(settings, vehicle)},
       estimator_{recursive_settings(settings, vehicle)},
@@ -104,22 +104,28 @@ void Identifier::obey(Utime utime) {
   }
 }
 
+// The first usable message decides whether single forces or the wrench are the input: an effect of one thruster needs
+// the former, and the two cannot be mixed.
 const Identifier::Output& Identifier::step(const Thrusters& thrusters) {
   output_.models.clear();
   output_.residuals.clear();
-  Vector6d tau;
   const auto actuators = static_cast<Eigen::Index>(thrusters.force.size());
-  if (actuators > 0 && actuators == allocation_.cols()) {
-    tau = allocation_ * Eigen::Map<const Eigen::VectorXd>(thrusters.force.data(), actuators);
-  } else if (thrusters.has_tau) {
-    tau = Eigen::Map<const Vector6d>(thrusters.tau.data());
+  const bool has_force = actuators > 0 && actuators == vehicle_->allocation.cols() && actuators <= model::kMaxActuators;
+  if (input_ == InputKind::kUnknown && (has_force || thrusters.has_tau)) {
+    input_ = has_force ? InputKind::kForce : InputKind::kWrench;
+  }
+  model::ActuatorForces input;
+  if (input_ == InputKind::kForce && has_force) {
+    input = Eigen::Map<const Eigen::VectorXd>(thrusters.force.data(), actuators);
+  } else if (input_ == InputKind::kWrench && thrusters.has_tau) {
+    input = Eigen::Map<const Vector6d>(thrusters.tau.data());
   } else {
     reject("no force");
     return output_;
   }
-  if (!tau.allFinite()) {
+  if (!input.allFinite()) {
     reject("not finite");
-  } else if (!aligner_.push_input(thrusters.utime, tau)) {
+  } else if (!aligner_.push_input(thrusters.utime, input)) {
     reject("late");
   } else {
     release();
@@ -130,26 +136,47 @@ const Identifier::Output& Identifier::step(const Thrusters& thrusters) {
 void Identifier::release() {
   while (const auto aligned = aligner_.next()) {
     const StateEstimate& state = aligned->state;
-    MotionSample sample;
+    EffectSample sample;
     sample.utime = state.utime;
     if (!state.valid) {
       reject("state invalid");
-    } else if (!(state.nu.allFinite() && state.q_WB.coeffs().allFinite())) {
+    } else if (!(state.nu.allFinite() && state.q_WB.coeffs().allFinite() && state.p_WB.allFinite())) {
       reject("not finite");
     } else if (!aligned->input) {
       reject("no input");
     } else {
+      sample.p_WB = state.p_WB;
+      sample.q_WB = state.q_WB;
       sample.nu = state.nu;
-      sample.down_B = state.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
-      sample.tau = *aligned->input;
+      sample.force = *aligned->input;
+      sample.voltage = voltage_;
       sample.valid = true;
+      if (origin_ == 0) origin_ = sample.utime;
     }
     use(sample);
   }
 }
 
-void Identifier::use(const MotionSample& sample) {
-  const std::optional<RowBlock> block = regressor_.step(sample);
+// The rows of the window that this sample closes, the adopted effect's columns among them.
+std::optional<RowBlock> Identifier::rows_of(const EffectSample& sample) {
+  MotionSample motion{.utime = sample.utime, .nu = sample.nu, .valid = sample.valid};
+  if (sample.valid) {
+    motion.down_B = sample.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
+    if (input_ == InputKind::kForce) {
+      motion.tau = vehicle_->allocation * sample.force;
+    } else {
+      motion.tau = sample.force;
+    }
+  }
+  std::optional<RowBlock> block = regressor_.step(motion);
+  if (track_ && (!sample.valid || regressor_.took())) track_->step(sample);
+  if (block && track_ && !track_->extend(*block, regressor_.average(), regressor_.derivative())) return std::nullopt;
+  return block;
+}
+
+void Identifier::use(const EffectSample& sample) {
+  keep(sample);
+  const std::optional<RowBlock> block = rows_of(sample);
   if (!block) return;
   // The residual is that of the model published before: nothing is explained by having been seen.
   const ParameterVector known = estimator_.projected();
@@ -160,6 +187,7 @@ void Identifier::use(const MotionSample& sample) {
   estimator_.step(block->view());
   remember(*block);
   model_utime_ = block->end;
+  weigh(block->end);
   output_.residuals.push_back(residual);
   output_.models.push_back(model());
 }
@@ -179,12 +207,21 @@ ModelEstimate Identifier::model() const {
                                    .unit = std::string{unit(parameters_[i])}});
   }
   add_metrics(estimate, report);
+  add_effect(estimate, report);
   return estimate;
 }
 
 void Identifier::reset() {
   regressor_.reset();
-  estimator_.reset();
+  track_.reset();
+  estimator_ = RecursiveEstimator{estimator_settings(nullptr)};
+  rankings_.clear();
+  kept_.clear();
+  leader_ = {};
+  in_a_row_ = without_ = 0;
+  origin_ = 0;
+  voltage_ = 0.0;
+  input_ = InputKind::kUnknown;
   aligner_.reset();
   model_utime_ = 0;
   recent_ = {};
@@ -198,6 +235,23 @@ int Identifier::column(std::string_view parameter) const {
     if (name(parameters_[i]) == parameter) return static_cast<int>(i);
   }
   return -1;
+}
+
+RecursiveSettings Identifier::estimator_settings(const model::ActiveEffect* effect) const {
+  RecursiveSettings s = recursive_settings(settings_, *vehicle_);
+  if (effect == nullptr) return s;
+  const Eigen::Index base = s.mean.size();
+  const auto parameters = effect->effect->parameters();
+  s.mean.conservativeResize(base + static_cast<Eigen::Index>(parameters.size()));
+  s.sigma.conservativeResize(s.mean.size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Eigen::Index k = base + static_cast<Eigen::Index>(i);
+    s.mean(k) = effect->theta[i];
+    s.sigma(k) = parameters[i].sigma;
+    s.signs[static_cast<std::size_t>(k)] =
+        static_cast<std::int8_t>(parameters[i].low == 0.0 ? 1 : (parameters[i].high == 0.0 ? -1 : 0));
+  }
+  return s;
 }
 
 bool Identifier::freeze(std::string_view parameter) {

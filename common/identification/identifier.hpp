@@ -4,12 +4,16 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <iosfwd>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/identification/effect_track.hpp"
 #include "common/identification/integral_regressor.hpp"
 #include "common/identification/recursive.hpp"
 #include "common/identification/stream_aligner.hpp"
@@ -40,10 +44,13 @@ struct IdentifierSettings {
   double residual_memory{30.0};  ///< s over which MODEL's residual statistics look back
   double velocity_scale{0.0};  ///< share by which u v w may be off in proportion: no residual shows it, intervals must
   double freeze_delay{0.5};    ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
+  int adopt_after{0};          ///< rankings in a row that must accept an effect before it is adopted; 0: none ever is
+  double adopt_delay{2.0};     ///< s after its stamp that a ranking is judged: more than the diagnoser is late
+  double keep{600.0};          ///< s of motion that are kept to learn anew from when an effect is adopted
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
-  /// freeze_delay.
+  /// freeze_delay, adopt_after with adopt_delay and keep.
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -65,6 +72,10 @@ class Identifier {
   const Output& step(const Thrusters& thrusters);
   /// Which parameters shall not be learnt from then on; unknown names are nobody's.
   void hear(const Excitation& excitation);
+  /// What the diagnoser thinks is missing. An effect that it accepts again and again is adopted: all that is kept of
+  /// the motion is learnt from anew, with the effect in the model and its numbers learnt like all others.
+  void hear(const EffectRanking& ranking);
+  void hear(const Battery& battery) { voltage_ = battery.voltage; }
   /// A log started over: back to the prior, nothing pending.
   void reset();
 
@@ -82,6 +93,8 @@ class Identifier {
   void offer(const std::string& text, double within);
   /// True when an offered state was taken.
   [[nodiscard]] bool resumed() const { return resumed_; }
+  /// The effect in the model, or nullptr.
+  [[nodiscard]] const model::ActiveEffect* adopted() const { return track_ ? &track_->effect() : nullptr; }
   /// Samples not used, by reason: "late", "state invalid", "no force", "not finite", "no input".
   [[nodiscard]] const std::map<std::string, std::int64_t>& rejected() const { return rejected_; }
 
@@ -102,21 +115,45 @@ class Identifier {
   void obey(Utime utime);
   void remember(const RowBlock& block);
   void decide(Utime first);
+  void take_effect(const model::Effect& effect, std::istringstream& text);
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
   void add_scale(RecursiveReport& report) const;
   void release();
-  void use(const MotionSample& sample);
+  void use(const EffectSample& sample);
+  [[nodiscard]] std::optional<RowBlock> rows_of(const EffectSample& sample);
+  void keep(const EffectSample& sample);
+  void weigh(Utime utime);
+  void adopt(const EffectEvidence& found);
+  [[nodiscard]] bool explains() const;
+  [[nodiscard]] bool vanishes() const;
+  void drop();
+  void follow(model::ActiveEffect effect, const ParameterVector& base);
+  void learn_anew();
+  [[nodiscard]] model::Model base_model(const ParameterVector& estimate) const;
+  [[nodiscard]] RecursiveSettings estimator_settings(const model::ActiveEffect* effect) const;
+  void add_effect(ModelEstimate& estimate, const RecursiveReport& report) const;
   [[nodiscard]] int column(std::string_view parameter) const;
 
+  enum class InputKind { kUnknown, kForce, kWrench };
+
   IdentifierSettings settings_;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> allocation_;
+  std::unique_ptr<const model::Vehicle> vehicle_;
+  InputKind input_{InputKind::kUnknown};
   std::vector<model::BaseParameter> parameters_;
   IntegralRegressor regressor_;
   RecursiveEstimator estimator_;
   StreamAligner aligner_;
   Utime model_utime_{};
   std::array<Recent, 6> recent_{};
-  std::vector<Wish> wishes_;  // in the order of time, not yet obeyed
+  std::vector<Wish> wishes_;            // in the order of time, not yet obeyed
+  std::deque<EffectRanking> rankings_;  // likewise, not yet judged
+  EffectEvidence leader_;               // accepted in the last rankings
+  int in_a_row_{}, without_{};
+  std::deque<EffectSample> kept_;
+  std::unique_ptr<EffectTrack> track_;
+  ParameterVector linearised_at_;  // base parameters of the track
+  Utime origin_{};                 // of the first motion used
+  double voltage_{};
   std::vector<std::string> frozen_;
   std::string offered_;
   double offered_within_{};

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 1";
+constexpr char kHeader[] = "fathom identifier 2";
 
 void put(std::string& text, double value) {
   std::array<char, 32> number{};
@@ -37,6 +37,7 @@ double take(std::istringstream& text) {
 void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const {
   const ParameterMatrix nominal = estimator_.covariance();
   const auto n = static_cast<Eigen::Index>(parameters_.size());
+  const ParameterMatrix honest = report.covariance.topLeftCorner(n, n);
   std::array<ModeMetric, 6> modes;
   std::array<bool, 6> any{};
   ModeMetric total{.mode = "total"};
@@ -56,7 +57,7 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
     estimate.modes.push_back(modes[axis]);
   }
   estimate.modes.push_back(total);
-  estimate.covariance.assign(report.covariance.data(), report.covariance.data() + n * n);
+  estimate.covariance.assign(honest.data(), honest.data() + n * n);
   estimate.frozen = frozen_;
   for (std::size_t axis = 0; axis < 6; ++axis) {
     const Recent& r = recent_[axis];
@@ -74,7 +75,7 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
 void Identifier::add_scale(RecursiveReport& report) const {
   if (settings_.velocity_scale <= 0.0) return;
   ParameterVector along = ParameterVector::Zero(report.estimate.size());
-  for (Eigen::Index i = 0; i < along.size(); ++i) {
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(parameters_.size()); ++i) {
     const model::BaseParameter parameter = parameters_[static_cast<std::size_t>(i)];
     if (model::axis(parameter) > 2 || model::index(parameter) >= model::index(model::BaseParameter::W_B)) continue;
     const bool quadratic = model::index(parameter) >= model::index(model::BaseParameter::X_uu);
@@ -106,6 +107,16 @@ std::string Identifier::save_text() const {
   std::string text = std::string{kHeader} + "\n" + std::to_string(model_utime_) + " " + std::to_string(s.updates) +
                      " " + std::to_string(parameters_.size());
   for (const model::BaseParameter parameter : parameters_) text += " " + std::string{name(parameter)};
+  text += "\n";
+  if (track_) {
+    const model::ActiveEffect& effect = track_->effect();
+    text += std::string{effect.effect->name()} + " " + std::to_string(effect.variant) + " " + std::to_string(origin_) +
+            (input_ == InputKind::kWrench ? " wrench " : " force ");
+    for (const double value : effect.theta) put(text, value);
+    for (Eigen::Index i = 0; i < linearised_at_.size(); ++i) put(text, linearised_at_(i));
+  } else {
+    text += "-";
+  }
   text += "\n";
   const auto all = [&](const auto& values) {
     for (Eigen::Index i = 0; i < values.size(); ++i) put(text, values.data()[i]);
@@ -141,15 +152,23 @@ void Identifier::decide(Utime first) {
   std::getline(text, header);
   Utime utime{};
   std::size_t count{};
-  RecursiveEstimator::State s = estimator_.state();
-  if (header != kHeader || !(text >> utime >> s.updates >> count) || count != parameters_.size()) return;
+  std::int64_t updates{};
+  RecursiveEstimator::State s;
+  if (header != kHeader || !(text >> utime >> updates >> count) || count != parameters_.size()) return;
   const double age = seconds_between(utime, first);
   if (age < 0.0 || age > offered_within_) return;
   for (const model::BaseParameter parameter : parameters_) {
     std::string word;
     if (!(text >> word) || word != name(parameter)) return;
   }
+  std::string effect_name;
+  text >> effect_name;
+  const model::Effect* effect = effect_name == "-" ? nullptr : model::find_effect(effect_name);
+  if (effect_name != "-" && effect == nullptr) return;
   try {
+    if (effect != nullptr) take_effect(*effect, text);
+    s = estimator_.state();
+    s.updates = updates;
     const auto all = [&](auto& values) {
       for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = take(text);
     };
@@ -174,7 +193,7 @@ void Identifier::decide(Utime first) {
     std::vector<std::string> names;
     text >> frozen;
     while (names.size() < frozen && text >> word) names.push_back(word);
-    if (!(text >> word) || word != "end") return;
+    if (!(text >> word) || word != "end") throw InputError("identifier: the saved state is cut off");
     estimator_.restore(s);
     recent_ = recent;
     frozen_ = names;
@@ -183,7 +202,22 @@ void Identifier::decide(Utime first) {
     resumed_ = true;
   } catch (const InputError&) {
     ++rejected_["saved state damaged"];
+    track_.reset();
+    estimator_ = RecursiveEstimator{estimator_settings(nullptr)};
   }
+}
+
+void Identifier::take_effect(const model::Effect& effect, std::istringstream& text) {
+  model::ActiveEffect active{.effect = &effect};
+  std::string input;
+  if (!(text >> active.variant >> origin_ >> input) || active.variant < 0)
+    throw InputError("identifier: the saved effect is damaged");
+  input_ = input == "wrench" ? InputKind::kWrench : InputKind::kForce;
+  for (std::size_t i = 0; i < effect.parameters().size(); ++i) active.theta.push_back(take(text));
+  ParameterVector base(static_cast<Eigen::Index>(parameters_.size()));
+  for (Eigen::Index i = 0; i < base.size(); ++i) base(i) = take(text);
+  follow(std::move(active), base);
+  estimator_ = RecursiveEstimator{estimator_settings(adopted())};
 }
 
 }  // namespace fathom::identification

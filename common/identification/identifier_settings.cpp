@@ -23,6 +23,13 @@ IdentifierSettings IdentifierSettings::from(const Config& config) {
   if (config.has("residual_memory")) s.residual_memory = config.positive("residual_memory", "s");
   if (config.has("velocity_scale")) s.velocity_scale = config.not_negative("velocity_scale", "");
   if (config.has("freeze_delay")) s.freeze_delay = config.not_negative("freeze_delay", "s");
+  if (config.has("adopt_after")) {
+    s.adopt_after = config.integer("adopt_after");
+    if (s.adopt_after < 1)
+      config.fail("adopt_after", "'adopt_after' must be 1 at least; without the key none is adopted");
+    if (config.has("adopt_delay")) s.adopt_delay = config.not_negative("adopt_delay", "s");
+    if (config.has("keep")) s.keep = config.positive("keep", "s");
+  }
   return s;
 }
 

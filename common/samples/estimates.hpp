@@ -60,8 +60,9 @@ struct ModeMetric {
 struct ModelEstimate {
   Utime utime{};
   std::vector<NamedValue> parameters;
-  std::vector<std::string> effects;  ///< adopted effects
-  std::int64_t updates{};            ///< regressor rows used so far
+  std::vector<std::string> effects;        ///< adopted effects
+  std::vector<NamedValue> effect_numbers;  ///< theirs, "effect.parameter"
+  std::int64_t updates{};                  ///< regressor rows used so far
   std::vector<ModeMetric> modes;
   std::vector<double> covariance;             ///< of the parameters, row by row, as honest as std
   Vector6d residual_ratio{Vector6d::Zero()};  ///< recent mean square over the expected one; 0: unknown
@@ -78,8 +79,10 @@ struct Residual {
 /// One candidate cause with its odds.
 struct EffectEvidence {
   std::string name;
-  double log_odds{};         ///< natural logarithm, against the model without it
-  double error_reduction{};  ///< share of the residual's energy that it explains, 0..1
+  double log_odds{};              ///< natural logarithm, against the model without it
+  double error_reduction{};       ///< share of the residual's energy that it explains, 0..1
+  std::string variant{};          ///< its form, "thruster 3"; empty when it has one only
+  std::vector<double> numbers{};  ///< best values found, in the order and units of the effect's parameters
 };
 
 /// The diagnoser's ranking, best first.

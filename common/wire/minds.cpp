@@ -16,6 +16,28 @@
 #include "common/wire/plausible.hpp"
 
 namespace fathom::wire {
+namespace {
+
+bool take(const std::vector<fathom_lcm::named_value_t>& from, std::vector<NamedValue>& to) {
+  to.reserve(from.size());
+  for (const auto& part : from) {
+    if (!finite(part.value) || !finite(part.std)) return false;
+    to.push_back({.name = part.name, .value = part.value, .std = part.std, .unit = part.unit});
+  }
+  return true;
+}
+
+void put(const std::vector<NamedValue>& from, std::vector<fathom_lcm::named_value_t>& to) {
+  for (const NamedValue& part : from) {
+    auto& one = to.emplace_back();
+    one.name = part.name;
+    one.value = part.value;
+    one.std = part.std;
+    one.unit = part.unit;
+  }
+}
+
+}  // namespace
 
 std::optional<StateEstimate> decode(const fathom_lcm::state_t& message) {
   if (!finite(message.p_WB) || !unit(message.q_WB) || !finite(message.nu) || !finite(message.sigma)) return {};
@@ -69,16 +91,13 @@ fathom_lcm::smoothed_t encode(const SmoothedState& sample) {
 std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
   if (!length(message.n_parameters, message.parameters.size())) return {};
   if (!length(message.n_effects, message.effects.size())) return {};
+  if (!length(message.n_effect_numbers, message.effect_numbers.size())) return {};
   if (!length(message.n_modes, message.modes.size()) || !length(message.n_frozen, message.frozen.size())) return {};
   if (!length(message.n_covariance, message.covariance.size()) || !finite(message.covariance)) return {};
   if (!finite(message.residual_ratio) || !finite(message.residual_mean)) return {};
   ModelEstimate sample{
       .utime = message.utime, .parameters = {}, .effects = message.effects, .updates = message.updates};
-  sample.parameters.reserve(message.parameters.size());
-  for (const auto& part : message.parameters) {
-    if (!finite(part.value) || !finite(part.std)) return {};
-    sample.parameters.push_back({.name = part.name, .value = part.value, .std = part.std, .unit = part.unit});
-  }
+  if (!take(message.parameters, sample.parameters) || !take(message.effect_numbers, sample.effect_numbers)) return {};
   for (const auto& part : message.modes) {
     if (!finite(part.sum) || !finite(part.scaled)) return {};
     sample.modes.push_back({.mode = part.mode, .sum = part.sum, .scaled = part.scaled});
@@ -94,13 +113,9 @@ fathom_lcm::model_t encode(const ModelEstimate& sample) {
   fathom_lcm::model_t message{};
   message.utime = sample.utime;
   message.n_parameters = count(sample.parameters);
-  for (const auto& part : sample.parameters) {
-    auto& to = message.parameters.emplace_back();
-    to.name = part.name;
-    to.value = part.value;
-    to.std = part.std;
-    to.unit = part.unit;
-  }
+  put(sample.parameters, message.parameters);
+  message.n_effect_numbers = count(sample.effect_numbers);
+  put(sample.effect_numbers, message.effect_numbers);
   message.n_effects = count(sample.effects);
   message.effects = sample.effects;
   message.updates = sample.updates;
@@ -138,8 +153,12 @@ std::optional<EffectRanking> decode(const fathom_lcm::effects_t& message) {
   sample.candidates.reserve(message.candidates.size());
   for (const auto& part : message.candidates) {
     if (!finite(part.log_odds) || !finite(part.error_reduction)) return {};
-    sample.candidates.push_back(
-        {.name = part.name, .log_odds = part.log_odds, .error_reduction = part.error_reduction});
+    if (!length(part.n_numbers, part.numbers.size()) || !finite(part.numbers)) return {};
+    sample.candidates.push_back({.name = part.name,
+                                 .log_odds = part.log_odds,
+                                 .error_reduction = part.error_reduction,
+                                 .variant = part.variant,
+                                 .numbers = part.numbers});
   }
   return sample;
 }
@@ -154,6 +173,9 @@ fathom_lcm::effects_t encode(const EffectRanking& sample) {
     to.name = part.name;
     to.log_odds = part.log_odds;
     to.error_reduction = part.error_reduction;
+    to.variant = part.variant;
+    to.n_numbers = count(part.numbers);
+    to.numbers = part.numbers;
   }
   return message;
 }

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/residual_t.hpp>
@@ -83,6 +84,12 @@ int main(int argc, char** argv) {
       const auto battery = wire::decode(message);
       if (!battery) return process.reject(wire::kBattery);
       forces.step(*battery);
+      identifier.hear(*battery);
+    });
+    process.on<fathom_lcm::effects_t>(wire::kEffects, [&](const auto& message) {
+      const auto ranking = wire::decode(message);
+      if (!ranking) return process.reject(wire::kEffects);
+      identifier.hear(*ranking);
     });
     process.on<fathom_lcm::excitation_t>(wire::kExcitation, [&](const auto& message) {
       const auto excitation = wire::decode(message);

@@ -84,7 +84,8 @@ inline void fill(Fill& f, SmoothedState& s) {
        f.matrix<Eigen::Matrix<double, 18, 1>>()};
 }
 inline void fill(Fill& f, ModelEstimate& s) {
-  s = {f.utime(), {}, {f.word(), f.word(), f.word()}, f.whole()};
+  s = {f.utime(), {}, {f.word(), f.word(), f.word()}, {}, f.whole()};
+  for (int i = 0; i < 3; ++i) s.effect_numbers.push_back({f.word(), f.number(), f.number(), f.word()});
   for (int i = 0; i < 2; ++i) s.parameters.push_back({f.word(), f.number(), f.number(), f.word()});
   for (int i = 0; i < 2; ++i) s.modes.push_back({f.word(), f.number(), f.number()});
   s.covariance = f.list();
@@ -95,7 +96,7 @@ inline void fill(Fill& f, ModelEstimate& s) {
 inline void fill(Fill& f, Residual& s) { s = {f.utime(), f.matrix<Vector6d>()}; }
 inline void fill(Fill& f, EffectRanking& s) {
   s = {f.utime(), f.word(), {}};
-  for (int i = 0; i < 2; ++i) s.candidates.push_back({f.word(), f.number(), f.number()});
+  for (int i = 0; i < 2; ++i) s.candidates.push_back({f.word(), f.number(), f.number(), f.word(), f.list()});
 }
 inline void fill(Fill& f, Truth& s) {
   s = {f.utime(),           f.matrix<Vector3>(), f.quaternion(), f.matrix<Vector6d>(), f.matrix<Vector6d>(),

@@ -18,6 +18,8 @@ using namespace fathom::identification;
 
 namespace {
 
+constexpr double kRounding = 1e-6;  // sigmas: forces are interpolated before or after they become a wrench
+
 constexpr Utime kStart = 1'600'000'000'000'000;
 
 // Four thrusters port, starboard, vertical, lateral (Karras et al., eq. 1.7 with the columns in this order).
@@ -208,7 +210,12 @@ TEST_CASE("identifier: a wrench serves where forces are missing, and neither is 
     }
   }
   Identifier by_wrench{settings(), vehicle()};
-  CHECK(same(feed(by_wrench, list), expected));
+  const Run run = feed(by_wrench, list);
+  REQUIRE(run.models.size() == expected.models.size());
+  for (std::size_t k = 0; k < expected.models.back().parameters.size(); ++k) {
+    CHECK(std::abs(run.models.back().parameters[k].value - expected.models.back().parameters[k].value) <
+          kRounding * expected.models.back().parameters[k].std);
+  }
 }
 
 TEST_CASE("identifier: a frozen parameter stays at its prior") {

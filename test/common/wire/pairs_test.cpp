@@ -43,6 +43,9 @@ auto members(const T& s) {
   } else if constexpr (N == 13) {
     const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  } else if constexpr (N == 10) {
+    const auto& [a, b, c, d, e, f, g, h, i, j] = s;
+    return std::tie(a, b, c, d, e, f, g, h, i, j);
   } else {
     const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
@@ -50,7 +53,7 @@ auto members(const T& s) {
 }
 static bool operator==(const NamedValue& a, const NamedValue& b) { return members<4>(a) == members<4>(b); }
 static bool operator==(const ModeMetric& a, const ModeMetric& b) { return members<3>(a) == members<3>(b); }
-static bool operator==(const EffectEvidence& a, const EffectEvidence& b) { return members<3>(a) == members<3>(b); }
+static bool operator==(const EffectEvidence& a, const EffectEvidence& b) { return members<5>(a) == members<5>(b); }
 
 namespace {
 
@@ -153,7 +156,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
   check_pair<SmoothedState, 6>();
-  check_pair<ModelEstimate, 9>();
+  check_pair<ModelEstimate, 10>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 3>();
   check_pair<Truth, 7>();

@@ -1,0 +1,187 @@
+// An effect that the diagnoser accepts again and again enters the model; one that it no longer sees leaves it.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/identification/identifier.hpp"
+
+namespace fathom::identification {
+namespace {
+
+constexpr int kRounds = 3;             // of learning anew around the last numbers: effects are not linear in theirs
+constexpr double kSmallestMass = 0.1;  // of the prior mean: keeps a poor first estimate physical
+constexpr double kFewest = 5.0;        // residuals before anything is said of them
+constexpr double kLargestRatio = 2.0;  // of the residual's power to that of the stated noise, as for leaving a mode
+constexpr double kPresent = 3.0;       // sigmas from zero: smaller, and the effect may as well be absent
+constexpr double kMoved = 1.0;         // sigmas that a number may go from where the effect was linearised
+
+// A scene that admits every form whose place in the list of variants is then its number.
+model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
+  model::Scene scene{.vehicle = &vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
+  scene.input_is_wrench = wrench;
+  scene.voltage = true;
+  scene.mean_voltage = vehicle.nominal_voltage > 0.0 ? vehicle.nominal_voltage : 1.0;
+  scene.voltage_range = 1.0;
+  scene.duration = 1.0;
+  scene.nu_rms.setOnes();
+  scene.tau_rms.setOnes();
+  scene.force_rms = model::ActuatorForces::Ones(wrench ? 6 : vehicle.allocation.cols());
+  scene.p_low.setConstant(-1.0);
+  scene.p_high.setOnes();
+  return scene;
+}
+
+}  // namespace
+
+void Identifier::keep(const EffectSample& sample) {
+  if (settings_.adopt_after <= 0) return;
+  kept_.push_back(sample);
+  while (seconds_between(kept_.front().utime, sample.utime) > settings_.keep) kept_.pop_front();
+}
+
+void Identifier::hear(const EffectRanking& ranking) {
+  if (settings_.adopt_after <= 0) return;
+  if (!rankings_.empty() && ranking.utime <= rankings_.back().utime) return;
+  rankings_.push_back(ranking);
+}
+
+// By time stamps alone, so that it does not matter when a ranking arrived.
+void Identifier::weigh(Utime utime) {
+  while (!rankings_.empty() && seconds_between(rankings_.front().utime, utime) >= settings_.adopt_delay) {
+    const EffectRanking ranking = std::move(rankings_.front());
+    rankings_.pop_front();
+    if (ranking.verdict == "collecting") continue;
+    without_ = ranking.verdict == "adequate" ? without_ + 1 : 0;
+    if (track_ && without_ >= settings_.adopt_after && vanishes()) drop();
+    if (ranking.verdict != "effect" || ranking.candidates.empty()) {
+      in_a_row_ = 0;
+      continue;
+    }
+    const EffectEvidence& best = ranking.candidates.front();
+    in_a_row_ = best.name == leader_.name && best.variant == leader_.variant ? in_a_row_ + 1 : 1;
+    leader_ = best;
+    if (in_a_row_ >= settings_.adopt_after) adopt(best);
+  }
+}
+
+void Identifier::adopt(const EffectEvidence& found) {
+  if (resumed_) return;  // what was learnt before the restart is not kept as motion, so it cannot be learnt anew
+  const model::Effect* effect = model::find_effect(found.name);
+  if (effect == nullptr || effect->measures() || found.numbers.size() != effect->parameters().size() ||
+      parameters_.size() + found.numbers.size() > static_cast<std::size_t>(kMaxParameters)) {
+    ++rejected_["effect not adoptable"];
+    return;
+  }
+  const bool wrench = input_ == InputKind::kWrench;
+  const std::vector<std::string> variants = effect->variants(open_scene(*vehicle_, wrench));
+  const auto variant = std::find(variants.begin(), variants.end(), found.variant);
+  if (variant == variants.end()) {
+    ++rejected_["effect not adoptable"];
+    return;
+  }
+  const auto number = static_cast<int>(variant - variants.begin());
+  const bool known = track_ && track_->effect().effect == effect && track_->effect().variant == number;
+  std::vector<double> theta = found.numbers;
+  const auto base = static_cast<Eigen::Index>(parameters_.size());
+  if (known) {  // linearised anew only where its numbers have left the place of before
+    const RecursiveReport report = estimator_.report();
+    double moved = 0.0;
+    for (std::size_t i = 0; i < theta.size(); ++i) {
+      const Eigen::Index k = base + static_cast<Eigen::Index>(i);
+      moved = std::max(moved, std::abs(report.estimate(k) - track_->effect().theta[i]) / report.sigma(k));
+      theta[i] = report.estimate(k);
+    }
+    if (moved < kMoved) return;
+  }
+  const auto inside = [&](std::size_t i, double value) {
+    return std::clamp(value, effect->parameters()[i].low, effect->parameters()[i].high);
+  };
+  for (int round = 0; round < (known ? 1 : kRounds); ++round) {
+    const ParameterVector estimate = estimator_.projected();
+    if (round > 0) {
+      for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = estimate(base + static_cast<Eigen::Index>(i));
+    }
+    for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = inside(i, theta[i]);
+    follow({.effect = effect, .variant = number, .variant_name = found.variant, .theta = theta}, estimate.head(base));
+    learn_anew();
+  }
+  if (!known && !explains()) {
+    ++rejected_["effect leaves a residual"];
+    drop();
+  }
+}
+
+// Whether what the effect leaves is what noise makes: the wrong name may explain much, but hardly ever all.
+bool Identifier::explains() const {
+  return std::all_of(recent_.begin(), recent_.end(),
+                     [](const Recent& r) { return r.weight < kFewest || r.square < kLargestRatio; });
+}
+
+void Identifier::follow(model::ActiveEffect effect, const ParameterVector& base) {
+  linearised_at_ = base;
+  track_ = std::make_unique<EffectTrack>(base_model(base), std::move(effect), parameters_, origin_,
+                                         regressor_.capacity(), settings_.max_gap);
+}
+
+// Whether what was learnt of the effect's size is compatible with its absence.
+bool Identifier::vanishes() const {
+  const RecursiveReport report = estimator_.report();
+  const model::ActiveEffect& effect = track_->effect();
+  const auto sizes =
+      effect.effect->amplitudes() > 0 ? static_cast<std::size_t>(effect.effect->amplitudes()) : effect.theta.size();
+  for (std::size_t i = 0; i < sizes; ++i) {
+    const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
+    if (std::abs(report.estimate(k)) > kPresent * report.sigma(k)) return false;
+  }
+  return true;
+}
+
+void Identifier::drop() {
+  if (resumed_) return;
+  track_.reset();
+  in_a_row_ = 0;
+  learn_anew();
+}
+
+// From the prior through all that is kept; parameters that are paused are paused again at the end.
+void Identifier::learn_anew() {
+  estimator_ = RecursiveEstimator{estimator_settings(adopted())};
+  regressor_.reset();
+  recent_ = {};
+  for (const EffectSample& sample : kept_) {
+    const std::optional<RowBlock> block = rows_of(sample);
+    if (!block) continue;
+    estimator_.step(block->view());
+    remember(*block);
+  }
+  for (const std::string& name : frozen_) freeze(name);
+}
+
+model::Model Identifier::base_model(const ParameterVector& estimate) const {
+  model::Model model = model::nominal_model(*vehicle_, input_ == InputKind::kWrench);
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    double value = estimate(static_cast<Eigen::Index>(i));
+    const double mean = vehicle_->priors[i].mean;
+    if (model::sign_constraint(parameters_[i]) > 0) value = std::max(value, kSmallestMass * mean);
+    if (model::sign_constraint(parameters_[i]) < 0) value = std::min(value, 0.0);
+    model.theta[model::index(parameters_[i])] = value;
+  }
+  return model;
+}
+
+void Identifier::add_effect(ModelEstimate& estimate, const RecursiveReport& report) const {
+  if (!track_) return;
+  const model::ActiveEffect& effect = track_->effect();
+  const std::string name{effect.effect->name()};
+  estimate.effects.push_back(name);
+  const auto parameters = effect.effect->parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
+    estimate.effect_numbers.push_back({.name = name + "." + std::string{parameters[i].name},
+                                       .value = report.estimate(k),
+                                       .std = report.sigma(k),
+                                       .unit = std::string{parameters[i].unit}});
+  }
+}
+
+}  // namespace fathom::identification

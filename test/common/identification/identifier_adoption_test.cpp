@@ -1,0 +1,183 @@
+// An effect that the diagnoser accepts enters the model: its numbers and the vehicle's come right, the rest of the
+// contract (bits, restart, leaving again) holds with it.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "common/identification/identifier.hpp"
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::identification;
+
+namespace {
+
+constexpr Utime kStart = 1'600'000'000'000'000;
+constexpr double kSigmas = 4.0;  // of one estimate
+
+IdentifierSettings settings() {
+  IdentifierSettings s;
+  s.adopt_after = 2;
+  s.adopt_delay = 1.0;
+  return s;
+}
+
+EffectRanking accepted(double t, const model::ActiveEffect& effect, const std::string& verdict = "effect") {
+  EffectRanking ranking{.utime = utime_after(kStart, t), .verdict = verdict};
+  ranking.candidates.push_back({.name = std::string{effect.effect->name()},
+                                .log_odds = 20.0,
+                                .error_reduction = 0.3,
+                                .variant = effect.variant_name,
+                                .numbers = effect.theta});
+  return ranking;
+}
+
+void feed(Identifier& identifier, const Trial& trial, double from, double to,
+          const std::function<void(double)>& before = {}) {
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    if (trial.t[k] < from || trial.t[k] >= to) continue;
+    if (before) before(trial.t[k]);
+    const Utime utime = utime_after(kStart, trial.t[k]);
+    Thrusters thrusters{.utime = utime};
+    thrusters.force.assign(trial.input[k].data(), trial.input[k].data() + trial.input[k].size());
+    (void)identifier.step(thrusters);
+    (void)identifier.step(
+        StateEstimate{.utime = utime, .p_WB = trial.p_WB[k], .q_WB = trial.q_WB[k], .nu = trial.nu[k], .valid = true});
+  }
+}
+
+/// Says at 60, 70 and 80 s what the diagnoser would.
+std::function<void(double)> diagnoser(Identifier& identifier, const model::ActiveEffect& found, double lateness = 0.0) {
+  return [&identifier, found, lateness, next = 60.0](double t) mutable {
+    if (next > 80.0 || t < next + lateness) return;
+    identifier.hear(accepted(next, found));
+    next += 10.0;
+  };
+}
+
+model::ActiveEffect named(const model::Vehicle& vehicle, const std::string& name, std::vector<double> theta,
+                          int variant) {
+  model::ActiveEffect effect = test::active(name, std::move(theta), variant);
+  if (name == "thruster_gain") effect.variant_name = vehicle.thrusters[static_cast<std::size_t>(variant)].name;
+  return effect;
+}
+
+double worst(const ModelEstimate& model, const model::Model& truth) {
+  double largest = 0.0;
+  for (const NamedValue& p : model.parameters) {
+    const double value = truth.theta[model::index(*model::parameter_from_name(p.name))];
+    largest = std::max(largest, std::abs(p.value - value) / p.std);
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("adoption: an accepted effect is listed, its numbers are learnt, and the vehicle's come right") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  struct Case {
+    model::ActiveEffect truth, found;  // as hidden, and as a diagnoser would roughly say
+  };
+  for (const Case& c : {Case{named(vehicle, "thruster_gain", {-0.4}, 1), named(vehicle, "thruster_gain", {-0.3}, 1)},
+                        Case{named(vehicle, "current", {0.2, -0.25}, 0), named(vehicle, "current", {0.15, -0.2}, 0)},
+                        Case{named(vehicle, "tether_tension", {3.0, 0.5, 2.0, -1.0, 0.0}, 0),
+                             named(vehicle, "tether_tension", {2.2, 0.3, 1.8, -0.7, 0.2}, 0)}}) {
+    CAPTURE(c.truth.effect->name());
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 200.0, .seed = 31, .effects = {c.truth}});
+    Identifier without{settings(), vehicle}, with{settings(), vehicle};
+    feed(without, dive.trial, 0.0, 1e9);
+    feed(with, dive.trial, 0.0, 1e9, diagnoser(with, c.found));
+    const ModelEstimate model = with.model();
+    REQUIRE(model.effects == std::vector<std::string>{std::string{c.truth.effect->name()}});
+    REQUIRE(model.effect_numbers.size() == c.truth.theta.size());
+    CHECK(model.parameters.size() == vehicle.parameters.size());
+    CHECK(model.covariance.size() == model.parameters.size() * model.parameters.size());
+    for (std::size_t i = 0; i < c.truth.theta.size(); ++i) {
+      const NamedValue& p = model.effect_numbers[i];
+      CAPTURE(p.name);
+      CAPTURE(p.value);
+      CAPTURE(p.std);
+      CAPTURE(c.truth.theta[i]);
+      CHECK(std::abs(p.value - c.truth.theta[i]) < kSigmas * p.std);
+    }
+    CHECK(worst(model, dive.truth) < kSigmas);
+    CHECK(worst(without.model(), dive.truth) > kSigmas);
+    CHECK(model.updates == without.model().updates);
+    CHECK(without.model().effects.empty());
+  }
+}
+
+TEST_CASE("adoption: it takes several rankings in a row, and nothing happens where it is not wished") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const model::ActiveEffect gain = named(vehicle, "thruster_gain", {-0.4}, 1);
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 60.0, .seed = 3, .effects = {gain}});
+  const auto after = [&](const IdentifierSettings& s, std::vector<EffectRanking> rankings) {
+    Identifier identifier{s, vehicle};
+    for (const EffectRanking& ranking : rankings) identifier.hear(ranking);
+    feed(identifier, dive.trial, 0.0, 1e9);
+    return identifier.model().effects.size();
+  };
+  const model::ActiveEffect other = named(vehicle, "thruster_gain", {-0.4}, 2);
+  CHECK(after(settings(), {accepted(20, gain), accepted(30, gain)}) == 1);
+  CHECK(after(settings(), {accepted(20, gain)}) == 0);
+  CHECK(after(settings(), {accepted(20, gain), accepted(30, other)}) == 0);
+  CHECK(after(settings(), {accepted(20, gain), accepted(30, gain, "ambiguous"), accepted(40, gain)}) == 0);
+  CHECK(after(settings(), {accepted(20, gain), accepted(50, gain)}) == 1);
+  IdentifierSettings never = settings();
+  never.adopt_after = 0;
+  CHECK(after(never, {accepted(20, gain), accepted(30, gain)}) == 0);
+  // What nobody knows, what sensors do, and numbers that do not fit are not adopted.
+  EffectRanking wrong = accepted(20, gain), again = accepted(30, gain);
+  for (EffectRanking* r : {&wrong, &again}) r->candidates[0].name = "sea_monster";
+  CHECK(after(settings(), {wrong, again}) == 0);
+  for (EffectRanking* r : {&wrong, &again})
+    r->candidates[0] = {.name = "thruster_gain", .variant = "nobody", .numbers = {0.1}};
+  CHECK(after(settings(), {wrong, again}) == 0);
+  for (EffectRanking* r : {&wrong, &again}) r->candidates[0] = {.name = "current", .numbers = {0.1}};
+  CHECK(after(settings(), {wrong, again}) == 0);
+}
+
+TEST_CASE("adoption: an effect leaves when the diagnoser sees none and its size may be zero, and only then") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const model::ActiveEffect gain = named(vehicle, "thruster_gain", {-0.4}, 1);
+  for (const bool there : {false, true}) {
+    const test::VirtualDive dive = test::make_dive(
+        vehicle,
+        {.duration = 120.0, .seed = 6, .effects = there ? std::vector{gain} : std::vector<model::ActiveEffect>{}});
+    Identifier identifier{settings(), vehicle};
+    for (const double t : {60.0, 70.0}) identifier.hear(accepted(t, gain));
+    feed(identifier, dive.trial, 0.0, 80.0);
+    CHECK(identifier.adopted() != nullptr);
+    for (const double t : {85.0, 95.0}) identifier.hear(accepted(t, gain, "adequate"));
+    feed(identifier, dive.trial, 80.0, 1e9);
+    CHECK((identifier.adopted() != nullptr) == there);
+  }
+}
+
+TEST_CASE("adoption: the same bits whenever the rankings arrive within the delay") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const model::ActiveEffect gain = named(vehicle, "thruster_gain", {-0.4}, 1);
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0, .seed = 4, .effects = {gain}});
+  Identifier early{settings(), vehicle}, late{settings(), vehicle};
+  feed(early, dive.trial, 0.0, 1e9, diagnoser(early, gain));
+  feed(late, dive.trial, 0.0, 1e9, diagnoser(late, gain, 0.8));
+  CHECK(early.save_text() == late.save_text());
+  CHECK(early.adopted() != nullptr);
+}
+
+TEST_CASE("adoption: a process that was killed goes on with the effect") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const model::ActiveEffect gain = named(vehicle, "thruster_gain", {-0.4}, 1);
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 150.0, .seed = 5, .effects = {gain}});
+  Identifier first{settings(), vehicle};
+  feed(first, dive.trial, 0.0, 100.0, diagnoser(first, gain));
+  REQUIRE(first.adopted() != nullptr);
+  Identifier second{settings(), vehicle};
+  second.offer(first.save_text(), 120.0);
+  feed(second, dive.trial, 101.0, 1e9);
+  CHECK(second.resumed());
+  const ModelEstimate model = second.model();
+  REQUIRE(model.effects == std::vector<std::string>{"thruster_gain"});
+  CHECK(std::abs(model.effect_numbers[0].value + 0.4) < kSigmas * model.effect_numbers[0].std);
+}
