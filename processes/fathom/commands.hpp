@@ -26,5 +26,7 @@ void add_operator(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_repair_log(CLI::App& app);
 void add_pictures(CLI::App& app);
+void add_trial(CLI::App& app);
+void add_watch(CLI::App& app);
 
 }  // namespace fathom::tool

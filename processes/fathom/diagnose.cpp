@@ -12,6 +12,7 @@
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
+#include "common/estimation/state_as_measured.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
 #include "processes/fathom/commands.hpp"
@@ -42,7 +43,11 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   progress.show("reading recordings", 0.0);
-  const std::vector<Recording> recordings = read_recordings(paths, options.map, notes);
+  std::vector<Recording> recordings = read_recordings(paths, options.map, notes);
+  for (Recording& recording : recordings) {
+    if (!estimation::take_state_as_measured(recording)) continue;
+    notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
+  }
 
   progress.show("comparing the sensors with each other", kReadShare);
   estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);

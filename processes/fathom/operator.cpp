@@ -1,31 +1,18 @@
 // fathom arm, abort, order, status: the operator's console. Orders carry the token of the vehicle's operator file, the
 // vehicle's time and a sequence number; an abort needs none of these.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fathom_lcm/excitation_t.hpp>
-#include <fathom_lcm/health_t.hpp>
-#include <fathom_lcm/operator_t.hpp>
-#include <fathom_lcm/state_t.hpp>
-#include <fathom_lcm/thrusters_t.hpp>
-#include <functional>
-#include <map>
 #include <memory>
-#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/operator_token.hpp"
-#include "common/runtime/bus.hpp"
-#include "common/wire/channels.hpp"
-#include "common/wire/minds.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/console.hpp"
 
 namespace fathom::tool {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
@@ -37,62 +24,6 @@ Utime wall_clock() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
-
-template <class Message>
-std::optional<Message> message_of(const std::vector<std::uint8_t>& bytes) {
-  Message message{};
-  const int length = static_cast<int>(bytes.size());
-  if (message.decode(bytes.data(), 0, length) != length) return {};
-  return message;
-}
-
-class Console {
- public:
-  explicit Console(const std::string& url)
-      : url_{runtime::Url::parse(url, "--bus")},
-        input_{{url_}, {{wire::kThrusters, 1}, {wire::kExcitation, 1}, {wire::kHealth, 200}, {wire::kState, 1}}},
-        output_{url_} {
-    if (!url_.live()) throw InputError("--bus " + url + ": an operator needs a live bus");
-  }
-
-  /// Hears for so long, or until `enough`.
-  void listen(double seconds, const std::function<bool()>& enough = {}) {
-    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-    while (Clock::now() < end && !(enough && enough())) {
-      input_.wait(-1, 20);
-      while (const auto message = input_.next()) hear(*message);
-    }
-  }
-  void say(const Operator& order) {
-    const auto message = wire::encode(order);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    output_.write(wire::kOperator, bytes, message.utime);
-  }
-
-  std::optional<Utime> vehicle_time;  // of the thrusters: the clock that judges orders
-  std::optional<Excitation> excitation;
-  std::optional<StateEstimate> state;
-  std::map<std::string, Health> health;
-
- private:
-  void hear(const runtime::LiveInput::Message& message) {
-    if (message.subscription == 0) {
-      if (const auto one = message_of<fathom_lcm::thrusters_t>(message.bytes)) vehicle_time = one->utime;
-    } else if (message.subscription == 1) {
-      if (const auto one = message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
-    } else if (message.subscription == 2) {
-      if (const auto one = message_of<fathom_lcm::health_t>(message.bytes)) {
-        if (const auto heard = wire::decode(*one)) health[heard->process] = *heard;
-      }
-    } else if (const auto one = message_of<fathom_lcm::state_t>(message.bytes)) {
-      state = wire::decode(*one);
-    }
-  }
-  runtime::Url url_;
-  runtime::LiveInput input_;
-  runtime::Output output_;
-};
 
 void print(const Excitation& e) {
   std::printf("%-10s %s\n", e.phase.c_str(), e.reason.c_str());

@@ -1,9 +1,11 @@
-// simulator: WRENCH_COMMAND and OPERATOR in; every instrument's channel, THRUSTERS, and TRUTH for plots out.
+// simulator: WRENCH_COMMAND, OPERATOR and EXCITATION (to know when a trial is over) in; every instrument's channel,
+// THRUSTERS, and TRUTH for plots out.
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
+#include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
 #include <fathom_lcm/loads_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
@@ -68,6 +70,11 @@ int main(int argc, char** argv) {
           const auto command = wire::decode(message);
           if (!command) return process.reject(wire::kWrenchCommand);
           stage.hear(*command);
+        });
+        process.on<fathom_lcm::excitation_t>(wire::kExcitation, [&](const auto& message) {
+          const auto excitation = wire::decode(message);
+          if (!excitation) process.reject(wire::kExcitation);
+          stage.hear(excitation.value_or(Excitation{}));  // one that cannot be read is counted all the same
         });
         process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
           const auto order = wire::decode(message);

@@ -20,6 +20,7 @@ void Options::add_to(CLI::App& app) {
       ->expected(1);
   app.add_flag("--camera", setup.pictures, "pictures on CAMERA in place of what is measured in them");
   app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
+  app.add_flag("--until-done", until_done, "end when the supervisor says that it is done, aborted or lost");
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-for", wait_for, "processes started with --lockstep: wait for each of them")->delimiter(',');

@@ -17,6 +17,7 @@ namespace fathom::simulator {
 struct Options {
   simulation::Setup setup;
   double speed{1.0};                  ///< of virtual time over the wall's; 0: as fast as the followers answer
+  bool until_done{false};             ///< the run ends when the supervisor's trial does
   std::vector<std::string> wait_for;  ///< lockstep with these processes; empty: none is waited for
   std::vector<std::string> orders;    ///< "TIME=WORD"
   std::string out_dir;                ///< of truth.json; empty: not written

@@ -29,10 +29,12 @@
 namespace fathom::simulator {
 namespace {
 
-constexpr double kLook = 0.3;       // s in which another simulator answers
-constexpr double kPatience = 60.0;  // s without an answer: a diagnoser may think for some
-constexpr double kComplain = 5.0;   // s between two lines about who is missing
-constexpr double kTooLate = 0.5;    // intervals behind the wall's clock that count as late
+constexpr double kLook = 0.3;        // s in which another simulator answers
+constexpr double kPatience = 60.0;   // s without an answer: a diagnoser may think for some
+constexpr double kComplain = 5.0;    // s between two lines about who is missing
+constexpr double kAfterwards = 2.0;  // s of virtual time after the supervisor's end
+constexpr double kToArm = 5.0;       // s that a supervisor may take to obey
+constexpr double kTooLate = 0.5;     // intervals behind the wall's clock that count as late
 
 const char* channel_of(const Thrusters&) { return wire::kThrusters; }
 const char* channel_of(const Battery&) { return wire::kBattery; }
@@ -71,6 +73,17 @@ Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkro
 }
 
 void Stage::hear(const WrenchCommand& command) { gate_.hear(command, simulator_.now()); }
+
+// It ends as an operator would end it: some seconds after the last word, so that the log shows the vehicle at rest.
+void Stage::hear(const Excitation& excitation) {
+  ++excitations_;
+  if (!options_.until_done || over_since_) return;
+  bool over = excitation.phase == "done" || excitation.phase == "aborted" || excitation.phase == "lost";
+  if (excitation.phase == "disarmed" && next_order_ > 0 && next_order_ == schedule_.size()) {
+    over = seconds_between(schedule_.back().utime, simulator_.now()) > kToArm;  // it refused, and says why
+  }
+  if (over && excitation.mode.empty()) over_since_ = simulator_.now();
+}
 
 void Stage::hear(const Operator& order) {
   if (own_orders_ > 0 && next_order_ > 0 && order.utime == schedule_[next_order_ - 1].utime) {
@@ -148,7 +161,10 @@ void Stage::run(std::span<const int> descriptors, int milliseconds) {
 }
 
 // An interval is over when nobody has anything left to handle and what was said to us is here.
-bool Stage::interval_over() const { return conductor_->over() && commands_ >= conductor_->said(wire::kWrenchCommand); }
+bool Stage::interval_over() const {
+  return conductor_->over() && commands_ >= conductor_->said(wire::kWrenchCommand) &&
+         excitations_ >= conductor_->said(wire::kExcitation);
+}
 
 void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
   if (const auto phase = conductor_->next()) {
@@ -200,7 +216,8 @@ void Stage::publish(const simulation::Sample& sample) {
 }
 
 void Stage::advance() {
-  if (seconds_between(options_.setup.origin, simulator_.now()) >= options_.setup.duration - 1e-9) {
+  const bool over = over_since_ && seconds_between(*over_since_, simulator_.now()) >= kAfterwards;
+  if (over || seconds_between(options_.setup.origin, simulator_.now()) >= options_.setup.duration - 1e-9) {
     state_ = State::kEnding;
     if (!conductor_) process_.stop();
     return;

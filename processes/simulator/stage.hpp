@@ -28,6 +28,7 @@ class Stage {
   /// A command has arrived, good or not.
   void count_command() { ++commands_; }
   void hear(const WrenchCommand& command);
+  void hear(const Excitation& excitation);
   void hear(const Operator& order);
   void hear(const fathom_lcm::lockstep_ack_t& ack);
   /// Another simulator on the same bus is refused: the newcomer goes.
@@ -64,7 +65,8 @@ class Stage {
   State state_{State::kLooking};
   Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{}, last_complaint_{};
   int introductions_{};
-  std::int64_t commands_{};
+  std::int64_t commands_{}, excitations_{};
+  std::optional<Utime> over_since_;  ///< when the supervisor said that the trial is over
   std::vector<std::string> said_;
   std::int64_t late_{};
   std::string told_{"?"};

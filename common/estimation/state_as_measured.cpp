@@ -1,0 +1,16 @@
+#include "common/estimation/state_as_measured.hpp"
+
+namespace fathom::estimation {
+
+bool take_state_as_measured(Recording& recording) {
+  if (!recording.pose_capture.empty() || recording.state.empty()) return false;
+  const bool velocity = recording.dvl.empty();
+  for (const StateEstimate& state : recording.state) {
+    recording.pose_capture.push_back(
+        {.utime = state.utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .valid = state.valid});
+    if (velocity) recording.dvl.push_back({.utime = state.utime, .v_WB_B = state.nu.head<3>(), .valid = state.valid});
+  }
+  return true;
+}
+
+}  // namespace fathom::estimation

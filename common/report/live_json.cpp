@@ -1,0 +1,84 @@
+// result.json of a live trial. Keys are a contract with other programs: never rename, only add.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/report/live_trial.hpp"
+#include "common/report/text.hpp"
+
+namespace fathom::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSchema = 1;
+constexpr double kNormal95 = 1.96;
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json truth_of(const LiveTrialResult& result) {
+  const TruthComparison& truth = *result.truth;
+  Json parameters = Json::object();
+  for (const NamedValue& p : result.parameters) {
+    const auto found = truth.parameters.find(p.name);
+    if (found == truth.parameters.end()) continue;
+    const double error = p.value - found->second;
+    parameters[p.name] = {{"truth", found->second},
+                          {"error", finite(error)},
+                          {"relative_error", finite(error / std::abs(found->second))},
+                          {"inside_interval", std::abs(error) <= kNormal95 * p.std}};
+  }
+  Json state = Json::object();
+  constexpr std::array kNames{"x", "y", "z", "u", "v", "w"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    state[kNames[i]] = {{"rms", finite(truth.state_rms[i])},
+                        {"largest", finite(truth.state_worst[i])},
+                        {"normalised_square", finite(truth.state_normalised[i])}};
+  }
+  return {{"parameters", parameters},
+          {"state_error", state},
+          {"states_compared", truth.compared},
+          {"hidden_effects", truth.effect_names},
+          {"contacts", {{"walls", truth.contacts[0]}, {"floor", truth.contacts[1]}, {"surface", truth.contacts[2]}}}};
+}
+
+}  // namespace
+
+std::string to_json(const LiveTrialResult& result) {
+  Json json{{"schema", kSchema},       {"kind", "live trial"},       {"vehicle", result.vehicle},
+            {"site", result.site},     {"seconds", result.seconds},  {"phase", result.phase},
+            {"reason", result.reason}, {"settled", result.settled()}};
+  json["modes"] = Json::array();
+  for (const ModeVisit& visit : result.visits) {
+    json["modes"].push_back({{"mode", visit.mode},
+                             {"begun_s", visit.begun},
+                             {"ended_s", visit.ended},
+                             {"settled", visit.left},
+                             {"metric", visit.metric < 0.0 ? Json(nullptr) : finite(visit.metric)},
+                             {"threshold", finite(visit.threshold)},
+                             {"missing", visit.missing}});
+  }
+  json["parameters"] = Json::object();
+  for (const NamedValue& p : result.parameters) {
+    json["parameters"][p.name] = {
+        {"value", finite(p.value)},
+        {"std", finite(p.std)},
+        {"interval_95", {finite(p.value - kNormal95 * p.std), finite(p.value + kNormal95 * p.std)}},
+        {"unit", p.unit}};
+  }
+  json["adopted_effects"] = result.adopted;
+  json["effect_parameters"] = Json::object();
+  for (const NamedValue& p : result.effect_numbers) {
+    json["effect_parameters"][p.name] = {{"value", finite(p.value)}, {"std", finite(p.std)}, {"unit", p.unit}};
+  }
+  json["diagnosis"] = {{"verdict", result.ranking.verdict}, {"candidates", Json::array()}};
+  for (const EffectEvidence& one : result.ranking.candidates) {
+    json["diagnosis"]["candidates"].push_back(
+        {{"name", one.name}, {"log_odds", finite(one.log_odds)}, {"error_reduction", finite(one.error_reduction)}});
+  }
+  json["complaints"] = Json::object();
+  for (const auto& [process, words] : result.complaints) json["complaints"][process] = words;
+  if (result.truth) json["compared_with_truth"] = truth_of(result);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace fathom::report

@@ -1,0 +1,238 @@
+// The page of a live trial: outcome, Table 1.1, the paper's figures from the log; last and apart, what the truth says.
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/parameters.hpp"
+#include "common/report/live_figures.hpp"
+#include "common/report/live_trial.hpp"
+#include "common/report/page_parts.hpp"
+#include "common/report/pictures.hpp"
+#include "common/report/style.hpp"
+#include "common/report/text.hpp"
+
+namespace fathom::report {
+namespace {
+
+constexpr double kNormal95 = 1.96;
+constexpr const char* kTagColour = "#e07b00";
+constexpr const char* kLaserColour = "#2a9d4b";
+
+std::string key(const std::vector<std::pair<std::string, std::string>>& entries) {
+  std::string html = "<p class=\"small soft\">";
+  for (const auto& [colour, words] : entries) {
+    html += "<span style=\"color:" + colour + ";font-weight:700\">●</span> " + escape(words) + " &nbsp; ";
+  }
+  return html + "</p>\n";
+}
+
+std::string tile(const std::string& big, const std::string& small) {
+  return "<div class=\"tile\"><b>" + escape(big) + "</b>" + escape(small) + "</div>";
+}
+
+std::string outcome(const LiveTrialResult& result) {
+  const bool settled = result.settled();
+  std::string words = "The trial was not finished";
+  if (result.phase == "done") words = settled ? "All modes are settled" : "Finished, but not everything is settled";
+  if (result.phase == "aborted") words = "The trial was aborted";
+  if (result.phase == "lost") words = "The state was lost";
+  const auto left = std::ranges::count_if(result.visits, [](const ModeVisit& visit) { return visit.left; });
+  std::string html = "<header><h1>Live trial of " + escape(result.vehicle) +
+                     "</h1>\n<p class=\"soft\">Site: " + escape(result.site) + "</p>\n<div class=\"badge " +
+                     (settled ? "adequate" : "ambiguous") + "\">" + escape(words) + "</div>\n<p class=\"lead\">" +
+                     escape(result.reason) + "</p>\n<div class=\"tiles\">";
+  html += tile(number(result.seconds, 4) + " s", "from the first state to the last");
+  html += tile(std::to_string(left) + " of " + std::to_string(result.visits.size()), "modes settled");
+  html += tile(std::to_string(result.parameters.size()), "parameters identified on line");
+  html += tile(result.ranking.verdict.empty() ? "-" : result.ranking.verdict,
+               "the diagnoser's verdict; in the model: " +
+                   (result.adopted.empty() ? std::string{"no effect"} : join(result.adopted, ", ")));
+  return html + "</div></header>\n";
+}
+
+std::string mode_table(const LiveTrialResult& result) {
+  std::string html = "<section><h2>The schedule</h2><table>" +
+                     heading_cells({"Mode", "From [s]", "To [s]", "Metric", "Threshold", "Outcome"}, {1, 2, 3, 4});
+  for (const ModeVisit& visit : result.visits) {
+    html += "<tr>" + cell(escape(visit.mode), "k") + cell(number(visit.begun, 4), "n") +
+            cell(number(visit.ended, 4), "n") + cell(visit.metric < 0.0 ? "-" : number(visit.metric), "n") +
+            cell(number(visit.threshold), "n") +
+            cell(visit.left ? "settled" : "not settled; missing: " + escape(visit.missing)) + "</tr>\n";
+  }
+  return html +
+         "</table><p class=\"small soft\">A mode is left when the sum of its parameters' variances is below the "
+         "threshold, and the residual and the numbers themselves agree.</p></section>\n";
+}
+
+std::string table_1_1(const LiveTrialResult& result) {
+  std::string html =
+      "<section><h2>Table 1.1: the identified set</h2><table>" +
+      heading_cells({"Parameter", "Identified", "Std", "95 % interval", "Unit", "Vehicle file"}, {1, 2, 3, 5});
+  for (const NamedValue& p : result.parameters) {
+    const auto known = std::ranges::find(result.expected, p.name, &NamedValue::name);
+    html += "<tr>" + cell(escape(p.name), "k") + cell(number(p.value, 4), "n") + cell(number(p.std, 2), "n") +
+            cell(number(p.value - kNormal95 * p.std, 4) + " to " + number(p.value + kNormal95 * p.std, 4), "n") +
+            cell(escape(p.unit)) + cell(known == result.expected.end() ? "-" : number(known->value, 4), "n") +
+            "</tr>\n";
+  }
+  for (const NamedValue& p : result.effect_numbers) {
+    html += "<tr class=\"yes\">" + cell(escape(p.name), "k") + cell(number(p.value, 4), "n") +
+            cell(number(p.std, 2), "n") +
+            cell(number(p.value - kNormal95 * p.std, 4) + " to " + number(p.value + kNormal95 * p.std, 4), "n") +
+            cell(escape(p.unit)) + cell("adopted effect") + "</tr>\n";
+  }
+  return html +
+         "</table><p class=\"small soft\">Vehicle file: what it states beforehand; for the LBV150 the paper's "
+         "Table 1.1.</p></section>\n";
+}
+
+std::string motion(const Recording& recording, const estimation::AidsSeen& seen, Album& album) {
+  const bool deep = seen.tags.t.empty();
+  const AidCurve place{deep ? &seen.usbl : &seen.tags, kTagColour};
+  const AidCurve speed{deep ? &seen.dvl : &seen.flow, kTagColour};
+  const AidCurve height{deep ? &seen.depth : &seen.laser, kLaserColour};
+  const std::string place_name = deep ? "acoustic fixes (USBL)" : "markers alone";
+  const std::string speed_name = deep ? "velocity log alone" : "optical flow alone";
+  const auto put = [&](Figure drawn) { return figure(album.place(std::move(drawn)), ""); };
+  const std::array only_place{place}, only_speed{speed};
+  const std::array both = deep ? std::array{height, height} : std::array{place, height};
+  std::string html = "<section><h2>Figure 1.11: horizontal position</h2>\n" +
+                     key({{kTagColour, place_name}, {kMeasuredColour, "estimate"}}) + "<div class=\"grid pair\">" +
+                     put(draw_component(recording, 0, only_place)) + put(draw_component(recording, 1, only_place)) +
+                     put(draw_plan(recording, only_place)) + "</div></section>\n";
+  html += "<section><h2>Figure 1.12: horizontal velocity</h2>\n" +
+          key({{kTagColour, speed_name}, {kMeasuredColour, "estimate"}}) + "<div class=\"grid pair\">" +
+          put(draw_component(recording, 3, only_speed)) + put(draw_component(recording, 4, only_speed)) +
+          "</div></section>\n";
+  html +=
+      "<section><h2>Figure 1.13: depth and heave</h2>\n" +
+      key({{kLaserColour, deep ? "depth sensor alone" : "laser alone"},
+           {kTagColour, deep ? "velocity log alone" : place_name},
+           {kMeasuredColour, "estimate"}}) +
+      "<div class=\"grid pair\">" + put(draw_component(recording, 2, both)) +
+      put(draw_component(recording, 5, deep ? std::span<const AidCurve>{only_speed} : std::span<const AidCurve>{})) +
+      "</div></section>\n";
+  html += "<section><h2>Figure 1.14: the path in space</h2>\n<div class=\"grid pair\">" + put(draw_path(recording)) +
+          "</div></section>\n";
+  return html;
+}
+
+std::vector<std::string> of_axes(const LiveTrialResult& result, std::initializer_list<int> axes) {
+  std::vector<std::string> names;
+  for (const int axis : axes) {
+    for (const NamedValue& p : result.parameters) {
+      const auto parameter = model::parameter_from_name(p.name);
+      if (parameter && model::axis(*parameter) == axis) names.push_back(p.name);
+    }
+  }
+  return names;
+}
+
+std::string evolution(const Recording& recording, const LiveTrialResult& result, Album& album) {
+  double total_begins = result.seconds, total_ends = result.seconds;
+  bool has_total = false;
+  for (const ModeVisit& visit : result.visits) {
+    if (visit.mode != "total") continue;
+    has_total = true;
+    total_begins = visit.begun;
+    total_ends = visit.ended;
+  }
+  const auto section = [&](const std::string& title, const std::vector<std::string>& names, double begin, double end) {
+    if (names.empty() || !(end > begin)) return std::string{};
+    std::string html = "<section><h2>" + title + "</h2><div class=\"grid\">";
+    for (const std::string& name : names) {
+      html += figure(album.place(draw_parameter(recording, result.visits, name, begin, end)), "");
+    }
+    return html + "</div></section>\n";
+  };
+  const auto surge_sway = of_axes(result, {0, 1}), heave_yaw = of_axes(result, {2, 5}), tilt = of_axes(result, {3, 4});
+  const double modes_end = has_total ? total_begins : result.seconds;
+  std::string html =
+      section("Figure 1.15: parameters of surge and sway, modes of their own", surge_sway, 0.0, modes_end) +
+      section("Figure 1.16: parameters of heave and yaw, modes of their own", heave_yaw, 0.0, modes_end) +
+      section("Parameters of roll and pitch", tilt, 0.0, result.seconds);
+  if (has_total) {
+    html += section("Figure 1.17: surge and sway in mode Total", surge_sway, total_begins, total_ends) +
+            section("Figure 1.18: heave and yaw in mode Total", heave_yaw, total_begins, total_ends);
+  }
+  html +=
+      "<section><h2>Figure 1.19: how sure</h2><p class=\"small soft\">Sum of the variances of a mode's parameters "
+      "(eq. 1.15) against its threshold (dashed); shaded: the mode itself.</p><div class=\"grid\">";
+  std::vector<std::string> drawn;
+  for (const ModeVisit& visit : result.visits) {
+    if (std::ranges::find(drawn, visit.mode) != drawn.end()) continue;
+    drawn.push_back(visit.mode);
+    html += figure(album.place(draw_metric(recording, result, visit.mode)), "");
+  }
+  return html + "</div></section>\n";
+}
+
+std::string suspects(const LiveTrialResult& result) {
+  if (result.ranking.candidates.empty()) return "";
+  std::string html = "<section><h2>What the diagnoser said while it ran</h2><p>Verdict: <b>" +
+                     escape(result.ranking.verdict) + "</b></p><table>" +
+                     heading_cells({"Candidate", "Log odds", "Explains", ""}, {1, 2});
+  for (const EffectEvidence& one : result.ranking.candidates) {
+    const bool adopted = std::ranges::find(result.adopted, one.name) != result.adopted.end();
+    html += std::string{adopted ? "<tr class=\"yes\">" : "<tr>"} + cell(escape(effect_title(one.name)), "k") +
+            cell(number(one.log_odds), "n") + cell(percent(one.error_reduction), "n") +
+            cell(adopted ? "<span class=\"mark\">in the model</span>" : "") + "</tr>\n";
+  }
+  return html + "</table></section>\n";
+}
+
+std::string truth_section(const LiveTrialResult& result, const Recording& recording, Album& album) {
+  const TruthComparison& truth = *result.truth;
+  std::string html =
+      "<section style=\"border:3px double #9c2f5c\"><h2>Compared with the simulator's truth</h2>"
+      "<p class=\"note\">None of the processes heard what stands here: the simulator wrote it for this page alone.</p>"
+      "<p>Hidden: " +
+      escape(truth.effects.empty() ? "no effect" : join(truth.effects, "; ")) + ". Contacts: walls " +
+      std::to_string(truth.contacts[0]) + ", floor " + std::to_string(truth.contacts[1]) + ", surface " +
+      std::to_string(truth.contacts[2]) + ".</p><table>" +
+      heading_cells({"Parameter", "Identified", "Std", "Truth", "Error", "Error", "Truth in the 95 % interval"},
+                    {1, 2, 3, 4, 5});
+  for (const NamedValue& p : result.parameters) {
+    const auto found = truth.parameters.find(p.name);
+    if (found == truth.parameters.end()) continue;
+    const double error = p.value - found->second;
+    const bool inside = std::abs(error) <= kNormal95 * p.std;
+    html += "<tr>" + cell(escape(p.name), "k") + cell(number(p.value, 4), "n") + cell(number(p.std, 2), "n") +
+            cell(number(found->second, 4), "n") + cell(number(error, 2), "n") +
+            cell(number(100.0 * error / std::abs(found->second), 2) + " %", "n") + cell(inside ? "yes" : "<b>no</b>") +
+            "</tr>\n";
+  }
+  html += "</table>\n";
+  if (truth.compared > 0) {
+    html += "<h3>Errors of the estimated motion</h3>" +
+            key({{kMeasuredColour, "estimate minus truth"}, {kBeforeColour, "two standard deviations as stated"}}) +
+            "<div class=\"grid\">";
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      html += figure(album.place(draw_state_error(recording, axis)),
+                     "rms " + number(1e3 * truth.state_rms[axis], 2) + ", largest " +
+                         number(1e3 * truth.state_worst[axis], 2) + (axis < 3 ? " mm" : " mm/s") +
+                         "; mean square over the stated one " + number(truth.state_normalised[axis], 2));
+    }
+    html += "</div>";
+  }
+  return html + "</section>\n";
+}
+
+}  // namespace
+
+std::string to_html(const LiveTrialResult& result, const Recording& recording, const model::Vehicle& vehicle,
+                    const model::Site& site, const std::string& gnuplot) {
+  Album album;
+  const estimation::AidsSeen seen = estimation::aids_seen(recording, vehicle.mounts, site, trial_origin(recording));
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><title>Fathom: live trial of " +
+      escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
+  page += outcome(result) + mode_table(result) + table_1_1(result);
+  page += motion(recording, seen, album);
+  page += evolution(recording, result, album);
+  page += suspects(result);
+  if (result.truth) page += truth_section(result, recording, album);
+  return album.fill(page + "</main></body></html>\n", gnuplot);
+}
+
+}  // namespace fathom::report

@@ -1,0 +1,86 @@
+#include "common/report/live_trial.hpp"
+
+#include <algorithm>
+
+#include "common/base/error.hpp"
+
+namespace fathom::report {
+namespace {
+
+std::vector<ModeVisit> visits_of(const std::vector<Excitation>& said, Utime origin) {
+  std::vector<ModeVisit> visits;
+  const Excitation* before = nullptr;
+  std::size_t frozen_before = 0;
+  for (const Excitation& one : said) {
+    const double t = seconds_between(origin, one.utime);
+    const bool new_mode = !one.mode.empty() && (before == nullptr || before->mode != one.mode);
+    const bool over = before != nullptr && !before->mode.empty() && before->mode != one.mode;
+    if (over) {
+      ModeVisit& visit = visits.back();
+      visit.ended = t;
+      // A mode that was left pauses its parameters.
+      if (one.mode != "total" && !one.mode.empty()) visit.left = one.frozen.size() > frozen_before;
+      if (visit.left) visit.missing.clear();
+    }
+    if (new_mode) {
+      visits.push_back({.mode = one.mode, .begun = t, .ended = t, .threshold = one.threshold});
+      frozen_before = one.frozen.size();
+    }
+    if (!one.mode.empty() && !visits.empty()) {
+      ModeVisit& visit = visits.back();
+      visit.ended = t;
+      if (one.metric >= 0.0) {
+        visit.metric = one.metric;
+        visit.missing = one.missing;
+      }
+    }
+    before = &one;
+  }
+  return visits;
+}
+
+}  // namespace
+
+Utime trial_origin(const Recording& recording) { return recording.state.empty() ? 0 : recording.state.front().utime; }
+
+LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehicle, const model::Site& site) {
+  const auto need = [&](bool there, const char* channel, const char* who) {
+    if (!there) {
+      throw InputError(recording.name + ": no " + channel + " in this log; a live trial's log has it, from the " + who);
+    }
+  };
+  need(!recording.state.empty(), "STATE", "estimator");
+  need(!recording.excitation.empty(), "EXCITATION", "supervisor");
+  need(!recording.model.empty(), "MODEL", "identifier");
+  LiveTrialResult result;
+  result.vehicle = vehicle.name;
+  result.site = site.name;
+  const Utime origin = trial_origin(recording);
+  result.seconds = seconds_between(origin, recording.state.back().utime);
+  const Excitation& last = recording.excitation.back();
+  result.phase = last.phase;
+  result.reason = last.reason;
+  result.visits = visits_of(recording.excitation, origin);
+  // The words of the end know better than what was said meanwhile: "done, but not settled: yaw: ...; total: ...".
+  for (ModeVisit& visit : result.visits) {
+    if (last.phase != "done") continue;
+    visit.left = last.reason.find(" " + visit.mode + ": ") == std::string::npos;
+    if (visit.left) visit.missing.clear();
+  }
+  const ModelEstimate& model = recording.model.back();
+  result.parameters = model.parameters;
+  result.adopted = model.effects;
+  result.effect_numbers = model.effect_numbers;
+  for (std::size_t i = 0; i < vehicle.priors.size() && i < vehicle.parameters.size(); ++i) {
+    result.expected.push_back(
+        {.name = vehicle.parameters[i], .value = vehicle.priors[i].mean, .std = vehicle.priors[i].sigma, .unit = ""});
+  }
+  if (!recording.effects.empty()) result.ranking = recording.effects.back();
+  for (const Health& health : recording.health) {
+    if (health.state == "running" || health.state == "stopped") continue;
+    result.complaints[health.process] = health.state + ": " + health.detail;
+  }
+  return result;
+}
+
+}  // namespace fathom::report

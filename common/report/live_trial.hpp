@@ -1,0 +1,31 @@
+// What the log of a live trial holds, in words and numbers: modes, parameters, what the diagnoser said. And, in a part
+// of its own, the comparison with a simulator's truth.
+#pragma once
+
+#include <string>
+
+#include "common/model/site.hpp"
+#include "common/model/vehicle.hpp"
+#include "common/samples/live_trial.hpp"
+#include "common/samples/recording.hpp"
+
+namespace fathom::report {
+
+/// InputError when the log holds no STATE, no MODEL or no EXCITATION. TRUTH is not looked at.
+[[nodiscard]] LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehicle,
+                                        const model::Site& site);
+/// From the simulator's truth.json and the log's TRUTH; InputError when the file cannot be read.
+[[nodiscard]] TruthComparison compare_truth(const std::string& path, const Recording& recording);
+/// First time stamp of the states: zero of every time axis.
+[[nodiscard]] Utime trial_origin(const Recording& recording);
+
+/// JSON text for programs.
+[[nodiscard]] std::string to_json(const LiveTrialResult& result);
+/// Plain text for a terminal, at most 100 columns.
+[[nodiscard]] std::string to_table(const LiveTrialResult& result);
+/// The page: one HTML file that opens without a network. InputError when gnuplot cannot draw.
+[[nodiscard]] std::string to_html(const LiveTrialResult& result, const Recording& recording,
+                                  const model::Vehicle& vehicle, const model::Site& site,
+                                  const std::string& gnuplot = "gnuplot");
+
+}  // namespace fathom::report

@@ -1,0 +1,65 @@
+#include "processes/fathom/console.hpp"
+
+#include <chrono>
+#include <fathom_lcm/excitation_t.hpp>
+#include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/thrusters_t.hpp>
+
+#include "common/base/error.hpp"
+#include "common/wire/channels.hpp"
+#include "common/wire/minds.hpp"
+
+namespace fathom::tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+template <class Message>
+std::optional<Message> message_of(const std::vector<std::uint8_t>& bytes) {
+  Message message{};
+  const int length = static_cast<int>(bytes.size());
+  if (message.decode(bytes.data(), 0, length) != length) return {};
+  return message;
+}
+
+}  // namespace
+
+Console::Console(const std::string& url)
+    : url_{runtime::Url::parse(url, "--bus")},
+      input_{{url_}, {{wire::kThrusters, 1}, {wire::kExcitation, 1}, {wire::kHealth, 200}, {wire::kState, 1}}},
+      output_{url_} {
+  if (!url_.live()) throw InputError("--bus " + url + ": an operator needs a live bus");
+}
+
+void Console::listen(double seconds, const std::function<bool()>& enough) {
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (Clock::now() < end && !(enough && enough())) {
+    input_.wait(-1, 20);
+    while (const auto message = input_.next()) hear(*message);
+  }
+}
+
+void Console::say(const Operator& order) {
+  const auto message = wire::encode(order);
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  output_.write(wire::kOperator, bytes, message.utime);
+}
+
+void Console::hear(const runtime::LiveInput::Message& message) {
+  if (message.subscription == 0) {
+    if (const auto one = message_of<fathom_lcm::thrusters_t>(message.bytes)) vehicle_time = one->utime;
+  } else if (message.subscription == 1) {
+    if (const auto one = message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
+  } else if (message.subscription == 2) {
+    if (const auto one = message_of<fathom_lcm::health_t>(message.bytes)) {
+      if (const auto heard = wire::decode(*one)) health[heard->process] = *heard;
+    }
+  } else if (const auto one = message_of<fathom_lcm::state_t>(message.bytes)) {
+    state = wire::decode(*one);
+  }
+}
+
+}  // namespace fathom::tool

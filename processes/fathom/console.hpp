@@ -1,0 +1,37 @@
+// An operator's ear and voice on a live bus: the newest of what matters, and orders.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/runtime/bus.hpp"
+#include "common/samples/commands.hpp"
+#include "common/samples/estimates.hpp"
+#include "common/samples/health.hpp"
+
+namespace fathom::tool {
+
+class Console {
+ public:
+  /// InputError when the URL is no live bus.
+  explicit Console(const std::string& url);
+  /// Hears for so long, or until `enough`.
+  void listen(double seconds, const std::function<bool()>& enough = {});
+  void say(const Operator& order);
+
+  std::optional<Utime> vehicle_time;  ///< of the thrusters: the clock that judges orders
+  std::optional<Excitation> excitation;
+  std::optional<StateEstimate> state;
+  std::map<std::string, Health> health;
+
+ private:
+  void hear(const runtime::LiveInput::Message& message);
+
+  runtime::Url url_;
+  runtime::LiveInput input_;
+  runtime::Output output_;
+};
+
+}  // namespace fathom::tool

@@ -1,0 +1,56 @@
+// fathom trial: the log of a live trial as a verdict table, result.json and a page with the paper's figures.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/report/live_trial.hpp"
+#include "common/wire/log_reader.hpp"
+#include "processes/fathom/commands.hpp"
+
+namespace fathom::tool {
+namespace {
+
+struct Options {
+  std::string log, vehicle, site, truth, out;
+};
+
+void save(const std::string& path, const std::string& text) {
+  std::ofstream file{path, std::ios::binary};
+  file << text;
+  if (!file.flush()) throw InputError(path + ": cannot be written; check the folder's permissions and free space");
+}
+
+void run(const Options& options) {
+  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  const model::Site site = model::Site::load(options.site);
+  std::error_code failed;
+  std::filesystem::create_directories(options.out, failed);
+  if (failed) throw InputError(options.out + ": cannot be made (" + failed.message() + "); choose another --out");
+  const wire::LogContents contents = wire::read_log(options.log);
+  const std::string complaints = wire::complaints(options.log, contents.report);
+  if (!complaints.empty()) std::fprintf(stderr, "note: %s", complaints.c_str());
+  LiveTrialResult result = report::summarise(contents.recording, vehicle, site);
+  if (!options.truth.empty()) result.truth = report::compare_truth(options.truth, contents.recording);
+  save(options.out + "/result.json", report::to_json(result));
+  save(options.out + "/report.html", report::to_html(result, contents.recording, vehicle, site));
+  std::printf("%s\nresult %s/result.json\nreport %s/report.html\n", report::to_table(result).c_str(),
+              options.out.c_str(), options.out.c_str());
+}
+
+}  // namespace
+
+void add_trial(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("trial", "what a live trial's log holds: modes, parameters, figures");
+  command->add_option("log", options->log, "log of the trial (.lcmlog)")->required();
+  command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
+  command->add_option("--site", options->site, "site file (YAML)")->required();
+  command->add_option("--truth", options->truth, "the simulator's truth.json, for a section of its own");
+  command->add_option("--out", options->out, "folder for result.json and report.html")->required();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool

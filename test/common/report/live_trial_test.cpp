@@ -1,0 +1,149 @@
+// What a live trial's log becomes: modes from EXCITATION, the last model, a table, JSON, and a page whose comparison
+// with the truth stands apart and is there only when the truth is.
+#include "common/report/live_trial.hpp"
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.hpp"
+#include "test/support/scratch.hpp"
+
+using namespace fathom;
+using namespace fathom::report;
+
+namespace {
+
+constexpr Utime kStart = 1'700'000'000'000'000;
+constexpr double kStep = 0.1;  // s
+
+model::Vehicle vehicle() {
+  return model::Vehicle::load(std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/seabotix_lbv150.yaml");
+}
+model::Site site() { return model::Site::load(std::string{FATHOM_SOURCE_DIR} + "/config/sites/tank.yaml"); }
+
+// Yaw is left after 20 s, surge is given up after 40, total after 60; the state is 1 cm beside the truth.
+Recording trial() {
+  Recording recording;
+  recording.name = "run";
+  for (int k = 0; k <= 600; ++k) {
+    const double t = kStep * k;
+    const Utime utime = utime_after(kStart, t);
+    StateEstimate state{.utime = utime, .p_WB = {0.01 + 0.5 * std::sin(0.2 * t), 0.0, 0.7}, .valid = true};
+    state.sigma.setConstant(0.01);
+    recording.state.push_back(state);
+    recording.truth.push_back({.utime = utime, .p_WB = {0.5 * std::sin(0.2 * t), 0.0, 0.7}});
+    recording.depth.push_back({.utime = utime, .z = 0.71});
+    Excitation e{.utime = utime, .active = true, .phase = "excite", .metric = 1.0 / (1.0 + t), .threshold = 0.25};
+    e.mode = t < 20.0 ? "yaw" : t < 40.0 ? "surge" : "total";
+    if (t >= 20.0 && t < 40.0) {
+      e.frozen = {"I_Z"};
+      e.missing = "residual on X has 5 times the noise's power";
+    }
+    if (k == 600) {
+      e = Excitation{.utime = utime, .phase = "done"};
+      e.reason = "done, but not settled: surge: residual on X has 5 times the noise's power";
+    }
+    recording.excitation.push_back(e);
+    ModelEstimate model{.utime = utime};
+    model.parameters = {
+        {"m_X", 9.0 + 0.01 * t, 0.5, "kg"}, {"I_Z", 0.16, 0.01, "kg m^2"}, {"X_u", -8.0, 0.1, "N/(m/s)"}};
+    model.modes = {{"surge", 1.0 / (1.0 + t), 0.1}, {"total", 2.0 / (1.0 + t), 0.1}, {"yaw", 0.1 / (1.0 + t), 0.1}};
+    recording.model.push_back(model);
+  }
+  recording.effects.push_back({.utime = kStart,
+                               .verdict = "effect",
+                               .candidates = {{.name = "tether_tension", .log_odds = 12.0, .error_reduction = 0.4}}});
+  return recording;
+}
+
+std::string truth_file(const test::Scratch& scratch, const std::string& text) {
+  const std::string path = scratch.path("truth.json");
+  std::ofstream{path} << text;
+  return path;
+}
+
+constexpr const char* kTruth =
+    R"json({"parameters": {"m_X": {"value": 9.7532, "unit": "kg"}, "I_Z": {"value": 0.1589, "unit": "kg m^2"},
+        "X_u": {"value": -8.604, "unit": "N/(m/s)"}},
+        "effects": [{"name": "tether_tension", "variant": "", "parameters": {"stiffness": {"value": 2.0, "unit": "N/m"}}}],
+        "contacts": {"walls": 1, "floor": 0, "surface": 0}})json";
+
+}  // namespace
+
+TEST_CASE("live trial: modes are told apart, and the supervisor's last words say which were settled") {
+  const LiveTrialResult result = summarise(trial(), vehicle(), site());
+  REQUIRE(result.visits.size() == 3);
+  CHECK(result.visits[0].mode == "yaw");
+  CHECK(result.visits[0].ended == doctest::Approx(20.0));
+  CHECK(result.visits[0].left);
+  CHECK_FALSE(result.visits[1].left);
+  CHECK(result.visits[1].missing.find("residual on X") == 0);
+  CHECK(result.visits[2].left);
+  CHECK_FALSE(result.settled());
+  CHECK(result.phase == "done");
+  CHECK(result.ranking.verdict == "effect");
+  CHECK_FALSE(result.truth.has_value());
+}
+
+TEST_CASE("live trial: a run that was cut keeps as settled what had been left before") {
+  Recording cut = trial();
+  cut.excitation.resize(300);
+  const LiveTrialResult result = summarise(cut, vehicle(), site());
+  REQUIRE(result.visits.size() == 2);
+  CHECK(result.visits[0].left);
+  CHECK_FALSE(result.visits[1].left);
+  CHECK(result.phase == "excite");
+}
+
+TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
+  for (const int lacking : {0, 1, 2}) {
+    Recording recording = trial();
+    if (lacking == 0) recording.state.clear();
+    if (lacking == 1) recording.excitation.clear();
+    if (lacking == 2) recording.model.clear();
+    const char* const channels[] = {"no STATE", "no EXCITATION", "no MODEL"};
+    const std::string complaint =
+        test::complaint_of<InputError>([&] { (void)summarise(recording, vehicle(), site()); });
+    CHECK_MESSAGE(complaint.find(channels[lacking]) != std::string::npos, complaint);
+  }
+}
+
+TEST_CASE("live trial: errors against the truth are those that were put in, and contacts and effects are told") {
+  const test::Scratch scratch;
+  const TruthComparison truth = compare_truth(truth_file(scratch, kTruth), trial());
+  CHECK(truth.parameters.at("m_X") == 9.7532);
+  CHECK(truth.state_rms[0] == doctest::Approx(0.01));
+  CHECK(truth.state_rms[1] == doctest::Approx(0.0));
+  CHECK(truth.state_normalised[0] == doctest::Approx(1.0));
+  CHECK(truth.contacts[0] == 1);
+  CHECK(truth.effect_names == std::vector<std::string>{"tether_tension"});
+  CHECK(truth.effects.front().find("stiffness 2") != std::string::npos);
+  for (const char* bad : {"", "{}", "[1, 2]", R"({"parameters": 3, "effects": [], "contacts": {}})"}) {
+    CHECK_THROWS_AS((void)compare_truth(truth_file(scratch, bad), trial()), InputError);
+  }
+  CHECK_THROWS_AS((void)compare_truth(scratch.path("none.json"), trial()), InputError);
+}
+
+TEST_CASE("live trial: JSON, table and page agree, and speak of truth only when there is one") {
+  const test::Scratch scratch;
+  const Recording recording = trial();
+  LiveTrialResult result = summarise(recording, vehicle(), site());
+  const auto blind = nlohmann::json::parse(to_json(result));
+  CHECK_FALSE(blind.contains("compared_with_truth"));
+  CHECK(to_table(result).find("truth") == std::string::npos);
+  CHECK(to_html(result, recording, vehicle(), site()).find("truth") == std::string::npos);
+  result.truth = compare_truth(truth_file(scratch, kTruth), recording);
+  const auto json = nlohmann::json::parse(to_json(result));
+  CHECK(json["parameters"]["m_X"]["value"].get<double>() == doctest::Approx(9.6));
+  CHECK(json["compared_with_truth"]["parameters"]["X_u"]["inside_interval"] == false);
+  CHECK(json["compared_with_truth"]["parameters"]["m_X"]["inside_interval"] == true);
+  CHECK(to_table(result).find("MISSES THE TRUTH") != std::string::npos);
+  const std::string page = to_html(result, recording, vehicle(), site());
+  for (const char* words : {"Table 1.1", "Figure 1.11", "Figure 1.14", "Figure 1.15", "Figure 1.17", "Figure 1.19",
+                            "Compared with the simulator's truth"}) {
+    CHECK_MESSAGE(page.find(words) != std::string::npos, words);
+  }
+  CHECK(page.find("Compared with the simulator's truth") > page.find("Figure 1.19"));
+}

@@ -1,0 +1,122 @@
+// scripts/live as ./trial --live runs it: a trial from the first command to the page; and what goes wrong ends with one
+// line, a code, and nothing left running.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "test/support/scratch.hpp"
+#include "test/support/shell.hpp"
+
+namespace fathom {
+namespace {
+
+using test::file;
+using test::program;
+using test::Scratch;
+using test::shell;
+
+bool private_network() {
+  if (shell("unshare -rn ip link set lo up").code == 0) return true;
+  MESSAGE("skipped: this machine allows no private network (unshare -rn)");
+  return false;
+}
+
+std::string live(const Scratch& scratch, const std::string& words) {
+  return "FATHOM_BIN='" + std::string{FATHOM_BINARY_DIR} + "/bin' env --default-signal=INT timeout 120 " +
+         file("scripts/live") + " '" + scratch.path("out") + "' " + words;
+}
+
+nlohmann::json result_of(const Scratch& scratch) {
+  std::ifstream text{scratch.path("out/result.json")};
+  return nlohmann::json::parse(text);
+}
+
+// Processes that carry this test's folder in their command line, the shell that asks aside.
+bool nothing_left(const Scratch& scratch) {
+  return shell("for i in $(seq 40); do pgrep -f '" + scratch.path("ou") +
+               "[t]/' >/dev/null || exit 0; sleep 0.05; done; exit 1")
+             .code == 0;
+}
+
+// Starts a trial, does something to it once the log has begun, and waits for its end.
+test::Ran disturbed(const Scratch& scratch, const std::string& words, const std::string& deed) {
+  return shell(live(scratch, words) + " &\nscript=$!\nfor i in $(seq 200); do [ -s '" + scratch.path("out/run.lcmlog") +
+               "' ] && break; sleep 0.05; done\nsleep 0.5\n" + deed + "\nwait $script");
+}
+
+std::string pid_of(const Scratch& scratch, const std::string& process) {
+  return "$(pgrep -f '^[^ ]*bin/" + process + " .*" + scratch.path("out") + "')";
+}
+
+}  // namespace
+
+TEST_CASE("live: a trial that is cut short still gives table, result, page and truth, and leaves nothing running") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper lockstep 1007 45"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  CHECK_MESSAGE(ran.says("Identified"), ran.text);
+  CHECK_MESSAGE(ran.says("mode"), ran.text);
+  for (const char* name : {"run.lcmlog", "result.json", "report.html", "truth.json", "pipeline.yaml"}) {
+    CHECK_MESSAGE(std::filesystem::file_size(scratch.path(std::string{"out/"} + name)) > 0, name);
+  }
+  const auto result = result_of(scratch);
+  CHECK(result["parameters"].size() == 13);
+  CHECK(result["settled"] == false);
+  CHECK(result["modes"].size() >= 1);
+  CHECK(result["modes"][0]["mode"] == "yaw");
+  CHECK(result["compared_with_truth"]["states_compared"].get<int>() > 500);
+  const std::string page = test::read_bytes(scratch.path("out/report.html"));
+  for (const char* words : {"Table 1.1", "Figure 1.11", "Figure 1.12", "Figure 1.13", "Figure 1.14", "Figure 1.15",
+                            "Figure 1.16", "Figure 1.19", "None of the processes heard"}) {
+    CHECK_MESSAGE(page.find(words) != std::string::npos, words);
+  }
+  for (const char* word : {"http:", "https:", "src=", "<script"}) CHECK(page.find(word) == std::string::npos);
+  CHECK(nothing_left(scratch));
+}
+
+TEST_CASE("live: in real time, with lcm-logger") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "deep seabotix_lbv150 optimal real 1008 12"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const auto result = result_of(scratch);
+  CHECK(result["modes"][0]["mode"] == "total");
+  CHECK(result["compared_with_truth"]["states_compared"].get<int>() > 50);
+  CHECK(nothing_left(scratch));
+}
+
+TEST_CASE("live: a process that dies ends the trial with one line that names it") {
+  if (!private_network()) return;
+  for (const char* victim : {"identifier", "simulator", "recorder"}) {
+    CAPTURE(victim);
+    const Scratch scratch;
+    const auto ran =
+        disturbed(scratch, "tank seabotix_lbv150 paper lockstep 1 1500", "kill -KILL " + pid_of(scratch, victim));
+    CHECK(ran.code == 1);
+    CHECK_MESSAGE(ran.says(std::string{"live: "} + victim + " ended before the trial was over"), ran.text);
+    CHECK(nothing_left(scratch));
+  }
+}
+
+TEST_CASE("live: Ctrl-C stops everything") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = disturbed(scratch, "tank seabotix_lbv150 paper lockstep 1 1500", "kill -INT $script");
+  CHECK_MESSAGE(ran.code == 130, ran.text);
+  CHECK_MESSAGE(ran.says("stopped; what there is lies in"), ran.text);
+  CHECK(nothing_left(scratch));
+}
+
+TEST_CASE("live: what cannot start says why") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper lockstep 1 20 --hide sea_monster"));
+  CHECK(ran.code == 1);
+  CHECK_MESSAGE(ran.says("sea_monster"), ran.text);
+  CHECK(nothing_left(scratch));
+}
+
+}  // namespace fathom
