@@ -215,28 +215,67 @@ ParameterMatrix RecursiveEstimator::covariance() const {
   return P;
 }
 
+// One column of P = U D U'; what lies below U's diagonal is zero, so whole packets may be walked.
+ParameterVector RecursiveEstimator::covariance_column(Eigen::Index j) const {
+  const Eigen::Index n = state_.estimate.size();
+  const Eigen::Index stride = state_.U.rows();
+  alignas(32) std::array<double, kMaxParameters> share;
+  for (Eigen::Index k = j; k < n; ++k) share[static_cast<std::size_t>(k)] = state_.D(k) * state_.U(j, k);
+  alignas(32) std::array<double, kMaxParameters> column;
+  for (Eigen::Index i = 0; i < n; i += 4) {
+    Packet sum = Packet::Zero();
+    for (Eigen::Index k = std::max(i, j); k < n; ++k) {
+      sum += share[static_cast<std::size_t>(k)] * ConstPacketMap(state_.U.data() + k * stride + i);
+    }
+    PacketMap(column.data() + i) = sum;
+  }
+  return Eigen::Map<const Eigen::VectorXd>(column.data(), n);
+}
+
+// A few violated signs are the usual case. The point nearest to the estimate where all of them are zero needs their
+// columns of P alone; when it obeys the others, and every one of them pushes the right way, it is the solution.
 ParameterVector RecursiveEstimator::projected() const {
   if (obeys(state_.estimate, settings_.signs)) return state_.estimate;
-  // One violated sign is the usual case: the nearest point on its face, when that obeys the others, is the solution,
-  // and it needs one column of P alone.
+  constexpr Eigen::Index kFew = 4;
   const Eigen::Index n = state_.estimate.size();
-  Eigen::Index violated = -1;
-  int count = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (state_.estimate(i) * settings_.signs[static_cast<std::size_t>(i)] >= 0.0) continue;
-    violated = i;
-    ++count;
-  }
-  if (count == 1) {
-    ParameterVector column = ParameterVector::Zero(n);
-    for (Eigen::Index k = violated; k < n; ++k) {
-      column.head(k + 1) += (state_.D(k) * state_.U(violated, k)) * state_.U.col(k).head(k + 1);
+  const auto sign = [&](Eigen::Index i) { return static_cast<double>(settings_.signs[static_cast<std::size_t>(i)]); };
+  std::array<Eigen::Index, kFew> held{};
+  std::array<ParameterVector, kFew> columns;
+  Eigen::Index count = 0, ready = 0;
+  ParameterVector x = state_.estimate;
+  while (true) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (x(i) * sign(i) >= 0.0) continue;
+      if (count == kFew) return project_on_signs(state_.estimate, covariance(), settings_.signs);
+      held[static_cast<std::size_t>(count++)] = i;
     }
-    ParameterVector x = state_.estimate - (state_.estimate(violated) / column(violated)) * column;
-    x(violated) = 0.0;
-    if (obeys(x, settings_.signs)) return x;
+    if (count == ready) return x;
+    for (; ready < count; ++ready) {
+      columns[static_cast<std::size_t>(ready)] = covariance_column(held[static_cast<std::size_t>(ready)]);
+    }
+    // The multipliers solve A l = -x_held with A the held block of P: symmetric and positive, so no pivots.
+    std::array<std::array<double, kFew>, kFew> A;
+    std::array<double, kFew> l;
+    for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
+      l[r] = -state_.estimate(held[r]);
+      for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c) A[r][c] = columns[c](held[r]);
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      for (std::size_t r = k + 1; r < static_cast<std::size_t>(count); ++r) {
+        const double share = A[r][k] / A[k][k];
+        for (std::size_t c = k + 1; c < static_cast<std::size_t>(count); ++c) A[r][c] -= share * A[k][c];
+        l[r] -= share * l[k];
+      }
+    }
+    for (std::size_t k = static_cast<std::size_t>(count); k-- > 0;) {
+      for (std::size_t c = k + 1; c < static_cast<std::size_t>(count); ++c) l[k] -= A[k][c] * l[c];
+      l[k] /= A[k][k];
+      if (!(l[k] * sign(held[k]) >= 0.0)) return project_on_signs(state_.estimate, covariance(), settings_.signs);
+    }
+    x = state_.estimate;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) x += l[k] * columns[k];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) x(held[k]) = 0.0;
   }
-  return project_on_signs(state_.estimate, covariance(), settings_.signs);
 }
 
 // The estimate errs by P times the sum of the scores. White residuals of the stated variance give that sum a variance

@@ -82,6 +82,7 @@ class RecursiveEstimator {
   void forget();
   void take(const Row& row);
   void add_outer(double factor, ParameterVector& v);
+  [[nodiscard]] ParameterVector covariance_column(Eigen::Index j) const;
   [[nodiscard]] ParameterVector inflation() const;
 
   RecursiveSettings settings_;

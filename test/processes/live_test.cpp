@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
+#include "common/base/event_log.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 
@@ -38,6 +40,15 @@ bool nothing_left(const Scratch& scratch) {
   return shell("for i in $(seq 40); do pgrep -f '" + scratch.path("ou") +
                "[t]/' >/dev/null || exit 0; sleep 0.05; done; exit 1")
              .code == 0;
+}
+
+std::vector<std::string> messages(const std::string& path, const std::string& channel) {
+  std::vector<std::string> found;
+  EventLog log{path};
+  while (const auto event = log.next()) {
+    if (event->channel == channel) found.emplace_back(event->data.begin(), event->data.end());
+  }
+  return found;
 }
 
 // Starts a trial, does something to it once the log has begun, and waits for its end.
@@ -86,6 +97,31 @@ TEST_CASE("live: in real time, with lcm-logger") {
   CHECK(result["modes"][0]["mode"] == "total");
   CHECK(result["compared_with_truth"]["states_compared"].get<int>() > 50);
   CHECK(nothing_left(scratch));
+}
+
+TEST_CASE(
+    "live: an effect that the simulator draws and hides is adopted, listed in MODEL, and the log gives the same bits") {
+  if (!private_network()) return;
+  const std::vector<std::string> effects{"current", "asymmetric_drag", "thrust_asymmetry"};
+  std::mt19937 draw{20261121};
+  const std::string hidden = effects[draw() % effects.size()];
+  const std::string seed = std::to_string(1000 + draw() % 1000);
+  CAPTURE(hidden);
+  CAPTURE(seed);
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "tank seabotix_lbv150 optimal lockstep " + seed + " 190 --hide " + hidden));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const auto result = result_of(scratch);
+  CHECK_MESSAGE(result["adopted_effects"] == nlohmann::json::array({hidden}), ran.text);
+  CHECK(result["effect_parameters"].size() >= 1);
+  CHECK(result["compared_with_truth"]["hidden_effects"] == nlohmann::json::array({hidden}));
+
+  const auto again = shell(
+      program("identifier") + " --log-level warning --config '" + scratch.path("out/pipeline.yaml") + "' --config " +
+      file("config/vehicles/seabotix_lbv150.yaml") + " --config " + file("config/corrections/none.yaml") +
+      " --in file://" + scratch.path("out/run.lcmlog") + " --out file://" + scratch.path("model.lcmlog"));
+  REQUIRE_MESSAGE(again.code == 0, again.text);
+  CHECK(messages(scratch.path("model.lcmlog"), "MODEL") == messages(scratch.path("out/run.lcmlog"), "MODEL"));
 }
 
 TEST_CASE("live: a process that dies ends the trial with one line that names it") {
