@@ -3,6 +3,7 @@
 // how much of the residual it explains that the base parameters cannot. Pure and blind to the order of arrival.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,8 +39,10 @@ struct LiveSettings {
   bool interpolate_input{true};      ///< false: a command holds until the next
   double max_input_gap{0.5};         ///< s
   double max_skew{0.5};              ///< s by which one channel may lag the others without changing the result
+  double largest_ratio{0.0};  ///< of the residual's power in MODEL to the noise's: beyond, nothing is adequate; 0: any
 
-  /// Keys: as the members above in their order, with input (linear or hold) for interpolate_input.
+  /// Keys: as the members above in their order, with input (linear or hold) for interpolate_input; largest_ratio is
+  /// optional.
   [[nodiscard]] static LiveSettings from(const Config& config);
 };
 
@@ -53,6 +56,8 @@ class LiveDiagnoser {
   /// `tau`.
   std::optional<EffectRanking> step(const Thrusters& thrusters);
   std::optional<EffectRanking> step(const Battery& battery);
+  /// What the identifier's model leaves, over the noise that it was told of. Counts by its time stamp.
+  void hear(const ModelEstimate& model);
   /// The streams ended: what was waiting is used and judged.
   std::optional<EffectRanking> finish();
   void reset();
@@ -97,6 +102,7 @@ class LiveDiagnoser {
   [[nodiscard]] model::Scene scene() const;
   [[nodiscard]] model::Model base_from_warm_up(Vector6d& sigma);
   [[nodiscard]] EffectRanking rank(Utime utime);
+  [[nodiscard]] bool leaves_much(Utime utime);
   [[nodiscard]] identification::IntegralSettings integral_settings() const;
 
   LiveSettings settings_;
@@ -117,6 +123,11 @@ class LiveDiagnoser {
   identification::IntegralRegressor regressor_;
   std::unique_ptr<Candidates> candidates_;
   std::vector<LiveSuspicion> suspicions_;
+  struct Left {
+    Utime utime{};
+    double ratio{};
+  };
+  std::deque<Left> left_;  // of MODEL, newest last
   std::map<std::string, std::int64_t> rejected_;
 };
 

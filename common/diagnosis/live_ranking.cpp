@@ -10,6 +10,8 @@ namespace {
 
 constexpr Utime kPastStep = 20'000;       // us between commands kept for delays
 constexpr std::size_t kPastLength = 100;  // of those: 2 s, longer than the longest delay
+constexpr double kModelDelay = 2.0;       // s: more than the identifier is late
+constexpr std::size_t kMostModels = 100;  // of MODEL that are remembered
 constexpr std::size_t kPastMost = 2 * kPastLength;
 
 }  // namespace
@@ -129,7 +131,7 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
                                   .numbers = suspicion.theta});
   }
   if (best.empty() || !convinces(*best.front())) {
-    ranking.verdict = evidence.structured() ? "unexplained" : "adequate";
+    ranking.verdict = evidence.structured() || leaves_much(utime) ? "unexplained" : "adequate";
     return ranking;
   }
   const LiveSuspicion& winner = *best.front();
@@ -139,6 +141,23 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
   });
   ranking.verdict = rivalled ? "ambiguous" : "effect";
   return ranking;
+}
+
+void LiveDiagnoser::hear(const ModelEstimate& model) {
+  if (!left_.empty() && model.utime <= left_.back().utime) return;
+  left_.push_back({model.utime, model.residual_ratio.maxCoeff()});
+  if (left_.size() > kMostModels) left_.pop_front();
+}
+
+// A residual that forgets within a second shows no memory here, but its power gives it away. Models count by their time
+// stamps, kModelDelay after them, so that it does not matter when they arrived.
+bool LiveDiagnoser::leaves_much(Utime utime) {
+  if (settings_.largest_ratio <= 0.0) return false;
+  double ratio = 0.0;
+  for (const Left& left : left_) {
+    if (seconds_between(left.utime, utime) >= kModelDelay) ratio = left.ratio;
+  }
+  return ratio > settings_.largest_ratio;
 }
 
 void LiveDiagnoser::forget_motion() {
@@ -156,6 +175,7 @@ void LiveDiagnoser::reset() {
   aligner_.reset();
   regressor_.reset();
   candidates_.reset();
+  left_.clear();
   suspicions_.clear();
 }
 

@@ -1,6 +1,7 @@
 // diagnoser: states, thruster commands and battery voltage in, the ranking of candidate causes out.
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/effects_t.hpp>
+#include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
 
@@ -40,6 +41,11 @@ int main(int argc, char** argv) {
       if (!battery) return process.reject(wire::kBattery);
       forces.step(*battery);
       say(diagnoser.step(*battery));
+    });
+    process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
+      const auto model = wire::decode(message);
+      if (!model) return process.reject(wire::kModel);
+      diagnoser.hear(*model);
     });
     process.on_restart([&] {
       diagnoser.reset();

@@ -66,6 +66,24 @@ TEST_CASE("live ranking: one per block of message time, collecting until there a
   CHECK(rankings.back().utime == utime_after(kStart, dive.trial.t.back()));
 }
 
+TEST_CASE("live ranking: nothing is adequate while MODEL has more residual than noise explains, by its time stamp") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 80.0, .seed = 7});
+  const auto verdict = [&](double limit, double ratio, double at) {
+    LiveSettings settings = short_settings();
+    settings.largest_ratio = limit;
+    LiveDiagnoser diagnoser{settings, vehicle};
+    ModelEstimate model{.utime = utime_after(kStart, at)};
+    model.residual_ratio[2] = ratio;
+    diagnoser.hear(model);
+    return listen(diagnoser, dive.trial).back().verdict;
+  };
+  CHECK(verdict(0.0, 30.0, 50.0) == "adequate");
+  CHECK(verdict(2.0, 30.0, 50.0) == "unexplained");
+  CHECK(verdict(2.0, 1.0, 50.0) == "adequate");
+  CHECK(verdict(2.0, 30.0, 79.5) == "adequate");  // it may still be on its way
+}
+
 TEST_CASE("live ranking: each effect once, the convincing ones first and by what they explain") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const test::VirtualDive dive =

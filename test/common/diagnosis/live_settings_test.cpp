@@ -52,6 +52,8 @@ TEST_CASE("live settings: every number arrives where it belongs") {
   CHECK(s.max_input_gap == 0.6);
   CHECK(s.max_skew == doctest::Approx(0.5));
   CHECK(LiveSettings::from(Config::parse(with("input", "linear"), "p.yaml")).interpolate_input);
+  CHECK(s.largest_ratio == 0.0);
+  CHECK(LiveSettings::from(Config::parse(kText + "largest_ratio: 2\n", "p.yaml")).largest_ratio == 2.0);
 }
 
 TEST_CASE("live settings: no key has a default") {
