@@ -2,12 +2,14 @@
 // line, a code, and nothing left running.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "common/base/event_log.hpp"
+#include "common/wire/log_reader.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 
@@ -122,6 +124,28 @@ TEST_CASE(
       " --in file://" + scratch.path("out/run.lcmlog") + " --out file://" + scratch.path("model.lcmlog"));
   REQUIRE_MESSAGE(again.code == 0, again.text);
   CHECK(messages(scratch.path("model.lcmlog"), "MODEL") == messages(scratch.path("out/run.lcmlog"), "MODEL"));
+}
+
+TEST_CASE("live: when the estimator or the supervisor falls silent, the thrusters stop within a second") {
+  if (!private_network()) return;
+  for (const char* victim : {"estimator", "supervisor"}) {
+    CAPTURE(victim);
+    const Scratch scratch;
+    const auto ran = disturbed(scratch, "tank seabotix_lbv150 paper real 3 18",
+                               "sleep 10; kill -STOP " + pid_of(scratch, victim) + "; sleep 1");
+    REQUIRE_MESSAGE(ran.code == 0, ran.text);
+    const Recording run = wire::read_log(scratch.path("out/run.lcmlog")).recording;
+    Utime last_push = 0;
+    for (const Thrusters& t : run.thrusters) {
+      if (std::any_of(t.tau.begin(), t.tau.end(), [](double x) { return x != 0.0; })) last_push = t.utime;
+    }
+    REQUIRE(last_push > 0);
+    const Utime heard = std::string{victim} == "estimator" ? run.state.back().utime : run.wrench_command.back().utime;
+    CHECK(seconds_between(run.thrusters.front().utime, heard) > 5.0);
+    CHECK(seconds_between(heard, last_push) < 1.0);
+    CHECK(seconds_between(last_push, run.thrusters.back().utime) > 2.0);
+    CHECK(nothing_left(scratch));
+  }
 }
 
 TEST_CASE("live: a process that dies ends the trial with one line that names it") {
