@@ -323,7 +323,10 @@ void Navigator::say(const Node& node) {
     if (memory.tracks[i].last) state.age[i] = seconds_between(*memory.tracks[i].last, node.utime);
   }
   state.age[slot(Source::kAhrs)] = 0.0;
-  state.valid = memory.started && sigma.head<3>().maxCoeff() <= settings_.largest_position_sigma &&
+  // A first fix alone may be wild: another one must have agreed with it.
+  const bool witnessed =
+      memory.tracks[slot(Source::kTagPose)].accepted + memory.tracks[slot(Source::kUsbl)].accepted > 0;
+  state.valid = memory.started && witnessed && sigma.head<3>().maxCoeff() <= settings_.largest_position_sigma &&
                 sigma.tail<3>().maxCoeff() <= settings_.largest_velocity_sigma;
   output_.push_back(state);
 }

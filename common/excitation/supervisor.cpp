@@ -74,6 +74,7 @@ void Supervisor::reset() {
 void Supervisor::hear(const ModelEstimate& model) {
   model_ = model;
   model_is_new_ = true;
+  since_model_ = 0.0;
 }
 
 void Supervisor::hear(const Health& health) {
@@ -331,7 +332,10 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
     if (lost_since_ == 0) lost_since_ = state.utime;
     if (seconds_between(lost_since_, state.utime) > settings_.patience)
       stop(Phase::kLost, "the state was lost; arm again");
+  } else if (settings_.model_patience > 0.0 && phase_ == Phase::kExcite && since_model_ > settings_.model_patience) {
+    stop(Phase::kAborted, "the identifier is silent: no MODEL came");
   }
+  since_model_ = state.valid && phase_ == Phase::kExcite ? since_model_ + dt : 0.0;
   if (!armed_ || !state.valid) {
     say(Vector6d::Zero(), Vector6d::Zero(), false);
     if (armed_) output_.excitation->phase = name(Phase::kLost);

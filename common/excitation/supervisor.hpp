@@ -47,6 +47,7 @@ struct SupervisorSettings {
   double approach_time{15.0};      ///< s at most to the place where a mode begins
   double closing_time{2.0};        ///< s of holding still at the end
   double patience{3.0};            ///< s without a valid state after which the operator must arm again
+  double model_patience{0.0};      ///< s of valid states without a MODEL after which nothing is excited; 0: for ever
   double order_age{5.0};           ///< s that an order may be old
   double open_range{8.0};          ///< m around the start where the site has no walls
   std::vector<std::string> needs;  ///< processes that must not be unhealthy
@@ -133,6 +134,7 @@ class Supervisor {
   double turned_{}, last_heading_{};
   std::optional<ModelEstimate> model_;
   bool model_is_new_{false};
+  double since_model_{};  // s of valid states
   LeavingVerdict verdict_;
   std::string suspect_;
   Utime armed_at_{}, last_command_{}, lost_since_{};

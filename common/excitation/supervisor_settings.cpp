@@ -74,6 +74,7 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   s.approach_time = config.positive("approach_time", "s");
   s.closing_time = config.not_negative("closing_time", "s");
   s.patience = config.positive("patience", "s");
+  if (config.has("model_patience")) s.model_patience = config.positive("model_patience", "s");
   s.order_age = config.positive("order_age", "s");
   s.open_range = config.positive("open_range", "m");
   s.needs = config.texts("needs");

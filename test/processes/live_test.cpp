@@ -126,6 +126,17 @@ TEST_CASE(
   CHECK(messages(scratch.path("model.lcmlog"), "MODEL") == messages(scratch.path("out/run.lcmlog"), "MODEL"));
 }
 
+TEST_CASE("live: when the identifier falls silent, the trial is aborted and says so") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = disturbed(scratch, "tank seabotix_lbv150 optimal real 3 40",
+                             "sleep 9; kill -STOP " + pid_of(scratch, "identifier"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  CHECK_MESSAGE(ran.says("the identifier is silent"), ran.text);
+  CHECK(result_of(scratch)["phase"] == "aborted");
+  CHECK(nothing_left(scratch));
+}
+
 TEST_CASE("live: when the estimator or the supervisor falls silent, the thrusters stop within a second") {
   if (!private_network()) return;
   for (const char* victim : {"estimator", "supervisor"}) {

@@ -249,6 +249,23 @@ TEST_CASE("supervisor: without a model it tries again, gives up, and says what i
   CHECK(loop.supervisor.reason() == "done, but not settled: yaw: no MODEL came");
 }
 
+TEST_CASE("supervisor: a silent identifier stops the excitation, where that is wished") {
+  for (const bool models : {true, false}) {
+    CAPTURE(models);
+    Loop loop;
+    loop.settings.supervisor.model_patience = 3.0;
+    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.run(0.2);
+    loop.arm();
+    for (int second = 0; second < 30; ++second) {
+      if (models) loop.supervisor.hear(ModelEstimate{});
+      loop.run(1.0);
+    }
+    CHECK(loop.supervisor.phase() == (models ? Phase::kExcite : Phase::kAborted));
+    if (!models) CHECK(loop.supervisor.reason() == "the identifier is silent: no MODEL came");
+  }
+}
+
 TEST_CASE("supervisor: hold stays, manual obeys inside the fence, identify goes on, retry begins the mode again") {
   Loop loop;
   loop.run(0.2);
