@@ -17,8 +17,15 @@ using test::order_to_arm;
 using test::TankPlant;
 
 /// Plant and supervisor without an identifier.
-struct Loop {
+/// No identifier runs here.
+test::TankSettings settings_without_model() {
   test::TankSettings settings = test::tank_settings();
+  settings.supervisor.model_patience = 0.0;
+  return settings;
+}
+
+struct Loop {
+  test::TankSettings settings = settings_without_model();
   TankPlant plant{settings.vehicle, {}};
   Supervisor supervisor{settings.supervisor, settings.vehicle, "secret"};
   std::optional<Excitation> said{};
