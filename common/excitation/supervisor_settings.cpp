@@ -52,6 +52,7 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   const Config largest = config.section("largest");
   for (std::size_t i = 0; i < 6; ++i) {
     const std::string axis = model::kAxisNames[i];
+    if ((i == 3 || i == 4) && !largest.has(axis)) continue;  // roll and pitch right themselves
     if (vehicle.dof[i]) s.largest[static_cast<Eigen::Index>(i)] = largest.not_negative(axis, i < 3 ? "N" : "N m");
   }
   const Config thresholds = config.section("thresholds");

@@ -232,6 +232,7 @@ Figure draw_state_error(const Recording& recording, std::size_t axis) {
     sigma.push_back(2e3 * at->sigma[k < 3 ? k : k + 3]);
   }
   std::vector<double> minus;
+  minus.reserve(sigma.size());
   for (const double s : sigma) minus.push_back(-s);
   const std::string unit = k < 3 ? " [mm]" : " [mm/s]";
   Figure figure{.alt = "Error of the estimate", .width = 380, .height = 200};
