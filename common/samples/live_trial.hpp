@@ -44,7 +44,7 @@ struct LiveTrialResult {
   std::vector<NamedValue> parameters;             ///< identified, the std honest
   std::vector<NamedValue> expected;               ///< of the vehicle file: what was known before, for reference
   std::vector<std::string> adopted;               ///< effects in the identifier's model
-  std::vector<NamedValue> effect_numbers;  ///< theirs, "effect.parameter"
+  std::vector<NamedValue> effect_numbers;         ///< theirs, "effect.parameter"
   EffectRanking ranking;                          ///< the diagnoser's last
   std::map<std::string, std::string> complaints;  ///< by process: what it called unhealthy
   std::optional<TruthComparison> truth;
