@@ -12,6 +12,10 @@
 namespace fathom::diagnosis {
 namespace {
 
+constexpr double kMostHarm = 0.02;  // growth of the validation error: what predicts worse is not what the model lacked
+constexpr double kPromised = 0.1;   // of the training error: so much must show elsewhere
+constexpr double kKept = 0.25;      // of what was promised
+
 using Residuals = std::vector<std::vector<Vector6d>>;
 
 std::array<double, 6> as_array(const Vector6d& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
@@ -65,11 +69,30 @@ PredictionTrace trace_of(const Trial& trial, const SearchResult& found, const st
   return trace;
 }
 
+/// Whether what training promised is kept by runs that no fit has seen. A veto only: nothing is accepted for it.
+bool carries_over(const SearchResult& found, const Interval& change) {
+  double left = 1.0;
+  for (const Judged& judged : found.accepted) left *= 1.0 - judged.error_reduction;
+  const double promised = 1.0 - left;
+  if (!std::isfinite(change.value)) return true;
+  return change.value > -kMostHarm && (promised < kPromised || change.value > kKept * promised);
+}
+
+/// Takes back everything that was accepted.
+void take_back(SearchResult& found) {
+  for (Judged& judged : found.accepted) {
+    judged.reason = "helps the runs that it was fitted to, and not the validation run";
+    found.refused.push_back(judged);
+  }
+  found.accepted.clear();
+  found.after = found.before;
+}
+
 }  // namespace
 
 DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
                          const Settings& settings, const Progress& progress) {
-  const SearchResult found = search(vehicle, train, settings, progress);
+  SearchResult found = search(vehicle, train, settings, progress);
   DiagnosisReport report;
   DiagnosisResult& result = report.result;
   result.vehicle = vehicle.name;
@@ -79,7 +102,11 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   progress("predicting the validation runs", 0.97);
   const std::vector<model::Window> windows = prediction_windows(validate);
   const Predictions before = predict(found.before.model, windows);
-  const Predictions after = predict(found.after.model, windows);
+  Predictions after = predict(found.after.model, windows);
+  if (!found.accepted.empty() && !carries_over(found, improvement(before, after, vehicle))) {
+    take_back(found);
+    after = before;
+  }
   const Residuals residual_before = residuals_of(found.before.model, validate);
   const Residuals residual_after = residuals_of(found.after.model, validate);
   result.error_before = {force_rmse(vehicle, residual_before), before.summary(vehicle)};

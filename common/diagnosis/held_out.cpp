@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-
-#include "common/model/onset.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -37,9 +34,12 @@ std::vector<int> folds_by_run(std::span<const identification::WindowResidual> wi
   return folds;
 }
 
-/// A moment is known from the windows around it alone; no others can stand in for them, so it keeps its value.
-bool is_moment(const identification::FreeParameter& number) {
-  return number.name.ends_with("." + std::string{model::kOnset});
+/// What lies inside an effect that has amplitudes (a moment, a place, a time constant) is known from a few windows
+/// alone, and no single step finds it from the others: it keeps its value, and the others set the amplitudes.
+bool keeps_its_value(const identification::FreeParameter& number, const model::Model& model) {
+  if (number.effect < 0) return false;
+  const int amplitudes = model.effects[static_cast<std::size_t>(number.effect)].effect->amplitudes();
+  return amplitudes > 0 && number.component >= amplitudes;
 }
 
 int fold_count(std::span<const int> folds) {
@@ -65,7 +65,7 @@ CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& 
   all_ = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   for (identification::ProjectedWindow& window : problem.linearise(fit)) {
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (is_moment(map[static_cast<std::size_t>(i)])) window.jacobian.col(i).setZero();
+      if (keeps_its_value(map[static_cast<std::size_t>(i)], fit.model)) window.jacobian.col(i).setZero();
     }
     windows_.push_back({window.jacobian.transpose() * window.jacobian, window.jacobian.transpose() * window.residual,
                         window.residual.squaredNorm()});
@@ -80,7 +80,7 @@ CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& 
     const auto& free = map[static_cast<std::size_t>(i)];
     const double prior = inflation * std::pow(free.scale / free.prior_sigma, 2);
     all_.information(i, i) += prior;
-    if (!is_moment(free)) all_.gradient[i] += prior * (x[i] - free.prior_mean / free.scale);
+    if (!keeps_its_value(free, fit.model)) all_.gradient[i] += prior * (x[i] - free.prior_mean / free.scale);
   }
 }
 

@@ -90,6 +90,15 @@ double surprise(const model::Model& model, const Judged& judged) {
   return cost;
 }
 
+bool evident(const Judged& judged, const Settings& settings) {
+  return judged.log_odds >= settings.accept_log_odds ||
+         (judged.log_odds >= settings.doubtful_log_odds && judged.held_out_blocks >= settings.convincing);
+}
+
+bool doubtful(const Judged& judged, const Settings& settings) {
+  return judged.log_odds >= settings.doubtful_log_odds && judged.error_reduction >= settings.convincing;
+}
+
 std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model) {
   char text[160];
   if (judged.error_reduction < settings.smallest_reduction) {
@@ -102,7 +111,7 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
                   100.0 * judged.change);
     return text;
   }
-  if (judged.log_odds < settings.accept_log_odds) {
+  if (!evident(judged, settings)) {
     std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
     return text;
   }

@@ -31,6 +31,10 @@ void judge_by_data_left_out(Judged& judged, const identification::TrajectoryFit&
 /// Log odds that numbers far beyond the ordinary cost: a prior with tails that never rule anything out (Cauchy), free
 /// of charge up to one prior sigma.
 [[nodiscard]] double surprise(const model::Model& model, const Judged& judged);
+/// Whether odds alone, or fair odds and what it saves on blocks left out, speak for it.
+[[nodiscard]] bool evident(const Judged& judged, const Settings& settings);
+/// Whether data left out might still decide.
+[[nodiscard]] bool doubtful(const Judged& judged, const Settings& settings);
 /// Why it must be refused; empty when nothing speaks against it. With the fitted `model`, limits are looked at too.
 [[nodiscard]] std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model = nullptr);
 /// Names the look-alikes of the winner, and which of them the data cannot rule out.

@@ -127,7 +127,7 @@ class Round {
     promises_.kept(answers_, i, reduction(reference_.cost, fit.cost));
     judge_by_odds(judged, reference_, fit, tried_);
     judged.reason = refusal(judged, settings_, &fit.model);
-    if (judged.reason.empty()) {
+    if (judged.reason.empty() || doubtful(judged, settings_)) {
       if (!checked_) checked_.emplace(problem_, reference_);
       judge_by_data_left_out(judged, problem_, reference_, *checked_, fit);
       judged.reason = refusal(judged, settings_, &fit.model);
@@ -163,15 +163,15 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
                                  static_cast<int>(candidate.effect->parameters().size()), tried) -
                         surprise(result.after.model, candidate);
     const double share = reduction(fit.cost, result.after.cost);
-    if (odds >= settings.accept_log_odds && share >= settings.smallest_reduction) {
-      result.accepted[i].log_odds = odds;
-      result.accepted[i].error_reduction = share;
+    Judged again = candidate;
+    again.log_odds = odds;
+    again.error_reduction = share;
+    if (evident(again, settings) && share >= settings.smallest_reduction) {
+      result.accepted[i] = again;
       ++i;
       continue;
     }
-    Judged dropped = candidate;
-    dropped.log_odds = odds;
-    dropped.error_reduction = share;
+    Judged dropped = again;
     dropped.reason = result.accepted.size() > 1 ? "made superfluous by the other effects" : refusal(dropped, settings);
     result.refused.push_back(dropped);
     result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
