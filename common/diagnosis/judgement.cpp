@@ -90,8 +90,12 @@ double surprise(const model::Model& model, const Judged& judged) {
   return cost;
 }
 
+double needed_log_odds(const Judged& judged, const Settings& settings) {
+  return judged.error_reduction < settings.subtle ? settings.subtle_log_odds : settings.accept_log_odds;
+}
+
 bool evident(const Judged& judged, const Settings& settings) {
-  return judged.log_odds >= settings.accept_log_odds ||
+  return judged.log_odds >= needed_log_odds(judged, settings) ||
          (judged.log_odds >= settings.doubtful_log_odds && judged.held_out_blocks >= settings.convincing);
 }
 
@@ -112,7 +116,7 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
     return text;
   }
   if (!evident(judged, settings)) {
-    std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, settings.accept_log_odds);
+    std::snprintf(text, sizeof text, "log odds %.1f, %.1f needed", judged.log_odds, needed_log_odds(judged, settings));
     return text;
   }
   if (judged.lasting) return "begins at the edge of the data: something that always acts, not an event";

@@ -31,6 +31,8 @@ void judge_by_data_left_out(Judged& judged, const identification::TrajectoryFit&
 /// Log odds that numbers far beyond the ordinary cost: a prior with tails that never rule anything out (Cauchy), free
 /// of charge up to one prior sigma.
 [[nodiscard]] double surprise(const model::Model& model, const Judged& judged);
+/// More is needed of what explains little.
+[[nodiscard]] double needed_log_odds(const Judged& judged, const Settings& settings);
 /// Whether odds alone, or fair odds and what it saves on blocks left out, speak for it.
 [[nodiscard]] bool evident(const Judged& judged, const Settings& settings);
 /// Whether data left out might still decide.
