@@ -15,7 +15,7 @@ struct Settings {
   identification::FitSettings fit;
   double accept_log_odds{5.0};       ///< 150 to 1, all tries paid for: noise with a memory may cross 20 to 1
   double subtle{0.05};               ///< of the error (RMS): less may be noise with a memory, answered by a pilot
-  double subtle_log_odds{10.0};      ///< needed of what saves less than `subtle`
+  double subtle_log_odds{8.0};       ///< 3000 to 1, needed of what saves less than `subtle`
   double doubtful_log_odds{2.0};     ///< from here on what saves `convincing` on blocks left out is accepted too
   double convincing{0.1};            ///< of the error (RMS): chance saves nothing on data that had no part in the fit
   double smallest_reduction{0.005};  ///< of the training error (RMS): less changes no prediction worth the name
