@@ -37,8 +37,8 @@ void write_site(const std::string& path, const vision::Calibration& calibration,
   std::fprintf(out,
                "# Written by fathom calibrate from %s: %d pictures, %d corners, reprojection %.3f px before, %.3f px "
                "after (medians).\n",
-               std::filesystem::path{source}.filename().c_str(), calibration.n_views, calibration.n_corners, calibration.before.median,
-               calibration.after.median);
+               std::filesystem::path{source}.filename().c_str(), calibration.n_views, calibration.n_corners,
+               calibration.before.median, calibration.after.median);
   std::fprintf(out, "site: %s\ntag_search: {families: [", site.name.c_str());
   for (std::size_t i = 0; i < site.search.families.size(); ++i) {
     std::fprintf(out, "%s%s", i > 0 ? ", " : "", site.search.families[i].c_str());

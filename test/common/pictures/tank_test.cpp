@@ -184,8 +184,8 @@ TEST_CASE("tank: optical flow agrees with the derivative of the tags' pose") {
       yy += (y - my) * (y - my);
     }
     const double correlation = xy / std::sqrt(xx * yy), scale = xy / xx;
-    MESSAGE("axis "
-            << std::string{"xyz"}.substr(static_cast<std::size_t>(axis), 1) << " of W: correlation " << correlation << ", scale " << scale << ", n " << pairs.size());
+    MESSAGE("axis " << std::string{"xyz"}.substr(static_cast<std::size_t>(axis), 1) << " of W: correlation "
+                    << correlation << ", scale " << scale << ", n " << pairs.size());
     if (axis < 2) {
       CHECK(correlation > kCorrelation);
       CHECK(std::abs(scale - 1.0) < kScale);
