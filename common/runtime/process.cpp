@@ -2,7 +2,6 @@
 
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,49 +15,22 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/runtime/arguments.hpp"
-#include "common/runtime/bus.hpp"
-#include "common/runtime/lockstep.hpp"
-#include "common/runtime/self.hpp"
-#include "common/runtime/stop_signal.hpp"
+#include "common/runtime/process_state.hpp"
 
 namespace fathom::runtime {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr Utime kRestartJump = 1'000'000;  // us; devices are late by less
 constexpr int kWaitMs = 50;                // half of the promised 100 ms, should a signal miss the descriptor
-constexpr double kFlood = 1000.0;          // messages a second of one channel; five times the fastest instrument
-constexpr char kHealthChannel[] = "HEALTH";
 constexpr char kInfoChannel[] = "PROCESS_INFO";
 
-struct Hearing {
-  std::string channel;
-  std::string type;
-  std::size_t capacity{};
-  std::function<bool(std::span<const std::uint8_t>)> deliver;
-  std::optional<Utime> newest;
-  std::int64_t rejected{};
-  std::int64_t arrived{};  // since the last HEALTH
-};
-
-struct Speech {
-  std::string channel;
-  std::string type;
-};
-
-Utime wall_clock() {
-  using std::chrono::duration_cast;
-  return duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
+/// What a configuration file says. An operator's word is not for the bus, nor for logs.
 std::string content(const std::string& path) {
+  const std::string head = "# file " + path;
+  if (Config::load(path).has("operator")) return head + ": not told, since it holds the operator's token\n";
   std::ifstream file{path};
-  std::string text = "# file " + path + "\n";
-  for (std::string line; std::getline(file, line);) {
-    const auto token = line.find("token:");  // an operator's word is not for the bus, nor for logs
-    text += (token == std::string::npos ? line : line.substr(0, token) + "token: not told") + "\n";
-  }
+  std::string text = head + "\n";
+  for (std::string line; std::getline(file, line);) text += line + "\n";
   return text;
 }
 
@@ -68,32 +40,6 @@ auto find_channel(Channels& channels, const std::string& channel) {
 }
 
 }  // namespace
-
-struct Process::State {
-  std::string name;
-  Arguments arguments;
-  spdlog::logger logger;
-  std::vector<Hearing> hearings{};
-  std::vector<Speech> speeches{};
-  std::vector<Config> sections{};  // handed out by config(), to be checked for unread keys
-  std::function<void()> restart{};
-  std::function<void()> end{};
-  Wait wait{};
-  std::function<Condition()> condition{};
-  bool ended{false};
-  std::optional<StopSignal> stop{};
-  std::optional<LiveInput> live{};
-  std::optional<Output> out{};
-  std::optional<Follower> follower{};
-  bool introduced{false};
-  std::int64_t received{};
-  std::int64_t published{};
-  Clock::duration busy{};  // in handlers, since the last HEALTH
-  Clock::time_point last_health{};
-  std::string host{host_name()};
-  Usage usage{};
-  Twins twins{name, host, getpid()};
-};
 
 Process::Process(std::string name, Arguments arguments)
     : state_{new State{.name = name,
@@ -201,63 +147,6 @@ void Process::introduce(Utime utime) {
   for (const std::string& path : state_->arguments.config) info.config += content(path);
   info.channels = interface_text();
   publish(kInfoChannel, info);
-}
-
-void Process::report_health(const std::string& state, const std::string& reason) {
-  if (!state_->out || !state_->out->live()) return;
-  const auto now = Clock::now();
-  fathom_lcm::health_t health{};
-  health.utime = wall_clock();
-  health.process = state_->name;
-  health.host = state_->host;
-  health.pid = getpid();
-  const Usage::Figures used = state_->usage.measure();
-  health.cpu = used.cpu;
-  health.memory = used.memory;
-  health.state = state;
-  health.detail = reason;
-  Condition condition;
-  if (state == "running") {
-    if (state_->condition) condition = state_->condition();
-    const std::string twin = state_->twins.complaint(now);
-    if (!twin.empty()) condition.unhealthy = twin + (condition.unhealthy.empty() ? "" : "; " + condition.unhealthy);
-    if (!condition.unhealthy.empty()) {
-      health.state = "unhealthy";
-      health.detail = condition.unhealthy + "; ";
-    }
-  }
-  health.received = state_->received;
-  health.published = state_->published;
-  const std::chrono::duration<double> elapsed = now - state_->last_health;
-  const auto tell = [&](const Hearing& hearing, const char* what, std::int64_t count) {
-    if (count > 0) health.detail += hearing.channel + " " + what + " " + std::to_string(count) + "; ";
-  };
-  for (std::size_t i = 0; i < state_->hearings.size(); ++i) {
-    Hearing& hearing = state_->hearings[i];
-    const auto dropped = state_->live ? static_cast<std::int64_t>(state_->live->dropped(i)) : 0;
-    health.dropped += dropped;
-    health.rejected += hearing.rejected;
-    tell(hearing, "dropped", dropped);
-    tell(hearing, "rejected", hearing.rejected);
-    const double rate = static_cast<double>(std::exchange(hearing.arrived, 0)) / std::max(elapsed.count(), 0.1);
-    const bool paced = !state_->follower && hearing.channel != kLockstepAck;  // lockstep is as fast as it can
-    if (rate > kFlood && paced) tell(hearing, "flood, per second", static_cast<std::int64_t>(rate));
-  }
-  if (!condition.detail.empty()) health.detail += condition.detail + "; ";
-  health.busy = elapsed.count() > 0.0 ? std::chrono::duration<double>(state_->busy) / elapsed : 0.0;
-  state_->busy = {};
-  state_->last_health = now;
-  publish(kHealthChannel, health);
-}
-
-// A second one of this name is told at once: two estimators make nonsense of each other's work.
-void Process::watch_twins(std::span<const std::uint8_t> health) {
-  const auto now = Clock::now();
-  const bool known = !state_->twins.complaint(now).empty();
-  state_->twins.hear(health, now);
-  if (known || state_->twins.complaint(now).empty()) return;
-  state_->logger.warn(state_->twins.complaint(now));
-  report_health("running", "");
 }
 
 std::string Process::interface_text() const {

@@ -26,7 +26,7 @@ Eigen::Matrix<double, 2, 3> Projection::derivative(const Eigen::Vector3d& p_C) c
 // Newton on the distortion, with its derivative by differences; where a lens folds back there is no answer and the last
 // step stands.
 Eigen::Vector2d Projection::undistorted(const Eigen::Vector2d& pixel) const {
-  const Eigen::Vector2d seen{(pixel.x() - lens_.cx) / lens_.fx, (pixel.y() - lens_.cy) / lens_.fy};
+  Eigen::Vector2d seen{(pixel.x() - lens_.cx) / lens_.fx, (pixel.y() - lens_.cy) / lens_.fy};
   constexpr int kSteps = 20;
   constexpr double kGood = 1e-12, kStep = 1e-6, kFarthest = 50.0;
   Eigen::Vector2d at = seen;

@@ -13,9 +13,9 @@ constexpr int kLeastSightings = 3;  // fewer may be a false tag
 // Pose of a tag from one picture whose camera's pose is known: the better of a plane's two.
 std::optional<Pose> place(const Projection& projection, const TagSighting& tag, double size, const Pose& camera) {
   const double h = 0.5 * size;
-  const std::array<Eigen::Vector3d, 4> corners_T{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+  const std::array<Eigen::Vector3d, 4> corners_of_tag{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
   std::vector<Correspondence> points;
-  for (std::size_t i = 0; i < 4; ++i) points.push_back({corners_T[i], tag.corners[i]});
+  for (std::size_t i = 0; i < 4; ++i) points.push_back({corners_of_tag[i], tag.corners[i]});
   const std::vector<Pose> seen = planar_poses(projection, points);  // the camera in T
   if (seen.empty()) return {};
   // Of the two the one that lies flatter: tags lie on a floor.

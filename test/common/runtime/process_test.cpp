@@ -110,6 +110,25 @@ TEST_CASE("process: a log in gives a log out, twice the same bytes, stamped with
   CHECK(result.health.empty());
 }
 
+TEST_CASE("process: PROCESS_INFO tells the configuration, and never the operator's token, however it is written") {
+  for (const std::string token :
+       {"  token: deep-blue-4711", "  \"token\": deep-blue-4711", "  token:\n    deep-blue-4711"}) {
+    CAPTURE(token);
+    const Scratch scratch;
+    write_depths(scratch.path("in.lcmlog"), {{10, 1.0}});
+    test::write_bytes(scratch.path("operator.yaml"), "operator:\n" + token + "\n");
+    test::write_bytes(scratch.path("echo.yaml"), "echo: {gain: 2}\n");
+    Seen seen;
+    REQUIRE(run_echo({"--config", scratch.path("operator.yaml"), "--config", scratch.path("echo.yaml"), "--in",
+                      in(scratch.path("in.lcmlog")), "--out", in(scratch.path("out.lcmlog"))},
+                     seen) == 0);
+    const auto result = wire::read_log(scratch.path("out.lcmlog")).recording;
+    REQUIRE(result.process_info.size() == 1);
+    CHECK(result.process_info[0].config.find("gain: 2") != std::string::npos);
+    CHECK(test::read_bytes(scratch.path("out.lcmlog")).find("deep-blue-4711") == std::string::npos);
+  }
+}
+
 TEST_CASE("process: several logs are merged by time, ties in the order of the arguments") {
   const Scratch scratch;
   write_depths(scratch.path("a.lcmlog"), {{10, 1.0}, {30, 1.0}});
