@@ -51,7 +51,7 @@ std::string list(const Names& names) {
   return text;
 }
 
-model::Scene scene_at(const Occasion& occasion, Stream& stream) {
+model::Scene scene_at(const Occasion& occasion, RandomStream& stream) {
   const model::Vehicle& vehicle = *occasion.vehicle;
   const model::Site& site = *occasion.site;
   model::Scene scene{.vehicle = &vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
@@ -92,7 +92,7 @@ void nearest_wall(const Occasion& occasion, double& bearing, double& distance) {
 }
 
 double drawn(const model::Effect& effect, const model::EffectParameter& parameter, const std::string& variant,
-             const Occasion& occasion, const model::Scene& scene, Stream& stream) {
+             const Occasion& occasion, const model::Scene& scene, RandomStream& stream) {
   const model::Site& site = *occasion.site;
   const std::string_view name = parameter.name;
   const Eigen::Vector3d anchor =
@@ -139,7 +139,7 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
     for (const model::Effect* each : model::all_effects()) names.push_back(each->name());
     throw InputError("--hide " + text + ": no effect '" + name + "'; there are " + list(names));
   }
-  Stream stream{seed, "hide." + name};
+  RandomStream stream{seed, "hide." + name};
   model::Scene scene = scene_at(occasion, stream);
   if (effect->measures()) scene.position = scene.attitude = false;  // else it would be left to kinematics to find
   const std::vector<std::string> variants = effect->variants(scene);

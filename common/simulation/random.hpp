@@ -12,9 +12,9 @@
 namespace fathom::simulation {
 
 /// xoshiro256++ (Blackman and Vigna 2019), seeded by splitmix64.
-class Stream {
+class RandomStream {
  public:
-  Stream(std::uint64_t seed, std::string_view name) {
+  RandomStream(std::uint64_t seed, std::string_view name) {
     std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a of the name
     for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
     std::uint64_t mixed = seed ^ hash;

@@ -83,7 +83,7 @@ class Timing {
   double drop_out_{};         ///< chance per measurement that a drop-out begins
   double drop_out_length_{};  ///< s, mean; exponentially distributed
   Utime silent_until_{};
-  Stream stream_;
+  RandomStream stream_;
 };
 
 /// The instruments of sensors/, by the name of their section.

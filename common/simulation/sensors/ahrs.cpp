@@ -69,7 +69,7 @@ class AhrsSensor final : public Sensor {
   model::Mount mount_;
   double gravity_, period_, gyro_noise_, gyro_walk_, force_noise_;
   double tilt_noise_, tilt_wander_, heading_noise_, heading_wander_, wander_time_, declination_;
-  Stream stream_;
+  RandomStream stream_;
   Eigen::Vector3d gyro_bias_, force_bias_;
   Eigen::Quaterniond misalignment_;
   std::array<double, 3> wander_{};

@@ -16,7 +16,7 @@ class BatterySensor final : public Sensor {
 
  private:
   double noise_;
-  Stream stream_;
+  RandomStream stream_;
 };
 
 }  // namespace

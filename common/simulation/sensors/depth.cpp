@@ -33,7 +33,7 @@ class DepthSensor final : public Sensor {
   Eigen::Vector3d p_BP_;
   const Ahrs* latest_;
   double noise_, resolution_;
-  Stream stream_;
+  RandomStream stream_;
   double offset_{};
 };
 

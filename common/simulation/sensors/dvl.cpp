@@ -80,7 +80,7 @@ class DvlSensor final : public Sensor {
   const model::Site* site_;
   const Ahrs* latest_;
   double noise_, loss_, nearest_, farthest_;
-  Stream stream_;
+  RandomStream stream_;
   Eigen::Matrix<double, 4, 3> beams_;
   double scale_{};
   Eigen::Vector3d bias_;

@@ -48,7 +48,7 @@ class LaserRangeSensor final : public Sensor {
   model::CameraMount camera_;
   const model::Site* site_;
   double noise_, farthest_, outlier_;
-  Stream stream_;
+  RandomStream stream_;
   double baseline_{}, scale_{};
 };
 

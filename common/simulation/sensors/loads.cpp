@@ -43,7 +43,7 @@ class LoadsSensor final : public Sensor {
 
   const model::Vehicle* vehicle_;
   double noise_;
-  Stream stream_;
+  RandomStream stream_;
   std::vector<double> zero_;
 };
 

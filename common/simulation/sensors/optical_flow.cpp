@@ -70,7 +70,7 @@ class OpticalFlowSensor final : public Sensor {
   const model::Site* site_;
   const Ahrs* latest_;
   double period_, noise_, nearest_, farthest_, outlier_;
-  Stream stream_;
+  RandomStream stream_;
   std::optional<Picture> before_;
 };
 

@@ -21,7 +21,7 @@ class PoseCaptureSensor final : public Sensor {
 
  private:
   double position_noise_, attitude_noise_;
-  Stream stream_;
+  RandomStream stream_;
 };
 
 }  // namespace

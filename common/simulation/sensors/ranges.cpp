@@ -42,7 +42,7 @@ class RangesSensor final : public Sensor {
   Eigen::Vector3d p_BS_;
   const model::Site* site_;
   double noise_, loss_, outlier_, outlier_size_, farthest_;
-  Stream stream_;
+  RandomStream stream_;
   double scale_{};
 };
 

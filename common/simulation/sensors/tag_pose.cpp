@@ -81,7 +81,7 @@ class TagPoseSensor final : public Sensor {
   model::CameraMount camera_;
   const model::Site* site_;
   double noise_, loss_, outlier_, outlier_size_, farthest_;
-  Stream stream_;
+  RandomStream stream_;
   double scale_{};
 };
 

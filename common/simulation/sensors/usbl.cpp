@@ -59,7 +59,7 @@ class UsblSensor final : public Sensor {
   Eigen::Vector3d p_BS_, p_WR_;
   const Ahrs* latest_;
   double range_noise_, bearing_noise_, outlier_, outlier_size_, farthest_;
-  Stream stream_;
+  RandomStream stream_;
   double azimuth_offset_{}, elevation_offset_{};
 };
 

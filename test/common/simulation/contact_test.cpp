@@ -32,7 +32,7 @@ model::Vehicle whole() {
 TEST_CASE("contact: no throw against walls, floor or surface gains energy, and hard ones lose most") {
   const model::Vehicle vehicle = whole();
   const model::Site tank = test::site_of_file("tank");
-  Stream random{1, "throws"};
+  RandomStream random{1, "throws"};
   double lost = 0.0;
   constexpr int kThrows = 40;
   for (int k = 0; k < kThrows; ++k) {
