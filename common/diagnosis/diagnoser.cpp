@@ -85,6 +85,8 @@ void take_back(SearchResult& found) {
     found.refused.push_back(judged);
   }
   found.accepted.clear();
+  found.free_form.reset();  // it was measured beside what is taken back
+  found.taken_back = true;
   found.after = found.before;
 }
 

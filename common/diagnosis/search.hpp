@@ -41,6 +41,7 @@ struct SearchResult {
   std::vector<Judged> accepted;  ///< in the order of acceptance
   std::vector<Judged> refused;   ///< best form of every other effect, from the last round
   std::optional<FreeForm> free_form{};
+  bool taken_back{false};  ///< what was accepted did not help the validation run
 };
 
 [[nodiscard]] SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,

@@ -173,7 +173,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     names.push_back(effect.name);
     if (!effect.alternatives.empty()) open.push_back(effect.name + " (or " + joined(effect.alternatives, " or ") + ")");
   }
-  const bool structure = !left.empty() || found.free_form;
+  const bool structure = !left.empty() || found.free_form || found.taken_back;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : "adequate";
   } else {
@@ -186,6 +186,9 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
            " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. ";
   } else if (names.empty()) {
     text = "The base model leaves structure in the residual that no known effect explains. ";
+    if (found.taken_back) {
+      text += "What helped the training runs did not help the validation run; it is listed among the refused. ";
+    }
   } else {
     text = "The motion shows what the base model lacks: " + joined(names) + ". ";
     for (const EffectFound& effect : result.effects) {

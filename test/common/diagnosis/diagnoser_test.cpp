@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -137,4 +138,23 @@ TEST_CASE("diagnoser: too little data is one line that says what to do") {
     CHECK(line.find('\n') == std::string::npos);
     CHECK(line.find("record longer") != std::string::npos);
   }
+}
+
+TEST_CASE("diagnoser: what the validation run contradicts is taken back, and called unexplained") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto dive = [&](unsigned seed, double v_N) {
+    return test::make_dive(vehicle, {.duration = 90.0, .seed = seed, .effects = {test::active("current", {v_N, 0.0})}})
+        .trial;
+  };
+  std::vector<Trial> train{dive(51, 0.15)}, validate{dive(52, -0.15)};  // the stream has turned in between
+  train[0].name = "before";
+  validate[0].name = "after";
+  const DiagnosisResult result = diagnose(vehicle, train, validate, {}, [](const std::string&, double) {}).result;
+  CHECK(result.verdict == "unexplained");
+  CHECK(result.effects.empty());
+  CHECK(result.improvement.value == 0.0);
+  const auto current = std::find_if(result.candidates.begin(), result.candidates.end(),
+                                    [](const CandidateTried& c) { return c.name == "current"; });
+  REQUIRE(current != result.candidates.end());
+  CHECK(current->reason.find("not the validation run") != std::string::npos);
 }

@@ -151,3 +151,22 @@ TEST_CASE("verdict: several forms of one effect are one entry whose numbers say 
   CHECK(result.effects[0].error_reduction == doctest::Approx(1.0 - 0.7 * 0.7));
   check_all_listed(result);
 }
+
+TEST_CASE("verdict: what was taken back leaves something unexplained, and the refused say why") {
+  MadeUp made;
+  made.refuse("current", 30.0, "helps the runs that it was fitted to, and not the validation run");
+  made.found.taken_back = true;
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "unexplained");
+  CHECK(result.effects.empty());
+  CHECK(result.paragraph.find("did not help the validation run") != std::string::npos);
+}
+
+TEST_CASE("verdict: a free curve that helps leaves something unexplained, and says over what") {
+  MadeUp made;
+  made.found.free_form = FreeForm{"Z", "depth", 0.3};
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "unexplained");
+  CHECK(result.paragraph.find("force on Z that depends on depth") != std::string::npos);
+  CHECK(result.paragraph.find("30 %") != std::string::npos);
+}
