@@ -1,5 +1,6 @@
 // A hostile publisher for tests: takes a log's messages, breaks them in every way that a decoder could stumble over,
-// and then floods some channels with whole ones. usage: test_hostile LOG URL FLOOD_SECONDS
+// and then floods some channels with whole ones. usage: test_hostile URL FLOOD_SECONDS LOG...
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -18,6 +19,7 @@ using Bytes = std::vector<std::uint8_t>;
 namespace {
 
 constexpr double kFlood = 10'000.0;  // messages a second
+constexpr std::array kFlooded{"AHRS", "STATE", "WRENCH_COMMAND", "OPERATOR", "HEALTH", "PM_INFO"};
 
 void put(Bytes& bytes, std::size_t at, std::uint64_t value, std::size_t size) {
   for (std::size_t i = 0; i < size && at + i < bytes.size(); ++i) {
@@ -54,14 +56,21 @@ std::vector<Bytes> broken(const Bytes& whole, std::mt19937& random) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 2;
+  if (argc < 4) return 2;
   std::map<std::string, Bytes> messages;
-  EventLog log{argv[1]};
-  while (const auto event = log.next()) {
-    Bytes& kept = messages[std::string{event->channel}];
-    if (kept.size() <= event->data.size()) kept.assign(event->data.begin(), event->data.end());
+  for (int i = 3; i < argc; ++i) {
+    EventLog log{argv[i]};
+    while (const auto event = log.next()) {
+      Bytes& kept = messages[std::string{event->channel}];
+      if (kept.size() <= event->data.size()) kept.assign(event->data.begin(), event->data.end());
+    }
   }
-  runtime::Output bus{runtime::Url::parse(argv[2], "URL")};
+  for (const char* channel : kFlooded) {
+    if (messages.contains(channel)) continue;
+    std::printf("the logs hold no %s to flood with\n", channel);
+    return 1;
+  }
+  runtime::Output bus{runtime::Url::parse(argv[1], "URL")};
   std::mt19937 random{4};
   long sent = 0;
   for (const auto& [channel, whole] : messages) {
@@ -71,8 +80,8 @@ int main(int argc, char** argv) {
     }
   }
   long flood = 0;
-  const double seconds = std::atof(argv[3]);
-  for (const char* channel : {"AHRS", "STATE", "WRENCH_COMMAND", "OPERATOR", "HEALTH", "PM_INFO"}) {
+  const double seconds = std::atof(argv[2]);
+  for (const char* channel : kFlooded) {
     const auto begin = std::chrono::steady_clock::now();
     for (long count = 0; static_cast<double>(count) < kFlood * seconds; ++flood) {
       bus.write(channel, messages[channel], 0);

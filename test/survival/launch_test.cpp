@@ -180,6 +180,7 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
       "export FATHOM_SIMULATION='--duration 15 --seed 4 --order 1=identify'\n"
       // What deputies and sheriffs say belongs to it too, but shall not command our deputy.
       "sed 's/\"vehicle\"/\"elsewhere\"/' $configs/lockstep.cfg >elsewhere.cfg\n"
+      // lcm-logger hears the deputies' messages; the recorder loses none of the trial's.
       "lcm-logger -q -f hostile.lcmlog >/dev/null & l=$!\n"
       "$sheriff elsewhere.cfg --script simulated-trial --local >/dev/null; kill -INT $l; wait $l\n"
       "cp ${configs%procman}config/operators/simulated.yaml operator.yaml\n"
@@ -191,7 +192,7 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
       "pids=$(for p in estimator identifier supervisor thruster_driver; do pid fathom-$p; done; echo $d)\n"
       "lcm-logger -q -f -c 'THRUSTERS|HEALTH' after.lcmlog >/dev/null & l=$!\n" +
           hostile() +
-          " hostile.lcmlog \"$LCM_DEFAULT_URL\" 2; sleep 2; kill -INT $l; wait $l\n"
+          " \"$LCM_DEFAULT_URL\" 2 hostile.lcmlog trial.lcmlog; echo \"hostile $?\"; sleep 2; kill -INT $l; wait $l\n"
           "for p in $pids; do kill -0 $p && echo \"alive $(awk '/VmHWM/ { print $2 }' /proc/$p/status)\"; done\n"
           "$fathom status; grep -a -o 'AHRS flood, per second [0-9]*' after.lcmlog | sort -u\n"
           "$sheriff x.cfg --stop; echo \"code $?\"; kill $d; wait $d; cat deputy.txt\n",
@@ -202,10 +203,11 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
     CHECK(std::stol(ran.text.substr(at + 6)) < 300'000);  // kB; queues of 1000 messages and the minds' own
   }
   CHECK_MESSAGE(alive == 5, ran.text);
+  CHECK_MESSAGE(ran.says("hostile 0"), ran.text);
   CHECK(ran.says("AHRS flood, per second"));
   CHECK(ran.says("start 0"));
   CHECK(ran.says("zero thrust: "));
-  CHECK(ran.says("orders refused"));
+  CHECK_MESSAGE(ran.says("orders refused"), ran.text);
   CHECK(ran.says("code 0"));
 }
 
