@@ -8,6 +8,7 @@
 #include "common/diagnosis/lack_of_form.hpp"
 #include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/questions.hpp"
+#include "common/identification/input_hold.hpp"
 #include "common/identification/sparse.hpp"
 
 namespace fathom::diagnosis {
@@ -203,6 +204,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   spread.most_windows = std::min(spread.most_windows, kSearchWindows);
   result.before = identification::fit_from_priors(vehicle, trials, spread);
   const TrajectoryFit problem{vehicle, trials, spread};
+  result.before = identification::with_input_hold(problem, std::move(result.before));
   NearView near{vehicle, trials, settings};
   const model::Scene scene = model::scene_of(vehicle, trials);
   const std::vector<Candidate> candidates = all_candidates(scene);
@@ -233,6 +235,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       result.accepted.push_back(accepted);
       result.after = problem.fit(winner->fit.model, &winner->fit);
       result.after = at_best_moment(problem, std::move(result.after), *accepted.effect, accepted.variant);
+      result.after = identification::with_input_hold(problem, std::move(result.after));
     }
     name_unfitted(answers);
     result.refused = best_of_each_effect(answers.judged, result.accepted);
@@ -243,8 +246,8 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   // The search may have seen a spread of windows at a lower rate; what it found is tested on everything.
   near.fit(result.after.model);
   auto [whole, after] = fit_everything(vehicle, train, settings, near, result.after.model);
-  result.before = result.accepted.empty() ? after : whole.fit(result.before.model);
-  result.after = std::move(after);
+  result.after = identification::with_input_hold(whole, std::move(after));
+  result.before = result.accepted.empty() ? result.after : whole.fit(result.before.model);
   prune(result, whole, settings, tried, progress);
   if (test_forms(result, problem, problem.fit(result.after.model, &searched), scene, progress)) {
     result.after = whole.fit(only_accepted(result), &result.after);

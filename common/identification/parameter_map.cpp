@@ -41,6 +41,7 @@ ParameterMap::ParameterMap(const model::Model& model) {
       free.low = parameters[c].low;
       free.high = parameters[c].high;
       free.form_sigma = parameters[c].form_sigma;
+      free.after_command = parameters[c].after_command;
       free_.push_back(std::move(free));
     }
   }

@@ -20,7 +20,8 @@ struct FreeParameter {
   double prior_sigma{};
   double low{};  ///< physical bounds
   double high{};
-  double form_sigma{};  ///< what an effect's assumed form leaves open, not seen by the fit
+  double form_sigma{};   ///< what an effect's assumed form leaves open, not seen by the fit
+  bool after_command{};  ///< EffectParameter::after_command
 
   /// Whether a scaled value lies on a bound, to within rounding.
   [[nodiscard]] bool at_low(double x) const { return x * scale <= low + kBoundMargin * scale; }

@@ -30,6 +30,15 @@ Eigen::VectorXd mean_input(const Trial& trial, std::size_t centre, std::size_t h
   return sum / count;
 }
 
+/// Mean over the next `step` samples' steps.
+Eigen::VectorXd mean_held(const Trial& trial, std::size_t from, std::size_t step) {
+  const auto& held = trial.held.empty() ? trial.input : trial.held;
+  const std::size_t to = std::min(from + step, held.size());
+  Eigen::VectorXd sum = held[from];
+  for (std::size_t i = from + 1; i < to; ++i) sum += held[i];
+  return sum / static_cast<double>(to - from);
+}
+
 }  // namespace
 
 Trial sparse(const Trial& trial, double dt) {
@@ -37,6 +46,7 @@ Trial sparse(const Trial& trial, double dt) {
   if (step < 2) return trial;
   Trial out{.name = trial.name, .dt = trial.dt * static_cast<double>(step), .observed = trial.observed};
   out.input_is_wrench = trial.input_is_wrench;
+  out.input_step = trial.input_step;
   out.nu_sigma = trial.nu_sigma;
   for (std::size_t k = 0; k < trial.size(); k += step) {
     out.t.push_back(trial.t[k]);
@@ -49,6 +59,7 @@ Trial sparse(const Trial& trial, double dt) {
     out.velocity_valid.push_back(trial.velocity_valid[k]);
     out.rates_valid.push_back(trial.rates_valid[k]);
     out.input.push_back(mean_input(trial, k, step / 2));
+    out.held.push_back(mean_held(trial, k, step));
     if (!trial.voltage.empty()) out.voltage.push_back(trial.voltage[k]);
   }
   return out;

@@ -57,7 +57,9 @@ std::vector<NamedValue> FitResult::parameters() const {
   for (std::size_t i = 0; i < map.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double variance = covariance.rows() == x.size() ? std::max(covariance(k, k), 0.0) : 0.0;
-    const double std = variance > 0.0 ? std::hypot(std::sqrt(variance), map[i].form_sigma) : 0.0;
+    // Between straight lines and inputs that are held lies half a step: even odds over twice that, either way.
+    const double held = map[i].after_command ? input_step / std::sqrt(12.0) : 0.0;
+    const double std = variance > 0.0 ? std::hypot(std::sqrt(variance), map[i].form_sigma, held) : 0.0;
     values.push_back({map[i].name, x[k] * map[i].scale, std, map[i].unit});
   }
   return values;
@@ -247,6 +249,9 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
     information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
     meat(i, i) = information(i, i);
   }
+  for (const WindowResidual& window : windows_) {
+    fit.input_step = std::max(fit.input_step, window.window().trial->input_step);
+  }
   for (const ProjectedWindow& window : linearise(fit, false)) {
     information += window.jacobian.transpose() * window.jacobian;
     const Eigen::VectorXd gradient = window.jacobian.transpose() * window.residual;
@@ -262,16 +267,24 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
 }
 
 FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings) {
-  model::Model model = model::nominal_model(vehicle, trials[0].input_is_wrench);
   // Short windows forgive wrong parameters (little time to diverge); each stage starts where the last one ended.
-  for (const double length : {0.2 * settings.window, 0.5 * settings.window}) {
-    FitSettings stage = settings;
-    stage.window = length;
-    stage.iterations = 8;
-    stage.tolerance = 1e-3;
-    stage.most_windows = kCoarseWindows;
-    model = TrajectoryFit{vehicle, trials, stage}.fit(model).model;
+  FitSettings stage = settings;
+  stage.window = 0.2 * settings.window;
+  stage.iterations = 8;
+  stage.tolerance = 1e-3;
+  stage.most_windows = kCoarseWindows;
+  const TrajectoryFit shortest{vehicle, trials, stage};
+  model::Model model = model::nominal_model(vehicle, trials[0].input_is_wrench);
+  const FitResult straight = shortest.fit(model);
+  FitResult best = straight;
+  // A vehicle that answers faster than it is commanded looks all wrong under a wrong hold, and no step leads out.
+  for (const double hold : {-0.5, 0.5}) {
+    model.input_hold = hold;
+    FitResult held = shortest.fit(model, &straight);
+    if (held.cost < best.cost) best = std::move(held);
   }
+  stage.window = 0.5 * settings.window;
+  model = TrajectoryFit{vehicle, trials, stage}.fit(best.model).model;
   return TrajectoryFit{vehicle, trials, settings}.fit(model);
 }
 

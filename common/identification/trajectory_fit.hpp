@@ -31,6 +31,7 @@ struct FitResult {
   std::vector<std::array<double, 6>> window_count;   ///< rows per window and axis
   double cost{};                                     ///< sum of window_cost
   Eigen::MatrixXd covariance;  ///< of the free parameters in physical units, order of ParameterMap
+  double input_step{};         ///< s, the longest time between inputs; set with the covariance
   bool converged{false};
 
   [[nodiscard]] std::vector<NamedValue> parameters() const;  ///< with standard deviations when covariance is there
@@ -74,7 +75,8 @@ class TrajectoryFit {
   std::vector<WindowResidual> windows_;
 };
 
-/// Fits the base model from the priors alone: short windows first, then longer ones, then all data.
+/// Fits the base model from the priors alone: short windows first, then longer ones, then all data. Model::input_hold is
+/// the best of straight lines, held, and told afterwards.
 [[nodiscard]] FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials,
                                         const FitSettings& settings);
 

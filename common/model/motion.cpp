@@ -5,13 +5,26 @@
 
 namespace fathom::model {
 
-void InputSignal::at(double t, ActuatorForces& force) const {
+void InputSignal::line(double t, ActuatorForces& force) const {
   const double last = static_cast<double>(samples_.size() - 1);
   const double position = std::clamp((t - t0_) / dt_, 0.0, last);
   const auto index = static_cast<std::size_t>(std::min(std::floor(position), std::max(last - 1.0, 0.0)));
   const double share = position - static_cast<double>(index);
   const std::size_t next = std::min(index + 1, samples_.size() - 1);
   force = (1.0 - share) * samples_[index] + share * samples_[next];
+}
+
+void InputSignal::at(double t, ActuatorForces& force) const { line(t - later_, force); }
+
+void InputSignal::now(double t, ActuatorForces& force) const {
+  if (held_share_ == 0.0) return line(t - later_, force);
+  constexpr double kRounding = 1e-6;  // of dt: at a jump, the force after it
+  const double last = static_cast<double>(held_.size() - 1);
+  const double place = std::clamp(std::floor((t - t0_) / dt_ + kRounding) + ahead_, 0.0, last);
+  const auto index = static_cast<std::size_t>(place + kRounding);
+  const double share = std::max(place - static_cast<double>(index), 0.0);
+  line(t, force);
+  force += held_share_ * ((1.0 - share) * held_[index] + share * held_[std::min(index + 1, held_.size() - 1)] - force);
 }
 
 }  // namespace fathom::model

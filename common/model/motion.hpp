@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -21,18 +22,44 @@ using VelocityView = Eigen::Ref<VelocityTrace, 0, Eigen::Stride<Eigen::Dynamic, 
 
 struct Vehicle;
 
-/// The actuators' commanded forces over time, linear between samples, held before the first and after the last.
+/// How forces act between the times at which they were told.
+struct InputTiming {
+  /// Share of the time between inputs by which they act later than straight lines between them: 1/2 where each is held
+  /// until the next one, -1/2 where each tells of the time since the one before.
+  double hold{0.0};
+  double step{0.0};  ///< s between inputs
+};
+
+/// The actuators' commanded forces over time; those of the first sample before it, of the last one after it.
 class InputSignal {
  public:
   InputSignal() = default;
-  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s].
-  InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples) : t0_{t0}, dt_{dt}, samples_{samples} {}
+  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: the mean over each step of the grid if
+  /// inputs are held until the next one; the samples themselves when empty.
+  InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
+              std::span<const Eigen::VectorXd> held = {}, const InputTiming& timing = {})
+      : t0_{t0},
+        dt_{dt},
+        later_{timing.hold * timing.step},
+        ahead_{timing.hold < 0.0 ? timing.step / dt : 0.0},
+        held_share_{2.0 * std::abs(timing.hold)},
+        samples_{samples},
+        held_{held.empty() ? samples : held} {}
+  /// Straight lines, early or late as the timing says: continuous in time.
   void at(double t, ActuatorForces& force) const;
+  /// With the jumps of inputs that are held.
+  void now(double t, ActuatorForces& force) const;
 
  private:
+  void line(double t, ActuatorForces& force) const;
+
   double t0_{0.0};
   double dt_{1.0};
+  double later_{0.0};       // s
+  double ahead_{0.0};       // steps of the grid from an input to the one that tells of the time after it
+  double held_share_{0.0};  // the rest goes along straight lines
   std::span<const Eigen::VectorXd> samples_;
+  std::span<const Eigen::VectorXd> held_;
 };
 
 /// State, environment and forces at time `t`, as felt.

@@ -53,7 +53,7 @@ class Rollout {
   Rollout(const Model& model, const Trial& trial, Sensitivity* sensitivity = nullptr)
       : model_{model},
         trial_{trial},
-        input_{trial.t.front(), trial.dt, trial.input},
+        input_{trial.t.front(), trial.dt, trial.input, trial.held, {model.input_hold, trial.input_step}},
         memory_size_{model.memory_size()},
         sensitivity_{sensitivity} {
     const auto& dof = model.vehicle->dof;
@@ -98,7 +98,7 @@ class Rollout {
     if (memory_size_ > 0 && dt > 0.0) {
       Motion middle = motion_;
       middle.t -= 0.5 * dt;
-      input_.at(middle.t, middle.force);
+      input_.now(middle.t, middle.force);
       feel(model_, middle, memory(), dt);
     }
     feel(model_, motion_, memory(), 0.0);
@@ -147,7 +147,7 @@ class Rollout {
     motion_.v_WF_B.setZero();
     motion_.a_WF_B.setZero();
     motion_.w_memory.setZero();
-    input_.at(motion_.t, motion_.force);
+    input_.now(motion_.t, motion_.force);
     motion_.voltage = trial_.voltage.empty() ? 0.0 : trial_.voltage[from];
   }
 

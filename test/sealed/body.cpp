@@ -49,7 +49,11 @@ Matrix3d turn_of(const Vector3d& e) {
 }
 
 void Commands::at(double t, Eigen::VectorXd& out) const {
-  const double place = std::clamp((t - begin) / dt, 0.0, static_cast<double>(force.size() - 1));
+  constexpr double kRounding = 1e-6;  // of dt: at a row, its own force
+  const double last = static_cast<double>(force.size() - 1);
+  double place = std::clamp((t - begin) / dt, 0.0, last);
+  if (hold == Hold::kAfter) place = std::min(std::floor(place + kRounding), last);
+  if (hold == Hold::kBefore) place = std::max(std::ceil(place - kRounding), 0.0);
   const auto i = std::min(static_cast<std::size_t>(place), force.size() - 1), j = std::min(i + 1, force.size() - 1);
   const double share = place - static_cast<double>(i);
   out = (1.0 - share) * force[i] + share * force[j];
@@ -130,13 +134,15 @@ void Body::rate(double t, const State& state, const Commands& commands, State& o
 }
 
 void Body::step(double t, double h, const Commands& commands, State& state) {
-  rate(t, state, commands, k1_);
+  // A step that ends where the force jumps sees the force before the jump.
+  const double inside = commands.hold == Hold::kLine ? 0.0 : 1e-4 * h;
+  rate(t + inside, state, commands, k1_);
   trial_ = state + 0.5 * h * k1_;
   rate(t + 0.5 * h, trial_, commands, k2_);
   trial_ = state + 0.5 * h * k2_;
   rate(t + 0.5 * h, trial_, commands, k3_);
   trial_ = state + h * k3_;
-  rate(t + h, trial_, commands, k4_);
+  rate(t + h - inside, trial_, commands, k4_);
   state += h / 6.0 * (k1_ + 2.0 * k2_ + 2.0 * k3_ + k4_);
 }
 

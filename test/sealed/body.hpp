@@ -5,9 +5,14 @@
 
 namespace fathom::sealed {
 
-/// Forces asked of the thrusters at 100 Hz; straight lines between samples, held before and after.
+/// What a log's rows say of the time between them: straight lines, each force until the next row, or since the last.
+enum class Hold { kLine, kAfter, kBefore };
+constexpr std::array<const char*, 3> kHoldNames{"line", "held", "told afterwards"};
+
+/// Forces asked of the thrusters at 100 Hz; held before the first and after the last.
 struct Commands {
   double begin{}, dt{0.01};  ///< s
+  Hold hold{Hold::kLine};
   std::vector<Eigen::VectorXd> force;
   void at(double t, Eigen::VectorXd& out) const;
 };

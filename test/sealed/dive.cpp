@@ -47,6 +47,7 @@ Dive dive(const Craft& craft, const Site& site, const Mechanisms& mechanisms, co
   const std::size_t count = run.warm_up + static_cast<std::size_t>(std::lround(order.length / run.dt));
   run.commands.begin = from;
   run.commands.dt = run.dt;
+  run.commands.hold = order.hold;
   run.commands.force.assign(1, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(craft.jets.size())));
   run.commands.force.reserve(count + 1);
   std::vector<State> all;

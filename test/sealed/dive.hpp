@@ -29,6 +29,7 @@ struct DiveOrder {
   double begin{}, length{330.0};  ///< s
   std::uint64_t seed{};           ///< of excitation, noise and random paths
   std::string purpose;            ///< which file of the set
+  Hold hold{Hold::kLine};
 };
 
 /// `mechanisms` are told that a file begins.

@@ -49,8 +49,9 @@ std::vector<Dive> train_dives(const SealedSet& set, const Mechanisms& mechanisms
   const double length = set.plan.validates ? kTrial / files : kTrial + kValidation;
   for (int i = 0; i < files; ++i) {
     const std::string purpose = "train-" + std::to_string(i + 1);
-    dives.push_back(dive(set.craft, set.site, mechanisms, set.noise,
-                         {.begin = begin, .length = length, .seed = set.plan.seed, .purpose = purpose}));
+    dives.push_back(
+        dive(set.craft, set.site, mechanisms, set.noise,
+             {.begin = begin, .length = length, .seed = set.plan.seed, .purpose = purpose, .hold = set.plan.hold}));
     if (set.plan.one_clock) begin = std::round(begin + length + 31.0 + i);
   }
   return dives;
@@ -163,6 +164,9 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
   plan.wrench = random.chance(0.25) && !thrusters;
   plan.voltage = random.chance(0.3);
   plan.priors = random.chance(0.5);
+  Random habit{seed, "habit of the log"};
+  const double hold = habit.unit();
+  plan.hold = hold < 0.55 ? Hold::kAfter : hold < 0.8 ? Hold::kLine : Hold::kBefore;
   return plan;
 }
 
@@ -205,8 +209,9 @@ SealedSet make_set(const Plan& plan) {
     const Dive& last = set.train.back();
     const double length = static_cast<double>(last.size()) * last.dt;
     const double begin = plan.one_clock ? std::round(last.begin + length + 45.0) : 0.0;
-    set.validate = dive(set.craft, set.site, set.mechanisms, set.noise,
-                        {.begin = begin, .length = kValidation, .seed = plan.seed, .purpose = "validate"});
+    set.validate =
+        dive(set.craft, set.site, set.mechanisms, set.noise,
+             {.begin = begin, .length = kValidation, .seed = plan.seed, .purpose = "validate", .hold = plan.hold});
   }
   return set;
 }

@@ -30,6 +30,7 @@ struct Plan {
   bool wrench{};         ///< the body wrench is logged, not the thrusters
   bool voltage{};        ///< logged, without meaning
   bool priors{};         ///< the owner states some
+  Hold hold{Hold::kLine};
 };
 
 struct SealedSet {

@@ -147,6 +147,7 @@ std::string to_truth(const SealedSet& set) {
   truth["validates"] = plan.validates;
   truth["wrench"] = plan.wrench;
   truth["priors"] = plan.priors;
+  truth["between_rows"] = kHoldNames[static_cast<std::size_t>(plan.hold)];
   const auto names = base_names(set.craft);
   const Eigen::VectorXd values = base_values(set.craft, set.craft.hull);
   for (std::size_t j = 0; j < names.size(); ++j) truth["base"][names[j]] = values[static_cast<Eigen::Index>(j)];

@@ -70,6 +70,7 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
   trial.dt = settings.dt;
   trial.observed = {true, true, true, true};
   trial.input_is_wrench = settings.wrench;
+  trial.input_step = settings.dt;
   trial.nu_sigma << Eigen::Vector3d::Constant(settings.velocity_noise), Eigen::Vector3d::Constant(settings.rate_noise);
   Excitation excitation{dive.truth, random};
 
@@ -111,6 +112,8 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     const auto motion_at = [&](double time, const Vector6d& velocity) {
       model::Motion motion{.t = time, .p_WB = p, .R_WB = q.toRotationMatrix(), .nu = velocity};
       input.at(time, motion.force);
+      if (settings.input_hold > 0.0) motion.force = trial.input[k];
+      if (settings.input_hold < 0.0) motion.force = trial.input[k + 1];
       motion.voltage = voltage;
       motion.input = &input;
       motion.vehicle = &vehicle;

@@ -18,6 +18,8 @@ struct DiveSettings {
   double rate_noise{0.005};      ///< rad/s
   double spread{0.1};            ///< of the true base parameters around the vehicle file's means
   bool wrench{false};            ///< inputs are the wrench, not single thrusters
+  /// 0: inputs run straight from sample to sample; 1/2: each is held until the next; -1/2: it held since the last.
+  double input_hold{0.0};
   std::vector<model::ActiveEffect> effects{};
 };
 

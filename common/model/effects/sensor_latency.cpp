@@ -13,7 +13,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"latency", "s", 0.1, 0.0, 1.5}};
+constexpr std::array kParameters{EffectParameter{"latency", "s", 0.1, 0.0, 1.5, 0.0, true}};
 enum Form { kAll, kVelocity, kRates };
 using Sample = Eigen::Matrix<double, 6, 1>;
 

@@ -9,7 +9,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"delay", "s", 0.1, 0.0, 1.5}};
+constexpr std::array kParameters{EffectParameter{"delay", "s", 0.1, 0.0, 1.5, 0.0, true}};
 
 class ThrusterDelay final : public Effect {
  public:

@@ -9,7 +9,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0}};
+constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0, 0.0, true}};
 
 class ThrusterLag final : public Effect {
  public:

@@ -158,3 +158,16 @@ TEST_CASE("diagnoser: what the validation run contradicts is taken back, and cal
   REQUIRE(current != result.candidates.end());
   CHECK(current->reason.find("not the validation run") != std::string::npos);
 }
+
+TEST_CASE("diagnoser: a sound vehicle is not accused of the time for which its commands are held") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  for (const double hold : {-0.5, 0.5}) {
+    const Trial trial = test::make_dive(vehicle, {.duration = 150.0, .seed = 7, .input_hold = hold}).trial;
+    const std::vector<Trial> train{test::cut_trial(trial, 0, 1000)};
+    const std::vector<Trial> validate{test::cut_trial(trial, 1000, trial.size())};
+    const auto result = diagnose(vehicle, train, validate, {}, [](const std::string&, double) {}).result;
+    CAPTURE(hold);
+    CHECK_MESSAGE(result.verdict == "adequate", result.paragraph);
+    CHECK(result.effects.empty());
+  }
+}

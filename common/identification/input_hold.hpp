@@ -1,0 +1,16 @@
+// How commands act between their samples: held until the next one, along straight lines, or told afterwards. Logs do
+// not say. The motion does, to a few milliseconds, and a model that assumes it wrongly sees a delay that is none.
+#pragma once
+
+#include "common/identification/trajectory_fit.hpp"
+
+namespace fathom::identification {
+
+/// Model::input_hold that fits best beside all free numbers, from -1/2 to 1/2, by one Gauss-Newton step from `fit`.
+/// That of the fit's model where an effect is a time after the command as well: the two cannot be told apart.
+[[nodiscard]] double input_hold(const TrajectoryFit& problem, const FitResult& fit);
+
+/// The fit with the hold that fits it best, near the one it has.
+[[nodiscard]] FitResult with_input_hold(const TrajectoryFit& problem, FitResult fit);
+
+}  // namespace fathom::identification

@@ -1,0 +1,61 @@
+// How commands acted between their samples is found from the motion, and is not taken for a delay of the vehicle.
+#include "common/identification/input_hold.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::identification;
+
+namespace {
+
+constexpr double kTimes[] = {-0.5, 0.0, 0.5};  // of the time between inputs
+constexpr double kFound = 0.08;                // of it: noise of two minutes, and the steps of the integration
+
+test::VirtualDive dive_of(const model::Vehicle& vehicle, double hold, unsigned seed) {
+  return test::make_dive(vehicle, {.duration = 120.0, .seed = seed, .input_hold = hold});
+}
+
+double error(const FitResult& fit, const model::Model& truth) {
+  double square = 0.0;
+  for (const NamedValue& value : fit.parameters()) {
+    const double real = truth.theta[model::index(*model::parameter_from_name(value.name))];
+    square += std::pow((value.value - real) / real, 2);
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+TEST_CASE("input hold: lines, held and told afterwards are told apart, and the numbers come out better for it") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  for (const double hold : kTimes) {
+    const test::VirtualDive dive = dive_of(vehicle, hold, 5);
+    const TrajectoryFit problem{vehicle, {&dive.trial, 1}, {.window = 5.0, .threads = 2}};
+    const FitResult plain = problem.fit(model::nominal_model(vehicle, false));
+    const FitResult fit = with_input_hold(problem, fit_from_priors(vehicle, {&dive.trial, 1}, problem.settings()));
+    CAPTURE(hold);
+    CHECK(std::abs(fit.model.input_hold - hold) < kFound);
+    if (hold != 0.0) CHECK(error(fit, dive.truth) < 0.7 * error(plain, dive.truth));
+  }
+}
+
+TEST_CASE("input hold: a delay of the vehicle is left to the effect that says so") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive = test::make_dive(
+      vehicle, {.duration = 120.0, .seed = 6, .input_hold = 0.5, .effects = {test::active("thruster_delay", {0.2})}});
+  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, {.window = 5.0, .threads = 2}};
+  model::Model model = model::nominal_model(vehicle, false);
+  CHECK(input_hold(problem, problem.fit(model)) == 0.5);  // the bound: what is later is not the log's doing
+  model.add(test::active("thruster_delay", {0.1}));
+  model.input_hold = 0.5;
+  FitResult fit = problem.fit(model);
+  CHECK(input_hold(problem, fit) == 0.5);
+  problem.add_covariance(fit);
+  const NamedValue delay = fit.parameters().back();
+  CHECK(std::abs(delay.value - 0.2) < 2.0 * delay.std);
+  CHECK(delay.std > 0.1 / std::sqrt(12.0));  // whatever the data: they could have been straight lines
+}
