@@ -8,6 +8,7 @@
 #include "common/diagnosis/search.hpp"
 #include "common/diagnosis/verdict.hpp"
 #include "common/diagnosis/whiteness.hpp"
+#include "common/identification/sparse.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr double kMostHarm = 0.02;  // growth of the validation error: what predicts worse is not what the model lacked
 constexpr double kPromised = 0.1;   // of the training error: so much must show elsewhere
 constexpr double kKept = 0.25;      // of what was promised
+constexpr double kStep = 0.04;      // s between the velocities that are predicted: short of it there is only noise
 
 using Residuals = std::vector<std::vector<Vector6d>>;
 
@@ -92,8 +94,10 @@ void take_back(SearchResult& found) {
 
 }  // namespace
 
-DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
+DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> unseen,
                          const Settings& settings, const Progress& progress) {
+  std::vector<Trial> validate;
+  for (const Trial& trial : unseen) validate.push_back(identification::sparse(trial, kStep));
   SearchResult found = search(vehicle, train, settings, progress);
   DiagnosisReport report;
   DiagnosisResult& result = report.result;

@@ -5,10 +5,12 @@
 #include "common/base/error.hpp"
 #include "common/estimation/thruster_forces.hpp"
 #include "common/estimation/timeline.hpp"
+#include "common/model/motion.hpp"
 
 namespace fathom::estimation {
 namespace {
 
+constexpr double kFaster = model::InputSignal::kAveraged;  // of the grid's step
 constexpr double kSameTime = 1e-6;  // s: stamps are whole microseconds
 
 /// Input over time: thruster forces or the wrench, one row per sample of the stream.
@@ -51,26 +53,29 @@ Input read_input(const Recording& recording, Utime origin, const ThrusterCorrect
   return input;
 }
 
-/// Mean over [t - dt/2, t + dt/2) when the stream is faster than the grid, else a straight line between neighbours.
-void sample_input(const Input& input, const std::vector<double>& grid, double dt, std::vector<Eigen::VectorXd>& out) {
-  const bool average = typical_step(input.t) < 0.75 * dt;
-  for (const double t : grid) {
-    const auto first = std::lower_bound(input.t.begin(), input.t.end(), average ? t - 0.5 * dt - 1e-6 : t);
-    const auto i = static_cast<std::size_t>(first - input.t.begin());
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
-    int count = 0;
-    for (std::size_t j = i; average && j < input.t.size() && input.t[j] < t + 0.5 * dt - 1e-6; ++j, ++count)
-      sum += input.x[j];
-    if (count > 0) {
-      out.emplace_back(sum / count);
-    } else if (i == 0) {
-      out.push_back(input.x.front());
-    } else if (i == input.t.size()) {
-      out.push_back(input.x.back());
-    } else {
-      const double share = (t - input.t[i - 1]) / (input.t[i] - input.t[i - 1]);
-      out.emplace_back((1.0 - share) * input.x[i - 1] + share * input.x[i]);
-    }
+/// Of the inputs in [t - dt/2, t + dt/2); on a straight line between neighbours where there are none.
+Eigen::VectorXd mean_around(const Input& input, double t, double dt) {
+  const auto first = std::lower_bound(input.t.begin(), input.t.end(), t - 0.5 * dt - kSameTime);
+  const auto i = static_cast<std::size_t>(first - input.t.begin());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
+  int count = 0;
+  for (std::size_t j = i; j < input.t.size() && input.t[j] < t + 0.5 * dt - kSameTime; ++j, ++count) sum += input.x[j];
+  if (count > 0) return sum / count;
+  if (i == 0) return input.x.front();
+  if (i == input.t.size()) return input.x.back();
+  const double share = (t - input.t[i - 1]) / (input.t[i] - input.t[i - 1]);
+  return (1.0 - share) * input.x[i - 1] + share * input.x[i];
+}
+
+/// Inputs that come faster than the grid are averaged as the velocities are, around each of its times and, for what
+/// they do from one to the next, over each step of it (Simpson's rule).
+void average(const Input& input, Trial& trial) {
+  const double half = 0.5 * trial.dt;
+  for (const double t : trial.t) {
+    trial.input.push_back(mean_around(input, t, trial.dt));
+    trial.held.emplace_back((trial.input.back() + 4.0 * mean_around(input, t + half, trial.dt) +
+                             mean_around(input, t + trial.dt, trial.dt)) /
+                            6.0);
   }
 }
 
@@ -99,8 +104,12 @@ void add_input(const Recording& recording, Utime origin, const ThrusterCorrectio
   const Input input = read_input(recording, origin, correction, vehicle);
   trial.input_is_wrench = input.is_wrench;
   trial.input_step = typical_step(input.t);
-  sample_input(input, trial.t, trial.dt, trial.input);
-  sample_held(input, trial.t, trial.dt, trial.held);
+  if (trial.input_step < kFaster * trial.dt) {
+    average(input, trial);
+  } else {
+    for (const double t : trial.t) trial.input.push_back(mean_around(input, t, 0.0));
+    sample_held(input, trial.t, trial.dt, trial.held);
+  }
   for (std::size_t i = 0; i < trial.t.size() && !recording.battery.empty(); ++i) {
     trial.voltage.push_back(voltage_at(recording.battery, utime_after(origin, trial.t[i])));
   }

@@ -5,6 +5,18 @@
 
 namespace fathom::model {
 
+InputSignal::InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
+                         std::span<const Eigen::VectorXd> held, const InputTiming& timing)
+    : t0_{t0}, dt_{dt}, later_{timing.hold * timing.step}, samples_{samples}, held_{held.empty() ? samples : held} {
+  const bool averaged = !held.empty() && timing.step < kAveraged * dt;
+  held_share_ = averaged ? 1.0 : 2.0 * std::abs(timing.hold);
+  if (averaged) {
+    ahead_ = -later_ / dt;
+  } else if (timing.hold < 0.0) {
+    ahead_ = timing.step / dt;
+  }
+}
+
 void InputSignal::line(double t, ActuatorForces& force) const {
   const double last = static_cast<double>(samples_.size() - 1);
   const double position = std::clamp((t - t0_) / dt_, 0.0, last);
@@ -21,7 +33,7 @@ void InputSignal::now(double t, ActuatorForces& force) const {
   constexpr double kRounding = 1e-6;  // of dt: at a jump, the force after it
   const double last = static_cast<double>(held_.size() - 1);
   const double place = std::clamp(std::floor((t - t0_) / dt_ + kRounding) + ahead_, 0.0, last);
-  const auto index = static_cast<std::size_t>(place + kRounding);
+  const auto index = static_cast<std::size_t>(place);
   const double share = std::max(place - static_cast<double>(index), 0.0);
   line(t, force);
   force += held_share_ * ((1.0 - share) * held_[index] + share * held_[std::min(index + 1, held_.size() - 1)] - force);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -33,18 +32,13 @@ struct InputTiming {
 /// The actuators' commanded forces over time; those of the first sample before it, of the last one after it.
 class InputSignal {
  public:
+  static constexpr double kAveraged = 0.75;  ///< of the grid's step: inputs closer than that are averaged over it
+
   InputSignal() = default;
-  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: the mean over each step of the grid if
-  /// inputs are held until the next one; the samples themselves when empty.
+  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: Trial::held; the samples themselves when
+  /// empty.
   InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
-              std::span<const Eigen::VectorXd> held = {}, const InputTiming& timing = {})
-      : t0_{t0},
-        dt_{dt},
-        later_{timing.hold * timing.step},
-        ahead_{timing.hold < 0.0 ? timing.step / dt : 0.0},
-        held_share_{2.0 * std::abs(timing.hold)},
-        samples_{samples},
-        held_{held.empty() ? samples : held} {}
+              std::span<const Eigen::VectorXd> held = {}, const InputTiming& timing = {});
   /// Straight lines, early or late as the timing says: continuous in time.
   void at(double t, ActuatorForces& force) const;
   /// With the jumps of inputs that are held.
@@ -56,7 +50,7 @@ class InputSignal {
   double t0_{0.0};
   double dt_{1.0};
   double later_{0.0};       // s
-  double ahead_{0.0};       // steps of the grid from an input to the one that tells of the time after it
+  double ahead_{0.0};       // steps of the grid from the time that is asked for to the step that tells of it
   double held_share_{0.0};  // the rest goes along straight lines
   std::span<const Eigen::VectorXd> samples_;
   std::span<const Eigen::VectorXd> held_;

@@ -31,10 +31,12 @@ struct Trial {
   std::vector<std::uint8_t> pose_valid;  ///< 0 where pose is a guess across a gap
   std::vector<std::uint8_t> velocity_valid;
   std::vector<std::uint8_t> rates_valid;
-  std::vector<Eigen::VectorXd> input;   ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
-  bool input_is_wrench{false};          ///< true: input has 6 entries, the wrench at the body origin in body axes
-  double input_step{};                  ///< s between inputs as they were recorded
-  std::vector<Eigen::VectorXd> held;    ///< mean of `input` over each step if all are held; empty: `input` itself
+  std::vector<Eigen::VectorXd> input;  ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
+  bool input_is_wrench{false};         ///< true: input has 6 entries, the wrench at the body origin in body axes
+  double input_step{};                 ///< s between inputs as they were recorded
+  /// Mean over each step if inputs are held until the next one, or, where they came faster than the grid and are
+  /// averages, along their course; empty: `input` itself.
+  std::vector<Eigen::VectorXd> held;
   std::vector<double> voltage;          ///< V; empty when not logged
   Vector6d nu_sigma{Vector6d::Zero()};  ///< noise of nu, m/s and rad/s, as estimated from the data
 
