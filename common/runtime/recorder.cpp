@@ -2,9 +2,11 @@
 
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <fathom_lcm/health_t.hpp>
 #include <iostream>
 #include <limits>
 
@@ -12,6 +14,7 @@
 #include "common/runtime/arguments.hpp"
 #include "common/runtime/bus.hpp"
 #include "common/runtime/lockstep.hpp"
+#include "common/runtime/self.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -19,7 +22,15 @@ namespace {
 
 constexpr int kWaitMs = 50;
 
-bool is_machinery(const std::string& channel) { return channel == kLockstepAck || channel == "LCM_SELF_TEST"; }
+/// Of lockstep, of liblcm, of deputies and sheriffs: no phase lists it, and nothing follows from it.
+bool is_machinery(const std::string& channel) {
+  return channel == kLockstepAck || channel == "LCM_SELF_TEST" || channel.starts_with("PM_");
+}
+
+std::int64_t wall_clock() {
+  using std::chrono::duration_cast;
+  return duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 void run(const Arguments& arguments, const std::string& path) {
   StopSignal stop;
@@ -43,13 +54,31 @@ void run(const Arguments& arguments, const std::string& path) {
     ack.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
     bus.write(kLockstepAck, bytes, newest);
   };
+  Usage usage;
+  std::int64_t received = 0;
+  const auto tell_health = [&] {
+    fathom_lcm::health_t health{};
+    const Usage::Figures used = usage.measure();
+    health.utime = wall_clock();
+    health.process = "recorder";
+    health.host = host_name();
+    health.pid = getpid();
+    health.state = "running";
+    health.received = received;
+    health.cpu = used.cpu;
+    health.memory = used.memory;
+    health.detail = std::to_string(arrangement.written()) + " messages written";
+    say(bus, "HEALTH", health);
+  };
   tell(-1);
-  auto last_hello = std::chrono::steady_clock::now();
+  tell_health();
+  auto last_hello = std::chrono::steady_clock::now(), last_health = last_hello;
   std::int64_t told = -1;
   bool started = false;
   while (!stop.raised() && !arrangement.ended()) {
     live.wait(stop.descriptor(), kWaitMs);
     while (auto message = live.next()) {
+      ++received;
       if (is_machinery(message->channel)) continue;
       if (message->channel != kLockstep) {
         arrangement.arrived(message->channel, std::move(message->bytes));
@@ -64,6 +93,10 @@ void run(const Arguments& arguments, const std::string& path) {
     }
     if (arrangement.tick() >= told + Conductor::kRecorderEvery) tell(told = arrangement.tick());
     const auto now = std::chrono::steady_clock::now();
+    if (now - last_health >= std::chrono::seconds{1}) {
+      last_health = now;
+      tell_health();
+    }
     if (!started && now - last_hello >= std::chrono::milliseconds{200}) {
       last_hello = now;
       tell(-1);

@@ -21,6 +21,7 @@ struct Options {
   std::string script;
   std::string url;         ///< of procman's channels
   std::string health_url;  ///< of the programs' HEALTH
+  std::string logs;        ///< folder for what the programs print; empty: none
   bool status{false}, stop{false}, stay{false}, local{false}, verbose{false};
 };
 
@@ -37,6 +38,7 @@ class Office {
   void rounds(double seconds);
   [[nodiscard]] bool everybody_heard() const;
   void gather();
+  void keep(const std::string& command, const std::string& text);
   bool play(const launch::Script& script, launch::ScriptRun::Care care);
   bool stop_all();
   int judge(bool well);
