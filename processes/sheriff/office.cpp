@@ -33,6 +33,7 @@ double steady() { return std::chrono::duration<double>(std::chrono::steady_clock
 constexpr double kListen = 1.3;      // s: every deputy speaks once a second
 constexpr double kListenHere = 0.4;  // s, where silence means no more than that we start one: two settle it themselves
 constexpr double kLocalPatience = 10.0;   // s until a deputy of our own speaks: liblcm may test itself that long
+constexpr double kCall = 0.5;             // s between two calls for a deputy that is silent
 constexpr double kSettle = 1.5;           // s after a script: what ends at once is seen to end
 constexpr std::size_t kLastWords = 2000;  // B that are kept of what a command prints
 
@@ -114,6 +115,11 @@ void Office::round() {
       runtime::say(output_, wire::kLaunchOrders, wire::encode(orders));
     }
   }
+  // Whoever comes back answers at once, and not only to the first call: the link may be bad as well.
+  if (now >= next_call_ && !everybody_heard()) {
+    next_call_ = now + kCall;
+    call();
+  }
   const std::string rival = mind_.rival(now);
   if (rival != rival_told_ && !rival.empty()) {
     screen_.say("another sheriff gives orders too: " + rival + "; the last order wins, so stop one of the two");
@@ -128,10 +134,14 @@ void Office::rounds(double seconds) {
 
 bool Office::everybody_heard() const { return mind_.unheard_deputies(steady()).empty(); }
 
-// Nothing is ordered before the deputies have said what runs: that is adopted, not restarted.
-void Office::gather() {
+void Office::call() {
   runtime::say(output_, wire::kLaunchDiscover,
                wire::encode(LaunchDiscovery{.utime = wall_clock(), .transmitter = own_name(), .nonce = 0}));
+}
+
+// Nothing is ordered before the deputies have said what runs: that is adopted, not restarted.
+void Office::gather() {
+  call();
   const double listen = options_.local ? kListenHere : kListen;
   for (const double end = steady() + listen; steady() < end && !everybody_heard() && !interrupt_.raised();) round();
   if (!options_.local) return;

@@ -37,6 +37,7 @@ class Office {
   void round();
   void rounds(double seconds);
   [[nodiscard]] bool everybody_heard() const;
+  void call();
   void gather();
   void keep(const std::string& command, const std::string& text);
   bool play(const launch::Script& script, launch::ScriptRun::Care care);
@@ -51,7 +52,7 @@ class Office {
   runtime::Output output_;
   Screen screen_;
   LocalDeputies local_;
-  double next_order_{};
+  double next_order_{}, next_call_{};
   std::string doing_;
   std::map<std::string, std::string> printed_;  ///< last words of each command
   std::string rival_told_;
