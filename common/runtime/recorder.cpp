@@ -22,9 +22,10 @@ namespace {
 
 constexpr int kWaitMs = 50;
 
-/// Of lockstep, of liblcm, of deputies and sheriffs: no phase lists it, and nothing follows from it.
+/// Of lockstep, of liblcm, of deputies and sheriffs, of `fathom bus`: no phase lists it, and nothing follows from it.
 bool is_machinery(const std::string& channel) {
-  return channel == kLockstepAck || channel == "LCM_SELF_TEST" || channel.starts_with("PM_");
+  return channel == kLockstepAck || channel == "LCM_SELF_TEST" || channel.starts_with("PM_") ||
+         channel.starts_with("BUS_");
 }
 
 std::int64_t wall_clock() {
@@ -55,6 +56,7 @@ void run(const Arguments& arguments, const std::string& path) {
     bus.write(kLockstepAck, bytes, newest);
   };
   Usage usage;
+  (void)usage.measure();  // from here on
   std::int64_t received = 0;
   const auto tell_health = [&] {
     fathom_lcm::health_t health{};
