@@ -205,7 +205,8 @@ int Office::run() {
   if (!options_.script.empty()) {
     well = play(mind_.config().require_script(options_.script), launch::ScriptRun::Care::kGiveUp);
     const auto rows = mind_.rows(steady());
-    if (std::any_of(rows.begin(), rows.end(), [](const auto& each) { return each.wanted; })) rounds(kSettle);
+    const bool any = std::any_of(rows.begin(), rows.end(), [](const auto& each) { return each.wanted; });
+    if (any || !well) rounds(kSettle);  // last words come behind an end
   }
   if (well && (options_.stay || options_.script.empty())) {
     while (!interrupt_.raised()) round();

@@ -60,6 +60,12 @@ test::Ran disturbed(const Scratch& scratch, const std::string& words, const std:
                ".00' ] && break; sleep 0.05; done\nsleep 0.5\n" + deed + "\nwait $script");
 }
 
+/// Until the supervisor has said so.
+std::string await(const Scratch& scratch, const std::string& word) {
+  return "for i in $(seq 400); do grep -qs " + word + " '" + scratch.path("out/processes/supervisor.txt") +
+         "' && break; sleep 0.1; done\n";
+}
+
 std::string pid_of(const Scratch& scratch, const std::string& process) {
   return "$(pgrep -f '^[^ ]*fathom-" + process + " .*" + scratch.path("out") + "')";
 }
@@ -131,7 +137,7 @@ TEST_CASE("live: an identifier that falls silent is started again, goes on with 
   if (!private_network()) return;
   const Scratch scratch;
   const auto ran = disturbed(scratch, "tank seabotix_lbv150 optimal real 3 26",
-                             "sleep 11; kill -STOP " + pid_of(scratch, "identifier"));
+                             await(scratch, "excite") + "sleep 4; kill -STOP " + pid_of(scratch, "identifier"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   const std::string said = test::read_bytes(scratch.path("out/processes/identifier.txt"));
   CHECK_MESSAGE(said.find("says no HEALTH for 4 s and does nothing; killed, to be started again") != std::string::npos,
@@ -147,7 +153,7 @@ TEST_CASE("live: when the estimator or the supervisor falls silent, the thruster
     CAPTURE(victim);
     const Scratch scratch;
     const auto ran = disturbed(scratch, "tank seabotix_lbv150 paper real 3 18",
-                               "sleep 12; kill -STOP " + pid_of(scratch, victim) + "; sleep 1");
+                               await(scratch, "approach") + "sleep 3; kill -STOP " + pid_of(scratch, victim));
     REQUIRE_MESSAGE(ran.code == 0, ran.text);
     const Recording run = wire::read_log(scratch.path("out/run.lcmlog")).recording;
     // The last word before the silence, which lasts until the deputy starts another one.
