@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kFlood = 1000.0;  // messages a second of one channel; five times the fastest instrument
 
-constexpr std::chrono::milliseconds kYouth{900};  // less than the period of HEALTH
-
 }  // namespace
 
 void Process::report_health(const std::string& state, const std::string& reason) {
@@ -31,9 +29,8 @@ void Process::report_health(const std::string& state, const std::string& reason)
   if (state == "running") {
     if (state_->condition) condition = state_->condition();
     // In lockstep the wall's second falls anywhere in virtual time: nothing may follow from it, or two runs would
-    // differ. And who has just begun, perhaps in another's place in the middle of a trial, has heard nothing yet.
-    const bool no_sign = state_->follower || now - state_->begun < kYouth;
-    if (no_sign && !condition.unhealthy.empty()) health.detail = std::exchange(condition.unhealthy, "") + "; ";
+    // differ.
+    if (state_->follower && !condition.unhealthy.empty()) health.detail = std::exchange(condition.unhealthy, "") + "; ";
     const std::string twin = state_->twins.complaint(now);
     if (!twin.empty()) condition.unhealthy = twin + (condition.unhealthy.empty() ? "" : "; " + condition.unhealthy);
     if (!condition.unhealthy.empty()) {

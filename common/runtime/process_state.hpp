@@ -65,7 +65,6 @@ struct Process::State {
   std::int64_t published{};
   Clock::duration busy{};  // in handlers, since the last HEALTH
   Clock::time_point last_health{};
-  Clock::time_point begun{Clock::now()};
   std::string host{host_name()};
   Usage usage{};
   Twins twins{name, host, getpid()};
