@@ -125,6 +125,28 @@ TEST_CASE("launch: a killed deputy takes its programs along, and its successor i
   CHECK(ran.says("sheriff 0"));
 }
 
+TEST_CASE(
+    "launch: a killed sheriff leaves all running for the next one, but what it had started on its own host ends") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  test::write_bytes(scratch.path("x.cfg"), kPrograms);
+  const auto ran =
+      on_a_network(scratch,
+                   "$deputy -i vehicle 2>deputy.txt & d=$!; up deputy.txt\n"
+                   "runs() { grep -s ^sleeper $1 | tail -n 1 | grep -q running; }\n"
+                   "$sheriff x.cfg --script sleeper --stay >sheriff.txt & s=$!; within 20 runs sheriff.txt\n"
+                   "a=$(pid 'sleep 1000'); kill -9 $s; sleep 1\n"
+                   "$sheriff x.cfg --status | grep ^sleeper; [ \"$(pid 'sleep 1000')\" = $a ] && echo stays\n"
+                   "kill $d; wait $d\n"
+                   "$sheriff x.cfg --script sleeper --stay --local >own.txt & s=$!; within 20 runs own.txt\n"
+                   "kill -9 $s; nobody() { ! pgrep -f 'sleep 1000|deputy --id' >/dev/null; }\n"
+                   "within 10 nobody; nobody && echo gone\n");
+  CHECK_MESSAGE(ran.says("sleeper   vehicle  running"), ran.text);
+  CHECK(ran.says("stays"));
+  CHECK(ran.says("gone"));
+  CHECK_FALSE(ran.says("not within"));
+}
+
 TEST_CASE("launch: a simulated trial in lockstep by one command") {
   if (!private_network()) return;
   const Scratch scratch;
