@@ -1,6 +1,7 @@
 #include "common/runtime/bus.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -122,8 +123,10 @@ void LiveInput::receive(const lcm::ReceiveBuffer* buffer, const std::string& cha
 
 void LiveInput::push(Slot& slot, const lcm::ReceiveBuffer& buffer, const std::string& channel) {
   const auto* data = static_cast<const std::uint8_t*>(buffer.data);
-  queue_.push_back(
-      {.subscription = slot.index, .bytes = {data, data + buffer.data_size}, .channel = slot.many ? channel : ""});
+  queue_.push_back({.subscription = slot.index,
+                    .bytes = {data, data + buffer.data_size},
+                    .channel = slot.many ? channel : "",
+                    .received = buffer.recv_utime});
   if (slot.waiting < slot.capacity) {
     ++slot.waiting;
   } else {
@@ -202,6 +205,11 @@ void Output::write(const std::string& channel, std::span<std::uint8_t> bytes, Ut
 
 void Output::finish() {
   if (log_ && std::fflush(log_->getFilePtr()) != 0) throw InputError(path_ + ": writing failed; is the disk full?");
+}
+
+void Output::keep() {
+  finish();
+  if (log_) fdatasync(fileno(log_->getFilePtr()));  // not every file system can, and a pipe cannot
 }
 
 }  // namespace fathom::runtime

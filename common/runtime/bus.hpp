@@ -60,6 +60,7 @@ class LiveInput {
     std::size_t subscription{};
     std::vector<std::uint8_t> bytes;
     std::string channel{};  ///< of a subscription to many channels
+    Utime received{};       ///< by the kernel's clock
   };
 
   LiveInput(const std::vector<Url>& urls, const std::vector<Subscription>& subscriptions);
@@ -112,6 +113,8 @@ class Output {
   void write(const std::string& channel, std::span<std::uint8_t> bytes, Utime utime);
   /// InputError when not everything reached the disk.
   void finish();
+  /// The same, and what was written outlives a loss of power.
+  void keep();
 
  private:
   [[nodiscard]] lcm::LCM& bus_for(const std::string& channel);

@@ -2,19 +2,17 @@
 
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <fathom_lcm/health_t.hpp>
 #include <iostream>
 #include <limits>
 
 #include "common/base/error.hpp"
 #include "common/runtime/arguments.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/live_recorder.hpp"
 #include "common/runtime/lockstep.hpp"
-#include "common/runtime/self.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -26,11 +24,6 @@ constexpr int kWaitMs = 50;
 bool is_machinery(const std::string& channel) {
   return channel == kLockstepAck || channel == "LCM_SELF_TEST" || channel.starts_with("PM_") ||
          channel.starts_with("BUS_");
-}
-
-std::int64_t wall_clock() {
-  using std::chrono::duration_cast;
-  return duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 void run(const Arguments& arguments, const std::string& path) {
@@ -55,32 +48,15 @@ void run(const Arguments& arguments, const std::string& path) {
     ack.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
     bus.write(kLockstepAck, bytes, newest);
   };
-  Usage usage;
-  (void)usage.measure();  // from here on
-  std::int64_t received = 0;
-  const auto tell_health = [&] {
-    fathom_lcm::health_t health{};
-    const Usage::Figures used = usage.measure();
-    health.utime = wall_clock();
-    health.process = "recorder";
-    health.host = host_name();
-    health.pid = getpid();
-    health.state = "running";
-    health.received = received;
-    health.cpu = used.cpu;
-    health.memory = used.memory;
-    health.detail = std::to_string(arrangement.written()) + " messages written";
-    say(bus, "HEALTH", health);
-  };
+  RecorderHealth health{bus};
   tell(-1);
-  tell_health();
-  auto last_hello = std::chrono::steady_clock::now(), last_health = last_hello;
+  auto last_hello = std::chrono::steady_clock::now();
   std::int64_t told = -1;
   bool started = false;
   while (!stop.raised() && !arrangement.ended()) {
     live.wait(stop.descriptor(), kWaitMs);
     while (auto message = live.next()) {
-      ++received;
+      health.heard();
       if (is_machinery(message->channel)) continue;
       if (message->channel != kLockstep) {
         arrangement.arrived(message->channel, std::move(message->bytes));
@@ -95,10 +71,7 @@ void run(const Arguments& arguments, const std::string& path) {
     }
     if (arrangement.tick() >= told + Conductor::kRecorderEvery) tell(told = arrangement.tick());
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_health >= std::chrono::seconds{1}) {
-      last_health = now;
-      tell_health();
-    }
+    health.tell(arrangement.written());
     if (!started && now - last_hello >= std::chrono::milliseconds{200}) {
       last_hello = now;
       tell(-1);
@@ -157,8 +130,11 @@ int recorder_main(int argc, const char* const* argv) {
   logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
   try {
     std::string path;
-    const auto arguments = Arguments::parse(
-        "recorder", argc, argv, [&](CLI::App& app) { app.add_option("--file", path, "the log to be written"); });
+    bool number{false};
+    const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
+      app.add_option("--file", path, "the log to be written");
+      app.add_flag("--number", number, "add .00, .01, ... to its name, the first that is free");
+    });
     if (!arguments) return 0;
     if (arguments->interface_only) {
       std::cout << "hears every channel\n";
@@ -166,8 +142,11 @@ int recorder_main(int argc, const char* const* argv) {
     }
     if (path.empty()) throw InputError("--file is missing: the log to be written");
     if (!arguments->in.front().live()) throw InputError("--in: a recorder hears a live bus");
-    if (!arguments->lockstep) throw InputError("--lockstep is missing: in real time lcm-logger records");
-    run(*arguments, path);
+    if (arguments->lockstep) {
+      run(*arguments, path);
+    } else {
+      record_live(arguments->in, arguments->out, path, number);
+    }
     return 0;
   } catch (const std::exception& error) {
     logger.critical(error.what());

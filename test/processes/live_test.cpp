@@ -55,7 +55,7 @@ std::vector<std::string> messages(const std::string& path, const std::string& ch
 
 // Starts a trial, does something to it once the log has begun, and waits for its end.
 test::Ran disturbed(const Scratch& scratch, const std::string& words, const std::string& deed) {
-  const std::string log = scratch.path("out/run.lcmlog");  // lcm-logger adds a number to the name
+  const std::string log = scratch.path("out/run.lcmlog");  // in real time a number is added to the name
   return shell(live(scratch, words) + " &\nscript=$!\nfor i in $(seq 400); do [ -s '" + log + "' ] || [ -s '" + log +
                ".00' ] && break; sleep 0.05; done\nsleep 0.5\n" + deed + "\nwait $script");
 }
@@ -97,7 +97,7 @@ TEST_CASE("live: a trial that is cut short still gives table, result, page and t
   CHECK(nothing_left(scratch));
 }
 
-TEST_CASE("live: in real time, with lcm-logger") {
+TEST_CASE("live: in real time, with the recorder") {
   if (!private_network()) return;
   const Scratch scratch;
   const auto ran = shell(live(scratch, "deep seabotix_lbv150 optimal real 1008 12"));

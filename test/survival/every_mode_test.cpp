@@ -57,7 +57,7 @@ std::string disturbed(int speed, int limit, const std::string& deeds) {
          deeds + "wait $s; echo \"code $?\"; kill $w; cat sheriff.txt watch.txt\n";
 }
 
-/// All parts of a log that a killed lcm-logger has left.
+/// All parts of a log that a killed recorder has left.
 std::vector<std::string> parts(const Scratch& scratch) {
   std::vector<std::string> all;
   for (int i = 0; i < 100; ++i) {
@@ -189,7 +189,7 @@ TEST_CASE("every mode: what is killed in real time comes back, and the parameter
                                     disturbed(2, 400,
                                               "in_mode yaw; slay fathom-estimator fathom-identifier\n"
                                               "in_mode surge; slay fathom-identifier fathom-diagnoser\n"
-                                              "in_mode sway; slay fathom-vision lcm-logger\n"
+                                              "in_mode sway; slay fathom-vision fathom-recorder\n"
                                               "in_mode heave; slay fathom-estimator fathom-identifier\n"
                                               "in_mode total; slay fathom-identifier fathom-estimator\n"),
                                 280);
@@ -201,13 +201,13 @@ TEST_CASE("every mode, real time, long: every process but the supervisor in ever
           doctest::skip(!long_form())) {
   if (!private_network()) return;
   const Scratch scratch;
-  const auto ran =
-      on_a_network(scratch,
-                   configurations("") + still() +
-                       disturbed(1, 1500,
-                                 "for m in yaw surge sway heave total; do for p in fathom-estimator fathom-identifier "
-                                 "fathom-diagnoser fathom-vision lcm-logger; do in_mode $m; slay $p; done; done\n"),
-                   2000);
+  const auto ran = on_a_network(
+      scratch,
+      configurations("") + still() +
+          disturbed(1, 1500,
+                    "for m in yaw surge sway heave total; do for p in fathom-estimator fathom-identifier "
+                    "fathom-diagnoser fathom-vision fathom-recorder; do in_mode $m; slay $p; done; done\n"),
+      2000);
   constexpr long kKills = 25, kOfIdentifier = 5;
   check_went_on(scratch, ran, kKills, kOfIdentifier);
 }

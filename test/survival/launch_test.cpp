@@ -207,8 +207,7 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
       "export FATHOM_SIMULATION='--duration 15 --seed 4 --order 1=identify'\n"
       // What deputies and sheriffs say belongs to it too, but shall not command our deputy.
       "sed 's/\"vehicle\"/\"elsewhere\"/' $configs/lockstep.cfg >elsewhere.cfg\n"
-      // lcm-logger hears the deputies' messages; the recorder loses none of the trial's.
-      "lcm-logger -q -f hostile.lcmlog >/dev/null & l=$!\n"
+      "${deputy%deputy}recorder --file hostile.lcmlog & l=$!\n"
       "$sheriff elsewhere.cfg --script simulated-trial --local >/dev/null; kill -INT $l; wait $l\n"
       "cp ${configs%procman}config/operators/simulated.yaml operator.yaml\n"
       "cp ${configs%procman}config/vehicles/bluerov2.yaml driven.yaml\n"
@@ -217,7 +216,7 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
       "-e 's/start group \"drivers\"/start cmd \"thruster_driver\"/' $configs/tank.cfg >x.cfg\n"
       "$sheriff x.cfg --script tank-trial >/dev/null; echo \"start $?\"\n"
       "pids=$(for p in estimator identifier supervisor thruster_driver; do pid fathom-$p; done; echo $d)\n"
-      "lcm-logger -q -f -c 'THRUSTERS|HEALTH' after.lcmlog >/dev/null & l=$!\n" +
+      "${deputy%deputy}recorder --file after.lcmlog & l=$!\n" +
           hostile() +
           " \"$LCM_DEFAULT_URL\" 2 hostile.lcmlog trial.lcmlog; echo \"hostile $?\"; sleep 2; kill -INT $l; wait $l\n"
           "for p in $pids; do kill -0 $p && echo \"alive $(awk '/VmHWM/ { print $2 }' /proc/$p/status)\"; done\n"
@@ -242,7 +241,7 @@ TEST_CASE("launch: a second process of the same name is told by both, and a full
   if (!private_network()) return;
   const Scratch scratch;
   test::write_bytes(scratch.path("x.cfg"),
-                    "cmd \"logger\" { exec = \"lcm-logger -q -f full/a.lcmlog\"; deputy = \"vehicle\"; "
+                    "cmd \"logger\" { exec = \"fathom-recorder --file full/a.lcmlog\"; deputy = \"vehicle\"; "
                     "auto_respawn = \"true\"; }\nscript \"go\" { start cmd \"logger\"; wait ms 6000; }\n");
   const auto ran = on_a_network(
       scratch,
@@ -259,7 +258,7 @@ TEST_CASE("launch: a second process of the same name is told by both, and a full
   CHECK_MESSAGE(ran.says("another estimator speaks on this bus (process "), ran.text);
   CHECK(test::read_bytes(scratch.path("first.txt")).find("another estimator") != std::string::npos);
   CHECK(test::read_bytes(scratch.path("second.txt")).find("another estimator") != std::string::npos);
-  CHECK(ran.says("No space left on device"));
+  CHECK(ran.says("is the disk full?"));
   CHECK(ran.says("logger on vehicle "));
   CHECK(ran.says("exit 1"));
   CHECK(ran.says("code 1"));
