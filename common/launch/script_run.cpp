@@ -1,6 +1,7 @@
 #include "common/launch/script_run.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/launch/ending.hpp"
 
@@ -14,7 +15,8 @@ std::string name(const Target& target) {
 
 }  // namespace
 
-ScriptRun::ScriptRun(Sheriff& sheriff, const Script& script, Care care) : sheriff_{sheriff}, care_{care} {
+ScriptRun::ScriptRun(Sheriff& sheriff, const Script& script, Care care, Ready ready)
+    : sheriff_{sheriff}, care_{care}, ready_{std::move(ready)} {
   add(script);
 }
 
@@ -47,9 +49,21 @@ bool ScriptRun::fulfilled(const Action& action, double now) {
   const auto rows = sheriff_.rows(action.target, now);
   return std::all_of(rows.begin(), rows.end(), [&](const Sheriff::Row& row) {
     const bool stopped = row.state == State::kStopped || row.state == State::kIdle;
-    if (*action.awaited == Awaited::kRunning) return row.state == State::kRunning || row.state == State::kStopped;
+    const bool ready = !ready_ || now - *waiting_since_ > kWord || row.state != State::kRunning || ready_(row);
+    if (*action.awaited == Awaited::kRunning)
+      return ready && (row.state == State::kRunning || row.state == State::kStopped);
     return stopped || row.state == State::kFailed;
   });
+}
+
+std::string ScriptRun::failure_elsewhere(const Action& action, double now) {
+  for (const Sheriff::Row& row : sheriff_.rows(now)) {
+    if (row.state != State::kFailed || !row.started || row.foreign || row.command.auto_respawn) continue;
+    if (!covers(action.target, row.command)) {
+      return row.command.id + " failed: " + describe_end(row.status.wait_status);
+    }
+  }
+  return {};
 }
 
 ScriptRun::Result ScriptRun::step(double now) {
@@ -73,6 +87,8 @@ ScriptRun::Result ScriptRun::step(double now) {
       next(now);
       continue;
     }
+    const std::string elsewhere = care_ == Care::kGiveUp ? failure_elsewhere(action, now) : "";
+    if (!elsewhere.empty()) return fail(action, elsewhere);
     bool silent = false;
     for (const Sheriff::Row& row : sheriff_.rows(action.target, now)) {
       const bool lost = row.state == State::kLost || row.state == State::kUnheard;

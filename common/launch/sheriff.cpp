@@ -1,6 +1,9 @@
 #include "common/launch/sheriff.hpp"
 
+#include <sys/wait.h>
+
 #include <algorithm>
+#include <csignal>
 #include <utility>
 
 #include "common/launch/ending.hpp"
@@ -72,6 +75,7 @@ void Sheriff::count_failures(Entry& entry, const CommandStatus& status, double n
 }
 
 void Sheriff::adopt(Entry& entry, const CommandStatus& status, double now) {
+  const bool ran = entry.last_pid > 0;
   count_failures(entry, status, now);
   const bool first = !std::exchange(entry.adopted, true);
   entry.status = status;
@@ -81,6 +85,7 @@ void Sheriff::adopt(Entry& entry, const CommandStatus& status, double now) {
   if (status.pid > 0 && status.run == entry.desired && !entry.stop) entry.started = true;
   // A finished program is not started anew should its deputy restart.
   if (status.pid == 0 && status.run == entry.desired && status.run != 0 && !status.command.auto_respawn) {
+    entry.by_itself = entry.by_itself || (!entry.stop && ran);
     entry.stop = true;
   }
   if (status.pid > 0 && status.run == entry.desired && !first && entry.running_exec.empty()) {
@@ -100,7 +105,7 @@ void Sheriff::start(const Target& target) {
     if (!covers(target, entry.command)) continue;
     if (entry.status && entry.status->pid > 0 && !entry.stop) continue;
     ++entry.desired;
-    entry.stop = false;
+    entry.stop = entry.by_itself = false;
     entry.started = true;
   }
   ordered_ = changed_ = true;
@@ -110,7 +115,7 @@ void Sheriff::restart(const Target& target) {
   for (Entry& entry : entries_) {
     if (!covers(target, entry.command)) continue;
     ++entry.desired;
-    entry.stop = false;
+    entry.stop = entry.by_itself = false;
     entry.started = true;
     entry.running_exec.clear();
   }
@@ -151,7 +156,8 @@ State Sheriff::state(const Entry& entry, double now) const {
   }
   if (status.pid > 0) return entry.stop ? State::kStopping : State::kRunning;
   if (status.run == 0) return State::kIdle;
-  const bool well = status.wait_status == 0 || (entry.stop && stopped_by_signal(status.wait_status));
+  const bool shot = entry.by_itself && WIFSIGNALED(status.wait_status) && WTERMSIG(status.wait_status) == SIGKILL;
+  const bool well = status.wait_status == 0 || (entry.stop && !shot && stopped_by_signal(status.wait_status));
   return well ? State::kStopped : State::kFailed;
 }
 

@@ -80,7 +80,8 @@ class Sheriff {
     std::string running_exec;  ///< command line that it was running with when adopted
     std::int32_t desired{};
     bool stop{false};
-    bool started{false};  ///< by us, or running when adopted
+    bool started{false};    ///< by us, or running when adopted
+    bool by_itself{false};  ///< has ended before anybody asked it to
     std::optional<CommandStatus> status{};
     std::int32_t last_pid{};
     std::vector<double> failures{};  ///< when

@@ -1,6 +1,7 @@
 #include "common/runtime/bus.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -24,6 +25,16 @@ std::unique_ptr<lcm::LCM> connect(const Url& url) {
   }
   return bus;
 }
+
+/// The same URL with ttl 0, or nothing when messages stay on this host anyway (LCM's own choice).
+std::string near_url(const std::string& url) {
+  const auto at = url.find("ttl=");
+  if (at == std::string::npos || url.substr(at + 4, url.find('&', at) - at - 4) == "0") return {};
+  const auto end = url.find('&', at);
+  return url.substr(0, at) + "ttl=0" + (end == std::string::npos ? "" : url.substr(end));
+}
+
+bool is_picture(const std::string& channel) { return channel == "CAMERA" || channel == "CAMERA_DEBUG"; }
 
 }  // namespace
 
@@ -112,8 +123,10 @@ void LiveInput::receive(const lcm::ReceiveBuffer* buffer, const std::string& cha
 
 void LiveInput::push(Slot& slot, const lcm::ReceiveBuffer& buffer, const std::string& channel) {
   const auto* data = static_cast<const std::uint8_t*>(buffer.data);
-  queue_.push_back(
-      {.subscription = slot.index, .bytes = {data, data + buffer.data_size}, .channel = slot.many ? channel : ""});
+  queue_.push_back({.subscription = slot.index,
+                    .bytes = {data, data + buffer.data_size},
+                    .channel = slot.many ? channel : "",
+                    .received = buffer.recv_utime});
   if (slot.waiting < slot.capacity) {
     ++slot.waiting;
   } else {
@@ -162,6 +175,7 @@ std::optional<LiveInput::Message> LiveInput::next() {
 Output::Output(const Url& url) : path_{url.path} {
   if (url.live()) {
     bus_ = connect(url);
+    near_url_ = near_url(url.text);
     return;
   }
   log_ = std::make_unique<lcm::LogFile>(url.path, "w");
@@ -170,9 +184,15 @@ Output::Output(const Url& url) : path_{url.path} {
 
 Output::~Output() = default;
 
+lcm::LCM& Output::bus_for(const std::string& channel) {
+  if (near_url_.empty() || !is_picture(channel)) return *bus_;
+  if (!near_) near_ = connect({.text = near_url_, .path = {}});
+  return *near_;
+}
+
 void Output::write(const std::string& channel, std::span<std::uint8_t> bytes, Utime utime) {
   if (bus_) {
-    bus_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+    bus_for(channel).publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
     return;
   }
   lcm::LogEvent event{};
@@ -185,6 +205,11 @@ void Output::write(const std::string& channel, std::span<std::uint8_t> bytes, Ut
 
 void Output::finish() {
   if (log_ && std::fflush(log_->getFilePtr()) != 0) throw InputError(path_ + ": writing failed; is the disk full?");
+}
+
+void Output::keep() {
+  finish();
+  if (log_) fdatasync(fileno(log_->getFilePtr()));  // not every file system can, and a pipe cannot
 }
 
 }  // namespace fathom::runtime

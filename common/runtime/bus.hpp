@@ -60,6 +60,7 @@ class LiveInput {
     std::size_t subscription{};
     std::vector<std::uint8_t> bytes;
     std::string channel{};  ///< of a subscription to many channels
+    Utime received{};       ///< by the kernel's clock
   };
 
   LiveInput(const std::vector<Url>& urls, const std::vector<Subscription>& subscriptions);
@@ -97,7 +98,9 @@ class LiveInput {
   std::vector<std::unique_ptr<lcm::LCM>> buses_;
 };
 
-/// The one place messages go to.
+/// The one place messages go to. Pictures stay on their host even where the bus reaches others (ttl above 0): one alone
+/// is more than a cable to the surface carries beside everything else, and a message above the network's packet size is
+/// lost whole when one packet is.
 class Output {
  public:
   explicit Output(const Url& url);
@@ -110,10 +113,16 @@ class Output {
   void write(const std::string& channel, std::span<std::uint8_t> bytes, Utime utime);
   /// InputError when not everything reached the disk.
   void finish();
+  /// The same, and what was written outlives a loss of power.
+  void keep();
 
  private:
+  [[nodiscard]] lcm::LCM& bus_for(const std::string& channel);
+
   std::string path_;
+  std::string near_url_;  ///< the same bus with ttl 0; empty where it has that already
   std::unique_ptr<lcm::LCM> bus_;
+  std::unique_ptr<lcm::LCM> near_;  ///< made for the first picture
   std::unique_ptr<lcm::LogFile> log_;
 };
 

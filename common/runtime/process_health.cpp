@@ -28,6 +28,9 @@ void Process::report_health(const std::string& state, const std::string& reason)
   Condition condition;
   if (state == "running") {
     if (state_->condition) condition = state_->condition();
+    // In lockstep the wall's second falls anywhere in virtual time: nothing may follow from it, or two runs would
+    // differ.
+    if (state_->follower && !condition.unhealthy.empty()) health.detail = std::exchange(condition.unhealthy, "") + "; ";
     const std::string twin = state_->twins.complaint(now);
     if (!twin.empty()) condition.unhealthy = twin + (condition.unhealthy.empty() ? "" : "; " + condition.unhealthy);
     if (!condition.unhealthy.empty()) {

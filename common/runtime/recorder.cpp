@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/runtime/arguments.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/live_recorder.hpp"
 #include "common/runtime/lockstep.hpp"
 #include "common/runtime/stop_signal.hpp"
 
@@ -19,7 +20,11 @@ namespace {
 
 constexpr int kWaitMs = 50;
 
-bool is_machinery(const std::string& channel) { return channel == kLockstepAck || channel == "LCM_SELF_TEST"; }
+/// Of lockstep, of liblcm, of deputies and sheriffs, of `fathom bus`: no phase lists it, and nothing follows from it.
+bool is_machinery(const std::string& channel) {
+  return channel == kLockstepAck || channel == "LCM_SELF_TEST" || channel.starts_with("PM_") ||
+         channel.starts_with("BUS_");
+}
 
 void run(const Arguments& arguments, const std::string& path) {
   StopSignal stop;
@@ -43,6 +48,7 @@ void run(const Arguments& arguments, const std::string& path) {
     ack.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
     bus.write(kLockstepAck, bytes, newest);
   };
+  RecorderHealth health{bus};
   tell(-1);
   auto last_hello = std::chrono::steady_clock::now();
   std::int64_t told = -1;
@@ -50,6 +56,7 @@ void run(const Arguments& arguments, const std::string& path) {
   while (!stop.raised() && !arrangement.ended()) {
     live.wait(stop.descriptor(), kWaitMs);
     while (auto message = live.next()) {
+      health.heard();
       if (is_machinery(message->channel)) continue;
       if (message->channel != kLockstep) {
         arrangement.arrived(message->channel, std::move(message->bytes));
@@ -64,6 +71,7 @@ void run(const Arguments& arguments, const std::string& path) {
     }
     if (arrangement.tick() >= told + Conductor::kRecorderEvery) tell(told = arrangement.tick());
     const auto now = std::chrono::steady_clock::now();
+    health.tell(arrangement.written());
     if (!started && now - last_hello >= std::chrono::milliseconds{200}) {
       last_hello = now;
       tell(-1);
@@ -122,8 +130,11 @@ int recorder_main(int argc, const char* const* argv) {
   logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
   try {
     std::string path;
-    const auto arguments = Arguments::parse(
-        "recorder", argc, argv, [&](CLI::App& app) { app.add_option("--file", path, "the log to be written"); });
+    bool number{false};
+    const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
+      app.add_option("--file", path, "the log to be written");
+      app.add_flag("--number", number, "add .00, .01, ... to its name, the first that is free");
+    });
     if (!arguments) return 0;
     if (arguments->interface_only) {
       std::cout << "hears every channel\n";
@@ -131,8 +142,11 @@ int recorder_main(int argc, const char* const* argv) {
     }
     if (path.empty()) throw InputError("--file is missing: the log to be written");
     if (!arguments->in.front().live()) throw InputError("--in: a recorder hears a live bus");
-    if (!arguments->lockstep) throw InputError("--lockstep is missing: in real time lcm-logger records");
-    run(*arguments, path);
+    if (arguments->lockstep) {
+      run(*arguments, path);
+    } else {
+      record_live(arguments->in, arguments->out, path, number);
+    }
     return 0;
   } catch (const std::exception& error) {
     logger.critical(error.what());

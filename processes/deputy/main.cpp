@@ -1,6 +1,9 @@
 // deputy: starts, watches and stops programs on this host as sheriffs order. Speaks procman's protocol, so that either
 // may be replaced by procman's own.
+#include <sys/prctl.h>
+
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 
 #include "common/runtime/self.hpp"
@@ -15,9 +18,12 @@ int main(int argc, char** argv) {
   app.add_option("-i,--id", options.name, "this deputy's name in configurations (the host's)");
   app.add_option("-u,--lcmurl", options.url, "bus of the orders (LCM_DEFAULT_URL); programs get LCM_DEFAULT_URL");
   app.add_option("-l,--log", log, "append what it says to this file");
+  bool leave{false};
+  app.add_flag("--leave-with-parent", leave, "stop everything and end when whoever started it is gone");
   app.add_flag("-v,--verbose", options.verbose, "print what the programs print");
   app.set_version_flag("--version", FATHOM_VERSION);
   CLI11_PARSE(app, argc, argv);
+  if (leave) prctl(PR_SET_PDEATHSIG, SIGTERM);
   try {
     if (!log.empty() && std::freopen(log.c_str(), "a", stderr) == nullptr) {
       std::printf("deputy: %s cannot be written\n", log.c_str());

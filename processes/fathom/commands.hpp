@@ -28,5 +28,6 @@ void add_repair_log(CLI::App& app);
 void add_pictures(CLI::App& app);
 void add_trial(CLI::App& app);
 void add_watch(CLI::App& app);
+void add_bus(CLI::App& app);
 
 }  // namespace fathom::tool

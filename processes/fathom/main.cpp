@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_repair_log(app);
   fathom::tool::add_pictures(app);
   fathom::tool::add_watch(app);
+  fathom::tool::add_bus(app);
   fathom::tool::add_trial(app);
   try {
     app.parse(argc, argv);

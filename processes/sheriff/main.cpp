@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
   app.add_flag("--stay", options.stay, "after the script: look on until Ctrl-C")->needs(script);
   app.add_flag("--local", options.local, "start missing deputies on this host; at the end stop all, and them");
   auto* checks = app.add_flag("--check", only_check, "read the configuration, tell what procman would stumble over");
+  app.add_option("--logs", options.logs, "folder that gets what each program prints, NAME.txt");
   app.add_option("-u,--lcmurl", options.url, "bus of the orders (LCM_DEFAULT_URL)");
   app.add_flag("-v,--verbose", options.verbose, "print what the programs print");
   app.set_version_flag("--version", FATHOM_VERSION);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fathom_lcm/health_t.hpp>
+#include <fstream>
 #include <procman_lcm/deputy_info_t.hpp>
 #include <procman_lcm/discovery_t.hpp>
 #include <procman_lcm/orders_t.hpp>
@@ -29,8 +30,10 @@ Utime wall_clock() {
 }
 double steady() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-constexpr double kListen = 1.3;           // s: every deputy speaks once a second
+constexpr double kListen = 1.3;      // s: every deputy speaks once a second
+constexpr double kListenHere = 0.4;  // s, where silence means no more than that we start one: two settle it themselves
 constexpr double kLocalPatience = 10.0;   // s until a deputy of our own speaks: liblcm may test itself that long
+constexpr double kCall = 0.5;             // s between two calls for a deputy that is silent
 constexpr double kSettle = 1.5;           // s after a script: what ends at once is seen to end
 constexpr std::size_t kLastWords = 2000;  // B that are kept of what a command prints
 
@@ -78,6 +81,7 @@ void Office::hear() {
         std::string& words = printed_[each.id];
         words += each.text;
         if (words.size() > kLastWords) words.erase(0, words.size() - kLastWords);
+        keep(each.id.empty() ? output->deputy : each.id, each.text);
         if (options_.verbose || each.id.empty())
           screen_.say((each.id.empty() ? output->deputy : each.id) + ": " + each.text);
       }
@@ -87,6 +91,15 @@ void Office::hear() {
     const auto decoded = runtime::message_of<fathom_lcm::health_t>(message->bytes);
     if (const auto health = decoded ? wire::decode(*decoded) : std::nullopt) health_.hear(*health, now);
   }
+}
+
+// A name comes from the bus: it must not lead out of the folder.
+void Office::keep(const std::string& command, const std::string& text) {
+  if (options_.logs.empty() || command.find('/') != std::string::npos || command.starts_with('.')) return;
+  std::ofstream file{options_.logs + "/" + command + ".txt", std::ios::app | std::ios::binary};
+  std::string plain = text;
+  std::erase(plain, '\r');
+  file << plain;
 }
 
 void Office::round() {
@@ -102,6 +115,11 @@ void Office::round() {
       runtime::say(output_, wire::kLaunchOrders, wire::encode(orders));
     }
   }
+  // Whoever comes back answers at once, and not only to the first call: the link may be bad as well.
+  if (now >= next_call_ && !everybody_heard()) {
+    next_call_ = now + kCall;
+    call();
+  }
   const std::string rival = mind_.rival(now);
   if (rival != rival_told_ && !rival.empty()) {
     screen_.say("another sheriff gives orders too: " + rival + "; the last order wins, so stop one of the two");
@@ -116,11 +134,16 @@ void Office::rounds(double seconds) {
 
 bool Office::everybody_heard() const { return mind_.unheard_deputies(steady()).empty(); }
 
-// Nothing is ordered before the deputies have said what runs: that is adopted, not restarted.
-void Office::gather() {
+void Office::call() {
   runtime::say(output_, wire::kLaunchDiscover,
                wire::encode(LaunchDiscovery{.utime = wall_clock(), .transmitter = own_name(), .nonce = 0}));
-  for (const double end = steady() + kListen; steady() < end && !everybody_heard() && !interrupt_.raised();) round();
+}
+
+// Nothing is ordered before the deputies have said what runs: that is adopted, not restarted.
+void Office::gather() {
+  call();
+  const double listen = options_.local ? kListenHere : kListen;
+  for (const double end = steady() + listen; steady() < end && !everybody_heard() && !interrupt_.raised();) round();
   if (!options_.local) return;
   for (const std::string& each : mind_.unheard_deputies(steady())) local_.start(each, options_.url);
   for (const double end = steady() + kLocalPatience; steady() < end && !everybody_heard() && !interrupt_.raised();) {
@@ -129,7 +152,10 @@ void Office::gather() {
 }
 
 bool Office::play(const launch::Script& script, launch::ScriptRun::Care care) {
-  launch::ScriptRun run{mind_, script, care};
+  const auto ready = [&](const launch::Sheriff::Row& row) {
+    return row.command.exec.find("fathom-") == std::string::npos || !health_.of(row, steady()).state.empty();
+  };
+  launch::ScriptRun run{mind_, script, care, ready};
   const bool stopping = care == launch::ScriptRun::Care::kGoOn;  // not to be interrupted
   auto result = run.step(steady());
   while (result == launch::ScriptRun::Result::kGoing && (stopping || !interrupt_.raised())) {
@@ -178,7 +204,9 @@ int Office::run() {
   }
   if (!options_.script.empty()) {
     well = play(mind_.config().require_script(options_.script), launch::ScriptRun::Care::kGiveUp);
-    rounds(kSettle);
+    const auto rows = mind_.rows(steady());
+    const bool any = std::any_of(rows.begin(), rows.end(), [](const auto& each) { return each.wanted; });
+    if (any || !well) rounds(kSettle);  // last words come behind an end
   }
   if (well && (options_.stay || options_.script.empty())) {
     while (!interrupt_.raised()) round();

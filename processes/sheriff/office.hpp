@@ -21,6 +21,7 @@ struct Options {
   std::string script;
   std::string url;         ///< of procman's channels
   std::string health_url;  ///< of the programs' HEALTH
+  std::string logs;        ///< folder for what the programs print; empty: none
   bool status{false}, stop{false}, stay{false}, local{false}, verbose{false};
 };
 
@@ -36,7 +37,9 @@ class Office {
   void round();
   void rounds(double seconds);
   [[nodiscard]] bool everybody_heard() const;
+  void call();
   void gather();
+  void keep(const std::string& command, const std::string& text);
   bool play(const launch::Script& script, launch::ScriptRun::Care care);
   bool stop_all();
   int judge(bool well);
@@ -49,7 +52,7 @@ class Office {
   runtime::Output output_;
   Screen screen_;
   LocalDeputies local_;
-  double next_order_{};
+  double next_order_{}, next_call_{};
   std::string doing_;
   std::map<std::string, std::string> printed_;  ///< last words of each command
   std::string rival_told_;

@@ -266,6 +266,47 @@ TEST_CASE("script: a program that fails at once does not pass for running") {
   CHECK(world.row("c").state == State::kIdle);
 }
 
+TEST_CASE("script: ends when another program that it started is killed, but not when that one was asked to end") {
+  World world;
+  world.step(0.5);
+  world.sheriff.start(command("c"));
+  world.step(0.5);
+  ScriptRun script{world.sheriff, world.config.require_script("wait")};
+  CHECK(world.run(script, 5.0) == ScriptRun::Result::kGoing);
+  world.deputies.at("topside").died("c", SIGKILL, world.now);
+  CHECK(world.run(script, 5.0) == ScriptRun::Result::kFailed);
+  CHECK(script.text() == "x.cfg:8: c failed: Killed");
+
+  World asked;
+  asked.step(0.5);
+  asked.sheriff.start(command("c"));
+  asked.step(0.5);
+  asked.sheriff.stop(command("c"));
+  ScriptRun other{asked.sheriff, asked.config.require_script("wait")};
+  CHECK(asked.run(other, 5.0) == ScriptRun::Result::kGoing);
+  CHECK(asked.row("c").state == State::kStopped);
+}
+
+TEST_CASE("script: a program that speaks runs when it has spoken, or after ten seconds all the same") {
+  World world;
+  world.step(0.5);
+  bool spoken = false;
+  const auto ready = [&](const Sheriff::Row& row) { return row.command.id != "a" || spoken; };
+  ScriptRun script{world.sheriff, world.config.require_script("go"), ScriptRun::Care::kGiveUp, ready};
+  CHECK(world.run(script, 5.0) == ScriptRun::Result::kGoing);
+  CHECK(world.row("a").state == State::kRunning);
+  CHECK(world.row("c").state == State::kIdle);
+  spoken = true;
+  CHECK(world.run(script, 2.0) == ScriptRun::Result::kDone);
+
+  World silent;
+  silent.step(0.5);
+  ScriptRun patient{silent.sheriff, silent.config.require_script("go"), ScriptRun::Care::kGiveUp,
+                    [](const Sheriff::Row&) { return false; }};
+  CHECK(silent.run(patient, 9.0) == ScriptRun::Result::kGoing);
+  CHECK(silent.run(patient, 5.0) == ScriptRun::Result::kDone);
+}
+
 TEST_CASE("script: waits as long as it takes for an end, but not for a silent deputy") {
   World world;
   world.step(0.5);

@@ -1,0 +1,82 @@
+#include "common/runtime/live_recorder.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fathom_lcm/health_t.hpp>
+#include <filesystem>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/runtime/stop_signal.hpp"
+
+namespace fathom::runtime {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kWaitMs = 50;
+constexpr std::chrono::milliseconds kKeepPeriod{200};  // what a loss of power may cost
+
+std::string numbered(const std::string& path) {
+  constexpr int kMost = 1000;
+  char end[8];
+  for (int i = 0; i < kMost; ++i) {
+    std::snprintf(end, sizeof end, ".%02d", i);
+    if (!std::filesystem::exists(path + end)) return path + end;
+  }
+  throw InputError(path + ": numbers up to 999 are taken; move the old logs away");
+}
+
+}  // namespace
+
+RecorderHealth::RecorderHealth(Output& bus) : bus_{bus} { (void)usage_.measure(); }
+
+void RecorderHealth::tell(std::int64_t written) {
+  const auto now = Clock::now();
+  if (now - last_ < std::chrono::seconds{1}) return;
+  last_ = now;
+  using std::chrono::duration_cast;
+  fathom_lcm::health_t health{};
+  const Usage::Figures used = usage_.measure();
+  health.utime = duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  health.process = "recorder";
+  health.host = host_name();
+  health.pid = getpid();
+  health.state = "running";
+  health.received = received_;
+  health.cpu = used.cpu;
+  health.memory = used.memory;
+  health.detail = std::to_string(written) + " messages written";
+  say(bus_, "HEALTH", health);
+}
+
+void record_live(const std::vector<Url>& in, const Url& out, const std::string& path, bool number) {
+  StopSignal stop;
+  Output log{Url::parse("file://" + (number ? numbered(path) : path), "--file")};
+  Output bus{out};
+  LiveInput live{in, {{".*", std::numeric_limits<std::size_t>::max()}}};
+  RecorderHealth health{bus};
+  std::int64_t written = 0;
+  auto kept = Clock::now();
+  const auto write = [&] {
+    while (auto message = live.next()) {
+      health.heard();
+      if (message->channel == "LCM_SELF_TEST") continue;
+      log.write(message->channel, message->bytes, message->received);
+      ++written;
+    }
+  };
+  while (!stop.raised()) {
+    live.wait(stop.descriptor(), kWaitMs);
+    write();
+    health.tell(written);
+    if (Clock::now() - kept < kKeepPeriod) continue;
+    log.keep();
+    kept = Clock::now();
+  }
+  write();
+  log.keep();
+}
+
+}  // namespace fathom::runtime
