@@ -188,13 +188,15 @@ std::string pd6_lines(const Instant& now, const Settings& settings) {
                  clock.day, clock.hour, clock.minute, clock.second, clock.hundredth, std::max(0.0, now.depth.z));
   const Eigen::Vector3d v = 1e3 * now.dvl.v_WB_B;
   const char status = now.dvl.valid ? 'A' : 'V';
-  const double up = settings.water_linked_axes ? v.z() : -v.z();
   if (settings.water_linked_axes) {
     text += format(":BI,%+6.0f,%+6.0f,%+6.0f,    +0,%c\r\n", v.x(), v.y(), v.z(), status);
   } else {
     text += format(":BI,%+6.0f,%+6.0f,%+6.0f,    +0,%c\r\n", v.y(), v.x(), -v.z(), status);
   }
-  text += format(":BS,%+6.0f,%+6.0f,%+6.0f,%c\r\n", v.y(), v.x(), up, status);
+  const Eigen::Vector3d level = rotation_from_euler({euler.x() * kRadians, euler.y() * kRadians, 0.0}) * v;
+  const Eigen::Vector3d& ship = settings.ship_is_level ? level : v;
+  text += format(":BS,%+6.0f,%+6.0f,%+6.0f,%c\r\n", ship.y(), ship.x(),
+                 settings.water_linked_axes ? ship.z() : -ship.z(), status);
   text += format(":BE,    +0,    +0,    +0,V\r\n:BD,+0.00,+0.00,+0.00,%7.2f, 0.00\r\n", now.dvl.altitude);
   return text;
 }

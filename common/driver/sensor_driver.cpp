@@ -35,6 +35,12 @@ double positive(const Config& config, const std::string& key, const std::string&
   return value;
 }
 
+// Where those sit that measure at a point of their own.
+Eigen::Vector3d place(const Config& config, devices::Kind kind) {
+  const bool matters = kind == devices::Kind::kDvl || kind == devices::Kind::kUsbl || kind == devices::Kind::kDepth;
+  return matters && config.has("position") ? config.vector3("position", "m") : Eigen::Vector3d::Zero().eval();
+}
+
 class SensorDriver final : public devices::Output {
  public:
   SensorDriver(runtime::Process& process, const Config& config, const devices::Protocol& protocol)
@@ -43,14 +49,14 @@ class SensorDriver final : public devices::Output {
         dialogue_{devices::make_dialogue(protocol.name, devices::read_settings(config, protocol))},
         clock_{config.quantity("latency", "s")},
         watch_{positive(config, "period", "s"), std::string{protocol.name}},
-        arm_{config.has("position") ? config.vector3("position", "m") : Eigen::Vector3d{Eigen::Vector3d::Zero()}},
+        arm_{place(config, protocol.kind)},
         link_{link::Endpoint::parse(config.text("link"), config.where("link")),
               [this](std::span<const std::uint8_t> bytes, Utime arrival) { received(bytes, arrival); },
               [this](bool up, const std::string& why) { changed(up, why); }} {
     if (config.has("record")) raw_.emplace(link::free_name(config.text("record")));
     if (link_.endpoint().kind == link::Endpoint::Kind::kFile) dialogue_.reset();  // nobody answers
     if (arm_.needed()) {
-      process_.on_latest<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
+      process_.on<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
         const auto sample = wire::decode(message);
         if (!sample) return process_.reject(wire::kAhrs);
         arm_.hear(*sample);
@@ -146,7 +152,6 @@ class SensorDriver final : public devices::Output {
 
   void publish(std::monostate, Utime) {}
   void publish(const Ahrs* sample, Utime utime) { send(wire::kAhrs, *sample, utime); }
-  void publish(const Usbl* sample, Utime utime) { send(wire::kUsbl, *sample, utime); }
   void publish(const Ranges* sample, Utime utime) { send(wire::kRanges, *sample, utime); }
   void publish(const Loads* sample, Utime utime) { send(wire::kLoads, *sample, utime); }
   void publish(const Battery*, Utime) {}    // these two come from
@@ -156,6 +161,12 @@ class SensorDriver final : public devices::Output {
     at_origin.utime = utime;
     arm_.remove(at_origin);
     send(wire::kDvl, at_origin, utime);
+  }
+  void publish(const Usbl* sample, Utime utime) {
+    Usbl at_origin = *sample;
+    at_origin.utime = utime;
+    arm_.remove(at_origin);
+    send(wire::kUsbl, at_origin, utime);
   }
   void publish(const Depth* sample, Utime utime) {
     Depth at_origin = *sample;

@@ -65,12 +65,14 @@ class ThrusterDriver final : public devices::Output {
   ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle, std::string token)
       : process_{process},
         way_{way_of(config)},
+        curved_{!vehicle.curve.empty()},
         allocation_{vehicle, positive(config, "largest_thrust", "N")},
         gate_{std::move(token)},
         period_{1.0 / positive(config, "rate", "Hz")},
         writer_{255, 190} {
-    if (vehicle.curve.empty()) {
-      throw InputError("vehicle " + vehicle.name + ": a 'thrust_curve' is needed to drive it; add it to its file");
+    if (!curved_ && way_ != Way::kDryRun && way_ != Way::kText) {
+      config.fail("protocol", "'" + config.text("protocol") + "' sends pulse widths, and vehicle " + vehicle.name +
+                                  " has no 'thrust_curve'; add it to its file, or send forces to a rig with 'text'");
     }
     if (way_ == Way::kDryRun) return;
     devices::Settings settings;
@@ -161,9 +163,13 @@ class ThrusterDriver final : public devices::Output {
       process_.publish(wire::kBattery, wire::encode(sample));
     }
     if (const auto* thrusters = std::get_if<const Thrusters*>(&frame.sample)) {
+      const bool pulses = !(*thrusters)->pwm_us.empty();
+      if (pulses && !curved_) return;  // nobody knows what they give
       watch_->sample(arrival_, now);
       feedback_at_ = now;
-      tell(allocation_.applied((*thrusters)->pwm_us, voltage(now)), arrival_);
+      tell(pulses ? allocation_.applied((*thrusters)->pwm_us, voltage(now))
+                  : allocation_.applied_forces((*thrusters)->force),
+           arrival_);
     }
   }
 
@@ -184,7 +190,7 @@ class ThrusterDriver final : public devices::Output {
   void send(const model::Allocated& allocated, const Vector6d& tau, double now) {
     if (!link_) return;
     if (way_ == Way::kText) {
-      link_->send(devices::thruster_sentence(allocated.pwm_us));
+      link_->send(curved_ ? devices::thruster_sentence(allocated.pwm_us) : devices::force_sentence(allocated.force));
       return;
     }
     if (now - heartbeat_at_ >= kHeartbeat) {
@@ -235,6 +241,7 @@ class ThrusterDriver final : public devices::Output {
 
   runtime::Process& process_;
   Way way_;
+  bool curved_;  ///< the vehicle has a thrust curve: pulse widths are sent, else forces
   model::ThrusterAllocation allocation_;
   ThrusterGate gate_;
   double period_, next_{};

@@ -50,7 +50,7 @@ struct Moment {
 };
 
 /// What an instrument is built from. `latest` is the newest AHRS sample that was taken: drivers remove lever arms with
-/// it.
+/// it. Null: a driver will do so, and the instrument speaks for its own place.
 struct Surroundings {
   const model::Vehicle* vehicle{};
   const model::Site* site{};

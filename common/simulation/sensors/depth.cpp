@@ -23,7 +23,7 @@ class DepthSensor final : public Sensor {
   void measure(const Moment& moment, std::vector<Sample>& samples) override {
     double z = moment.p_WB.z() + (moment.R_WB * p_BP_).z() + offset_ + noise_ * stream_.normal();
     if (resolution_ > 0.0) z = resolution_ * std::round(z / resolution_);
-    z -= latest_->has_attitude ? (latest_->q_WB * p_BP_).z() : p_BP_.z();
+    if (latest_ != nullptr) z -= latest_->has_attitude ? (latest_->q_WB * p_BP_).z() : p_BP_.z();
     samples.emplace_back(Depth{.utime = moment.utime, .z = z});
   }
 

@@ -58,8 +58,8 @@ class DvlSensor final : public Sensor {
       ++good;
     }
     Dvl sample{.utime = moment.utime, .valid = false};
-    const bool rates = latest_->has_rates && std::abs(seconds_between(latest_->utime, moment.utime)) <= kFresh;
-    const bool arm = !mount_.p_BS.isZero();
+    const bool arm = latest_ != nullptr && !mount_.p_BS.isZero();
+    const bool rates = arm && latest_->has_rates && std::abs(seconds_between(latest_->utime, moment.utime)) <= kFresh;
     if (good >= 3 && (rates || !arm)) {
       const Eigen::Matrix3d normal = rows.transpose() * rows;
       const Eigen::Vector3d v = normal.ldlt().solve(rows.transpose() * along);

@@ -35,13 +35,14 @@ class UsblSensor final : public Sensor {
     const Eigen::Vector3d astray{stream_.uniform(-1.0, 1.0), stream_.uniform(-1.0, 1.0), stream_.uniform(-1.0, 1.0)};
     const Eigen::Vector3d to = moment.p_WB + moment.R_WB * p_BS_ - p_WR_;
     const double range = to.norm();
-    if (range > farthest_ || !latest_->has_attitude) return;
+    if (range > farthest_ || (latest_ != nullptr && !latest_->has_attitude)) return;
     const double azimuth = std::atan2(to.y(), to.x()) + azimuth_error;
     const double elevation = std::asin(range > 0.0 ? to.z() / range : 1.0) + elevation_error;
     const Eigen::Vector3d seen{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                std::sin(elevation)};
     Usbl sample{.utime = moment.utime, .valid = true};
-    sample.p_WB = p_WR_ + (range + range_error) * seen - latest_->q_WB * p_BS_;
+    sample.p_WB = p_WR_ + (range + range_error) * seen;
+    if (latest_ != nullptr) sample.p_WB -= latest_->q_WB * p_BS_;
     if (wild) sample.p_WB += outlier_size_ * astray;
     const double across = range * bearing_noise_;
     for (Eigen::Index i = 0; i < 3; ++i) {
