@@ -97,7 +97,7 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
     const Config one = sensors.section(kind.name);
     const Timing timing{one, kind.name, setup.seed};
     auto sensor = kind.make(
-        one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = setup.raw ? nullptr : &latest_});
+        one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_, .raw = setup.raw});
     using Pictures = SensorKind::Pictures;
     const bool replaced = kind.pictures == (setup.pictures ? Pictures::kWithout : Pictures::kWith);
     if (!carried_at(one, site_) || replaced) sensor.reset();
