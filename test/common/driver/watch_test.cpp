@@ -82,3 +82,22 @@ TEST_CASE("lever arm: a port behind and below the origin, level and bow up") {
   arm.remove(bow_up);
   CHECK(bow_up.z == doctest::Approx(5.0 - 0.5 - 0.2 * 0.8660254).epsilon(1e-6));  // the stern hangs half a metre lower
 }
+
+TEST_CASE("lever arm: of many samples the one at the measurement's own time counts, however late it comes") {
+  LeverArm arm{{0.0, 0.0, -1.0}};  // a transponder above the origin
+  for (int k = 0; k <= 200; ++k) {
+    const double t = 0.01 * k;  // on its side after the first second
+    arm.hear(Ahrs{.utime = utime_after(kStart, t),
+                  .q_WB = Eigen::Quaterniond{rotation_from_euler({k > 100 ? 1.5707963268 : 0.0, 0.0, 0.0})},
+                  .has_attitude = true});
+  }
+  Usbl upright{.utime = utime_after(kStart, 0.5), .p_WB = {1.0, 2.0, 3.0}, .valid = true};
+  arm.remove(upright);
+  CHECK(upright.p_WB.isApprox(Eigen::Vector3d{1.0, 2.0, 4.0}));
+  Usbl aside{.utime = utime_after(kStart, 1.5), .p_WB = {1.0, 2.0, 3.0}, .valid = true};
+  arm.remove(aside);
+  CHECK((aside.p_WB - Eigen::Vector3d{1.0, 1.0, 3.0}).norm() < 1e-9);  // rolled to starboard its top points to starboard
+  Usbl late{.utime = utime_after(kStart, 5.0), .p_WB = {1.0, 2.0, 3.0}, .valid = true};
+  arm.remove(late);
+  CHECK_FALSE(late.valid);
+}
