@@ -61,7 +61,7 @@ std::string load_text(const Instant& now, const Settings& settings) {
   return text + "\r\n";
 }
 
-// What ArduSub says unasked: SERVO_OUTPUT_RAW and SYS_STATUS.
+// What ArduSub says unasked: HEARTBEAT, SERVO_OUTPUT_RAW and SYS_STATUS.
 std::string mavlink_packets(const Instant& now) {
   const auto packet = [](std::uint8_t id, std::uint8_t crc_extra, const std::string& payload) {
     FrameWriter body;
@@ -74,6 +74,9 @@ std::string mavlink_packets(const Instant& now) {
     body.little(crc16_reflected(as_bytes(checked), 0xFFFF));
     return "\xFD" + body.text;
   };
+  FrameWriter heartbeat;
+  heartbeat.little(std::uint32_t{19});                       // manual mode
+  heartbeat.text += std::string("\x0C\x03\x40\x04\x03", 5);  // submarine, ArduPilot, manual input, active
   FrameWriter servo;
   servo.little(static_cast<std::uint32_t>(static_cast<std::uint64_t>(now.time * 1e6) & 0xFFFFFFFFU));
   for (int i = 0; i < 8; ++i) {
@@ -87,7 +90,8 @@ std::string mavlink_packets(const Instant& now) {
   status.little(static_cast<std::uint16_t>(std::lround(1e3 * now.voltage)));  // mV
   status.zeros(14);
   status.little(std::int8_t{80});
-  return packet(36, 222, servo.text) + (now.voltage > 0.0 ? packet(1, 124, status.text) : "");
+  return packet(0, 50, heartbeat.text) + packet(36, 222, servo.text) +
+         (now.voltage > 0.0 ? packet(1, 124, status.text) : "");
 }
 
 std::string rig_sentences(const Instant& now) {

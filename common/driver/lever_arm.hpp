@@ -18,7 +18,8 @@ class LeverArm {
   void remove(Dvl& sample) const;
   /// Depth of the origin: that of the port less how far the port is below. Level when no attitude came.
   void remove(Depth& sample) const;
-  /// Position of the origin: that of the transponder less its arm. Not valid when no attitude came within half a second.
+  /// Position of the origin: that of the transponder less its arm. Not valid when no attitude came within half a
+  /// second.
   void remove(Usbl& sample) const;
 
  private:

@@ -19,6 +19,7 @@
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
 #include "common/driver/thruster_gate.hpp"
+#include "common/driver/vehicle_check.hpp"
 #include "common/driver/watch.hpp"
 #include "common/link/link.hpp"
 #include "common/model/thruster_allocation.hpp"
@@ -82,6 +83,7 @@ class ThrusterDriver final : public devices::Output {
     } else {
       parser_ = std::make_unique<devices::Mavlink>(settings);
       target_ = static_cast<std::uint8_t>(std::clamp(config.integer("system"), 1, 255));
+      check_.emplace(target_);
     }
     if (way_ == Way::kRcOverride) {
       const Config full = config.section("full_stick");
@@ -137,7 +139,8 @@ class ThrusterDriver final : public devices::Output {
 
   [[nodiscard]] runtime::Process::Condition condition() const {
     std::string unhealthy;
-    if (watch_) unhealthy = watch_->unhealthy(steady_seconds(), "", parser_->complaint());
+    const double now = steady_seconds();
+    if (watch_) unhealthy = watch_->unhealthy(now, check_ ? check_->objection(now) : "", parser_->complaint());
     if (unhealthy.empty()) unhealthy = lacking_;
     const std::string_view reason = gate_.reason(wall_clock());
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
@@ -151,9 +154,10 @@ class ThrusterDriver final : public devices::Output {
     return {.unhealthy = unhealthy, .detail = detail};
   }
 
-  void frame(const devices::Parser&, const devices::Frame& frame) override {
+  void frame(const devices::Parser& parser, const devices::Frame& frame) override {
     const double now = steady_seconds();
     watch_->frame(now);
+    if (check_) check_->hear(dynamic_cast<const devices::Mavlink&>(parser), now);
     if (const auto* battery = std::get_if<const Battery*>(&frame.sample)) {
       voltage_ = (*battery)->voltage;
       voltage_at_ = now;
@@ -250,6 +254,7 @@ class ThrusterDriver final : public devices::Output {
   devices::mavlink::Writer writer_;
   std::unique_ptr<devices::Parser> parser_;
   std::optional<Watch> watch_;
+  std::optional<VehicleCheck> check_;
   Utime arrival_{};
   double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
   std::string lacking_;  ///< what was commanded and the thrusters cannot give

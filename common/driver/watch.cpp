@@ -15,7 +15,8 @@ double Watch::patience() const { return kLate * period_ + kSlack; }
 
 void Watch::link(bool up, const std::string& why, double now) {
   up_ = up;
-  why_ = why;
+  well_ = false;
+  if (!up) why_ = why;
   up_since_ = last_bytes_ = last_frame_ = last_sample_ = now;
   bytes_since_frame_ = 0;
   last_utime_.reset();
@@ -35,12 +36,13 @@ void Watch::sample(Utime utime, double now) {
   if (last_utime_ && seconds_between(*last_utime_, utime) > kLate * period_) ++gaps_;
   last_utime_ = utime;
   last_sample_ = now;
+  well_ = true;
 }
 
 std::string Watch::unhealthy(double now, const std::string& failure, const std::string& complaint) const {
   if (!up_) return why_;
   if (!failure.empty()) return failure;
-  if (now - last_sample_ <= patience()) return {};
+  if (now - last_sample_ <= patience()) return well_ ? "" : why_;
   if (now - last_bytes_ > patience()) {
     return "silent: nothing comes; is the instrument on and its line connected?";
   }

@@ -22,7 +22,8 @@ class Watch {
   /// A sample with its utime; counts gaps.
   void sample(Utime utime, double now);
 
-  /// Why the instrument is not well; empty when it is. `failure` and `complaint` are those of dialogue and parser.
+  /// Why the instrument is not well; empty when it is. A line that came up again is believed with its first
+  /// measurement. `failure` and `complaint` are those of dialogue and parser.
   [[nodiscard]] std::string unhealthy(double now, const std::string& failure, const std::string& complaint) const;
   [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
   /// Longest silence that is not said yet [s].
@@ -31,7 +32,7 @@ class Watch {
  private:
   double period_;
   std::string protocol_;
-  bool up_{false};
+  bool up_{false}, well_{false};  ///< well: a measurement has come since the line came up
   std::string why_{"the line is not open yet"};
   double up_since_{}, last_bytes_{}, last_frame_{}, last_sample_{};
   std::uint64_t bytes_since_frame_{};
