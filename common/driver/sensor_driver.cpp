@@ -47,7 +47,7 @@ class SensorDriver final : public devices::Output {
       : process_{process},
         parser_{protocol.make(devices::read_settings(config, protocol))},
         dialogue_{devices::make_dialogue(protocol.name, devices::read_settings(config, protocol))},
-        clock_{config.quantity("latency", "s")},
+        clock_{config.quantity("latency", "s"), protocol.tick},
         watch_{positive(config, "period", "s"), std::string{protocol.name}},
         arm_{place(config, protocol.kind)},
         link_{link::Endpoint::parse(config.text("link"), config.where("link")),
