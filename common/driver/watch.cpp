@@ -17,6 +17,7 @@ void Watch::link(bool up, const std::string& why, double now) {
   up_ = up;
   well_ = false;
   if (!up) why_ = why;
+  if (up && why_ == kNotYet) why_.clear();  // opened at once
   up_since_ = last_bytes_ = last_frame_ = last_sample_ = now;
   bytes_since_frame_ = 0;
   last_utime_.reset();

@@ -33,7 +33,8 @@ class Watch {
   double period_;
   std::string protocol_;
   bool up_{false}, well_{false};  ///< well: a measurement has come since the line came up
-  std::string why_{"the line is not open yet"};
+  static constexpr const char* kNotYet = "the line is not open yet";
+  std::string why_{kNotYet};
   double up_since_{}, last_bytes_{}, last_frame_{}, last_sample_{};
   std::uint64_t bytes_since_frame_{};
   std::optional<Utime> last_utime_;
