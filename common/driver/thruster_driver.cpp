@@ -18,6 +18,7 @@
 #include "common/base/operator_token.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
+#include "common/driver/line_record.hpp"
 #include "common/driver/thruster_gate.hpp"
 #include "common/driver/vehicle_check.hpp"
 #include "common/driver/watch.hpp"
@@ -91,10 +92,12 @@ class ThrusterDriver final : public devices::Output {
       for (std::size_t i = 0; i < 6; ++i) full_stick_[i] = positive(full, kAxes[i], i < 3 ? "N" : "N m");
     }
     watch_.emplace(1.0, config.text("protocol"));
+    record_.emplace(process, config);
     link_ = std::make_unique<link::Link>(
         link::Endpoint::parse(config.text("link"), config.where("link")),
         [this](std::span<const std::uint8_t> bytes, Utime arrival) {
           arrival_ = arrival;
+          record_->write(bytes, arrival);
           watch_->bytes(bytes.size(), steady_seconds());
           parser_->feed(bytes, *this);
         },
@@ -147,10 +150,7 @@ class ThrusterDriver final : public devices::Output {
     if (gate_.refused() > 0) {
       detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";
     }
-    if (parser_) {
-      detail += ", frames " + std::to_string(parser_->counters().frames) + ", bad checksums " +
-                std::to_string(parser_->counters().bad_checksum);
-    }
+    if (parser_) detail += ", " + counts(*parser_, *watch_, *link_);
     return {.unhealthy = unhealthy, .detail = detail};
   }
 
@@ -254,6 +254,7 @@ class ThrusterDriver final : public devices::Output {
   devices::mavlink::Writer writer_;
   std::unique_ptr<devices::Parser> parser_;
   std::optional<Watch> watch_;
+  std::optional<LineRecord> record_;
   std::optional<VehicleCheck> check_;
   Utime arrival_{};
   double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};

@@ -6,12 +6,13 @@ namespace fathom::driver {
 namespace {
 
 constexpr double kLate = 1.5;           // periods between two samples that make a gap
+constexpr double kLongestWait = 0.7;    // s: with kSlack silence is said within a second
 constexpr double kSlack = 0.25;         // s that a line and an operating system may take
 constexpr std::uint64_t kRubbish = 64;  // bytes without a frame that are more than a cut-off one
 
 }  // namespace
 
-double Watch::patience() const { return kLate * period_ + kSlack; }
+double Watch::patience() const { return period_ + std::min((kLate - 1.0) * period_, kLongestWait) + kSlack; }
 
 void Watch::link(bool up, const std::string& why, double now) {
   up_ = up;

@@ -33,7 +33,7 @@ constexpr std::array kCarried{Carried{"ahrs", "ahrs_driver"},   Carried{"dvl", "
                               Carried{"depth", "depth_driver"}, Carried{"loads", "load_driver"}};
 
 std::string protocol_of(const Config& section) {
-  const std::string name = section.text("protocol");
+  std::string name = section.text("protocol");
   if (name == "text") return "thruster_text";
   if (name == "motor_test") return "mavlink";
   if (name == "rc_override") {
