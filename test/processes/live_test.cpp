@@ -120,7 +120,7 @@ TEST_CASE("live: byte-true through every driver, the same vehicle is identified"
     off.push_back(std::abs(std::remainder(seconds_between(origin, sample.utime), 0.01)));
   }
   std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
-  CHECK(off[off.size() / 2] < 5e-4);  // of a clock told in whole milliseconds, over a busy machine
+  CHECK(off[off.size() / 2] < 1.1e-3);  // its clock tells whole milliseconds
 
   const auto again = shell(live(plain, "tank seabotix_lbv150 optimal lockstep 1008 35"));
   REQUIRE_MESSAGE(again.code == 0, again.text);
