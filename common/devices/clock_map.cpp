@@ -96,8 +96,8 @@ Utime ClockMap::map(std::optional<double> device_time, Utime arrival) {
     }
     last_device_ = *device_time;
     insert({.device = *device_time, .offset = seconds_between(origin_, arrival) - *device_time});
-    utime = utime_after(origin_, *device_time + level_ + slope_ * (*device_time - pivot_));
-    utime = std::min(utime, arrival);
+    utime = utime_after(origin_, *device_time + level_ + slope_ * (*device_time - pivot_) + 0.5 * tick_);
+    utime = std::min(utime, utime_after(arrival, 0.5 * tick_));
   }
   utime = utime_after(utime, -latency_);
   if (last_ && utime <= *last_ && *last_ - utime < 1'000'000) utime = *last_ + 1;

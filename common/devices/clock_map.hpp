@@ -16,8 +16,10 @@ namespace fathom::devices {
 /// direction; the smallest delay itself is part of the stated latency.
 class ClockMap {
  public:
-  /// `latency` [s]: from the moment that the values were true to the arrival of the frame at its quickest.
-  explicit ClockMap(double latency) : latency_{latency} {}
+  /// `latency` [s]: from the moment that the values were true to the arrival of the frame at its quickest. `tick` [s]:
+  /// in what steps the instrument tells time. Rounded or cut off, the quickest frames are those that the steps show
+  /// latest; all others come out up to a step early, which half a step makes good in the mean.
+  explicit ClockMap(double latency, double tick = 0.0) : latency_{latency}, tick_{tick} {}
 
   /// Host time at which the values were true, always later than the one before. Without device time: the arrival less
   /// the latency.
@@ -38,7 +40,7 @@ class ClockMap {
   void fit();
   [[nodiscard]] const Point& at(std::size_t i) const { return points_[(first_ + i) % kWindow]; }
 
-  double latency_;
+  double latency_, tick_;
   std::array<Point, kWindow> points_{};
   std::size_t first_{}, count_{};
   Utime origin_{};  ///< host time from which seconds are counted, so that doubles keep microseconds

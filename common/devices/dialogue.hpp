@@ -39,6 +39,8 @@ class EmulatedAnswers {
   [[nodiscard]] bool sends_data() const { return sends_; }
   /// Pulse widths that thrusters were told; neutral again half a second after the last command.
   [[nodiscard]] const std::vector<double>& applied() const { return applied_; }
+  /// The same of a rig that was told forces [N]; empty until it was.
+  [[nodiscard]] const std::vector<double>& applied_force() const { return applied_force_; }
   /// Time goes on [s].
   void at(double now);
 
@@ -54,7 +56,7 @@ class EmulatedAnswers {
   std::uint32_t mask_{0};
   std::uint8_t continuous_{0}, divider_{1};
   bool sends_;
-  std::vector<double> applied_;
+  std::vector<double> applied_, applied_force_;
   double now_{}, commanded_{};
   std::unique_ptr<Parser> commands_;  ///< of a ground station (MAVLink)
 };

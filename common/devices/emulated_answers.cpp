@@ -1,5 +1,6 @@
 // The instrument's side of the dialogues, for emulators.
 #include <algorithm>
+#include <cmath>
 
 #include "common/devices/checksum.hpp"
 #include "common/devices/dialogue.hpp"
@@ -27,16 +28,21 @@ EmulatedAnswers::EmulatedAnswers(std::string_view protocol)
 
 void EmulatedAnswers::at(double now) {
   now_ = now;
-  if (now_ - commanded_ > kRigPatience) std::fill(applied_.begin(), applied_.end(), kNeutral);
+  if (now_ - commanded_ <= kRigPatience) return;
+  std::fill(applied_.begin(), applied_.end(), kNeutral);
+  std::fill(applied_force_.begin(), applied_force_.end(), 0.0);
 }
 
 void EmulatedAnswers::hear_rig(std::string_view line) {
   const std::size_t star = line.find('*');
-  if (!line.starts_with("$FTPWM,") || star == std::string_view::npos) return;
+  const bool forces = line.starts_with("$FTFRC,");
+  if ((!forces && !line.starts_with("$FTPWM,")) || star == std::string_view::npos) return;
   if (hex_byte(line.substr(star + 1, 2)) != xor8(as_bytes(line.substr(1, star - 1)))) return;
   const Words words{line.substr(0, star), ','};
-  applied_.assign(words.size() - 1, kNeutral);
-  for (std::size_t i = 0; i < applied_.size(); ++i) applied_[i] = words.number_at(i + 1).value_or(kNeutral);
+  std::vector<double>& applied = forces ? applied_force_ : applied_;
+  const double neutral = forces ? 0.0 : kNeutral;
+  applied.assign(words.size() - 1, neutral);
+  for (std::size_t i = 0; i < applied.size(); ++i) applied[i] = words.number_at(i + 1).value_or(neutral);
   commanded_ = now_;
 }
 
@@ -51,7 +57,7 @@ void EmulatedAnswers::hear_mavlink(std::string_view bytes) {
       if (mavlink.id() != kCommandLong || mavlink.value(7) != kDoMotorTest) return;
       const double motor = mavlink.value(0);
       if (motor >= 0.0 && motor < static_cast<double>(applied_.size())) {
-        applied_[static_cast<std::size_t>(motor)] = mavlink.value(2);
+        applied_[static_cast<std::size_t>(motor)] = std::round(mavlink.value(2));  // outputs are whole microseconds
         heard = true;
       }
     }

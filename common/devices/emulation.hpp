@@ -21,7 +21,8 @@ struct Instant {
   Depth depth;
   Ranges ranges;
   Loads loads;
-  Thrusters thrusters;
+  Thrusters thrusters;   ///< pulse widths; of a rig without any, forces
+  double voltage{16.2};  ///< V, of the battery; 0: nothing is said of it
 };
 
 struct EmulatedDvl {

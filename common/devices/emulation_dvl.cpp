@@ -179,22 +179,27 @@ std::string pd5_frame(const Instant& now, const EmulatedDvl& dvl) {
   return frame.text;
 }
 
+// As an instrument that was told how it is mounted (EA): tilts and ":BS" are the vehicle's, ":BI" its own.
 std::string pd6_lines(const Instant& now, const Settings& settings) {
-  const Eigen::Vector3d euler = euler_from_rotation(now.ahrs.q_WB.toRotationMatrix()) / kRadians;
+  const Eigen::Matrix3d R_WB = now.ahrs.q_WB.toRotationMatrix() * settings.R_BS.transpose();
+  const Eigen::Vector3d radians = euler_from_rotation(R_WB), euler = radians / kRadians;
   const Clock clock = clock_of(now.time);
   const double heading = euler.z() < 0.0 ? euler.z() + 360.0 : euler.z();
   std::string text = format(":SA,%+6.2f,%+6.2f,%6.2f\r\n", euler.y(), euler.x(), heading);
   text += format(":TS,%02d%02d%02d%02d%02d%02d%02d,35.0,+15.0,%5.1f,1500.0,  0\r\n", clock.year % 100, clock.month,
                  clock.day, clock.hour, clock.minute, clock.second, clock.hundredth, std::max(0.0, now.depth.z));
   const Eigen::Vector3d v = 1e3 * now.dvl.v_WB_B;
+  const Eigen::Vector3d vehicle = settings.R_BS * v;
+  const Eigen::Vector3d ship =
+      settings.ship_is_level ? rotation_from_euler({radians.x(), radians.y(), 0.0}) * vehicle : vehicle;
   const char status = now.dvl.valid ? 'A' : 'V';
-  const double up = settings.water_linked_axes ? v.z() : -v.z();
   if (settings.water_linked_axes) {
     text += format(":BI,%+6.0f,%+6.0f,%+6.0f,    +0,%c\r\n", v.x(), v.y(), v.z(), status);
   } else {
     text += format(":BI,%+6.0f,%+6.0f,%+6.0f,    +0,%c\r\n", v.y(), v.x(), -v.z(), status);
   }
-  text += format(":BS,%+6.0f,%+6.0f,%+6.0f,%c\r\n", v.y(), v.x(), up, status);
+  text += format(":BS,%+6.0f,%+6.0f,%+6.0f,%c\r\n", ship.y(), ship.x(),
+                 settings.water_linked_axes ? ship.z() : -ship.z(), status);
   text += format(":BE,    +0,    +0,    +0,V\r\n:BD,+0.00,+0.00,+0.00,%7.2f, 0.00\r\n", now.dvl.altitude);
   return text;
 }

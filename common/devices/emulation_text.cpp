@@ -61,7 +61,7 @@ std::string load_text(const Instant& now, const Settings& settings) {
   return text + "\r\n";
 }
 
-// What ArduSub says unasked: SERVO_OUTPUT_RAW and SYS_STATUS.
+// What ArduSub says unasked: HEARTBEAT, SERVO_OUTPUT_RAW and SYS_STATUS.
 std::string mavlink_packets(const Instant& now) {
   const auto packet = [](std::uint8_t id, std::uint8_t crc_extra, const std::string& payload) {
     FrameWriter body;
@@ -74,6 +74,9 @@ std::string mavlink_packets(const Instant& now) {
     body.little(crc16_reflected(as_bytes(checked), 0xFFFF));
     return "\xFD" + body.text;
   };
+  FrameWriter heartbeat;
+  heartbeat.little(std::uint32_t{19});                       // manual mode
+  heartbeat.text += std::string("\x0C\x03\x40\x04\x03", 5);  // submarine, ArduPilot, manual input, active
   FrameWriter servo;
   servo.little(static_cast<std::uint32_t>(static_cast<std::uint64_t>(now.time * 1e6) & 0xFFFFFFFFU));
   for (int i = 0; i < 8; ++i) {
@@ -84,10 +87,19 @@ std::string mavlink_packets(const Instant& now) {
   servo.little(std::uint8_t{1});
   FrameWriter status;
   status.zeros(14);
-  status.little(std::uint16_t{16200});  // mV
+  status.little(static_cast<std::uint16_t>(std::lround(1e3 * now.voltage)));  // mV
   status.zeros(14);
   status.little(std::int8_t{80});
-  return packet(36, 222, servo.text) + packet(1, 124, status.text);
+  return packet(0, 50, heartbeat.text) + packet(36, 222, servo.text) +
+         (now.voltage > 0.0 ? packet(1, 124, status.text) : "");
+}
+
+std::string rig_sentences(const Instant& now) {
+  const Thrusters& told = now.thrusters;
+  std::string applied = told.pwm_us.empty() ? "FTAPF" : "FTAPP";
+  for (const double pwm : told.pwm_us) applied += format(",%.0f", pwm);
+  for (std::size_t i = 0; told.pwm_us.empty() && i < told.force.size(); ++i) applied += format(",%.3f", told.force[i]);
+  return (now.voltage > 0.0 ? nmea_sentence(format("FTBAT,%.2f", now.voltage)) : "") + nmea_sentence(applied);
 }
 
 }  // namespace
@@ -99,11 +111,7 @@ std::string emulate_text(std::string_view protocol, const Instant& now, const Se
   if (protocol == "range_text") return range_text(now, settings);
   if (protocol == "load_text") return load_text(now, settings);
   if (protocol == "mavlink") return mavlink_packets(now);
-  if (protocol == "thruster_text") {
-    std::string applied = "FTAPP";
-    for (const double pwm : now.thrusters.pwm_us) applied += format(",%.0f", pwm);
-    return nmea_sentence("FTBAT,16.20") + nmea_sentence(applied);
-  }
+  if (protocol == "thruster_text") return rig_sentences(now);
   return nmea_sentence(format("SDDPT,%.3f,0.00", now.depth.z));
 }
 

@@ -7,12 +7,15 @@
 namespace fathom::devices {
 namespace {
 
-constexpr std::string_view kBetween = " ,;\t";
+bool between(char c) { return c == ' ' || c == ',' || c == ';' || c == '\t'; }
 
 std::string_view next_word(std::string_view& rest) {
-  rest.remove_prefix(std::min(rest.find_first_not_of(kBetween), rest.size()));
-  const std::string_view word = rest.substr(0, rest.find_first_of(kBetween));
-  rest.remove_prefix(word.size());
+  std::size_t begin = 0;
+  while (begin < rest.size() && between(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !between(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
   return word;
 }
 
@@ -67,14 +70,10 @@ bool LoadText::read(std::string_view line, Readings& readings) const {
   return readings.count == cells_.size();
 }
 
-bool LoadText::accepts(std::string_view line) const {
-  Readings ignored;
-  return read(line, ignored);
-}
+bool LoadText::accepts(std::string_view line) const { return read(line, readings_); }
 
 void LoadText::line(std::string_view line, Frame& frame) {
   line_ = line;
-  if (!read(line, readings_)) return;
   bool all = true;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (readings_.there[i]) {

@@ -31,7 +31,7 @@ class LoadText final : public TextLines {
 
   std::vector<LoadCell> cells_;
   std::string_view line_;
-  Readings readings_;  ///< of the latest line
+  mutable Readings readings_;  ///< of the line that was accepted last
   std::array<bool, kMost> fresh_{};
   Loads sample_;
 };

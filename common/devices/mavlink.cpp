@@ -177,6 +177,9 @@ Parser::Look Mavlink::look(Bytes bytes) const {
   return whole_frame(head.size + head.payload + head.trailer);
 }
 
+int Mavlink::system() const { return bytes_[0] == kMagic1 ? bytes_[3] : bytes_[5]; }
+int Mavlink::component() const { return bytes_[0] == kMagic1 ? bytes_[4] : bytes_[6]; }
+
 double Mavlink::value(std::size_t field) const {
   std::size_t at = 0;
   for (std::size_t i = 0; i < field; ++i) at += size_of(message_->fields[i]);
@@ -232,8 +235,8 @@ void Mavlink::take(Frame& frame) {
 
 void Mavlink::describe(Fields& fields) const {
   fields.add("magic", bytes_[0]);
-  fields.add("sysid", bytes_[0] == kMagic1 ? bytes_[3] : bytes_[5]);
-  fields.add("compid", bytes_[0] == kMagic1 ? bytes_[4] : bytes_[6]);
+  fields.add("sysid", system());
+  fields.add("compid", component());
   fields.add("msgid", id_);
   fields.add("name", message_->name);
   constexpr std::array kNames{"f1",  "f2",  "f3",  "f4",  "f5",  "f6",  "f7",  "f8",  "f9",  "f10", "f11",

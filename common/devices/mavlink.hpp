@@ -52,6 +52,9 @@ class Mavlink final : public Parser {
   void describe(Fields& fields) const override;
 
   [[nodiscard]] std::uint32_t id() const { return id_; }
+  /// Who sent the latest message.
+  [[nodiscard]] int system() const;
+  [[nodiscard]] int component() const;
   /// A field of the latest message, by its place in wire order.
   [[nodiscard]] double value(std::size_t field) const;
 

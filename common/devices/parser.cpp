@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <utility>
 
 namespace fathom::devices {
 namespace {
@@ -68,6 +69,7 @@ void Parser::restart() {
   counters_.skipped += end_ - begin_;
   offset_ += end_ - begin_;
   begin_ = end_ = 0;
+  returned_ = false;
 }
 
 void Parser::scan(Output& output, bool ended) {
@@ -75,6 +77,12 @@ void Parser::scan(Output& output, bool ended) {
   bool waiting = false;
   while (begin_ < end_) {
     const Bytes rest{buffer_.data() + begin_, end_ - begin_};
+    if (std::exchange(returned_, false) && rest[0] == '\n') {
+      ++counters_.line_ends;
+      ++begin_;
+      ++offset_;
+      continue;
+    }
     Look seen = look(rest);
     if (seen.verdict == Look::Verdict::kMore) {
       if (!ended && rest.size() < longest_) return;
@@ -89,6 +97,7 @@ void Parser::scan(Output& output, bool ended) {
       waiting = false;
       Frame frame{.offset = offset_, .bytes = rest.first(seen.length)};
       ++counters_.frames;
+      returned_ = frame.bytes.back() == '\r';
       take(frame);
       output.frame(*this, frame);
     } else {

@@ -16,13 +16,14 @@
 
 namespace fathom::devices {
 
-/// Since the start. Every byte is in a good frame, skipped, incomplete, or still waiting.
+/// Since the start. Every byte is in a good frame, the end of its line, skipped, incomplete, or still waiting.
 struct Counters {
   std::uint64_t bytes{};
   std::uint64_t frames{};        ///< whole, with a right checksum where the protocol has one
   std::uint64_t bad_checksum{};  ///< frames refused for their checksum
   std::uint64_t bad_frame{};     ///< refused for length, grammar or contents that no instrument sends
   std::uint64_t skipped{};       ///< bytes that belong to no frame
+  std::uint64_t line_ends{};     ///< line feeds behind the carriage return that ends a frame of text
   std::uint64_t incomplete{};    ///< bytes of a frame that the end of the stream cut off
 };
 
@@ -127,6 +128,7 @@ class Parser {
   std::size_t begin_{};
   std::size_t end_{};
   std::uint64_t offset_{};  ///< of buffer_[begin_] in the stream
+  bool returned_{false};    ///< a carriage return ended the frame before
   Counters counters_;
   mutable std::string complaint_;
 };

@@ -33,14 +33,14 @@ std::unique_ptr<Parser> make(const Settings& settings) {
 }
 
 constexpr std::array kProtocols{
-    Protocol{"ig500", Kind::kAhrs, "SBG IG-500A, sbgCom binary", 115200, make<SbgIg500>},
+    Protocol{"ig500", Kind::kAhrs, "SBG IG-500A, sbgCom binary", 115200, make<SbgIg500>, 1e-3},
     Protocol{"sbg_ecom", Kind::kAhrs, "SBG Ellipse, sbgECom binary", 115200, make<SbgEcom>},
     Protocol{"vn100", Kind::kAhrs, "VectorNav VN-100, binary output", 115200, make<VectorNav>},
     Protocol{"gx3", Kind::kAhrs, "MicroStrain 3DM-GX3", 115200, make<MicrostrainGx3>},
     Protocol{"nmea_attitude", Kind::kAhrs, "$PSXN,23, $--HDT, $SBG01", 115200, make<NmeaAttitude>},
-    Protocol{"pd0", Kind::kDvl, "Teledyne PD0 ensembles", 115200, make<Pd0>},
-    Protocol{"pd4", Kind::kDvl, "Teledyne PD4 and PD5", 115200, make<Pd4>},
-    Protocol{"pd6", Kind::kDvl, "Teledyne PD6 and PD13 text", 115200, make<Pd6>},
+    Protocol{"pd0", Kind::kDvl, "Teledyne PD0 ensembles", 115200, make<Pd0>, 0.01},
+    Protocol{"pd4", Kind::kDvl, "Teledyne PD4 and PD5", 115200, make<Pd4>, 0.01},
+    Protocol{"pd6", Kind::kDvl, "Teledyne PD6 and PD13 text", 115200, make<Pd6>, 0.01},
     Protocol{"wl_serial", Kind::kDvl, "Water Linked A50, serial", 115200, make<WaterLinkedSerial>},
     Protocol{"wl_json", Kind::kDvl, "Water Linked A50, JSON over TCP (port 16171)", 0, make<WaterLinkedJson>},
     Protocol{"nmea_usbl", Kind::kUsbl, "$PSIMSSB, $PSONLLD, $PSONALL, $PTSAG", 9600, make<NmeaUsbl>},

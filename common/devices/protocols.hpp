@@ -20,6 +20,7 @@ struct Protocol {
   std::string_view title;  ///< for --help
   int baud;                ///< usual rate of the line; 0: not a serial line
   std::unique_ptr<Parser> (*make)(const Settings& settings);
+  double tick{0.0};  ///< s, steps in which its frames tell time, where they are not much finer than a millisecond
 };
 
 [[nodiscard]] std::span<const Protocol> protocols();

@@ -1,5 +1,7 @@
 #include "common/devices/sbg_ecom.hpp"
 
+#include <algorithm>
+
 #include "common/devices/attitude.hpp"
 #include "common/devices/checksum.hpp"
 
@@ -12,6 +14,7 @@ constexpr std::uint8_t kImu = 3, kEuler = 6, kQuaternion = 7;
 constexpr std::size_t kImuSize = 58, kEulerSize = 32, kQuaternionSize = 36;
 // Solution status, bit 4: attitude is valid (roll and pitch better than 0.5 deg).
 constexpr std::size_t kAttitudeValid = 4;
+constexpr int kSurely = 2;  // joined in a row: the next attitude will come too
 
 Eigen::Vector3d vector(Bytes data, std::size_t at) {
   return {little<float>(data, at), little<float>(data, at + 4), little<float>(data, at + 8)};
@@ -34,6 +37,28 @@ Parser::Look SbgEcom::look(Bytes bytes) const {
   return whole_frame(size + kAround);
 }
 
+// Rates of a moment whose attitude follows are told with it, once the instrument is seen to send both each time.
+void SbgEcom::take_imu() {
+  sample_.f_B = vector(data_, 6);
+  sample_.w_WB_B = vector(data_, 18);
+  sample_.has_specific_force = sample_.has_rates = true;
+  mount(sample_, R_BS_);
+  if (alone_) joined_ = 0;
+  imu_ = sample_;
+  moment_ = little<std::uint32_t>(data_, 0);
+  alone_ = true;
+  if (joined_ >= kSurely) sample_ = {};
+}
+
+void SbgEcom::join_imu() {
+  if (!alone_ || moment_ != little<std::uint32_t>(data_, 0)) return;
+  sample_.f_B = imu_.f_B;
+  sample_.w_WB_B = imu_.w_WB_B;
+  sample_.has_specific_force = sample_.has_rates = true;
+  alone_ = false;
+  joined_ = std::min(joined_ + 1, kSurely);
+}
+
 void SbgEcom::take(Frame& frame) {
   message_ = frame.bytes[2];
   class_ = frame.bytes[3];
@@ -44,16 +69,15 @@ void SbgEcom::take(Frame& frame) {
   if (message_ == kEuler && data_.size() == kEulerSize) {
     sample_.q_WB = body_attitude(vector(data_, 4), R_BS_);
     sample_.has_attitude = (little<std::uint32_t>(data_, 28) >> kAttitudeValid & 1U) != 0;
+    join_imu();
   } else if (message_ == kQuaternion && data_.size() == kQuaternionSize) {
     const Eigen::Quaterniond q{little<float>(data_, 4), little<float>(data_, 8), little<float>(data_, 12),
                                little<float>(data_, 16)};
     sample_.q_WB = q.normalized() * Eigen::Quaterniond{R_BS_.transpose()};
     sample_.has_attitude = (little<std::uint32_t>(data_, 32) >> kAttitudeValid & 1U) != 0 && q.norm() > 0.5;
+    join_imu();
   } else if (message_ == kImu && data_.size() == kImuSize) {
-    sample_.f_B = vector(data_, 6);
-    sample_.w_WB_B = vector(data_, 18);
-    sample_.has_specific_force = sample_.has_rates = true;
-    mount(sample_, R_BS_);
+    take_imu();
   } else {
     return;
   }

@@ -7,11 +7,16 @@
 namespace fathom::devices {
 namespace {
 
+bool between(char c) { return c == ' ' || c == ',' || c == '\t'; }
+
 // The next word of a line, cut off from it.
 std::string_view next_word(std::string_view& rest) {
-  rest.remove_prefix(std::min(rest.find_first_not_of(" ,\t"), rest.size()));
-  const std::string_view word = rest.substr(0, rest.find_first_of(" ,\t"));
-  rest.remove_prefix(word.size());
+  std::size_t begin = 0;
+  while (begin < rest.size() && between(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !between(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
   return word;
 }
 
@@ -46,14 +51,10 @@ bool TextRanges::read(std::string_view line, Values& values) const {
   return seen != 0;
 }
 
-bool TextRanges::accepts(std::string_view line) const {
-  Values ignored;
-  return read(line, ignored);
-}
+bool TextRanges::accepts(std::string_view line) const { return read(line, values_); }
 
 void TextRanges::line(std::string_view line, Frame& frame) {
   line_ = line;
-  if (!read(line, values_)) return;
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const bool valid = values_[i] && *values_[i] > 0.0;
     sample_.valid[i] = valid;

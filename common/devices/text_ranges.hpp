@@ -27,7 +27,7 @@ class TextRanges final : public TextLines {
 
   std::vector<std::string> names_;
   std::string_view line_;
-  Values values_;
+  mutable Values values_;  ///< of the line that was accepted last
   Ranges sample_;
 };
 

@@ -10,7 +10,16 @@ std::string thruster_sentence(std::span<const double> pwm_us) {
   return detail::nmea_sentence(body);
 }
 
-ThrusterText::ThrusterText(const Settings& settings) : NmeaParser{true} { thrusters_.pwm_us.resize(settings.motors); }
+std::string force_sentence(std::span<const double> force) {
+  std::string body = "FTFRC";
+  for (const double each : force) body += detail::format(",%.3f", each);
+  return detail::nmea_sentence(body);
+}
+
+ThrusterText::ThrusterText(const Settings& settings) : NmeaParser{true} {
+  pulses_.pwm_us.resize(settings.motors);
+  forces_.force.resize(settings.motors);
+}
 
 void ThrusterText::sentence(const Words& words, Frame& frame) {
   voltage_.reset();
@@ -19,17 +28,19 @@ void ThrusterText::sentence(const Words& words, Frame& frame) {
     if (!voltage_) return;
     battery_ = Battery{.voltage = *voltage_};
     frame.sample = &battery_;
-  } else if (words[0] == "FTAPP") {
-    if (words.size() != thrusters_.pwm_us.size() + 1) {
+  } else if (words[0] == "FTAPP" || words[0] == "FTAPF") {
+    const bool pulses = words[0] == "FTAPP";
+    std::vector<double>& applied = pulses ? pulses_.pwm_us : forces_.force;
+    if (words.size() != applied.size() + 1) {
       complain("the rig reports another number of thrusters than the vehicle file has");
       return;
     }
-    for (std::size_t i = 0; i < thrusters_.pwm_us.size(); ++i) {
-      const auto pwm = words.number_at(i + 1);
-      if (!pwm || *pwm <= 0.0) return;
-      thrusters_.pwm_us[i] = *pwm;
+    for (std::size_t i = 0; i < applied.size(); ++i) {
+      const auto value = words.number_at(i + 1);
+      if (!value || (pulses && *value <= 0.0)) return;
+      applied[i] = *value;
     }
-    frame.sample = &thrusters_;
+    frame.sample = pulses ? &pulses_ : &forces_;
   }
 }
 

@@ -1,4 +1,5 @@
-// A plain protocol for test rigs: NMEA sentences with pulse widths out, and what was applied and the battery in.
+// A plain protocol for test rigs: NMEA sentences with pulse widths or forces out, and what was applied and the battery
+// in.
 #pragma once
 
 #include <array>
@@ -13,8 +14,10 @@ namespace fathom::devices {
 /// To the rig: "$FTPWM,1500,1620,...*hh", microseconds in the order of the vehicle file. A rig goes to neutral when
 /// none came for half a second.
 [[nodiscard]] std::string thruster_sentence(std::span<const double> pwm_us);
+/// The same for thrusters that regulate their force themselves: "$FTFRC,3.250,-1.100,...*hh", N.
+[[nodiscard]] std::string force_sentence(std::span<const double> force);
 
-/// From the rig: "$FTAPP,1500,1618,...*hh" (applied), "$FTBAT,16.2*hh" (V).
+/// From the rig: "$FTAPP,1500,1618,...*hh" or "$FTAPF,3.250,...*hh" (applied), "$FTBAT,16.2*hh" (V).
 class ThrusterText final : public NmeaParser {
  public:
   explicit ThrusterText(const Settings& settings);
@@ -25,7 +28,7 @@ class ThrusterText final : public NmeaParser {
 
   std::optional<double> voltage_;
   Battery battery_;
-  Thrusters thrusters_;
+  Thrusters pulses_, forces_;
 };
 
 }  // namespace fathom::devices

@@ -99,12 +99,23 @@ bool WaterLinkedJson::read(std::string_view text, Report& report) {
   return report.type == "position_local" || report.type == "response";
 }
 
+// Another version may mean something else by the same words.
+bool WaterLinkedJson::known(std::string_view format) {
+  const std::string_view version = format.substr(0, format.find('.'));
+  return format.empty() || version == "json_v1" || version == "json_v2" || version == "json_v3";
+}
+
 Parser::Look WaterLinkedJson::look(Bytes bytes) const {
   if (bytes[0] != '{') return skip_to(bytes, '{');
   const std::string_view text = as_text(bytes.first(std::min(bytes.size(), kLongest)));
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos) return text.size() < kLongest ? kMore : kBadFrame;
-  return read(text.substr(0, end), report_) ? whole_frame(end + 1) : kBadFrame;
+  const bool whole = read(text.substr(0, end), report_);
+  if (!known(report_.format)) {
+    complain("the instrument speaks " + std::string{report_.format.substr(0, 20)} +
+             ", not json_v1 to json_v3; its firmware is newer than this driver");
+  }
+  return whole ? whole_frame(end + 1) : kBadFrame;
 }
 
 void WaterLinkedJson::take(Frame& frame) {
@@ -113,7 +124,7 @@ void WaterLinkedJson::take(Frame& frame) {
     complain("the instrument refused the command " + std::string{report.response_to.substr(0, 40)} + ": " +
              std::string{report.error.substr(0, 80)});
   }
-  if (report.type != "velocity") return;
+  if (report.type != "velocity" || !known(report.format)) return;
   sample_ = Dvl{.altitude = std::max(0.0, report.altitude.value_or(0.0)), .valid = *report.valid};
   if (sample_.valid) sample_.v_WB_B = R_BS_ * Eigen::Vector3d{*report.vx, *report.vy, *report.vz};
   if (report.time_of_validity) frame.device_time = 1e-6 * static_cast<double>(*report.time_of_validity);

@@ -36,6 +36,7 @@ class WaterLinkedJson final : public Parser {
   Look look(Bytes bytes) const override;
   void take(Frame& frame) override;
   [[nodiscard]] static bool read(std::string_view text, Report& report);
+  [[nodiscard]] static bool known(std::string_view format);
 
   Eigen::Matrix3d R_BS_;
   mutable Report report_;  ///< read by look(), to see that the object is whole, and used by take()

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
+#include <array>
 
 #include "common/samples/sensors.hpp"
 
@@ -18,10 +18,18 @@ class LeverArm {
   void remove(Dvl& sample) const;
   /// Depth of the origin: that of the port less how far the port is below. Level when no attitude came.
   void remove(Depth& sample) const;
+  /// Position of the origin: that of the transponder less its arm. Not valid when no attitude came within half a
+  /// second.
+  void remove(Usbl& sample) const;
 
  private:
+  static constexpr std::size_t kKept = 512;  ///< samples of AHRS: fixes come seconds after they were true
+  /// The one nearest in time that has what is asked for; null when it is not within half a second.
+  [[nodiscard]] const Ahrs* nearest(Utime utime, bool Ahrs::*has) const;
+
   Eigen::Vector3d p_BS_;
-  std::optional<Ahrs> rates_, attitude_;
+  std::array<Ahrs, kKept> heard_{};
+  std::size_t count_{};
 };
 
 }  // namespace fathom::driver

@@ -70,9 +70,9 @@ PressureSensor::PressureSensor(runtime::Process& process, const Config& config)
   }
   process_.waits_with([this](std::span<const int> descriptors, int limit_ms) { wait(descriptors, limit_ms); });
   process_.on_health([this] {
-    return runtime::Process::Condition{
-        .unhealthy = watch_.unhealthy(steady_seconds(), "", ""),
-        .detail = "readings " + std::to_string(readings_) + ", lost " + std::to_string(lost_)};
+    return runtime::Process::Condition{.unhealthy = watch_.unhealthy(steady_seconds(), "", ""),
+                                       .detail = "readings " + std::to_string(readings_) + ", lost " +
+                                                 std::to_string(lost_) + ", gaps " + std::to_string(watch_.gaps())};
   });
 }
 

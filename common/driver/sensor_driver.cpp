@@ -10,14 +10,13 @@
 #include <memory>
 #include <optional>
 
-#include "common/base/error.hpp"
 #include "common/devices/clock_map.hpp"
 #include "common/devices/dialogue.hpp"
 #include "common/driver/lever_arm.hpp"
+#include "common/driver/line_record.hpp"
 #include "common/driver/pressure_sensor.hpp"
 #include "common/driver/watch.hpp"
 #include "common/link/link.hpp"
-#include "common/link/raw_log.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
@@ -35,22 +34,28 @@ double positive(const Config& config, const std::string& key, const std::string&
   return value;
 }
 
+// Where those sit that measure at a point of their own.
+Eigen::Vector3d place(const Config& config, devices::Kind kind) {
+  const bool matters = kind == devices::Kind::kDvl || kind == devices::Kind::kUsbl || kind == devices::Kind::kDepth;
+  return matters && config.has("position") ? config.vector3("position", "m") : Eigen::Vector3d::Zero().eval();
+}
+
 class SensorDriver final : public devices::Output {
  public:
   SensorDriver(runtime::Process& process, const Config& config, const devices::Protocol& protocol)
       : process_{process},
         parser_{protocol.make(devices::read_settings(config, protocol))},
         dialogue_{devices::make_dialogue(protocol.name, devices::read_settings(config, protocol))},
-        clock_{config.quantity("latency", "s")},
+        clock_{config.quantity("latency", "s"), protocol.tick},
         watch_{positive(config, "period", "s"), std::string{protocol.name}},
-        arm_{config.has("position") ? config.vector3("position", "m") : Eigen::Vector3d{Eigen::Vector3d::Zero()}},
+        arm_{place(config, protocol.kind)},
+        record_{process, config},
         link_{link::Endpoint::parse(config.text("link"), config.where("link")),
               [this](std::span<const std::uint8_t> bytes, Utime arrival) { received(bytes, arrival); },
               [this](bool up, const std::string& why) { changed(up, why); }} {
-    if (config.has("record")) raw_.emplace(link::free_name(config.text("record")));
     if (link_.endpoint().kind == link::Endpoint::Kind::kFile) dialogue_.reset();  // nobody answers
     if (arm_.needed()) {
-      process_.on_latest<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
+      process_.on<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
         const auto sample = wire::decode(message);
         if (!sample) return process_.reject(wire::kAhrs);
         arm_.hear(*sample);
@@ -89,21 +94,10 @@ class SensorDriver final : public devices::Output {
   }
 
   void received(std::span<const std::uint8_t> bytes, Utime arrival) {
-    record(bytes, arrival);
+    record_.write(bytes, arrival);
     arrival_ = arrival;
     watch_.bytes(bytes.size(), steady_seconds());
     parser_->feed(bytes, *this);
-  }
-
-  // A full disk costs the recording, not the measurements.
-  void record(std::span<const std::uint8_t> bytes, Utime arrival) {
-    if (!raw_) return;
-    try {
-      raw_->write(arrival, bytes);
-    } catch (const InputError& error) {
-      raw_.reset();
-      process_.log_warning(std::string{error.what()} + " No raw bytes are recorded any more");
-    }
   }
 
   void changed(bool up, const std::string& why) {
@@ -121,11 +115,7 @@ class SensorDriver final : public devices::Output {
   }
 
   std::string counts() const {
-    const devices::Counters& c = parser_->counters();
-    std::string text = "frames " + std::to_string(c.frames) + ", bad checksums " + std::to_string(c.bad_checksum) +
-                       ", bad frames " + std::to_string(c.bad_frame) + ", skipped bytes " + std::to_string(c.skipped) +
-                       ", gaps " + std::to_string(watch_.gaps()) + ", restarts " + std::to_string(clock_.restarts()) +
-                       ", openings " + std::to_string(link_.openings());
+    std::string text = driver::counts(*parser_, watch_, link_) + ", restarts " + std::to_string(clock_.restarts());
     if (const auto drift = clock_.drift()) text += ", clock " + std::to_string(std::lround(*drift)) + " ppm slow";
     if (!parser_->complaint().empty()) text += ", note: " + parser_->complaint();
     return text;
@@ -146,7 +136,6 @@ class SensorDriver final : public devices::Output {
 
   void publish(std::monostate, Utime) {}
   void publish(const Ahrs* sample, Utime utime) { send(wire::kAhrs, *sample, utime); }
-  void publish(const Usbl* sample, Utime utime) { send(wire::kUsbl, *sample, utime); }
   void publish(const Ranges* sample, Utime utime) { send(wire::kRanges, *sample, utime); }
   void publish(const Loads* sample, Utime utime) { send(wire::kLoads, *sample, utime); }
   void publish(const Battery*, Utime) {}    // these two come from
@@ -156,6 +145,12 @@ class SensorDriver final : public devices::Output {
     at_origin.utime = utime;
     arm_.remove(at_origin);
     send(wire::kDvl, at_origin, utime);
+  }
+  void publish(const Usbl* sample, Utime utime) {
+    Usbl at_origin = *sample;
+    at_origin.utime = utime;
+    arm_.remove(at_origin);
+    send(wire::kUsbl, at_origin, utime);
   }
   void publish(const Depth* sample, Utime utime) {
     Depth at_origin = *sample;
@@ -176,7 +171,7 @@ class SensorDriver final : public devices::Output {
   devices::ClockMap clock_;
   Watch watch_;
   LeverArm arm_;
-  std::optional<link::RawWriter> raw_;
+  LineRecord record_;
   Utime arrival_{};
   std::string said_;
   link::Link link_;  // last: its handlers use the others

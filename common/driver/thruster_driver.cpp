@@ -18,7 +18,9 @@
 #include "common/base/operator_token.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
+#include "common/driver/line_record.hpp"
 #include "common/driver/thruster_gate.hpp"
+#include "common/driver/vehicle_check.hpp"
 #include "common/driver/watch.hpp"
 #include "common/link/link.hpp"
 #include "common/model/thruster_allocation.hpp"
@@ -65,12 +67,14 @@ class ThrusterDriver final : public devices::Output {
   ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle, std::string token)
       : process_{process},
         way_{way_of(config)},
+        curved_{!vehicle.curve.empty()},
         allocation_{vehicle, positive(config, "largest_thrust", "N")},
         gate_{std::move(token)},
         period_{1.0 / positive(config, "rate", "Hz")},
         writer_{255, 190} {
-    if (vehicle.curve.empty()) {
-      throw InputError("vehicle " + vehicle.name + ": a 'thrust_curve' is needed to drive it; add it to its file");
+    if (!curved_ && way_ != Way::kDryRun && way_ != Way::kText) {
+      config.fail("protocol", "'" + config.text("protocol") + "' sends pulse widths, and vehicle " + vehicle.name +
+                                  " has no 'thrust_curve'; add it to its file, or send forces to a rig with 'text'");
     }
     if (way_ == Way::kDryRun) return;
     devices::Settings settings;
@@ -80,6 +84,7 @@ class ThrusterDriver final : public devices::Output {
     } else {
       parser_ = std::make_unique<devices::Mavlink>(settings);
       target_ = static_cast<std::uint8_t>(std::clamp(config.integer("system"), 1, 255));
+      check_.emplace(target_);
     }
     if (way_ == Way::kRcOverride) {
       const Config full = config.section("full_stick");
@@ -87,10 +92,12 @@ class ThrusterDriver final : public devices::Output {
       for (std::size_t i = 0; i < 6; ++i) full_stick_[i] = positive(full, kAxes[i], i < 3 ? "N" : "N m");
     }
     watch_.emplace(1.0, config.text("protocol"));
+    record_.emplace(process, config);
     link_ = std::make_unique<link::Link>(
         link::Endpoint::parse(config.text("link"), config.where("link")),
         [this](std::span<const std::uint8_t> bytes, Utime arrival) {
           arrival_ = arrival;
+          record_->write(bytes, arrival);
           watch_->bytes(bytes.size(), steady_seconds());
           parser_->feed(bytes, *this);
         },
@@ -135,23 +142,22 @@ class ThrusterDriver final : public devices::Output {
 
   [[nodiscard]] runtime::Process::Condition condition() const {
     std::string unhealthy;
-    if (watch_) unhealthy = watch_->unhealthy(steady_seconds(), "", parser_->complaint());
+    const double now = steady_seconds();
+    if (watch_) unhealthy = watch_->unhealthy(now, check_ ? check_->objection(now) : "", parser_->complaint());
     if (unhealthy.empty()) unhealthy = lacking_;
     const std::string_view reason = gate_.reason(wall_clock());
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {
       detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";
     }
-    if (parser_) {
-      detail += ", frames " + std::to_string(parser_->counters().frames) + ", bad checksums " +
-                std::to_string(parser_->counters().bad_checksum);
-    }
+    if (parser_) detail += ", " + counts(*parser_, *watch_, *link_);
     return {.unhealthy = unhealthy, .detail = detail};
   }
 
-  void frame(const devices::Parser&, const devices::Frame& frame) override {
+  void frame(const devices::Parser& parser, const devices::Frame& frame) override {
     const double now = steady_seconds();
     watch_->frame(now);
+    if (check_) check_->hear(dynamic_cast<const devices::Mavlink&>(parser), now);
     if (const auto* battery = std::get_if<const Battery*>(&frame.sample)) {
       voltage_ = (*battery)->voltage;
       voltage_at_ = now;
@@ -161,9 +167,13 @@ class ThrusterDriver final : public devices::Output {
       process_.publish(wire::kBattery, wire::encode(sample));
     }
     if (const auto* thrusters = std::get_if<const Thrusters*>(&frame.sample)) {
+      const bool pulses = !(*thrusters)->pwm_us.empty();
+      if (pulses && !curved_) return;  // nobody knows what they give
       watch_->sample(arrival_, now);
       feedback_at_ = now;
-      tell(allocation_.applied((*thrusters)->pwm_us, voltage(now)), arrival_);
+      tell(pulses ? allocation_.applied((*thrusters)->pwm_us, voltage(now))
+                  : allocation_.applied_forces((*thrusters)->force),
+           arrival_);
     }
   }
 
@@ -184,7 +194,7 @@ class ThrusterDriver final : public devices::Output {
   void send(const model::Allocated& allocated, const Vector6d& tau, double now) {
     if (!link_) return;
     if (way_ == Way::kText) {
-      link_->send(devices::thruster_sentence(allocated.pwm_us));
+      link_->send(curved_ ? devices::thruster_sentence(allocated.pwm_us) : devices::force_sentence(allocated.force));
       return;
     }
     if (now - heartbeat_at_ >= kHeartbeat) {
@@ -235,6 +245,7 @@ class ThrusterDriver final : public devices::Output {
 
   runtime::Process& process_;
   Way way_;
+  bool curved_;  ///< the vehicle has a thrust curve: pulse widths are sent, else forces
   model::ThrusterAllocation allocation_;
   ThrusterGate gate_;
   double period_, next_{};
@@ -243,6 +254,8 @@ class ThrusterDriver final : public devices::Output {
   devices::mavlink::Writer writer_;
   std::unique_ptr<devices::Parser> parser_;
   std::optional<Watch> watch_;
+  std::optional<LineRecord> record_;
+  std::optional<VehicleCheck> check_;
   Utime arrival_{};
   double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
   std::string lacking_;  ///< what was commanded and the thrusters cannot give

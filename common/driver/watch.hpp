@@ -22,7 +22,8 @@ class Watch {
   /// A sample with its utime; counts gaps.
   void sample(Utime utime, double now);
 
-  /// Why the instrument is not well; empty when it is. `failure` and `complaint` are those of dialogue and parser.
+  /// Why the instrument is not well; empty when it is. A line that came up again is believed with its first
+  /// measurement. `failure` and `complaint` are those of dialogue and parser.
   [[nodiscard]] std::string unhealthy(double now, const std::string& failure, const std::string& complaint) const;
   [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
   /// Longest silence that is not said yet [s].
@@ -31,8 +32,9 @@ class Watch {
  private:
   double period_;
   std::string protocol_;
-  bool up_{false};
-  std::string why_{"the line is not open yet"};
+  bool up_{false}, well_{false};  ///< well: a measurement has come since the line came up
+  static constexpr const char* kNotYet = "the line is not open yet";
+  std::string why_{kNotYet};
   double up_since_{}, last_bytes_{}, last_frame_{}, last_sample_{};
   std::uint64_t bytes_since_frame_{};
   std::optional<Utime> last_utime_;

@@ -324,19 +324,24 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
     if (!stopping || now() > kSayStopped) output_.command.reset();
     return output_;
   }
-  if (!unhealthy_.empty()) {
-    stop(Phase::kAborted, unhealthy_.begin()->first + " is " + unhealthy_.begin()->second);
+  const auto ended = std::find_if(unhealthy_.begin(), unhealthy_.end(),
+                                  [](const auto& process) { return process.second != "unhealthy"; });
+  const auto sick = ended != unhealthy_.end() ? ended : unhealthy_.begin();
+  const bool usable = state.valid && unhealthy_.empty();
+  if (!usable && lost_since_ == 0) lost_since_ = state.utime;
+  const bool too_long = !usable && seconds_between(lost_since_, state.utime) > settings_.patience;
+  if (ended != unhealthy_.end() || (too_long && !unhealthy_.empty())) {
+    stop(Phase::kAborted, sick->first + " is " + sick->second);
   } else if (const std::string why = state.valid ? fence_.outside(state, turned_) : ""; !why.empty()) {
     stop(Phase::kAborted, "left the envelope: " + why);
-  } else if (!state.valid) {
-    if (lost_since_ == 0) lost_since_ = state.utime;
-    if (seconds_between(lost_since_, state.utime) > settings_.patience)
-      stop(Phase::kLost, "the state was lost; arm again");
-  } else if (settings_.model_patience > 0.0 && phase_ == Phase::kExcite && since_model_ > settings_.model_patience) {
+  } else if (too_long) {
+    stop(Phase::kLost, "the state was lost; arm again");
+  } else if (usable && settings_.model_patience > 0.0 && phase_ == Phase::kExcite &&
+             since_model_ > settings_.model_patience) {
     stop(Phase::kAborted, "the identifier is silent: no MODEL came");
   }
   since_model_ = state.valid && phase_ == Phase::kExcite ? since_model_ + dt : 0.0;
-  if (!armed_ || !state.valid) {
+  if (!armed_ || !usable) {  // without thrust until it is, not forever
     say(Vector6d::Zero(), Vector6d::Zero(), false);
     if (armed_) output_.excitation->phase = name(Phase::kLost);
     return output_;

@@ -58,6 +58,8 @@ std::optional<StreamAligner::Aligned> StreamAligner::next(bool all) {
   if (!all && !settled(state.utime, covered)) return std::nullopt;
   Aligned aligned{.state = state, .input = std::nullopt};
   if (covered) aligned.input = input_at(state.utime);
+  if (aligned.input && before_ && !settings_.interpolate) make_up(*before_, state.utime, *aligned.input);
+  before_ = state.utime;
   const auto after = std::upper_bound(voltages_.begin(), voltages_.end(), state.utime,
                                       [](Utime time, const Voltage& v) { return time < v.utime; });
   if (after != voltages_.begin() && seconds_between(std::prev(after)->utime, state.utime) < kVoltageHistory) {
@@ -85,6 +87,20 @@ std::optional<model::ActuatorForces> StreamAligner::input_at(Utime utime) const 
                                (seconds_between(before->utime, utime) / gap) * (after->value - before->value)};
 }
 
+// Trapezoids take a jump between two states as one in the middle. What they miss of the integral is added to the later
+// state: commands that come just behind the states would else count as half a step late.
+void StreamAligner::make_up(Utime from, Utime to, model::ActuatorForces& input) const {
+  const double step = seconds_between(from, to);
+  if (step > settings_.max_input_gap) return;
+  const auto later = [](Utime time, const Input& each) { return time < each.utime; };
+  auto jump = std::upper_bound(inputs_.begin(), inputs_.end(), from, later);
+  if (jump == inputs_.begin()) return;
+  for (; jump != inputs_.end() && jump->utime < to; ++jump) {
+    const double missed = seconds_between(jump->utime, to) / step - 0.5;
+    input += missed * (jump->value - std::prev(jump)->value);
+  }
+}
+
 // Seldom and many at once, since this moves what is kept.
 void StreamAligner::forget() {
   const Utime now = pending_[done_ - 1].utime;
@@ -109,6 +125,7 @@ void StreamAligner::reset() {
   inputs_.clear();
   voltages_.clear();
   last_state_.reset();
+  before_.reset();
 }
 
 }  // namespace fathom::identification

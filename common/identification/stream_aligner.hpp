@@ -19,7 +19,8 @@ struct AlignmentSettings {
 
 class StreamAligner {
  public:
-  /// A state ready for use. Without an input near it, `input` is empty.
+  /// A state ready for use. Without an input near it, `input` is empty. Trapezoids over the inputs of a row of states
+  /// give the integral of a held input, wherever between the states it jumps.
   struct Aligned {
     StateEstimate state;
     std::optional<model::ActuatorForces> input;
@@ -50,6 +51,7 @@ class StreamAligner {
     double value{};
   };
   [[nodiscard]] bool settled(Utime utime, bool covered) const;
+  void make_up(Utime from, Utime to, model::ActuatorForces& input) const;
   void forget();
 
   AlignmentSettings settings_;
@@ -57,7 +59,7 @@ class StreamAligner {
   std::size_t done_{};  // of pending_
   std::vector<Input> inputs_;
   std::vector<Voltage> voltages_;
-  std::optional<Utime> last_state_;
+  std::optional<Utime> last_state_, before_;  ///< newest that came; newest that was given out
 };
 
 }  // namespace fathom::identification

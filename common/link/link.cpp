@@ -34,6 +34,11 @@ std::string remedy(const Endpoint& endpoint, const asio::error_code& error) {
   if (error.value() == ENOENT || error.value() == ENODEV || error.value() == ENXIO) {
     return what + ": no such device; is it plugged in? (ls /dev/serial/by-id)";
   }
+  const bool network = endpoint.kind == Endpoint::Kind::kTcp || endpoint.kind == Endpoint::Kind::kUdp;
+  if (network && (error.value() == EACCES || error.value() == EPERM)) {
+    return what + ": not allowed; ports below 1024 are the system's own, take a higher one";
+  }
+  if (error.value() == EISDIR) return what + ": is a folder; name the device in it";
   if (error.value() == EACCES || error.value() == EPERM) {
     return what + ": no permission; add the user to the group that owns it (usermod -aG dialout NAME)";
   }
@@ -88,6 +93,7 @@ struct Link::State {
   void open_file();
   void took(std::size_t count) {
     woken = true;
+    pause = kFirstPause;  // it speaks; a line that only opens and closes is tried less and less often
     received(std::span{buffer}.first(count), wall_clock());
   }
 };
@@ -180,7 +186,6 @@ void Link::State::went_down(const std::string& why) {
   udp.close(ignored);
   outgoing.clear();
   sending = false;
-  if (is_up) pause = kFirstPause;
   is_up = false;
   woken = true;
   changed(false, why);

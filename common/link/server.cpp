@@ -118,13 +118,15 @@ std::string Server::wait(double seconds) {
   return {};
 }
 
+bool Server::connected() const {
+  if (descriptor_ < 0 || !terminal_) return descriptor_ >= 0;
+  pollfd look{.fd = descriptor_, .events = POLLOUT, .revents = 0};
+  poll(&look, 1, 0);
+  return (look.revents & POLLHUP) == 0;
+}
+
 std::size_t Server::send(std::string_view bytes) {
-  if (descriptor_ < 0) return 0;
-  if (terminal_) {  // without a reader the terminal would keep old bytes for the next one
-    pollfd look{.fd = descriptor_, .events = POLLOUT, .revents = 0};
-    poll(&look, 1, 0);
-    if ((look.revents & POLLHUP) != 0) return 0;
-  }
+  if (!connected()) return 0;  // without a reader the terminal would keep old bytes for the next one
   const ssize_t count = write(descriptor_, bytes.data(), bytes.size());
   return count > 0 ? static_cast<std::size_t>(count) : 0;
 }

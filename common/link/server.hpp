@@ -16,6 +16,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Somebody is at the other end.
+  [[nodiscard]] bool connected() const;
   /// Waits for bytes from the client, at most so long; returns what came.
   [[nodiscard]] std::string wait(double seconds);
   /// Returns how many bytes were taken; the rest is lost, as on a line that nobody reads. Nothing without a client.

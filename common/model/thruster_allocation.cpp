@@ -85,6 +85,11 @@ Allocated ThrusterAllocation::applied(const std::vector<double>& pwm_us, double 
   return result;
 }
 
+Allocated ThrusterAllocation::applied_forces(const std::vector<double>& force) const {
+  const Eigen::Map<const Eigen::VectorXd> each{force.data(), static_cast<Eigen::Index>(force.size())};
+  return {.force = force, .tau = vehicle_.allocation * each};
+}
+
 Allocated ThrusterAllocation::neutral() const {
   if (vehicle_.curve.empty()) return {.force = std::vector<double>(count(), 0.0)};
   return applied(std::vector<double>(count(), vehicle_.curve.neutral_us), 0.0);

@@ -32,6 +32,8 @@ class ThrusterAllocation {
   [[nodiscard]] Allocated neutral() const;
   /// What pulse widths that a vehicle reports give.
   [[nodiscard]] Allocated applied(const std::vector<double>& pwm_us, double battery) const;
+  /// What forces [N] that a vehicle reports give.
+  [[nodiscard]] Allocated applied_forces(const std::vector<double>& force) const;
   [[nodiscard]] std::size_t count() const { return vehicle_.thrusters.size(); }
   /// One line for the operator about Allocated::missing; empty when nothing is.
   [[nodiscard]] std::string complaint(const Allocated& allocated) const;

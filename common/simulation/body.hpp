@@ -33,6 +33,8 @@ class Body {
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 
+  /// The run begins at this time; before the first step only.
+  void begin_at(Utime origin) { origin_ = origin; }
   /// Forces of the thrusters [N] from now on.
   void drive(const model::ActuatorForces& force);
   void step();

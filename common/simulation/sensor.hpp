@@ -50,12 +50,13 @@ struct Moment {
 };
 
 /// What an instrument is built from. `latest` is the newest AHRS sample that was taken: drivers remove lever arms with
-/// it.
+/// it, unless instruments are `raw`: then a driver will do so, and each speaks for its own place.
 struct Surroundings {
   const model::Vehicle* vehicle{};
   const model::Site* site{};
   std::uint64_t seed{};
   const Ahrs* latest{};
+  bool raw{false};
 };
 
 class Sensor {

@@ -6,95 +6,12 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/simulation/hidden.hpp"
+#include "common/simulation/truth.hpp"
 
 namespace fathom::simulation {
 namespace {
 
 constexpr double kFaultMemory = 1.6;  // s: longer than the registry's longest latency
-constexpr Utime kFinest = 100;        // us: what step and interval are multiples of
-
-Utime microseconds(const Config& config, const std::string& key) {
-  const Utime value = utime_after(0, config.positive(key, "s"));
-  if (value <= 0 || value % kFinest != 0) config.fail(key, "'" + key + "' must be a multiple of 0.1 ms");
-  return value;
-}
-
-Utime interval_of(const Config& config) {
-  const Utime step = microseconds(config, "step"), interval = microseconds(config, "interval");
-  if (interval % step != 0) config.fail("interval", "'interval' must be a multiple of 'step'");
-  return interval;
-}
-
-double limit_of(const Config& config, const model::Vehicle& vehicle) {
-  if (config.has("largest_thrust")) return config.positive("largest_thrust", "N");
-  if (vehicle.largest_thrust > 0.0) return vehicle.largest_thrust;
-  if (!vehicle.curve.empty()) return model::Site::kNone;  // the curve's ends are the limits
-  config.fail("largest_thrust", "state 'largest_thrust' here or in the vehicle file: it has no thrust curve either");
-}
-
-// Base parameters of the truth: those stated, else the vehicle file's means.
-model::Model truth_of(const Config& config, const model::Vehicle& vehicle, const model::Vehicle& whole) {
-  const Config stated = config.section("truth");
-  model::Model truth = model::nominal_model(vehicle, false);
-  truth.vehicle = &whole;
-  for (const model::BaseParameter parameter : model::base_parameters()) {
-    const std::string name{model::name(parameter)};
-    if (stated.has(name)) {
-      truth.theta[model::index(parameter)] = stated.quantity(name, std::string{model::unit(parameter)});
-    }
-  }
-  for (const model::BaseParameter parameter : model::base_parameters()) {
-    const std::string name{model::name(parameter)};
-    const double value = truth.theta[model::index(parameter)];
-    if (!stated.has(name) &&
-        std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
-      stated.fail(name, "'" + name +
-                            "' is missing: the vehicle file has no mean for it, and the truth moves in all six "
-                            "degrees of freedom");
-    }
-    const int sign = model::sign_constraint(parameter);
-    if (sign > 0 && value <= 0.0) stated.fail(name, "'" + name + "' must be positive");
-    if (sign < 0 && value > 0.0) stated.fail(name, "'" + name + "' must not be positive: drag opposes motion");
-  }
-  return truth;
-}
-
-BatteryTruth battery_of(const Config& config) {
-  if (!config.has("battery")) return {};
-  const Config battery = config.section("battery");
-  return {.full = battery.positive("full", "V"),
-          .fall = battery.not_negative("fall", "V/s"),
-          .sag = battery.not_negative("sag", "V"),
-          .lowest = battery.positive("lowest", "V")};
-}
-
-StartPose start_of(const Config& config, const model::Site& site, const Eigen::Vector3d& hull) {
-  const Config starts = config.section("start");
-  if (!starts.has(site.name)) {
-    starts.fail(site.name, "no start is stated for the site '" + site.name + "': add '" + site.name +
-                               ": {position: ..., heading: ...}'");
-  }
-  for (const std::string& other : starts.keys()) {  // read all, so that a start for another site is no unknown key
-    const Config start = starts.section(other);
-    static_cast<void>(start.vector3("position", "m"));
-    static_cast<void>(start.quantity("heading", "rad"));
-  }
-  const Config start = starts.section(site.name);
-  StartPose pose{.p_WB = start.vector3("position", "m"), .heading = start.quantity("heading", "rad")};
-  const double reach = 0.5 * hull.norm();
-  for (const Plane& plane : solid_planes(site)) {
-    if (plane.n.dot(pose.p_WB) - plane.offset < reach) {
-      start.fail("position", "'position' leaves no room between the hull and the boundaries of " + site.name);
-    }
-  }
-  return pose;
-}
-
-bool carried_at(const Config& sensor, const model::Site& site) {
-  if (!sensor.has("sites")) return true;
-  const std::vector<std::string> sites = sensor.texts("sites");
-  return std::find(sites.begin(), sites.end(), site.name) != sites.end();
-}
 
 }  // namespace
 
@@ -140,7 +57,8 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
       site_{site},
       origin_{setup.origin},
       interval_{interval_of(config)},
-      allocation_{vehicle, limit_of(config, vehicle)} {
+      largest_{limit_of(config, vehicle)},
+      allocation_{vehicle, largest_} {
   whole_.dof.fill(true);
   if (vehicle.hull.isZero()) throw InputError("vehicle " + vehicle.name + ": its file must state 'hull' for contacts");
   model::Model truth = truth_of(config, vehicle_, whole_);
@@ -178,7 +96,8 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
     if (!sensors.has(kind.name)) continue;
     const Config one = sensors.section(kind.name);
     const Timing timing{one, kind.name, setup.seed};
-    auto sensor = kind.make(one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_});
+    auto sensor = kind.make(
+        one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_, .raw = setup.raw});
     using Pictures = SensorKind::Pictures;
     const bool replaced = kind.pictures == (setup.pictures ? Pictures::kWithout : Pictures::kWith);
     if (!carried_at(one, site_) || replaced) sensor.reset();
@@ -196,6 +115,11 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
 
 Simulator::~Simulator() = default;
 
+void Simulator::begin_at(Utime origin) {
+  origin_ = next_truth_ = origin;
+  body_->begin_at(origin);
+}
+
 void Simulator::command(const WrenchCommand& command) { heard_ = command; }
 
 Utime Simulator::now() const { return body_->now(); }
@@ -209,11 +133,22 @@ std::vector<std::string> Simulator::sensors() const {
   return names;
 }
 
-// What the thrusters' driver would send now, and what the propellers make of it at the true voltage.
+// What the thrusters are told now: by a driver, or as one would allocate.
+model::Allocated Simulator::sent() const {
+  if (driven_ && vehicle_.curve.empty()) {
+    std::vector<double> force = *driven_;
+    for (double& each : force) each = std::clamp(each, -largest_, largest_);
+    return allocation_.applied_forces(force);
+  }
+  if (driven_) return allocation_.applied(*driven_, told_voltage_);
+  const bool alive = acting_ && seconds_between(acting_->utime, now()) <= acting_->life && acting_->tau.allFinite();
+  return alive ? allocation_.allocate(acting_->tau, told_voltage_) : allocation_.neutral();
+}
+
+// What the propellers make of it at the true voltage.
 void Simulator::actuate() {
   const Utime utime = now();
-  const bool alive = acting_ && seconds_between(acting_->utime, utime) <= acting_->life && acting_->tau.allFinite();
-  const model::Allocated sent = alive ? allocation_.allocate(acting_->tau, told_voltage_) : allocation_.neutral();
+  const model::Allocated sent = this->sent();
   complaint_ = allocation_.complaint(sent);
   scale_ = sent.scale;
   Thrusters told{.utime = utime, .pwm_us = sent.pwm_us, .force = sent.force, .has_tau = true};
@@ -263,10 +198,14 @@ Utime Simulator::spoil(Slot& slot, Utime utime) {
 
 void Simulator::deliver(Utime until) {
   out_.clear();
+  due_.clear();
   std::sort(pending_.begin(), pending_.end(),
             [](const Pending& a, const Pending& b) { return a.due != b.due ? a.due < b.due : a.order < b.order; });
   std::size_t due = 0;
-  while (due < pending_.size() && pending_[due].due <= until) out_.push_back(std::move(pending_[due++].sample));
+  for (; due < pending_.size() && pending_[due].due <= until; ++due) {
+    out_.push_back(std::move(pending_[due].sample));
+    due_.push_back(pending_[due].due);
+  }
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(due));
 }
 

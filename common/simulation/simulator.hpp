@@ -27,6 +27,7 @@ struct Setup {
   std::vector<std::string> hide{};      ///< as hidden_effect() reads them
   std::vector<std::string> fail{};      ///< as Failure::parse() reads them
   bool pictures{false};                 ///< the camera's exposures in place of tags, flow and laser range
+  bool raw{false};                      ///< drivers follow: instruments speak for their own places
   double duration{330.0};               ///< s, planned: only moments of hidden effects depend on it
   Utime origin{1'700'000'000'000'000};  ///< us, of the run's start
 };
@@ -50,10 +51,18 @@ class Simulator {
   /// Heard now, acts from the end of the next step on: a command that answers the samples of one step acts one control
   /// interval after they came out, whether the answer took no time or nearly the whole interval. The last one counts.
   void command(const WrenchCommand& command);
+  /// What the thrusters are told directly from the next step on, in place of allocated wrenches: pulse widths [us] of a
+  /// vehicle with a thrust curve, else forces [N].
+  void drive(const std::vector<double>& told) { driven_ = told; }
+  /// The run begins at this time; before the first step only.
+  void begin_at(Utime origin);
   /// Advances by one control interval. The samples that have come out by its end, in the order of their arrival; valid
   /// until the next call.
   const std::vector<Sample>& step();
+  /// When each of them came out [us], after the instrument's latency.
+  [[nodiscard]] const std::vector<Utime>& due() const { return due_; }
 
+  [[nodiscard]] Utime origin() const { return origin_; }
   [[nodiscard]] Utime now() const;
   [[nodiscard]] Utime interval() const { return interval_; }  ///< us
   [[nodiscard]] Moment moment() const;                        ///< the truth now
@@ -71,6 +80,7 @@ class Simulator {
   struct Pending;
   struct Faults;
   void actuate();
+  [[nodiscard]] model::Allocated sent() const;
   void take(Slot& slot, Utime until);
   [[nodiscard]] Utime spoil(Slot& slot, Utime utime);
   void deliver(Utime until);
@@ -79,6 +89,7 @@ class Simulator {
   model::Vehicle whole_;    ///< with all six degrees of freedom
   model::Site site_;
   Utime origin_, interval_;
+  double largest_;  ///< N, of one thruster
   model::ThrusterAllocation allocation_;
   std::unique_ptr<Body> body_;
   std::unique_ptr<Faults> faults_;  ///< hidden effects that alter what sensors say
@@ -89,8 +100,10 @@ class Simulator {
   std::vector<Pending> pending_;
   std::vector<Failure> failures_;
   std::vector<Sample> taken_, out_;
+  std::vector<Utime> due_;
   std::uint64_t order_{};
   std::optional<WrenchCommand> heard_, acting_;
+  std::optional<std::vector<double>> driven_;
   std::string complaint_;
   double scale_{1.0};
 };

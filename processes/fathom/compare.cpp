@@ -1,5 +1,8 @@
-// fathom compare: do two logs end with the same model? With --manoeuvre: do two sets of derivatives fly alike?
+// fathom compare: do two logs end with the same model, or with --intervals one that agrees? With --manoeuvre: do two
+// sets of derivatives fly alike?
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -12,6 +15,7 @@ namespace {
 
 struct Options {
   std::string first, second, manoeuvre, plot;
+  bool intervals{false};
 };
 
 ModelEstimate last_model(const std::string& path) {
@@ -20,12 +24,34 @@ ModelEstimate last_model(const std::string& path) {
   return recording.model.back();
 }
 
+// Two trials of the same vehicle have noise of their own: their 95 % intervals must meet.
+void compare_intervals(const ModelEstimate& a, const ModelEstimate& b) {
+  constexpr double kWide = 1.96;  // sigmas in 95 %
+  std::size_t apart = 0;
+  std::printf("%-10s %26s %26s %9s  %s\n", "parameter", "first, 95 %", "second, 95 %", "apart", "unit");
+  for (const NamedValue& x : a.parameters) {
+    const auto y =
+        std::find_if(b.parameters.begin(), b.parameters.end(), [&](const NamedValue& n) { return n.name == x.name; });
+    if (y == b.parameters.end()) throw InputError("only the first model has the parameter " + x.name);
+    const double sigma = std::hypot(x.std, y->std);
+    const double distance = std::abs(x.value - y->value);
+    const bool meet = distance <= kWide * (x.std + y->std);
+    if (!meet) ++apart;
+    std::printf("%-10s %14.5g ± %9.2g %14.5g ± %9.2g %5.2f sig  %s%s\n", x.name.c_str(), x.value, kWide * x.std,
+                y->value, kWide * y->std, sigma > 0.0 ? distance / sigma : 0.0, x.unit.c_str(),
+                meet ? "" : "  INTERVALS DO NOT MEET");
+  }
+  std::printf("%zu of %zu parameters agree within their intervals\n", a.parameters.size() - apart, a.parameters.size());
+  if (apart > 0) throw InputError("the two models do not agree within their intervals");
+}
+
 void run(const Options& options) {
   if (!options.manoeuvre.empty()) {
     compare_manoeuvre(options.first, options.second, options.manoeuvre, options.plot);
     return;
   }
   const ModelEstimate a = last_model(options.first), b = last_model(options.second);
+  if (options.intervals) return compare_intervals(a, b);
   if (a.parameters.size() != b.parameters.size()) throw InputError("the two models have different parameters");
   bool equal = a.utime == b.utime && a.updates == b.updates;
   std::printf("%-10s %14s %14s  %s\n", "parameter", "first", "second", "unit");
@@ -50,6 +76,7 @@ void add_compare(CLI::App& app) {
   command->add_option("first", options->first, "LCM log; with --manoeuvre a vehicle file")->required();
   command->add_option("second", options->second, "LCM log; with --manoeuvre a vehicle file, or coefficients alone")
       ->required();
+  command->add_flag("--intervals", options->intervals, "not the same bits: do the parameters' 95 % intervals meet?");
   command->add_option("--manoeuvre", options->manoeuvre, "line, zigzag or circle: fly both and compare");
   command->add_option("--plot", options->plot, "write the two tracks of the manoeuvre to this SVG file");
   command->callback([options] { run(*options); });

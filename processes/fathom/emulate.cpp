@@ -108,8 +108,10 @@ void add_emulate(CLI::App& app) {
       ->required();
   command->add_option("--file", options->file,
                       "bytes to play: of a driver's 'record', or bare; left out: a gentle curve");
-  command->add_option("--rate", options->rate, "reports per second; left out: as the instrument does");
-  command->add_option("--seconds", options->seconds, "ends after this time; left out: never, or with the file");
+  command->add_option("--rate", options->rate, "reports per second; left out: as the instrument does")
+      ->check(CLI::Range(1e-3, 1e4));
+  command->add_option("--seconds", options->seconds, "ends after this time; left out: never, or with the file")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--sent", options->sent, "writes what was sent to this file");
   command->add_option("--transponders", options->transponders, "names, for range_text");
   command->callback([options] { run(*options); });

@@ -1,21 +1,7 @@
 // simulator: WRENCH_COMMAND, OPERATOR and EXCITATION (to know when a trial is over) in; every instrument's channel,
-// THRUSTERS, and TRUTH for plots out.
-#include <fathom_lcm/ahrs_t.hpp>
-#include <fathom_lcm/battery_t.hpp>
-#include <fathom_lcm/camera_t.hpp>
-#include <fathom_lcm/depth_t.hpp>
-#include <fathom_lcm/dvl_t.hpp>
+// THRUSTERS, and TRUTH for plots out. With --bytes the drivers' channels stay silent: their instruments are played.
 #include <fathom_lcm/excitation_t.hpp>
-#include <fathom_lcm/laser_range_t.hpp>
-#include <fathom_lcm/loads_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
-#include <fathom_lcm/optical_flow_t.hpp>
-#include <fathom_lcm/pose_capture_t.hpp>
-#include <fathom_lcm/ranges_t.hpp>
-#include <fathom_lcm/tag_pose_t.hpp>
-#include <fathom_lcm/thrusters_t.hpp>
-#include <fathom_lcm/truth_t.hpp>
-#include <fathom_lcm/usbl_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 
 #include "common/base/config.hpp"
@@ -23,6 +9,7 @@
 #include "common/base/operator_token.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
+#include "processes/simulator/speech.hpp"
 #include "processes/simulator/stage.hpp"
 #include "processes/simulator/truth_file.hpp"
 
@@ -31,20 +18,7 @@ using namespace fathom;
 namespace {
 
 void declare(runtime::Process& process) {
-  process.publishes<fathom_lcm::thrusters_t>(wire::kThrusters);
-  process.publishes<fathom_lcm::battery_t>(wire::kBattery);
-  process.publishes<fathom_lcm::loads_t>(wire::kLoads);
-  process.publishes<fathom_lcm::ahrs_t>(wire::kAhrs);
-  process.publishes<fathom_lcm::dvl_t>(wire::kDvl);
-  process.publishes<fathom_lcm::depth_t>(wire::kDepth);
-  process.publishes<fathom_lcm::usbl_t>(wire::kUsbl);
-  process.publishes<fathom_lcm::ranges_t>(wire::kRanges);
-  process.publishes<fathom_lcm::pose_capture_t>(wire::kPoseCapture);
-  process.publishes<fathom_lcm::tag_pose_t>(wire::kTagPose);
-  process.publishes<fathom_lcm::optical_flow_t>(wire::kOpticalFlow);
-  process.publishes<fathom_lcm::laser_range_t>(wire::kLaserRange);
-  process.publishes<fathom_lcm::camera_t>(wire::kCamera);
-  process.publishes<fathom_lcm::truth_t>(wire::kTruth);
+  simulator::declare_speech(process);
   process.publishes<fathom_lcm::operator_t>(wire::kOperator);
   process.publishes<fathom_lcm::lockstep_t>(runtime::kLockstep);
 }
@@ -57,13 +31,16 @@ int main(int argc, char** argv) {
       "simulator", argc, argv,
       [&](runtime::Process& process) {
         options.check();
+        options.setup.raw = !options.drivers.empty();
         options.token = operator_token(process.config_path("operator"));
         const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
         const model::Site site = model::Site::load(process.config_path("site"));
         const Config config = process.config();
         simulation::Simulator simulator{vehicle, site, config, options.setup};
         simulator::Darkroom darkroom{vehicle, site, config, options.setup};
-        simulator::Stage stage{process, simulator, darkroom, options};
+        std::optional<simulator::Instruments> instruments;
+        if (!options.drivers.empty()) instruments.emplace(options.drivers, vehicle, simulator.sensors());
+        simulator::Stage stage{process, simulator, darkroom, options, instruments ? &*instruments : nullptr};
         declare(process);
         process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
           stage.count_command();

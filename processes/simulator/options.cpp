@@ -27,6 +27,9 @@ void Options::add_to(CLI::App& app) {
   app.add_option("--order", orders, "the operator's word at a virtual time: SECONDS=enable, abort, hold, identify")
       ->take_all()
       ->expected(1);
+  app.add_option("--bytes", drivers,
+                 "a drivers' file: plays its instruments at the other ends of their links, in real time")
+      ->type_name("FILE");
   app.add_option("--out-dir", out_dir, "where truth.json is written");
 }
 
@@ -62,6 +65,9 @@ void Options::check() const {
     if (std::count(wait_for.begin(), wait_for.end(), wait_for[i]) > 1) {
       throw InputError("--wait-for: " + wait_for[i] + " stands there twice");
     }
+  }
+  if (!drivers.empty() && (speed != 1.0 || !wait_for.empty())) {
+    throw InputError("--bytes: instruments speak in real time; leave out --speed and --wait-for");
   }
   if (speed == 0.0 && wait_for.empty()) {
     throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");

@@ -5,68 +5,49 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fathom_lcm/ahrs_t.hpp>
-#include <fathom_lcm/battery_t.hpp>
-#include <fathom_lcm/camera_t.hpp>
-#include <fathom_lcm/depth_t.hpp>
-#include <fathom_lcm/dvl_t.hpp>
-#include <fathom_lcm/laser_range_t.hpp>
-#include <fathom_lcm/loads_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
-#include <fathom_lcm/optical_flow_t.hpp>
-#include <fathom_lcm/pose_capture_t.hpp>
-#include <fathom_lcm/ranges_t.hpp>
-#include <fathom_lcm/tag_pose_t.hpp>
-#include <fathom_lcm/thrusters_t.hpp>
-#include <fathom_lcm/truth_t.hpp>
-#include <fathom_lcm/usbl_t.hpp>
 
 #include "common/base/error.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
-#include "common/wire/sensors.hpp"
+#include "processes/simulator/speech.hpp"
 
 namespace fathom::simulator {
 namespace {
 
-constexpr double kLook = 0.3;        // s in which another simulator answers
-constexpr double kPatience = 60.0;   // s without an answer: a diagnoser may think for some
-constexpr double kComplain = 5.0;    // s between two lines about who is missing
-constexpr double kAfterwards = 2.0;  // s of virtual time after the supervisor's end
-constexpr double kToArm = 5.0;       // s that a supervisor may take to obey
-constexpr double kTooLate = 0.5;     // intervals behind the wall's clock that count as late
+constexpr double kLook = 0.3;                        // s in which another simulator answers
+constexpr double kPatience = 60.0;                   // s without an answer: a diagnoser may think for some
+constexpr double kComplain = 5.0;                    // s between two lines about who is missing
+constexpr double kAfterwards = 2.0;                  // s of virtual time after the supervisor's end
+constexpr double kToArm = 5.0;                       // s that a supervisor may take to obey
+constexpr std::chrono::milliseconds kLinesPause{1};  // between two looks at the instruments' lines
+constexpr double kTooLate = 0.5;                     // intervals behind the wall's clock that count as late
 
-const char* channel_of(const Thrusters&) { return wire::kThrusters; }
-const char* channel_of(const Battery&) { return wire::kBattery; }
-const char* channel_of(const Loads&) { return wire::kLoads; }
-const char* channel_of(const Ahrs&) { return wire::kAhrs; }
-const char* channel_of(const Dvl&) { return wire::kDvl; }
-const char* channel_of(const Depth&) { return wire::kDepth; }
-const char* channel_of(const Usbl&) { return wire::kUsbl; }
-const char* channel_of(const Ranges&) { return wire::kRanges; }
-const char* channel_of(const PoseCapture&) { return wire::kPoseCapture; }
-const char* channel_of(const TagPose&) { return wire::kTagPose; }
-const char* channel_of(const OpticalFlow&) { return wire::kOpticalFlow; }
-const char* channel_of(const LaserRange&) { return wire::kLaserRange; }
-const char* channel_of(const simulation::Exposure&) { return wire::kCamera; }
-const char* channel_of(const Truth&) { return wire::kTruth; }
-
-void poll_for(std::span<const int> descriptors, int milliseconds) {
+void poll_for(std::span<const int> descriptors, double seconds) {
   std::vector<pollfd> watched;
   watched.reserve(descriptors.size());
   for (const int each : descriptors) watched.push_back({.fd = each, .events = POLLIN, .revents = 0});
-  poll(watched.data(), watched.size(), milliseconds);
+  const timespec limit{.tv_sec = static_cast<time_t>(seconds),
+                       .tv_nsec = static_cast<long>(1e9 * (seconds - std::floor(seconds)))};
+  ppoll(watched.data(), watched.size(), &limit, nullptr);
+}
+
+Utime wall_utime() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 }  // namespace
 
-Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options)
+Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options,
+             Instruments* instruments)
     : process_{process},
       simulator_{simulator},
       darkroom_{darkroom},
       options_{options},
+      instruments_{instruments},
       schedule_{options.schedule()},
       gate_{options.token} {
   if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
@@ -118,43 +99,89 @@ void Stage::hear(const fathom_lcm::health_t& health) {
 void Stage::wait(std::span<const int> descriptors, int milliseconds) {
   if (state_ == State::kRunning || state_ == State::kEnding) {
     if (milliseconds == 0) return;  // messages are here already
-    if (conductor_) {
+    if (instruments_ != nullptr) {
+      run_lines(descriptors, milliseconds);
+    } else if (conductor_) {
       conduct(descriptors, milliseconds);
     } else {
       run(descriptors, milliseconds);
     }
     return;
   }
-  poll_for(descriptors, std::min(milliseconds, 10));
+  poll_for(descriptors, std::min(1e-3 * milliseconds, 0.01));
   const auto now = Clock::now();
   if (state_ == State::kLooking) {
     if (seconds(now - began_) < kLook) return;
     state_ = State::kGathering;
     last_complaint_ = now;
   }
-  const std::vector<std::string> absent = conductor_ ? conductor_->absent() : std::vector<std::string>{};
-  if (absent.empty()) {
-    state_ = State::kRunning;
-    first_tick_ = last_answer_ = Clock::now();
-    advance();
+  if (instruments_ != nullptr) instruments_->serve(seconds(now.time_since_epoch()));
+  const std::string names = missing();
+  if (names.empty()) {
+    begin();
   } else if (seconds(now - last_complaint_) > kComplain) {  // others keep saying hello meanwhile
     last_complaint_ = now;
-    std::string names;
-    for (const std::string& each : absent) names += (names.empty() ? "" : ", ") + each;
-    process_.log_warning("waits for " + names + "; start them with --lockstep");
+    process_.log_warning("waits for " + names + (conductor_ ? "; start them with --lockstep" : ""));
   }
 }
 
-Stage::Clock::time_point Stage::due() const {
+std::string Stage::missing() const {
+  if (instruments_ != nullptr) return instruments_->absent();
+  std::string names;
+  if (!conductor_) return names;
+  for (const std::string& each : conductor_->absent()) names += (names.empty() ? "" : ", ") + each;
+  return names;
+}
+
+// Virtual time is the wall's where drivers stamp what they hear with it.
+void Stage::begin() {
+  state_ = State::kRunning;
+  first_tick_ = last_answer_ = Clock::now();
+  if (instruments_ != nullptr) {
+    const Utime planned = simulator_.origin(), origin = wall_utime();
+    simulator_.begin_at(origin);
+    instruments_->begin_at(origin);
+    for (Operator& order : schedule_) {
+      order.utime += origin - planned;
+      order.sequence += origin - planned;
+    }
+  }
+  advance();
+}
+
+Stage::Clock::time_point Stage::wall(Utime utime) const {
   if (options_.speed <= 0.0) return first_tick_;
-  const double elapsed = seconds_between(options_.setup.origin, simulator_.now()) / options_.speed;
+  const double elapsed = seconds_between(simulator_.origin(), utime) / options_.speed;
   return first_tick_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(elapsed));
+}
+
+void Stage::speak_when_due() {
+  for (; !waiting_.empty() && wall(waiting_.front().due) <= Clock::now(); waiting_.pop_front()) {
+    const simulation::Sample& sample = waiting_.front().sample;
+    if (!instruments_->say(sample)) speak(process_, darkroom_, sample);
+  }
+}
+
+// As run(), but everything at its own time: drivers stamp what arrives.
+void Stage::run_lines(std::span<const int> descriptors, int milliseconds) {
+  const auto now = Clock::now();
+  instruments_->serve(seconds(now.time_since_epoch()));
+  speak_when_due();
+  if (due() <= now) {
+    if (seconds(now - due()) > kTooLate * static_cast<double>(simulator_.interval()) * 1e-6) ++late_;
+    advance();
+    return speak_when_due();
+  }
+  auto next = std::min(due(), now + kLinesPause);
+  if (!waiting_.empty()) next = std::min(next, wall(waiting_.front().due));
+  const double left = std::min(1e-3 * milliseconds, seconds(next - now));
+  if (left > 0.0) poll_for(descriptors, left);
 }
 
 void Stage::run(std::span<const int> descriptors, int milliseconds) {
   const double left = seconds(due() - Clock::now());
   // Sleeping is for whole milliseconds; what is left of the last one is waited out with open eyes.
-  if (left > 1e-3) return poll_for(descriptors, std::min(milliseconds, static_cast<int>(left * 1e3)));
+  if (left > 1e-3) return poll_for(descriptors, std::min(1e-3 * milliseconds, 1e-3 * std::floor(left * 1e3)));
   if (left > 0.0) return;
   if (-left > kTooLate * static_cast<double>(simulator_.interval()) * 1e-6 / options_.speed) ++late_;
   advance();
@@ -172,7 +199,7 @@ void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
     return;
   }
   if (!interval_over()) {
-    poll_for(descriptors, milliseconds);
+    poll_for(descriptors, 1e-3 * milliseconds);
     if (seconds(Clock::now() - last_answer_) > kPatience) {
       throw InputError("lockstep: no answer from " + conductor_->waiting_for() + " for a minute; see what it says");
     }
@@ -202,55 +229,51 @@ void Stage::give_orders() {
   }
 }
 
-void Stage::publish(const simulation::Sample& sample) {
-  std::visit(
-      [&](const auto& one) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(one)>, simulation::Exposure>) {
-          process_.publish(channel_of(one), wire::encode(darkroom_.develop(one)));
-        } else {
-          process_.publish(channel_of(one), wire::encode(one));
-        }
-        if (conductor_) said_.emplace_back(channel_of(one));
-      },
-      sample);
-}
-
 void Stage::advance() {
   const bool over = over_since_ && seconds_between(*over_since_, simulator_.now()) >= kAfterwards;
-  if (over || seconds_between(options_.setup.origin, simulator_.now()) >= options_.setup.duration - 1e-9) {
+  if (over || seconds_between(simulator_.origin(), simulator_.now()) >= options_.setup.duration - 1e-9) {
     state_ = State::kEnding;
     if (!conductor_) process_.stop();
     return;
   }
   const Utime utime = simulator_.now();
+  if (driven()) simulator_.drive(instruments_->told());
   simulator_.command(
       {.utime = utime, .tau = gate_.wrench(utime), .life = 2.0 * static_cast<double>(simulator_.interval()) * 1e-6});
   const std::vector<simulation::Sample>& samples = simulator_.step();
   said_.clear();
   give_orders();
-  for (const simulation::Sample& sample : samples) publish(sample);
+  if (instruments_ != nullptr) {
+    for (std::size_t i = 0; i < samples.size(); ++i) waiting_.push_back({simulator_.due()[i], samples[i]});
+    return tell_changes();
+  }
+  for (const simulation::Sample& sample : samples) said_.emplace_back(speak(process_, darkroom_, sample));
   if (conductor_) process_.publish(runtime::kLockstep, conductor_->begin(simulator_.now(), said_));
   tell_changes();
 }
 
 runtime::Process::Condition Stage::condition() const {
   const simulation::ContactCounts& contacts = simulator_.contacts();
-  const std::string_view reason = gate_.reason(simulator_.now());
+  const std::string_view reason = driven() ? "" : gate_.reason(simulator_.now());
   char text[160];
   std::snprintf(text, sizeof text, "t %.1f s, contacts: walls %d, floor %d, surface %d, %s%s",
-                seconds_between(options_.setup.origin, simulator_.now()), contacts.walls, contacts.floor,
+                seconds_between(simulator_.origin(), simulator_.now()), contacts.walls, contacts.floor,
                 contacts.surface,
-                reason.empty() ? "thrust as commanded" : "zero thrust: ", std::string{reason}.c_str());
+                driven()         ? "thrust by thruster_driver"
+                : reason.empty() ? "thrust as commanded"
+                                 : "zero thrust: ",
+                std::string{reason}.c_str());
   std::string unhealthy = simulator_.complaint();
   if (unhealthy.empty() && late_ > 0) {
-    unhealthy = std::to_string(late_) + " control intervals came late; lower --speed";
+    unhealthy = std::to_string(late_) + " control intervals came late; " +
+                (instruments_ != nullptr ? "this machine has too much else to do" : "lower --speed");
   }
   return {.unhealthy = unhealthy, .detail = text};
 }
 
 // A change of what reaches the thrusters is said at once.
 void Stage::tell_changes() {
-  const std::string kind = std::string{gate_.reason(simulator_.now())} + "|" + simulator_.complaint();
+  const std::string kind = (driven() ? "" : std::string{gate_.reason(simulator_.now())}) + "|" + simulator_.complaint();
   if (kind == told_) return;
   told_ = kind;
   if (!simulator_.complaint().empty()) process_.log_warning(simulator_.complaint());

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <fathom_lcm/health_t.hpp>
 #include <fathom_lcm/lockstep_ack_t.hpp>
 #include <fathom_lcm/process_info_t.hpp>
@@ -17,13 +18,16 @@
 #include "common/runtime/process.hpp"
 #include "common/simulation/simulator.hpp"
 #include "processes/simulator/darkroom.hpp"
+#include "processes/simulator/instruments.hpp"
 #include "processes/simulator/options.hpp"
 
 namespace fathom::simulator {
 
 class Stage {
  public:
-  Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options);
+  /// `instruments`: null when the channels of all instruments are spoken on here.
+  Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options,
+        Instruments* instruments);
 
   /// A command has arrived, good or not.
   void count_command() { ++commands_; }
@@ -45,18 +49,26 @@ class Stage {
   enum class State { kLooking, kGathering, kRunning, kEnding };
 
   void run(std::span<const int> descriptors, int milliseconds);
+  void run_lines(std::span<const int> descriptors, int milliseconds);
+  void speak_when_due();
   void conduct(std::span<const int> descriptors, int milliseconds);
   void advance();
   void give_orders();
-  void publish(const simulation::Sample& sample);
   void tell_changes();
   [[nodiscard]] bool interval_over() const;
-  [[nodiscard]] Clock::time_point due() const;
+  [[nodiscard]] bool driven() const { return instruments_ != nullptr && instruments_->driven(); }
+  /// Who must be here before the run begins, and is not; empty when all are.
+  [[nodiscard]] std::string missing() const;
+  void begin();
+  [[nodiscard]] Clock::time_point due() const { return wall(simulator_.now()); }
+  /// When a virtual time has come by the wall's clock.
+  [[nodiscard]] Clock::time_point wall(Utime utime) const;
 
   runtime::Process& process_;
   simulation::Simulator& simulator_;
   Darkroom& darkroom_;
   Options options_;
+  Instruments* instruments_;
   std::vector<Operator> schedule_;
   std::size_t next_order_{};
   int own_orders_{};  ///< said by ourselves and still to come back
@@ -68,6 +80,11 @@ class Stage {
   std::int64_t commands_{}, excitations_{};
   std::optional<Utime> over_since_;  ///< when the supervisor said that the trial is over
   std::vector<std::string> said_;
+  struct Waiting {
+    Utime due{};
+    simulation::Sample sample;
+  };
+  std::deque<Waiting> waiting_;  ///< with instruments: what is said when it is due, not before
   std::int64_t late_{};
   std::string told_{"?"};
 };

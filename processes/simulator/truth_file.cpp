@@ -16,8 +16,8 @@ void write_truth(const Options& options, const model::Vehicle& vehicle, const mo
   file["vehicle"] = vehicle.name;
   file["site"] = site.name;
   file["seed"] = options.setup.seed;
-  file["origin_utime"] = options.setup.origin;
-  file["seconds"] = seconds_between(options.setup.origin, simulator.now());
+  file["origin_utime"] = simulator.origin();
+  file["seconds"] = seconds_between(simulator.origin(), simulator.now());
   file["control_interval_s"] = static_cast<double>(simulator.interval()) * 1e-6;
   for (const model::BaseParameter parameter : model::base_parameters()) {
     file["parameters"][std::string{model::name(parameter)}] = {{"value", secrets.theta[model::index(parameter)]},

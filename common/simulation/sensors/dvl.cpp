@@ -22,6 +22,7 @@ class DvlSensor final : public Sensor {
       : mount_{around.vehicle->mounts.dvl->mount},
         site_{around.site},
         latest_{around.latest},
+        raw_{around.raw},
         noise_{config.not_negative("beam_noise", "m/s")},
         loss_{probability(config, "beam_loss")},
         nearest_{config.not_negative("nearest", "m")},
@@ -58,8 +59,8 @@ class DvlSensor final : public Sensor {
       ++good;
     }
     Dvl sample{.utime = moment.utime, .valid = false};
-    const bool rates = latest_->has_rates && std::abs(seconds_between(latest_->utime, moment.utime)) <= kFresh;
-    const bool arm = !mount_.p_BS.isZero();
+    const bool arm = !raw_ && !mount_.p_BS.isZero();
+    const bool rates = arm && latest_->has_rates && std::abs(seconds_between(latest_->utime, moment.utime)) <= kFresh;
     if (good >= 3 && (rates || !arm)) {
       const Eigen::Matrix3d normal = rows.transpose() * rows;
       const Eigen::Vector3d v = normal.ldlt().solve(rows.transpose() * along);
@@ -79,6 +80,7 @@ class DvlSensor final : public Sensor {
   model::Mount mount_;
   const model::Site* site_;
   const Ahrs* latest_;
+  bool raw_;
   double noise_, loss_, nearest_, farthest_;
   RandomStream stream_;
   Eigen::Matrix<double, 4, 3> beams_;

@@ -94,3 +94,33 @@ TEST_CASE("attitude sensors: a sensor turned by 90 degrees about down says the s
     check_vector(rows[0], {"p [rad/s]", "q [rad/s]", "r [rad/s]"}, body.ahrs.w_WB_B, kSingle);
   }
 }
+
+TEST_CASE("sbgECom: rates and attitude of one moment become one sample, and none is lost where they come apart") {
+  class Keeps final : public devices::Output {
+   public:
+    void frame(const devices::Parser&, const devices::Frame& frame) override {
+      if (const auto* ahrs = std::get_if<const Ahrs*>(&frame.sample)) samples.push_back(**ahrs);
+    }
+    std::vector<Ahrs> samples;
+  };
+  constexpr std::size_t kImuFrame = 58 + 9;
+  const auto run = [&](int every) {  // an attitude to every so-manieth of the rates
+    Keeps kept;
+    const auto parser = devices::protocol("sbg_ecom", "test").make({});
+    for (int k = 0; k < 40; ++k) {
+      const std::string both = devices::emulate("sbg_ecom", devices::emulated_motion(10.0 + 0.01 * k, 0.0, {}), {});
+      parser->feed(devices::as_bytes(k % every == 0 ? both : both.substr(0, kImuFrame)), kept);
+    }
+    return kept.samples;
+  };
+  const auto paired = run(1);
+  CHECK(paired.size() == 42);  // the first two are told twice: nobody knew that an attitude would follow
+  for (std::size_t k = 4; k < paired.size(); ++k) {
+    CHECK(paired[k].has_attitude);
+    CHECK(paired[k].has_rates);
+    CHECK(paired[k].has_specific_force);
+  }
+  const auto apart = run(4);
+  CHECK(std::count_if(apart.begin(), apart.end(), [](const Ahrs& s) { return s.has_rates && !s.has_attitude; }) == 40);
+  CHECK(std::count_if(apart.begin(), apart.end(), [](const Ahrs& s) { return s.has_rates && s.has_attitude; }) == 10);
+}

@@ -49,6 +49,30 @@ TEST_CASE("clock map: ten milliseconds of jitter become less than one, with offs
   }
 }
 
+TEST_CASE(
+    "clock map: a clock that tells hundredths, rounded or cut off, is right in the mean and never off by more than "
+    "half") {
+  constexpr double kTick = 0.01, kSlack = 5e-4;
+  for (const double rounding : {0.0, 0.5}) {
+    Line line{.origin = 123.0, .ppm = 40.0};
+    ClockMap map{kLatency, kTick};
+    double worst = 0.0, sum = 0.0;
+    int count = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const double t = 0.1271 * i;
+      const double told = kTick * std::floor(line.device(t) / kTick + rounding);
+      const Utime utime = map.map(told, utime_after(kStart, t + kLatency));
+      if (t < 60.0) continue;
+      const double error = seconds_between(kStart, utime) - t;
+      worst = std::max(worst, std::abs(error));
+      sum += error;
+      ++count;
+    }
+    CHECK(worst < 0.5 * kTick + kSlack);
+    CHECK(std::abs(sum / count) < kSlack);
+  }
+}
+
 TEST_CASE("clock map: an instrument that starts anew is counted and mapped anew") {
   Line line{.origin = 5000.0, .ppm = 10.0};
   ClockMap map{0.0};

@@ -116,9 +116,10 @@ TEST_CASE("MAVLink: what the driver sends is read back with the fields it meant"
 
 TEST_CASE("MAVLink: voltage and applied pulse widths come as samples") {
   const auto rows = decode("mavlink", devices::emulate("mavlink", devices::emulated_motion(1.7e9, 0.0, {}), {}));
-  REQUIRE(rows.size() == 2);
-  CHECK(rows[0].has_sample);
-  CHECK(rows[1].value("SI voltage [V]") == doctest::Approx(16.2));
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0].at("name") == "HEARTBEAT");
+  CHECK(rows[1].has_sample);
+  CHECK(rows[2].value("SI voltage [V]") == doctest::Approx(16.2));
 }
 
 TEST_CASE("MAVLink version 1 packets are read, too") {
@@ -148,4 +149,33 @@ TEST_CASE("thrusters' text: what is sent, what a rig applies and what it says") 
   const auto rows = decode("thruster_text", devices::detail::nmea_sentence("FTBAT,15.8"));
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].value("SI voltage [V]") == 15.8);
+}
+
+TEST_CASE("thrusters' text: a rig that regulates forces") {
+  const std::vector<double> force{3.25, -1.1004, 0.0};
+  const std::string sentence = devices::force_sentence(force);
+  CHECK(sentence.starts_with("$FTFRC,3.250,-1.100,0.000*"));
+  devices::EmulatedAnswers rig{"thruster_text"};
+  CHECK(rig.applied_force().empty());
+  (void)rig.hear(sentence);
+  CHECK(rig.applied_force() == std::vector<double>{3.25, -1.1, 0.0});
+  rig.at(0.6);  // nobody speaks any more
+  CHECK(rig.applied_force() == std::vector<double>{0.0, 0.0, 0.0});
+  class Told final : public devices::Output {
+   public:
+    void frame(const devices::Parser&, const devices::Frame& frame) override {
+      if (const auto* one = std::get_if<const Thrusters*>(&frame.sample)) samples.push_back(**one);
+    }
+    std::vector<Thrusters> samples;
+  } told;
+  devices::ThrusterText parser{{.motors = 2}};
+  parser.feed(devices::as_bytes(devices::detail::nmea_sentence("FTAPF,-3.5,1.25") +
+                                devices::detail::nmea_sentence("FTAPP,1500,1600") +
+                                devices::detail::nmea_sentence("FTAPF,1,2,3")),
+              told);
+  REQUIRE(told.samples.size() == 2);
+  CHECK(told.samples[0].force == std::vector<double>{-3.5, 1.25});
+  CHECK(told.samples[0].pwm_us.empty());
+  CHECK(told.samples[1].pwm_us == std::vector<double>{1500, 1600});
+  CHECK(parser.complaint().find("number of thrusters") != std::string::npos);
 }

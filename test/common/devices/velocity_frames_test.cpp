@@ -139,3 +139,26 @@ TEST_CASE("Water Linked: an invalid report is no velocity, whatever its numbers 
                           "\n")[0]
             .value("SI u [m/s]") == 1.0);  // json_v1 has no type
 }
+
+TEST_CASE("Water Linked: a report in a format of the future is no measurement, and is said") {
+  std::string line = devices::emulate("wl_json", devices::emulated_motion(1.7e9, 0.0, {}), {});
+  const std::size_t at = line.find("json_v3.1");
+  REQUIRE(at != std::string::npos);
+  class Counts final : public devices::Output {
+   public:
+    void frame(const devices::Parser&, const devices::Frame& frame) override {
+      ++frames;
+      if (frame.sample.index() != 0) ++samples;
+    }
+    int frames{}, samples{};
+  } counts;
+  const auto& protocol = devices::protocol("wl_json", "test");
+  const auto parser = protocol.make({});
+  parser->feed(devices::as_bytes(line), counts);
+  CHECK(counts.samples == 1);
+  CHECK(parser->complaint().empty());
+  line.replace(at, 9, "json_v10.");
+  parser->feed(devices::as_bytes(line), counts);
+  CHECK(counts.samples == 1);
+  CHECK(parser->complaint().find("speaks json_v10.") != std::string::npos);
+}

@@ -4,7 +4,10 @@
 #include <doctest/doctest.h>
 
 #include "common/base/spatial.hpp"
+#include "common/devices/checksum.hpp"
+#include "common/devices/mavlink.hpp"
 #include "common/driver/lever_arm.hpp"
+#include "common/driver/vehicle_check.hpp"
 
 using namespace fathom;
 using namespace fathom::driver;
@@ -46,6 +49,19 @@ TEST_CASE("watch: rubbish, frames without measurement and a refusing instrument 
   CHECK(says(watch.unhealthy(2.0, "its firmware is older", ""), "firmware"));
 }
 
+TEST_CASE("watch: a line that opens and closes again and again is never called well") {
+  Watch watch{0.1, "pd0"};
+  watch.link(false, "tcp://192.168.2.95:16171: the other side closed the line; trying again", 0.0);
+  for (double t = 1.0; t < 5.0; t += 1.0) {
+    watch.link(true, "", t);
+    CHECK(says(watch.unhealthy(t + 0.1, "", ""), "closed the line"));
+    watch.link(false, "tcp://192.168.2.95:16171: the other side closed the line; trying again", t + 0.2);
+  }
+  watch.link(true, "", 6.0);
+  watch.sample(utime_after(kStart, 6.1), 6.1);
+  CHECK(watch.unhealthy(6.1, "", "").empty());
+}
+
 TEST_CASE("watch: a sample that is late makes a gap, a new line does not") {
   Watch watch{0.1, "pd0"};
   watch.link(true, "", 0.0);
@@ -54,6 +70,47 @@ TEST_CASE("watch: a sample that is late makes a gap, a new line does not") {
   watch.link(true, "", 5.0);
   watch.sample(utime_after(kStart, 5.0), 5.0);
   CHECK(watch.gaps() == 1);
+}
+
+TEST_CASE("vehicle check: another firmware, another vehicle, and one that refuses are told with what to do") {
+  const auto packet = [](std::uint8_t system, std::uint8_t id, std::uint8_t extra, const std::string& payload) {
+    std::string body{static_cast<char>(payload.size())};
+    body += std::string("\0\0\0", 3) + static_cast<char>(system) + '\1' + static_cast<char>(id) + std::string(2, '\0');
+    body += payload;
+    const std::uint16_t crc = devices::crc16_reflected(devices::as_bytes(body + static_cast<char>(extra)), 0xFFFF);
+    return "\xFD" + body + static_cast<char>(crc & 0xFFU) + static_cast<char>(crc >> 8);
+  };
+  class Hears final : public devices::Output {
+   public:
+    explicit Hears(VehicleCheck& check) : check_{check} {}
+    void frame(const devices::Parser& parser, const devices::Frame&) override {
+      check_.hear(dynamic_cast<const devices::Mavlink&>(parser), now);
+    }
+    double now{};
+
+   private:
+    VehicleCheck& check_;
+  };
+  const auto heartbeat = [&](std::uint8_t system, char type, char autopilot) {
+    return packet(system, 0, 50, std::string(4, '\0') + type + autopilot + std::string("\x40\x04\x03"));
+  };
+  const auto answer = [&](char result) { return packet(1, 77, 143, std::string("\xD1\0", 2) + result); };
+  VehicleCheck check{1};
+  Hears output{check};
+  devices::Mavlink parser{{}};
+  const auto hear = [&](double now, const std::string& bytes) {
+    output.now = now;
+    parser.feed(devices::as_bytes(bytes), output);
+    return check.objection(now);
+  };
+  CHECK(hear(0.0, heartbeat(1, 12, 3)).empty());
+  CHECK(hear(1.0, heartbeat(7, 12, 3)).empty());  // another one beside ours
+  CHECK(says(hear(8.0, heartbeat(7, 12, 3)), "set 'system'"));
+  CHECK(says(hear(9.0, heartbeat(1, 2, 12)), "not ArduSub"));
+  CHECK(hear(10.0, heartbeat(1, 12, 3)).empty());
+  CHECK(hear(11.0, answer(0)).empty());
+  CHECK(says(hear(11.5, heartbeat(1, 12, 3) + answer(4)), "refuses motor tests (result 4)"));
+  CHECK(check.objection(15.0).empty());
 }
 
 TEST_CASE("lever arm: turning about down moves an instrument ahead of the origin sideways") {
@@ -81,4 +138,24 @@ TEST_CASE("lever arm: a port behind and below the origin, level and bow up") {
   Depth bow_up{.utime = kStart, .z = 5.0};
   arm.remove(bow_up);
   CHECK(bow_up.z == doctest::Approx(5.0 - 0.5 - 0.2 * 0.8660254).epsilon(1e-6));  // the stern hangs half a metre lower
+}
+
+TEST_CASE("lever arm: of many samples the one at the measurement's own time counts, however late it comes") {
+  LeverArm arm{{0.0, 0.0, -1.0}};  // a transponder above the origin
+  for (int k = 0; k <= 200; ++k) {
+    const double t = 0.01 * k;  // on its side after the first second
+    arm.hear(Ahrs{.utime = utime_after(kStart, t),
+                  .q_WB = Eigen::Quaterniond{rotation_from_euler({k > 100 ? 1.5707963268 : 0.0, 0.0, 0.0})},
+                  .has_attitude = true});
+  }
+  Usbl upright{.utime = utime_after(kStart, 0.5), .p_WB = {1.0, 2.0, 3.0}, .valid = true};
+  arm.remove(upright);
+  CHECK(upright.p_WB.isApprox(Eigen::Vector3d{1.0, 2.0, 4.0}));
+  Usbl aside{.utime = utime_after(kStart, 1.5), .p_WB = {1.0, 2.0, 3.0}, .valid = true};
+  arm.remove(aside);
+  CHECK((aside.p_WB - Eigen::Vector3d{1.0, 1.0, 3.0}).norm() <
+        1e-9);  // rolled to starboard its top points to starboard
+  Usbl late{.utime = utime_after(kStart, 5.0), .p_WB = {1.0, 2.0, 3.0}, .valid = true};
+  arm.remove(late);
+  CHECK_FALSE(late.valid);
 }

@@ -174,6 +174,35 @@ TEST_CASE("supervisor: without a valid state there is no thrust; it goes on when
   CHECK_FALSE(loop.thrust());
 }
 
+TEST_CASE("supervisor: beside a sick process there is no thrust; it goes on when that is well soon, else it aborts") {
+  Loop loop;
+  loop.run(0.2);
+  loop.arm();
+  loop.run(20.0);
+  CHECK(loop.said->phase == "excite");
+  loop.supervisor.hear(Health{.process = "estimator", .state = "unhealthy"});
+  loop.run(0.06);
+  CHECK_FALSE(loop.thrust());
+  loop.run(1.0);
+  CHECK(loop.said->phase == "lost");
+  loop.supervisor.hear(Health{.process = "estimator", .state = "running"});
+  loop.run(0.1);
+  CHECK(loop.said->phase == "approach");
+  CHECK(loop.thrust());
+  loop.supervisor.hear(Health{.process = "estimator", .state = "unhealthy"});
+  loop.run(5.0);
+  CHECK(loop.supervisor.phase() == Phase::kAborted);
+  CHECK(loop.supervisor.reason() == "estimator is unhealthy");
+
+  Loop dead;
+  dead.run(0.2);
+  dead.arm();
+  dead.run(20.0);
+  dead.supervisor.hear(Health{.process = "estimator", .state = "fault"});
+  dead.run(0.06);
+  CHECK(dead.supervisor.phase() == Phase::kAborted);  // it does not come back by itself
+}
+
 TEST_CASE("supervisor: when states stop coming the last command dies by itself") {
   Loop loop;
   loop.run(0.2);

@@ -226,28 +226,35 @@ TEST_CASE("identifier: velocities that are all half a percent high leave no resi
   CHECK(b.model().parameters[12].std == doctest::Approx(a.model().parameters[12].std));  // W-B has no velocity in it
 }
 
-TEST_CASE("identifier: a held input that is stamped with the states is right to the half step") {
-  // 100 Hz states, a force that jumps at state times and holds: either side of the jump would be half a step off.
-  auto s = settings();
-  s.interpolate_input = false;
-  s.noise_force = 0.05;
-  s.max_gap = 0.1;
-  Identifier identifier{s, vehicle()};
-  const double m = 10.0, d = -12.0, dt = 0.01;
-  std::mt19937 engine{3};
-  double u = 0.0, force = 0.0;
-  for (int k = 0; k < 12'000; ++k) {
-    if (k % 37 == 0) force = std::uniform_real_distribution<double>{-8.0, 8.0}(engine);
-    const Utime utime = utime_after(kStart, k * dt);
-    Thrusters t{.utime = utime, .has_tau = true};
-    t.tau[0] = force;
-    (void)identifier.step(t);
-    StateEstimate state{.utime = utime, .valid = true};
-    state.nu[0] = u;
-    (void)identifier.step(state);
-    const double settled = -force / d;  // exact for a held force
-    u = settled + (u - settled) * std::exp(d / m * dt);
+TEST_CASE("identifier: a held input is right to the half step, wherever between the states it jumps") {
+  // 100 Hz states, a force that jumps at or behind state times and holds: trapezoids would be half a step off.
+  for (const double behind : {0.0, 0.0002, 0.003, 0.0098}) {
+    CAPTURE(behind);
+    auto s = settings();
+    s.interpolate_input = false;
+    s.noise_force = 0.05;
+    s.max_gap = 0.1;
+    Identifier identifier{s, vehicle()};
+    const double m = 10.0, d = -12.0, dt = 0.01;
+    std::mt19937 engine{3};
+    double u = 0.0, force = 0.0;
+    for (int k = 0; k < 12'000; ++k) {
+      const Utime utime = utime_after(kStart, k * dt);
+      StateEstimate state{.utime = utime, .valid = true};
+      state.nu[0] = u;
+      (void)identifier.step(state);
+      const auto hold = [&](double seconds) {  // exact for a held force
+        const double settled = -force / d;
+        u = settled + (u - settled) * std::exp(d / m * seconds);
+      };
+      hold(behind);
+      if (k % 37 == 0) force = std::uniform_real_distribution<double>{-8.0, 8.0}(engine);
+      hold(dt - behind);
+      Thrusters t{.utime = utime_after(utime, behind), .has_tau = true};
+      t.tau[0] = force;
+      (void)identifier.step(t);
+    }
+    CHECK(value(identifier.model(), "m_X") == doctest::Approx(m).epsilon(0.002));
+    CHECK(value(identifier.model(), "X_u") == doctest::Approx(d).epsilon(0.01));
   }
-  CHECK(value(identifier.model(), "m_X") == doctest::Approx(m).epsilon(0.002));
-  CHECK(value(identifier.model(), "X_u") == doctest::Approx(d).epsilon(0.01));
 }
