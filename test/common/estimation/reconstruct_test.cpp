@@ -71,12 +71,12 @@ TEST_CASE("reconstruct: a clean run comes out on the gyro's grid with its motion
   for (int axis = 0; axis < 6; ++axis) CHECK(trial.nu_sigma[axis] > 0.0);
 }
 
-TEST_CASE("reconstruct: streams faster than 25 Hz are averaged, their means lie on the grid") {
+TEST_CASE("reconstruct: streams faster than 50 Hz are averaged, their means lie on the grid") {
   const Recording recording = test::synthetic_recording(
       {.seed = 3, .duration = kDuration, .pose_rate = 100.0, .gyro_rate = 100.0, .dvl_rate = 20.0});
   const Trial trial = reconstruct(recording, Corrections{}, model::Vehicle{});
-  CHECK(trial.dt == doctest::Approx(0.04));
-  check_motion(error_of(trial, 3, 0.015));  // the middle of the first four samples
+  CHECK(trial.dt == doctest::Approx(0.02));
+  check_motion(error_of(trial, 3, 0.005));  // the middle of the first two samples
 }
 
 TEST_CASE("reconstruct: corrections turn, scale, shift and move what was logged") {
