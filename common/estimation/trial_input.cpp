@@ -5,12 +5,11 @@
 #include "common/base/error.hpp"
 #include "common/estimation/thruster_forces.hpp"
 #include "common/estimation/timeline.hpp"
-#include "common/model/motion.hpp"
 
 namespace fathom::estimation {
 namespace {
 
-constexpr double kFaster = model::InputSignal::kAveraged;  // of the grid's step
+constexpr double kFaster = 0.75;    // of the grid's step: inputs closer than that are averaged over it
 constexpr double kSameTime = 1e-6;  // s: stamps are whole microseconds
 
 /// Input over time: thruster forces or the wrench, one row per sample of the stream.
@@ -105,6 +104,7 @@ void add_input(const Recording& recording, Utime origin, const ThrusterCorrectio
   trial.input_is_wrench = input.is_wrench;
   trial.input_step = typical_step(input.t);
   if (trial.input_step < kFaster * trial.dt) {
+    trial.input_averaged = true;
     average(input, trial);
   } else {
     for (const double t : trial.t) trial.input.push_back(mean_around(input, t, 0.0));

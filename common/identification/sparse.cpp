@@ -47,6 +47,7 @@ Trial sparse(const Trial& trial, double dt) {
   Trial out{.name = trial.name, .dt = trial.dt * static_cast<double>(step), .observed = trial.observed};
   out.input_is_wrench = trial.input_is_wrench;
   out.input_step = trial.input_step;
+  out.input_averaged = trial.input_averaged;
   out.nu_sigma = trial.nu_sigma;
   for (std::size_t k = 0; k < trial.size(); k += step) {
     out.t.push_back(trial.t[k]);

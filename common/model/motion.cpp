@@ -8,9 +8,8 @@ namespace fathom::model {
 InputSignal::InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
                          std::span<const Eigen::VectorXd> held, const InputTiming& timing)
     : t0_{t0}, dt_{dt}, later_{timing.hold * timing.step}, samples_{samples}, held_{held.empty() ? samples : held} {
-  const bool averaged = !held.empty() && timing.step < kAveraged * dt;
-  held_share_ = averaged ? 1.0 : 2.0 * std::abs(timing.hold);
-  if (averaged) {
+  held_share_ = timing.averaged ? 1.0 : 2.0 * std::abs(timing.hold);
+  if (timing.averaged) {
     ahead_ = -later_ / dt;
   } else if (timing.hold < 0.0) {
     ahead_ = timing.step / dt;

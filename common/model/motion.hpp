@@ -26,14 +26,13 @@ struct InputTiming {
   /// Share of the time between inputs by which they act later than straight lines between them: 1/2 where each is held
   /// until the next one, -1/2 where each tells of the time since the one before.
   double hold{0.0};
-  double step{0.0};  ///< s between inputs
+  double step{0.0};      ///< s between inputs
+  bool averaged{false};  ///< inputs came faster than the grid; what is told of each step follows their course
 };
 
 /// The actuators' commanded forces over time; those of the first sample before it, of the last one after it.
 class InputSignal {
  public:
-  static constexpr double kAveraged = 0.75;  ///< of the grid's step: inputs closer than that are averaged over it
-
   InputSignal() = default;
   /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: Trial::held; the samples themselves when
   /// empty.

@@ -34,6 +34,7 @@ struct Trial {
   std::vector<Eigen::VectorXd> input;  ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
   bool input_is_wrench{false};         ///< true: input has 6 entries, the wrench at the body origin in body axes
   double input_step{};                 ///< s between inputs as they were recorded
+  bool input_averaged{false};          ///< they came faster than the grid: `input` and `held` are means
   /// Mean over each step if inputs are held until the next one, or, where they came faster than the grid and are
   /// averages, along their course; empty: `input` itself.
   std::vector<Eigen::VectorXd> held;
