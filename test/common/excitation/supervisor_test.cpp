@@ -167,7 +167,7 @@ TEST_CASE("supervisor: without a valid state there is no thrust; it goes on when
   CHECK(loop.said->phase == "approach");  // first back to where the mode begins
   CHECK(loop.thrust());
   loop.valid = false;
-  loop.run(5.0);
+  loop.run(loop.settings.supervisor.patience + 0.5);
   CHECK(loop.supervisor.phase() == Phase::kLost);
   loop.valid = true;
   loop.run(2.0);
@@ -190,7 +190,7 @@ TEST_CASE("supervisor: beside a sick process there is no thrust; it goes on when
   CHECK(loop.said->phase == "approach");
   CHECK(loop.thrust());
   loop.supervisor.hear(Health{.process = "estimator", .state = "unhealthy"});
-  loop.run(5.0);
+  loop.run(loop.settings.supervisor.patience + 0.5);
   CHECK(loop.supervisor.phase() == Phase::kAborted);
   CHECK(loop.supervisor.reason() == "estimator is unhealthy");
 
