@@ -7,17 +7,7 @@
 namespace fathom::devices {
 namespace {
 
-bool between(char c) { return c == ' ' || c == ',' || c == ';' || c == '\t'; }
-
-std::string_view next_word(std::string_view& rest) {
-  std::size_t begin = 0;
-  while (begin < rest.size() && between(rest[begin])) ++begin;
-  std::size_t end = begin;
-  while (end < rest.size() && !between(rest[end])) ++end;
-  const std::string_view word = rest.substr(begin, end - begin);
-  rest.remove_prefix(end);
-  return word;
-}
+constexpr std::string_view kBetween = " ,;\t";
 
 bool begins_number(std::string_view word) {
   return !word.empty() && (word[0] == '+' || word[0] == '-' || (word[0] >= '0' && word[0] <= '9'));
@@ -39,9 +29,9 @@ bool LoadText::read_named(std::string_view line, std::size_t equals, Readings& r
     return false;
   }
   std::string_view rest = line.substr(equals + 1);
-  const auto value = number(next_word(rest));
-  const std::string_view unit = next_word(rest);
-  if (!value || !next_word(rest).empty() || (!unit.empty() && unit != cell->unit)) return false;
+  const auto value = number(next_word(rest, kBetween));
+  const std::string_view unit = next_word(rest, kBetween);
+  if (!value || !next_word(rest, kBetween).empty() || (!unit.empty() && unit != cell->unit)) return false;
   const auto index = static_cast<std::size_t>(cell - cells_.begin());
   readings.value[index] = *value;
   readings.there[index] = true;
@@ -53,7 +43,7 @@ bool LoadText::read(std::string_view line, Readings& readings) const {
   readings = {};
   const std::size_t equals = line.find('=');
   if (equals != std::string_view::npos) return read_named(line, equals, readings);
-  for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+  for (std::string_view word = next_word(line, kBetween); !word.empty(); word = next_word(line, kBetween)) {
     if (!begins_number(word)) {  // the unit of the reading before it
       if (readings.count == 0) return false;
       if (word != cells_[readings.count - 1].unit) {

@@ -24,6 +24,18 @@ namespace fathom::devices {
 [[nodiscard]] std::optional<double> seconds_since_1970(std::int64_t year, std::int64_t month, std::int64_t day,
                                                        std::int64_t hour, std::int64_t minute, double second);
 
+/// The next word of a line, cut off from it; empty when there is none. Any number of `separators` is one gap.
+[[nodiscard]] inline std::string_view next_word(std::string_view& rest, std::string_view separators) {
+  const auto between = [&](char c) { return separators.find(c) != std::string_view::npos; };
+  std::size_t begin = 0;
+  while (begin < rest.size() && between(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !between(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
+  return word;
+}
+
 /// A line cut at its separators, without allocation.
 class Words {
  public:

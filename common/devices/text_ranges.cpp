@@ -7,18 +7,7 @@
 namespace fathom::devices {
 namespace {
 
-bool between(char c) { return c == ' ' || c == ',' || c == '\t'; }
-
-// The next word of a line, cut off from it.
-std::string_view next_word(std::string_view& rest) {
-  std::size_t begin = 0;
-  while (begin < rest.size() && between(rest[begin])) ++begin;
-  std::size_t end = begin;
-  while (end < rest.size() && !between(rest[end])) ++end;
-  const std::string_view word = rest.substr(begin, end - begin);
-  rest.remove_prefix(end);
-  return word;
-}
+constexpr std::string_view kBetween = " ,\t";
 
 }  // namespace
 
@@ -32,7 +21,7 @@ TextRanges::TextRanges(const Settings& settings) : names_{settings.transponders}
 bool TextRanges::read(std::string_view line, Values& values) const {
   values = {};
   std::uint32_t seen = 0;
-  for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+  for (std::string_view word = next_word(line, kBetween); !word.empty(); word = next_word(line, kBetween)) {
     const std::size_t equals = word.find('=');
     if (equals == std::string_view::npos) return false;
     const auto name = std::find(names_.begin(), names_.end(), word.substr(0, equals));

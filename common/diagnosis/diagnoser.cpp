@@ -94,37 +94,37 @@ void take_back(SearchResult& found) {
 
 }  // namespace
 
-DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> unseen,
+DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
                          const Settings& settings, const Progress& progress) {
-  std::vector<Trial> validate;
-  for (const Trial& trial : unseen) validate.push_back(identification::sparse(trial, kStep));
+  std::vector<Trial> unseen;
+  for (const Trial& trial : validate) unseen.push_back(identification::sparse(trial, kStep));
   SearchResult found = search(vehicle, train, settings, progress);
   DiagnosisReport report;
   DiagnosisResult& result = report.result;
   result.vehicle = vehicle.name;
   for (const Trial& trial : train) result.train.push_back(trial.name);
-  for (const Trial& trial : validate) result.validate.push_back(trial.name);
+  for (const Trial& trial : unseen) result.validate.push_back(trial.name);
 
   progress("predicting the validation runs", 0.97);
-  const std::vector<model::Window> windows = prediction_windows(validate);
+  const std::vector<model::Window> windows = prediction_windows(unseen);
   const Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
   if (!found.accepted.empty() && !carries_over(found, improvement(before, after, vehicle))) {
     take_back(found);
     after = before;
   }
-  const Residuals residual_before = residuals_of(found.before.model, validate);
-  const Residuals residual_after = residuals_of(found.after.model, validate);
+  const Residuals residual_before = residuals_of(found.before.model, unseen);
+  const Residuals residual_after = residuals_of(found.after.model, unseen);
   result.error_before = {force_rmse(vehicle, residual_before), before.summary(vehicle)};
   result.error_after = {force_rmse(vehicle, residual_after), after.summary(vehicle)};
   result.improvement = improvement(before, after, vehicle);
   result.parameters_before = found.before.parameters();
   result.parameters_after = found.after.parameters();
-  result.residual_before = whiteness(found.before.model, validate, residual_before);
-  result.residual_after = whiteness(found.after.model, validate, residual_after);
-  conclude(found, associations(found.after.model, validate, residual_after, kSmallestAssociation), result);
-  for (std::size_t r = 0; r < validate.size(); ++r) {
-    report.traces.push_back(trace_of(validate[r], found, residual_before[r], residual_after[r]));
+  result.residual_before = whiteness(found.before.model, unseen, residual_before);
+  result.residual_after = whiteness(found.after.model, unseen, residual_after);
+  conclude(found, associations(found.after.model, unseen, residual_after, kSmallestAssociation), result);
+  for (std::size_t r = 0; r < unseen.size(); ++r) {
+    report.traces.push_back(trace_of(unseen[r], found, residual_before[r], residual_after[r]));
   }
   return report;
 }

@@ -189,11 +189,7 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
   double weight = 0.0;  // sum of squared offsets [s^2]: slope of the local straight line through symmetric samples
   for (std::size_t i = 1; i <= half; ++i) weight += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
   std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  const model::InputSignal input{trial.t.empty() ? 0.0 : trial.t.front(),
-                                 trial.dt,
-                                 trial.input,
-                                 trial.held,
-                                 {model.input_hold, trial.input_step, trial.input_averaged}};
+  const model::InputSignal input = model::input_of(model, trial);
   std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
   const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());
   for (std::size_t k = 0; k < trial.size(); ++k) {

@@ -25,6 +25,7 @@ Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::stri
   result.rates_valid = cut(trial.rates_valid);
   result.input = cut(trial.input);
   result.held = cut(trial.held);
+  result.told = cut(trial.told);
   result.voltage = cut(trial.voltage);
   return result;
 }

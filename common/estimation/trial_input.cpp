@@ -78,21 +78,21 @@ void average(const Input& input, Trial& trial) {
   }
 }
 
-/// Mean over each [t, t + dt) if every input is held until the next one.
-void sample_held(const Input& input, const std::vector<double>& grid, double dt, std::vector<Eigen::VectorXd>& out) {
-  std::size_t i = 0;  // the input that holds
-  for (const double t : grid) {
-    const double end = t + dt;
-    while (i + 1 < input.t.size() && input.t[i + 1] <= t + kSameTime) ++i;
+/// Mean over each [t, t + dt) if every input holds until the next one, or `ahead`, from the one before on.
+void sample_held(const Input& input, const Trial& trial, bool ahead, std::vector<Eigen::VectorXd>& out) {
+  const std::size_t last = input.t.size() - 1;
+  std::size_t i = 0;  // of the first row after t
+  for (const double t : trial.t) {
+    const double end = t + trial.dt;
+    while (i <= last && input.t[i] <= t + kSameTime) ++i;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
     double from = t;
-    for (std::size_t j = i; from < end - kSameTime; ++j) {
-      const bool last = j + 1 >= input.t.size() || input.t[j + 1] >= end - kSameTime;
-      const double to = last ? end : std::max(from, input.t[j + 1]);
-      sum += (to - from) * input.x[j];
+    for (std::size_t j = i; from < end - kSameTime; ++j) {  // between rows j - 1 and j
+      const double to = j > last || input.t[j] >= end - kSameTime ? end : input.t[j];
+      sum += (to - from) * input.x[std::min(ahead || j == 0 ? j : j - 1, last)];
       from = to;
     }
-    out.emplace_back(sum / dt);
+    out.emplace_back(sum / trial.dt);
   }
 }
 
@@ -108,7 +108,8 @@ void add_input(const Recording& recording, Utime origin, const ThrusterCorrectio
     average(input, trial);
   } else {
     for (const double t : trial.t) trial.input.push_back(mean_around(input, t, 0.0));
-    sample_held(input, trial.t, trial.dt, trial.held);
+    sample_held(input, trial, false, trial.held);
+    sample_held(input, trial, true, trial.told);
   }
   for (std::size_t i = 0; i < trial.t.size() && !recording.battery.empty(); ++i) {
     trial.voltage.push_back(voltage_at(recording.battery, utime_after(origin, trial.t[i])));

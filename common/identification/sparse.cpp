@@ -30,13 +30,26 @@ Eigen::VectorXd mean_input(const Trial& trial, std::size_t centre, std::size_t h
   return sum / count;
 }
 
-/// Mean over the next `step` samples' steps.
-Eigen::VectorXd mean_held(const Trial& trial, std::size_t from, std::size_t step) {
-  const auto& held = trial.held.empty() ? trial.input : trial.held;
-  const std::size_t to = std::min(from + step, held.size());
-  Eigen::VectorXd sum = held[from];
-  for (std::size_t i = from + 1; i < to; ++i) sum += held[i];
-  return sum / static_cast<double>(to - from);
+/// Mean over the next `step` samples' steps, and of that what the velocities near `centre` felt of it.
+Eigen::VectorXd mean_step(const std::vector<Eigen::VectorXd>& held, std::size_t centre, std::size_t half,
+                          std::size_t step) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(held[centre].size());
+  double count = 0.0;
+  const auto add = [&](std::size_t from) {
+    for (std::size_t i = from; i < std::min(from + step, held.size()); ++i, count += 1.0) sum += held[i];
+  };
+  add(centre);
+  for (std::size_t i = 1; i <= half && i <= centre && centre + i < held.size(); ++i) {
+    add(centre - i);
+    add(centre + i);
+  }
+  return sum / count;
+}
+
+std::vector<Eigen::VectorXd> next_of(const std::vector<Eigen::VectorXd>& input) {
+  std::vector<Eigen::VectorXd> next(input.begin() + 1, input.end());
+  next.push_back(input.back());
+  return next;
 }
 
 }  // namespace
@@ -49,6 +62,8 @@ Trial sparse(const Trial& trial, double dt) {
   out.input_step = trial.input_step;
   out.input_averaged = trial.input_averaged;
   out.nu_sigma = trial.nu_sigma;
+  const auto& held = trial.held.empty() ? trial.input : trial.held;
+  const auto& told = trial.told.empty() && !trial.input_averaged ? next_of(trial.input) : trial.told;
   for (std::size_t k = 0; k < trial.size(); k += step) {
     out.t.push_back(trial.t[k]);
     out.p_WB.push_back(trial.p_WB[k]);
@@ -60,7 +75,8 @@ Trial sparse(const Trial& trial, double dt) {
     out.velocity_valid.push_back(trial.velocity_valid[k]);
     out.rates_valid.push_back(trial.rates_valid[k]);
     out.input.push_back(mean_input(trial, k, step / 2));
-    out.held.push_back(mean_held(trial, k, step));
+    out.held.push_back(mean_step(held, k, step / 2, step));
+    if (!told.empty()) out.told.push_back(mean_step(told, k, step / 2, step));
     if (!trial.voltage.empty()) out.voltage.push_back(trial.voltage[k]);
   }
   return out;

@@ -11,7 +11,7 @@ InputSignal::InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> 
   held_share_ = timing.averaged ? 1.0 : 2.0 * std::abs(timing.hold);
   if (timing.averaged) {
     ahead_ = -later_ / dt;
-  } else if (timing.hold < 0.0) {
+  } else if (timing.hold < 0.0 && held.empty()) {
     ahead_ = timing.step / dt;
   }
 }
@@ -34,8 +34,13 @@ void InputSignal::now(double t, ActuatorForces& force) const {
   const double place = std::clamp(std::floor((t - t0_) / dt_ + kRounding) + ahead_, 0.0, last);
   const auto index = static_cast<std::size_t>(place);
   const double share = std::max(place - static_cast<double>(index), 0.0);
+  const std::size_t next = std::min(index + 1, held_.size() - 1);
+  if (held_share_ == 1.0) {
+    force = (1.0 - share) * held_[index] + share * held_[next];
+    return;
+  }
   line(t, force);
-  force += held_share_ * ((1.0 - share) * held_[index] + share * held_[std::min(index + 1, held_.size() - 1)] - force);
+  force += held_share_ * ((1.0 - share) * held_[index] + share * held_[next] - force);
 }
 
 }  // namespace fathom::model

@@ -34,8 +34,8 @@ struct InputTiming {
 class InputSignal {
  public:
   InputSignal() = default;
-  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: Trial::held; the samples themselves when
-  /// empty.
+  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: Trial::held, or told where the hold is
+  /// negative; made of the samples when empty.
   InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
               std::span<const Eigen::VectorXd> held = {}, const InputTiming& timing = {});
   /// Straight lines, early or late as the timing says: continuous in time.

@@ -45,6 +45,14 @@ bool rollout_with_derivatives(const Model& model, const Window& window, const Ve
   return finished;
 }
 
+InputSignal input_of(const Model& model, const Trial& trial) {
+  return {trial.t.empty() ? 0.0 : trial.t.front(),
+          trial.dt,
+          trial.input,
+          model.input_hold < 0.0 && !trial.input_averaged ? trial.told : trial.held,
+          {model.input_hold, trial.input_step, trial.input_averaged}};
+}
+
 VelocityTrace true_velocities(const Model& model, const Trial& trial, std::size_t from, std::size_t count) {
   VelocityTrace nu(6, static_cast<Eigen::Index>(count));
   VelocityView view{nu};

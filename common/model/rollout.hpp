@@ -34,6 +34,9 @@ using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameter
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives);
 
+/// What drove the trial, as the model says that commands act between their samples. The trial must outlive it.
+[[nodiscard]] InputSignal input_of(const Model& model, const Trial& trial);
+
 /// True velocities of `count` samples from `from` on, as the sensors' effects of the model explain the measured ones.
 [[nodiscard]] VelocityTrace true_velocities(const Model& model, const Trial& trial, std::size_t from,
                                             std::size_t count);

@@ -53,11 +53,7 @@ class Rollout {
   Rollout(const Model& model, const Trial& trial, Sensitivity* sensitivity = nullptr)
       : model_{model},
         trial_{trial},
-        input_{trial.t.front(),
-               trial.dt,
-               trial.input,
-               trial.held,
-               {model.input_hold, trial.input_step, trial.input_averaged}},
+        input_{input_of(model, trial)},
         memory_size_{model.memory_size()},
         sensitivity_{sensitivity} {
     const auto& dof = model.vehicle->dof;

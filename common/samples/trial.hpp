@@ -38,6 +38,8 @@ struct Trial {
   /// Mean over each step if inputs are held until the next one, or, where they came faster than the grid and are
   /// averages, along their course; empty: `input` itself.
   std::vector<Eigen::VectorXd> held;
+  /// The same if inputs act from the one before on; empty with averages, or: the next of `input`.
+  std::vector<Eigen::VectorXd> told;
   std::vector<double> voltage;          ///< V; empty when not logged
   Vector6d nu_sigma{Vector6d::Zero()};  ///< noise of nu, m/s and rad/s, as estimated from the data
 

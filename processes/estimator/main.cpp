@@ -1,6 +1,5 @@
 // estimator: what the sensors say in, STATE out. The section's `filter` chooses between the trial's complementary
 // filter, the one for recordings with motion capture, and a Kalman filter.
-#include <chrono>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
@@ -27,9 +26,6 @@
 using namespace fathom;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kYouth{900};  // less than the period of HEALTH
 
 template <class Message, class Mind>
 void hear(runtime::Process& process, Mind& mind, const std::string& channel) {
@@ -87,15 +83,11 @@ void run_trial(runtime::Process& process, const Config& config) {
   hear<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
-  const auto begun = Clock::now();
   process.on_health([&]() -> runtime::Process::Condition {
     std::string detail;
     for (const auto& [reason, count] : navigator.rejected()) {
       detail += (detail.empty() ? "" : ", ") + reason + " " + std::to_string(count);
     }
-    // Who has just begun, perhaps in another's place in the middle of a trial, has heard nothing yet: no reason to
-    // stop.
-    if (Clock::now() - begun < kYouth) return {.unhealthy = "", .detail = navigator.complaint()};
     return {.unhealthy = navigator.complaint(), .detail = detail};
   });
   process.on_restart([&] { navigator.reset(); });

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/identification/sparse.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -40,6 +41,20 @@ TEST_CASE("input hold: lines, held and told afterwards are told apart, and the n
     CAPTURE(hold);
     CHECK(std::abs(fit.model.input_hold - hold) < kFound);
     if (hold != 0.0) CHECK(error(fit, dive.truth) < 0.7 * error(plain, dive.truth));
+  }
+}
+
+TEST_CASE("input hold: found on a coarser grid too, where a step holds several commands") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  for (const double hold : kTimes) {
+    const test::VirtualDive dive =
+        test::make_dive(vehicle, {.duration = 60.0, .dt = 0.02, .seed = 5, .input_hold = hold});
+    const Trial coarse = sparse(dive.trial, 0.04);
+    REQUIRE(coarse.dt == doctest::Approx(0.04));
+    const TrajectoryFit problem{vehicle, {&coarse, 1}, {.window = 5.0, .threads = 2}};
+    const FitResult fit = with_input_hold(problem, fit_from_priors(vehicle, {&coarse, 1}, problem.settings()));
+    CAPTURE(hold);
+    CHECK(std::abs(fit.model.input_hold - hold) < 4.0 * kFound);  // this yaw settles within a step, which blurs it
   }
 }
 

@@ -43,6 +43,15 @@ TEST_CASE("sparse: what grows steadily keeps its place in time") {
   }
 }
 
+TEST_CASE("sparse: commands that are held, or told of afterwards, are half a command late or early") {
+  const Trial coarse = sparse(ramp(0.01, 103), 0.05);
+  for (std::size_t k = 1; k + 1 < coarse.size();
+       ++k) {  // means over [t, t + 0.05) of a course that grows by 1 a second
+    CHECK(std::abs(coarse.held[k][0] - (coarse.t[k] + 0.02)) < kRounding);
+    CHECK(std::abs(coarse.told[k][0] - (coarse.t[k] + 0.03)) < kRounding);
+  }
+}
+
 TEST_CASE("sparse: noise falls, and an invalid neighbour has no part in a mean") {
   Trial trial = ramp(0.01, 101);
   for (std::size_t k = 0; k < trial.size(); ++k) trial.nu[k][3] = k % 2 == 0 ? 1.0 : -1.0;

@@ -34,6 +34,38 @@ TEST_CASE("input signal: samples at their times, straight lines between, held ou
   CHECK(at(1e9) == samples.back());
 }
 
+TEST_CASE("input signal: commands that are held jump at their samples") {
+  const auto samples = ramp();
+  constexpr double kStep = 0.5;
+  const auto now = [&](double hold, double t) {
+    const model::InputSignal input{100.0, kStep, samples, {}, {.hold = hold, .step = kStep}};
+    model::ActuatorForces force;
+    input.now(100.0 + t, force);
+    return Eigen::Vector2d(force);
+  };
+  for (const double t : {0.5, 0.6, 0.99}) CHECK((now(0.5, t) - samples[1]).norm() < kRounding);   // since it was told
+  for (const double t : {0.5, 0.6, 0.99}) CHECK((now(-0.5, t) - samples[2]).norm() < kRounding);  // told afterwards
+  CHECK((now(0.0, 0.75) - Eigen::Vector2d(1.5, 7.5)).norm() < kRounding);
+  CHECK((now(0.25, 0.75) - 0.5 * (samples[1] + Eigen::Vector2d(1.5, 7.5))).norm() < kRounding);  // half way to held
+  CHECK(now(0.5, -1.0) == samples.front());
+  CHECK(now(-0.5, 9.0) == samples.back());
+}
+
+TEST_CASE("input signal: means over steps count for their step, shifted by what acts earlier") {
+  const auto samples = ramp();
+  constexpr double kStep = 0.5;
+  const auto now = [&](double hold, double t) {
+    const model::InputSignal input{0.0, kStep, samples, {}, {.hold = hold, .step = 0.4 * kStep, .averaged = true}};
+    model::ActuatorForces force;
+    input.now(t, force);
+    return Eigen::Vector2d(force);
+  };
+  for (const double t : {0.5, 0.99}) CHECK((now(0.0, t) - samples[1]).norm() < kRounding);
+  // Half a step of 0.4 grid steps earlier: a fifth of the next mean is felt.
+  CHECK((now(-0.5, 0.5) - (0.8 * samples[1] + 0.2 * samples[2])).norm() < kRounding);
+  CHECK((now(0.5, 0.5) - (0.2 * samples[0] + 0.8 * samples[1])).norm() < kRounding);
+}
+
 TEST_CASE("input signal: a single sample holds for ever") {
   const std::vector<Eigen::VectorXd> one{Eigen::Vector3d(1.0, 2.0, 3.0)};
   const model::InputSignal input{0.0, 0.1, one};

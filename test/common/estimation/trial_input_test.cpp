@@ -1,0 +1,83 @@
+// What drove the vehicle, put on a trial's grid: straight lines, what was held, and means of what came faster.
+#include "common/estimation/trial_input.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+
+using namespace fathom;
+using namespace fathom::estimation;
+
+namespace {
+
+constexpr double kRounding = 1e-9;
+
+/// A thruster whose force counts the rows, one every `step` [s] from `first` [s] on.
+Recording rows(double first, double step, int count) {
+  Recording recording;
+  recording.name = "rows";
+  for (int k = 0; k < count; ++k) {
+    recording.thrusters.push_back({.utime = utime_after(0, first + step * k), .force = {static_cast<double>(k)}});
+  }
+  return recording;
+}
+
+Trial on_grid(const Recording& recording, double dt, int count) {
+  Trial trial{.name = recording.name, .dt = dt};
+  for (int k = 0; k < count; ++k) trial.t.push_back(dt * k);
+  add_input(recording, 0, {}, {}, trial);
+  return trial;
+}
+
+}  // namespace
+
+TEST_CASE("trial input: rows slower than the grid lie on straight lines, and hold until the next one") {
+  const Trial trial = on_grid(rows(0.0, 0.2, 5), 0.1, 9);
+  CHECK(trial.input_step == doctest::Approx(0.2));
+  CHECK_FALSE(trial.input_averaged);
+  for (std::size_t k = 0; k < trial.t.size(); ++k) {
+    CAPTURE(k);
+    CHECK(std::abs(trial.input[k][0] - 0.5 * static_cast<double>(k)) < kRounding);
+    CHECK(std::abs(trial.held[k][0] - static_cast<double>(k / 2)) < kRounding);
+    CHECK(std::abs(trial.told[k][0] - std::min(4.0, static_cast<double>(k / 2 + 1))) < kRounding);
+  }
+}
+
+TEST_CASE("trial input: a step of the grid that a row falls into holds the mean of both") {
+  const Trial trial = on_grid(rows(0.05, 0.2, 5), 0.1, 8);
+  CHECK(std::abs(trial.held[0][0]) < kRounding);        // nothing is known before the first row
+  CHECK(std::abs(trial.held[2][0] - 0.5) < kRounding);  // half of row 0, half of row 1
+  CHECK(std::abs(trial.held[3][0] - 1.0) < kRounding);
+  CHECK(std::abs(trial.told[0][0] - 0.5) < kRounding);  // half of row 0, which tells of the time before it, half of 1
+  CHECK(std::abs(trial.told[2][0] - 1.5) < kRounding);
+}
+
+TEST_CASE("trial input: rows faster than the grid are averaged, steadily growing ones without delay") {
+  const Trial trial = on_grid(rows(0.0, 0.01, 101), 0.1, 10);
+  CHECK(trial.input_averaged);
+  CHECK(trial.told.empty());
+  CHECK(trial.input_step == doctest::Approx(0.01));
+  for (std::size_t k = 1; k + 1 < trial.t.size(); ++k) {
+    CAPTURE(k);
+    const double at = 10.0 * static_cast<double>(k);
+    // A mean over [t - dt/2, t + dt/2) of rows that lead by half of their own step.
+    CHECK(std::abs(trial.input[k][0] - (at - 0.5)) < kRounding);
+    CHECK(std::abs(trial.held[k][0] - (at + 4.5)) < kRounding);
+  }
+}
+
+TEST_CASE("trial input: rows that go back in time or are no numbers have no part in it, and nothing is an error") {
+  Recording recording = rows(0.0, 0.1, 5);
+  recording.thrusters[2].force = {std::numeric_limits<double>::quiet_NaN()};
+  recording.thrusters[3].utime = recording.thrusters[1].utime;
+  const Trial trial = on_grid(recording, 0.1, 5);
+  CHECK(std::abs(trial.input[1][0] - 1.0) < kRounding);
+  CHECK(std::abs(trial.input[3][0] - 3.0) < kRounding);  // between rows 1 and 4
+  recording.thrusters.clear();
+  Trial none{.name = "rows", .dt = 0.1, .t = {0.0}};
+  CHECK_THROWS_AS(add_input(recording, 0, {}, {}, none), InputError);
+}
