@@ -41,9 +41,10 @@ TEST_CASE("trial input: rows slower than the grid lie on straight lines, and hol
   CHECK_FALSE(trial.input_averaged);
   for (std::size_t k = 0; k < trial.t.size(); ++k) {
     CAPTURE(k);
+    const double row = std::floor(0.5 * static_cast<double>(k));
     CHECK(std::abs(trial.input[k][0] - 0.5 * static_cast<double>(k)) < kRounding);
-    CHECK(std::abs(trial.held[k][0] - static_cast<double>(k / 2)) < kRounding);
-    CHECK(std::abs(trial.told[k][0] - std::min(4.0, static_cast<double>(k / 2 + 1))) < kRounding);
+    CHECK(std::abs(trial.held[k][0] - row) < kRounding);
+    CHECK(std::abs(trial.told[k][0] - std::min(4.0, row + 1.0)) < kRounding);
   }
 }
 

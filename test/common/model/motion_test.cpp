@@ -11,6 +11,7 @@ constexpr double kRounding = 1e-12;
 
 std::vector<Eigen::VectorXd> ramp() {
   std::vector<Eigen::VectorXd> samples;
+  samples.reserve(4);
   for (int k = 0; k < 4; ++k) samples.emplace_back(Eigen::Vector2d(k, 10.0 - k * k));
   return samples;
 }
