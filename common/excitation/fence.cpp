@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kReaction = 0.15;  // s from deciding to feeling the thrust
 constexpr double kSoften = 0.4;     // s in which outward speed shall be taken away
+constexpr double kCalm = 0.4;       // of the largest tilt: up to there nothing is done
 constexpr double kOutward = 0.2;    // share of an axis's push that leads outwards before its signal turns
 
 // 0 far inside, 1 where all that is left must go into braking.
@@ -16,6 +17,18 @@ double urgency(double room, double speed, double braking, double band) {
   const double outward = std::max(0.0, speed);
   const double stop = outward * kReaction + outward * outward / (2.0 * braking);
   return std::clamp((stop + band - room) / band, 0.0, 1.0);
+}
+
+struct Tilt {
+  double angle{};  // rad between the body's down axis and the vertical
+  double rate{};   // rad/s, how fast that grows
+};
+
+Tilt tilt_of(const StateEstimate& state) {
+  const Eigen::RowVector3d down = state.q_WB.toRotationMatrix().row(2);
+  const double level = std::max(down.head<2>().norm(), 1e-6);
+  // d(R_33)/dt = (R [w]x)_33
+  return {std::atan2(level, down[2]), (down[1] * state.nu[3] - down[0] * state.nu[4]) / level};
 }
 
 }  // namespace
@@ -33,9 +46,21 @@ Eigen::Vector3d Fence::middle() const {
 Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double turned, double mass, double inertia,
                         const Vector6d& largest) const {
   Bent bent{.tau = tau};
+  // Push and turn tilt the hull by its own coupling as well as roll and pitch thrust do: all but the vertical gives
+  // way, and what rights the hull by itself is helped to come to rest.
+  const Tilt tilt = tilt_of(state);
+  const double calm = kCalm * settings_.largest_tilt;
+  const double tilted =
+      std::clamp((tilt.angle + kSoften * std::max(0.0, tilt.rate) - calm) / (settings_.largest_tilt - calm), 0.0, 1.0);
+  if (tilted > 0.0) {
+    bent.bent = true;
+    for (const Eigen::Index axis : {0, 1, 3, 4, 5}) bent.tau[axis] *= 1.0 - tilted;
+    bent.tau.segment<2>(3) -= tilted * inertia / kSoften * state.nu.segment<2>(3);
+  }
+  const Vector6d asked_for = bent.tau;
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
   const Eigen::Vector3d v_W = R_WB * state.nu.head<3>();
-  Eigen::Vector3d force_W = R_WB * tau.head<3>();
+  Eigen::Vector3d force_W = R_WB * asked_for.head<3>();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (const double side : {-1.0, 1.0}) {
       const double room = side > 0.0 ? settings_.high[i] - state.p_WB[i] : state.p_WB[i] - settings_.low[i];
@@ -51,8 +76,9 @@ Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double 
         force_W[i] = side * given;
       }
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const double outward = side * R_WB(i, axis) * tau[axis];
-        if (outward > kOutward * std::abs(tau[axis]) && outward > 0.0) bent.turn[static_cast<std::size_t>(axis)] = true;
+        const double outward = side * R_WB(i, axis) * asked_for[axis];
+        if (outward > kOutward * std::abs(asked_for[axis]) && outward > 0.0)
+          bent.turn[static_cast<std::size_t>(axis)] = true;
       }
     }
   }
@@ -62,7 +88,7 @@ Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double 
     const double speed = side * state.nu[5];
     const double u = urgency(limit - side * turned, speed, settings_.turning, 0.5);
     if (u <= 0.0) continue;
-    const double asked = side * tau[5];
+    const double asked = side * asked_for[5];
     const double given = std::min(asked, (1.0 - u) * asked - u * inertia * std::max(0.0, speed) / kSoften);
     if (asked > 0.0) bent.turn[5] = true;
     if (given < asked) {

@@ -1,5 +1,5 @@
-// The room that excitation may use: walls, floor, surface, and turns of the tether. What would lead out is bent back in
-// time to stop before contact; outside of the hard envelope nothing may be thrust at all.
+// The room that excitation may use: walls, floor, surface, turns of the tether, and tilt. What would lead out is bent
+// back in time to stop before contact; outside of the hard envelope nothing may be thrust at all.
 #pragma once
 
 #include <Eigen/Core>

@@ -53,7 +53,9 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   for (std::size_t i = 0; i < 6; ++i) {
     const std::string axis = model::kAxisNames[i];
     if ((i == 3 || i == 4) && !largest.has(axis)) continue;  // roll and pitch right themselves
-    if (vehicle.dof[i]) s.largest[static_cast<Eigen::Index>(i)] = largest.not_negative(axis, i < 3 ? "N" : "N m");
+    if (!vehicle.dof[i] && !largest.has(axis)) continue;
+    const double value = largest.not_negative(axis, i < 3 ? "N" : "N m");
+    if (vehicle.dof[i]) s.largest[static_cast<Eigen::Index>(i)] = value;
   }
   const Config thresholds = config.section("thresholds");
   for (const std::string& mode : s.optimal ? std::vector<std::string>{"total"} : config.texts("schedule")) {

@@ -97,6 +97,20 @@ TEST_CASE("live: a trial that is cut short still gives table, result, page and t
   CHECK(nothing_left(scratch));
 }
 
+TEST_CASE("live: a vehicle that rolls easily learns that too, and is not tilted out of its envelope") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "tank bluerov2 optimal lockstep 1 100"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const auto result = result_of(scratch);
+  CHECK_MESSAGE((result["phase"] == "excite" || result["phase"] == "done"), ran.text);
+  double roll = 0.0;
+  for (const StateEstimate& each : wire::read_log(scratch.path("out/run.lcmlog")).recording.state) {
+    roll = std::max(roll, std::abs(each.nu[3]));
+  }
+  CHECK(roll > 0.3);  // rad/s
+}
+
 TEST_CASE("live: in real time, with the recorder") {
   if (!private_network()) return;
   const Scratch scratch;

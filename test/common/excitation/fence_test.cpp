@@ -73,6 +73,28 @@ TEST_CASE("fence: the tether is not wound up beyond its turns") {
   CHECK(fence.bend(-tau, state, limit - 0.05, 11.0, 0.2, largest()).tau[5] <= -1.0);  // back is free
 }
 
+TEST_CASE("fence: a hull that tilts is pushed sideways no more, and its rolling and pitching is braked") {
+  const Fence fence{tank()};
+  const double limit = tank().largest_tilt;
+  Vector6d tau, limits;
+  tau << 5.0, -5.0, 3.0, 0.3, 0.3, 0.5;
+  limits << 12.0, 12.0, 10.0, 0.5, 0.5, 1.2;
+  const auto bend = [&](double roll, double rate) {
+    StateEstimate state = at({0.0, 0.0, 0.75});
+    state.q_WB = Eigen::Quaterniond{rotation_from_euler({roll, 0.0, 0.0})};
+    state.nu[3] = rate;
+    return fence.bend(tau, state, 0.0, 11.0, 0.2, limits);
+  };
+  CHECK((bend(0.3 * limit, 0.0).tau - tau).norm() < 1e-12);  // rounding of the rotations
+  CHECK(bend(0.3 * limit, -2.0).bent == false);              // on its way back
+  CHECK(bend(0.3 * limit, 1.0).bent);                        // on its way out
+  const auto far = bend(limit, 0.5);
+  for (const int axis : {0, 1, 4, 5}) CHECK(std::abs(far.tau[axis]) < 1e-12);
+  CHECK(far.tau[2] == doctest::Approx(3.0));
+  CHECK(far.tau[3] == doctest::Approx(-0.2 / 0.4 * 0.5));  // inertia times rate, taken away in 0.4 s
+  CHECK(bend(limit, 3.0).tau[3] == -0.5);                  // what the axis may have at most
+}
+
 TEST_CASE("fence: outside of the envelope it says why") {
   const Fence fence{tank()};
   CHECK(fence.outside(at({0.0, 0.0, 0.75}), 0.0).empty());
