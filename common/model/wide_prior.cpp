@@ -21,9 +21,12 @@ double plate_drag(bool turning, double density, double length) {
 std::vector<std::string> default_parameters(const std::array<bool, 6>& dof) {
   const bool roll = dof[3];
   const bool pitch = dof[4];
+  const bool tumbles = roll + pitch + dof[5] >= 2;
   std::vector<std::string> names;
   for (const BaseParameter one : base_parameters()) {
     bool wanted = dof[static_cast<std::size_t>(axis(one))];
+    // (I_Y - I_X) p q and its like: two free rotations feel the third inertia, be it only passive.
+    if (one == BaseParameter::I_X || one == BaseParameter::I_Y || one == BaseParameter::I_Z) wanted = wanted || tumbles;
     // Moment G x R_WB^T e_z: roll feels G_y and G_z, pitch feels G_x and G_z.
     if (one == BaseParameter::G_x) wanted = pitch;
     if (one == BaseParameter::G_y) wanted = roll;
