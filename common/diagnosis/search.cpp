@@ -63,6 +63,11 @@ FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, con
   return again.cost < fit.cost ? again : fit;
 }
 
+/// Seconds beside a sudden change no slope leads to it, and a large one is then hardly told from none.
+FitResult at_its_moment(const TrajectoryFit& problem, FitResult fit, const Screened& screened) {
+  return at_best_moment(problem, std::move(fit), *screened.effect, screened.variant);
+}
+
 /// One round's full fits: the most promising candidates, most promising first.
 class Round {
  public:
@@ -110,7 +115,8 @@ class Round {
     if (coarse_.useful() && !answers_.found[i]) {
       const TrajectoryFit& problem = coarse_.problem();
       const FitResult& without = coarse_.reference();
-      const FitResult rough = fit_with(problem, without, start_of(problem, without, answers_, i), screened);
+      const FitResult rough = at_its_moment(
+          problem, fit_with(problem, without, start_of(problem, without, answers_, i), screened), screened);
       const double share = reduction(without.cost, rough.cost);
       const bool vain = share < kPromise * settings_.smallest_reduction;
       if (vain || share < kClearlyLess * best_share) {
@@ -125,7 +131,7 @@ class Round {
     } else {
       start = start_of(problem_, reference_, answers_, i);
     }
-    FitResult fit = fit_with(problem_, reference_, start, screened);
+    FitResult fit = at_its_moment(problem_, fit_with(problem_, reference_, start, screened), screened);
     promises_.kept(answers_, i, reduction(reference_.cost, fit.cost));
     judge_by_odds(judged, reference_, fit, tried_);
     judged.reason = refusal(judged, settings_, &fit.model);

@@ -21,6 +21,22 @@ void HealthBoard::hear(const Health& health, double now) {
   }
 }
 
+namespace {
+
+// "AHRS 100/s, DEPTH 20/s"
+std::string heard(const Health& health) {
+  std::string text;
+  char part[96];
+  for (const ChannelHealth& each : health.channels) {
+    if (each.rate < 0.5) continue;  // orders, and what is said once
+    std::snprintf(part, sizeof part, "%.60s %.0f/s", each.channel.c_str(), each.rate);
+    text += (text.empty() ? "" : ", ") + std::string{part};
+  }
+  return text;
+}
+
+}  // namespace
+
 HealthBoard::Word HealthBoard::of(const Sheriff::Row& row, double now) const {
   const Seen* best = nullptr;
   for (const Seen& each : seen_) {
@@ -30,7 +46,7 @@ HealthBoard::Word HealthBoard::of(const Sheriff::Row& row, double now) const {
   if (best == nullptr) return {};
   if (now - best->at > kSilence)
     return {"silent", "no HEALTH for " + std::to_string(std::lround(now - best->at)) + " s"};
-  return {best->health.state, best->health.detail};
+  return {best->health.state, best->health.detail, heard(best->health)};
 }
 
 namespace {
@@ -41,7 +57,7 @@ std::string remark(const Sheriff::Row& row, const HealthBoard::Word& health) {
   if (row.failures >= 2)
     return "failed " + std::to_string(row.failures) + " times in 10 s: " + describe_end(row.last_end);
   if (row.status.pid == 0) return describe_end(row.status.wait_status);
-  return health.detail;
+  return health.detail.empty() ? health.heard : health.detail;
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ class HealthBoard {
   struct Word {
     std::string state;  ///< as HEALTH has it, "silent", or "" for a program that says none
     std::string detail;
+    std::string heard{};  ///< how fast each of its channels comes
   };
   [[nodiscard]] Word of(const Sheriff::Row& row, double now) const;
 

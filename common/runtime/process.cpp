@@ -129,6 +129,7 @@ void Process::deliver(std::size_t index, std::span<const std::uint8_t> bytes) {
   Hearing& hearing = state_->hearings[index];
   const auto begin = Clock::now();
   ++hearing.arrived;
+  hearing.last = begin;
   if (hearing.deliver(bytes)) {
     ++state_->received;
   } else if (hearing.rejected++ == 0) {

@@ -53,8 +53,14 @@ void Process::report_health(const std::string& state, const std::string& reason)
     tell(hearing, "rejected", hearing.rejected);
     const double rate = static_cast<double>(std::exchange(hearing.arrived, 0)) / std::max(elapsed.count(), 0.1);
     const bool paced = !state_->follower && hearing.channel != kLockstepAck;  // lockstep is as fast as it can
+    const std::chrono::duration<double> age = now - hearing.last.value_or(state_->begun);
+    auto& channel = health.channels.emplace_back();
+    channel.channel = hearing.channel;
+    channel.rate = rate;
+    channel.age = std::max(age.count(), 0.0);
     if (rate > kFlood && paced) tell(hearing, "flood, per second", static_cast<std::int64_t>(rate));
   }
+  health.n_channels = static_cast<std::int32_t>(health.channels.size());
   if (!condition.detail.empty()) health.detail += condition.detail + "; ";
   health.busy = elapsed.count() > 0.0 ? std::chrono::duration<double>(state_->busy) / elapsed : 0.0;
   state_->busy = {};

@@ -37,6 +37,7 @@ struct Hearing {
   std::optional<Utime> newest;
   std::int64_t rejected{};
   std::int64_t arrived{};  // since the last HEALTH
+  std::optional<Clock::time_point> last{};
 };
 
 struct Speech {
@@ -64,6 +65,7 @@ struct Process::State {
   std::int64_t received{};
   std::int64_t published{};
   Clock::duration busy{};  // in handlers, since the last HEALTH
+  Clock::time_point begun{Clock::now()};
   Clock::time_point last_health{};
   std::string host{host_name()};
   Usage usage{};

@@ -3,10 +3,18 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/base/time.hpp"
 
 namespace fathom {
+
+/// One channel that a process listens to.
+struct ChannelHealth {
+  std::string channel;
+  double rate{};  ///< 1/s, in the last second
+  double age{};   ///< s since the newest message came; since the start while none has come
+};
 
 /// Once a second on a live bus; counts are since the start.
 struct Health {
@@ -23,6 +31,7 @@ struct Health {
   double cpu{};             ///< share of one core in the last second
   std::int64_t memory{};    ///< resident [B]
   std::string detail;       ///< counts per channel; the reason of a fault
+  std::vector<ChannelHealth> channels{};
 };
 
 /// Said once at the start, so that a log explains itself.

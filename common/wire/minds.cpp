@@ -12,6 +12,7 @@
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/truth_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
+#include <utility>
 
 #include "common/wire/plausible.hpp"
 
@@ -286,6 +287,12 @@ fathom_lcm::truth_t encode(const Truth& sample) {
 
 std::optional<Health> decode(const fathom_lcm::health_t& message) {
   if (!finite(message.busy) || !finite(message.cpu)) return {};
+  if (!length(message.n_channels, message.channels.size())) return {};
+  std::vector<ChannelHealth> channels;
+  for (const auto& part : message.channels) {
+    if (!finite(part.rate) || !finite(part.age)) return {};
+    channels.push_back({.channel = part.channel, .rate = part.rate, .age = part.age});
+  }
   return Health{.utime = message.utime,
                 .process = message.process,
                 .host = message.host,
@@ -298,7 +305,8 @@ std::optional<Health> decode(const fathom_lcm::health_t& message) {
                 .busy = message.busy,
                 .cpu = message.cpu,
                 .memory = message.memory,
-                .detail = message.detail};
+                .detail = message.detail,
+                .channels = std::move(channels)};
 }
 
 fathom_lcm::health_t encode(const Health& sample) {
@@ -316,6 +324,13 @@ fathom_lcm::health_t encode(const Health& sample) {
   message.cpu = sample.cpu;
   message.memory = sample.memory;
   message.detail = sample.detail;
+  message.n_channels = count(sample.channels);
+  for (const ChannelHealth& part : sample.channels) {
+    auto& to = message.channels.emplace_back();
+    to.channel = part.channel;
+    to.rate = part.rate;
+    to.age = part.age;
+  }
   return message;
 }
 

@@ -355,6 +355,14 @@ TEST_CASE("table: shows state, share of the processor, memory and health, and cu
   const std::string text = table(world.sheriff.rows(world.now), board, world.now, 200);
   CHECK(text.find("a        vehicle  running       25 %     12 MB  unhealthy  no tags?[2J\n") != std::string::npos);
   CHECK(board.of(world.row("a"), world.now + 4.0).state == "silent");
+  board.hear({.process = "a",
+              .host = "h",
+              .pid = pid,
+              .state = "running",
+              .channels = {{"AHRS", 99.7, 0.01}, {"OPERATOR", 0.0, 40.0}, {"DEPTH", 20.0, 0.05}}},
+             world.now);
+  CHECK(table(world.sheriff.rows(world.now), board, world.now, 200).find("running    AHRS 100/s, DEPTH 20/s\n") !=
+        std::string::npos);
   CHECK(table(world.sheriff.rows(world.now), board, world.now, 20).find("unhealthy") == std::string::npos);
   const std::string before = gist(world.sheriff.rows(world.now), board, world.now);
   CHECK(before == gist(world.sheriff.rows(world.now), board, world.now + 1.0));

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -144,6 +145,13 @@ TEST_CASE("live: messages pass, health is told once a second, overflow is counte
   CHECK(last.dropped == 500);
   CHECK(last.detail == "DEPTH dropped 500; ");
   CHECK(listener.health.front().state == "running");
+  for (const std::string channel : {"DEPTH", "BATTERY"}) {
+    const auto heard = std::ranges::find(last.channels, channel, &fathom_lcm::channel_health_t::channel);
+    REQUIRE(heard != last.channels.end());
+    CHECK(heard->age > 0.0);
+    CHECK(heard->age < 60.0);  // s: the test's whole length
+  }
+  CHECK(std::ranges::any_of(listener.health.front().channels, [](const auto& heard) { return heard.rate > 1.0; }));
   CHECK(listener.health.front().busy > 0.1);
   CHECK(listener.health.front().busy <= 1.0);
 }

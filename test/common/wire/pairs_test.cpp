@@ -54,6 +54,7 @@ auto members(const T& s) {
 static bool operator==(const NamedValue& a, const NamedValue& b) { return members<4>(a) == members<4>(b); }
 static bool operator==(const ModeMetric& a, const ModeMetric& b) { return members<3>(a) == members<3>(b); }
 static bool operator==(const EffectEvidence& a, const EffectEvidence& b) { return members<5>(a) == members<5>(b); }
+static bool operator==(const ChannelHealth& a, const ChannelHealth& b) { return members<3>(a) == members<3>(b); }
 
 namespace {
 
@@ -160,7 +161,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 3>();
   check_pair<Truth, 7>();
-  check_pair<Health, 13>();
+  check_pair<Health, 14>();
   check_pair<ProcessInfo, 5>();
 }
 
@@ -226,7 +227,8 @@ TEST_CASE("wire: a missing flag of a range means that no echo came") {
 
 TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each rightly") {
   std::set<std::int64_t> fingerprints{fathom_lcm::camera_t::getHash(), fathom_lcm::named_value_t::getHash(),
-                                      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash()};
+                                      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash(),
+                                      fathom_lcm::channel_health_t::getHash()};
   std::size_t types = fingerprints.size();
   std::set<std::string> channels{wire::kCamera};
   const Recording empty;
@@ -237,7 +239,7 @@ TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each
     ++types;
   });
   CHECK(fingerprints.size() == types);
-  CHECK(types == 27);  // as many as there are files in lcmtypes/, the two of lockstep apart
+  CHECK(types == 28);  // as many as there are files in lcmtypes/, the two of lockstep apart
   CHECK(channels.size() == 24);
 }
 
