@@ -247,6 +247,23 @@ TEST_CASE("search: hidden effects are named first, with their numbers") {
   check_finds("bluerov2", "thrust_asymmetry", kShort, 4);
 }
 
+TEST_CASE("search: a large change is found wherever its moment lies between those that the search begins with") {
+  const model::Vehicle& vehicle = vehicle_named("seabotix_lbv150");
+  constexpr double kMass = 3.0, kWeight = 15.0;  // kg, N: thrice what the vehicle floats
+  std::mt19937 random{std::random_device{}()};
+  std::uniform_real_distribution<double> any{170.0, 210.0};
+  for (int draw = 0; draw < 2; ++draw) {
+    const double moment = any(random);
+    CAPTURE(moment);
+    const Outcome outcome = search_dive(vehicle, {test::active("payload_change", {kMass, kWeight, moment})}, kLong,
+                                        static_cast<unsigned>(draw));
+    CAPTURE(outcome.said);
+    REQUIRE_FALSE(outcome.found.accepted.empty());
+    CHECK(outcome.found.accepted.front().effect->name() == "payload_change");
+    if (!test::kTimed) return;
+  }
+}
+
 TEST_CASE("search: a clean dive gets no name") {
   check_clean("seabotix_lbv150", kShort, 1);
   if (test::kTimed) check_clean("bluerov2", kShort, 2);
