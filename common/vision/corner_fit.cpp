@@ -114,10 +114,10 @@ std::optional<Eigen::Vector2d> meeting(const Line& a, const Line& b) {
 
 }  // namespace
 
-bool fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners) {
+std::array<bool, 4> fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners) {
   const std::array<Eigen::Vector2d, 4> begin = corners;
   const double sense = reversed ? -1.0 : 1.0;
-  bool all = true;
+  std::array<bool, 4> fitted{};
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::Vector2d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     double shortest = 1e9;
@@ -128,19 +128,15 @@ bool fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d,
     for (std::size_t i = 0; i < 4; ++i) {
       edges[i] = fit_edge(grey, corners[i], corners[(i + 1) % 4], middle, reach, sense);
     }
-    all = true;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& before = edges[(i + 3) % 4];
       const auto& after = edges[i];
       const auto at = before && after ? meeting(*before, *after) : std::nullopt;
-      if (at && (*at - begin[i]).norm() < kFarthest) {
-        corners[i] = *at;
-      } else {
-        all = false;
-      }
+      fitted[i] = at && (*at - begin[i]).norm() < kFarthest;
+      if (fitted[i]) corners[i] = *at;
     }
   }
-  return all;
+  return fitted;
 }
 
 }  // namespace fathom::vision
