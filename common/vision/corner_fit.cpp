@@ -13,6 +13,7 @@ constexpr double kFree = 0.12;      // share of the edge next to each corner, wh
 constexpr double kStep = 0.5;       // px along the normal
 constexpr double kFarthest = 0.9;   // px that a corner may move: further off lies another edge
 constexpr double kLeastRise = 3.0;  // brightness across the edge that counts as one
+constexpr double kLeastNet = 0.3;   // share of all rises that remains from one side to the other: noise has none
 
 /// A line as a point and a unit direction.
 struct Line {
@@ -38,17 +39,18 @@ std::optional<double> step_along(const cv::Mat& grey, const Eigen::Vector2d& at,
   double weight = 0.0, sum = 0.0;
   const int n = static_cast<int>(std::lround(reach / kStep));
   Eigen::Vector2d p = at - (n + 0.5) * kStep * outward;
-  double before = sample(grey, p.x(), p.y());
+  double before = sample(grey, p.x(), p.y()), net = 0.0;
   for (int i = -n; i <= n; ++i) {
     p += kStep * outward;
     const double now = sample(grey, p.x(), p.y());
     const double rise = sense * (now - before);
     before = now;
+    net += rise;
     if (rise <= 0.0) continue;
     weight += rise;
     sum += rise * i * kStep;
   }
-  if (weight < kLeastRise) return {};
+  if (weight < kLeastRise || net < kLeastNet * weight) return {};
   return sum / weight;
 }
 

@@ -61,10 +61,11 @@ const Family* need_family(const std::string& wanted) {
 
 // The library closes the outline of a tag that leaves the picture with a corner at the border, pixels from the true
 // one. Such a corner lies on no edges that can be fitted anew; a true one does, even just outside the picture.
-bool near_border(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners) {
-  constexpr double kNear = 8.0;  // px; such corners were found up to 4 px inside
-  return std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector2d& p) {
-    return std::min({p.x(), p.y(), grey.cols - 1.0 - p.x(), grey.rows - 1.0 - p.y()}) < kNear;
+bool near_border(const cv::Mat& grey, const TagSighting& tag) {
+  constexpr double kNear = 8.0, kShare = 0.2;  // px; of an edge: such corners lie up to a cell inside
+  return std::any_of(tag.corners.begin(), tag.corners.end(), [&](const Eigen::Vector2d& p) {
+    const double inside = std::min({p.x(), p.y(), grey.cols - 1.0 - p.x(), grey.rows - 1.0 - p.y()});
+    return inside < std::max(kNear, kShare * tag.edge);
   });
 }
 
@@ -159,7 +160,7 @@ const std::vector<TagSighting>& TagDetector::step(const cv::Mat& grey) {
     tag.edge = mean_edge(tag.corners);
     if (state.refine) {
       const auto fitted = fit_corners(grey, each->family->reversed_border, tag.corners);
-      if (near_border(grey, tag.corners)) tag.sound = fitted;
+      if (near_border(grey, tag)) tag.sound = fitted;
     }
     state.found.push_back(tag);
   }

@@ -126,10 +126,10 @@ TEST_CASE("tags: of one that the picture's border cuts only the corners that can
   const Projection projection{lens()};
   TagLocator locator{place, lens(), {}};
   int unsound = 0, outside = 0, fixes = 0;
-  for (int k = 0; k < 60; ++k) {
-    const double s = 0.1 * k;
-    const Pose truth = pose({0.4 * std::sin(7.0 * s), 0.4 * std::cos(5.0 * s), 0.7 + 0.2 * std::sin(s)},
-                            0.1 * std::sin(3.0 * s), 0.1 * std::cos(4.0 * s), s);
+  for (int k = 0; k < 160; ++k) {
+    const double s = 0.1 * k, yaw = k % 2 == 0 ? s : 0.03 * std::sin(s);  // turned, and with edges along the border
+    const Pose truth = pose({0.4 * std::sin(7.0 * s), 0.4 * std::cos(5.0 * s), 0.75 + 0.35 * std::sin(s)},
+                            0.1 * std::sin(3.0 * s), 0.1 * std::cos(4.0 * s), yaw);
     auto tags = detected(grey_of(renderer.step(s, truth)), "tag36h11");
     for (const TagSighting& tag : tags) {
       const auto errors = corner_errors(tag, place, projection, truth);
@@ -145,9 +145,9 @@ TEST_CASE("tags: of one that the picture's border cuts only the corners that can
     ++fixes;
     CHECK((fix->pose.p_WC - truth.p_WC).norm() < 4.0 * std::sqrt(fix->covariance.topLeftCorner<3, 3>().trace()));
   }
-  CHECK(unsound >= 3);
+  CHECK(unsound >= 10);
   CHECK(outside >= 1);
-  CHECK(fixes > 40);
+  CHECK(fixes > 100);
 }
 
 TEST_CASE("tags: a small tag seen aslant from afar is ambiguous, and said to be; gravity decides which way it leans") {
