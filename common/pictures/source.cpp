@@ -207,7 +207,8 @@ void need_camera(const std::string& device) {
   const int opened = ::open(device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   const int why = errno;
   if (opened < 0) {
-    if (why == ENOENT) throw InputError(device + ": no such device; " + cameras_here());
+    if (why == ENOENT || why == ENXIO || why == ENODEV)
+      throw InputError(device + ": no such device; " + cameras_here());
     if (why == EACCES || why == EPERM) {
       throw InputError(device + ": no permission; cameras belong to the group video: sudo usermod -aG video " +
                        std::string{"$USER, and log in again"});

@@ -142,7 +142,7 @@ TEST_CASE("live: messages pass, health is told once a second, overflow is counte
   CHECK(last.state == "stopped");
   CHECK(last.process == "echo");
   CHECK(last.dropped == 500);
-  CHECK(last.detail == "DEPTH dropped 500; ");
+  CHECK(last.detail == "DEPTH dropped 500; BATTERY skipped 14; ");
   CHECK(listener.health.front().state == "running");
   CHECK(listener.health.front().busy > 0.1);
   CHECK(listener.health.front().busy <= 1.0);
