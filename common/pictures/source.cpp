@@ -1,12 +1,20 @@
 #include "common/pictures/source.hpp"
 
+#include <fcntl.h>
+#include <linux/videodev2.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -123,7 +131,11 @@ class Video final : public Source {
     Frame frame;
     cv::Mat picture;
     if (!capture_.read(picture) || picture.empty()) {
-      if (count_ == 0) throw InputError(name_ + ": no picture comes out of it; is it a video that OpenCV can read?");
+      if (count_ == 0) {
+        throw InputError(
+            name_ + ": no picture comes out of it; " +
+            (live_ ? "who else has this camera: fuser -v " + name_ : "is it a video that OpenCV can read?"));
+      }
       return {};
     }
     char text[32];
@@ -178,14 +190,57 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
   return std::make_unique<Video>(capture, path, rate > 0.0 ? rate : (sensible ? stated : kFolderRate), false);
 }
 
+namespace {
+
+std::string cameras_here() {
+  std::string names;
+  std::error_code error;
+  for (int i = 0; i < 64; ++i) {
+    const std::string path = "/dev/video" + std::to_string(i);
+    if (fs::exists(path, error)) names += (names.empty() ? "" : ", ") + path;
+  }
+  return names.empty() ? "this host has no /dev/video*; is the camera plugged in?" : "there are " + names;
+}
+
+// OpenCV says only that it failed.
+void need_camera(const std::string& device) {
+  const int opened = ::open(device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  const int why = errno;
+  if (opened < 0) {
+    if (why == ENOENT || why == ENXIO || why == ENODEV)
+      throw InputError(device + ": no such device; " + cameras_here());
+    if (why == EACCES || why == EPERM) {
+      throw InputError(device + ": no permission; cameras belong to the group video: sudo usermod -aG video " +
+                       std::string{"$USER, and log in again"});
+    }
+    if (why == EBUSY) throw InputError(device + ": busy; another program has this camera: fuser -v " + device);
+    throw InputError(device + ": cannot be opened: " + std::strerror(why));
+  }
+  v4l2_capability able{};
+  const bool answered = ioctl(opened, VIDIOC_QUERYCAP, &able) == 0;
+  const std::uint32_t all =
+      answered && (able.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? able.device_caps : able.capabilities;
+  ::close(opened);
+  if (!answered) throw InputError(device + ": no camera (V4L2); a video or a folder is told as 'pictures'");
+  if ((all & V4L2_CAP_VIDEO_CAPTURE) == 0) {
+    throw InputError(device + ": takes no pictures (a camera's other device, or no camera); " + cameras_here());
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<Source> open_camera(const std::string& device, int width, int height, double rate) {
+  need_camera(device);
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it, in one line
   cv::VideoCapture capture;
   try {
     capture.open(device, cv::CAP_V4L2);
   } catch (const cv::Exception&) {
     capture.release();
   }
-  if (!capture.isOpened()) throw InputError(device + ": no camera can be opened there; is it plugged in, and may you?");
+  if (!capture.isOpened()) {
+    throw InputError(device + ": busy, or a camera that OpenCV cannot read; who has it: fuser -v " + device);
+  }
   if (width > 0) capture.set(cv::CAP_PROP_FRAME_WIDTH, width);
   if (height > 0) capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
   if (rate > 0.0) capture.set(cv::CAP_PROP_FPS, rate);

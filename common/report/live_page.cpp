@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/model/parameters.hpp"
+#include "common/report/contact_sheet.hpp"
 #include "common/report/live_figures.hpp"
 #include "common/report/live_trial.hpp"
 #include "common/report/page_parts.hpp"
@@ -220,7 +221,7 @@ std::string truth_section(const LiveTrialResult& result, const Recording& record
 }  // namespace
 
 std::string to_html(const LiveTrialResult& result, const Recording& recording, const model::Vehicle& vehicle,
-                    const model::Site& site, const std::string& gnuplot) {
+                    const model::Site& site, std::span<const Camera> pictures, const std::string& gnuplot) {
   Album album;
   const estimation::AidsSeen seen = estimation::aids_seen(recording, vehicle.mounts, site, trial_origin(recording));
   std::string page =
@@ -229,6 +230,7 @@ std::string to_html(const LiveTrialResult& result, const Recording& recording, c
       escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
   page += outcome(result) + mode_table(result) + table_1_1(result);
   page += motion(recording, seen, album);
+  page += contact_sheet(pictures, trial_origin(recording));
   page += evolution(recording, result, album);
   page += suspects(result);
   if (result.truth) page += truth_section(result, recording, album);

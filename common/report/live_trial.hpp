@@ -2,12 +2,14 @@
 // of its own, the comparison with a simulator's truth.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "common/model/site.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/live_trial.hpp"
 #include "common/samples/recording.hpp"
+#include "common/samples/vision.hpp"
 
 namespace fathom::report {
 
@@ -23,9 +25,10 @@ namespace fathom::report {
 [[nodiscard]] std::string to_json(const LiveTrialResult& result);
 /// Plain text for a terminal, at most 100 columns.
 [[nodiscard]] std::string to_table(const LiveTrialResult& result);
-/// The page: one HTML file that opens without a network. InputError when gnuplot cannot draw.
+/// The page: one HTML file that opens without a network. InputError when gnuplot cannot draw. `pictures`: of its
+/// contact sheet, JPEG files with what was measured drawn in; none: no sheet.
 [[nodiscard]] std::string to_html(const LiveTrialResult& result, const Recording& recording,
                                   const model::Vehicle& vehicle, const model::Site& site,
-                                  const std::string& gnuplot = "gnuplot");
+                                  std::span<const Camera> pictures = {}, const std::string& gnuplot = "gnuplot");
 
 }  // namespace fathom::report

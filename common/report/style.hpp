@@ -24,7 +24,7 @@ p{margin:6px 0;max-width:96ch}.soft{color:var(--soft)}.small{font-size:14px}
 .grid.pair{grid-template-columns:repeat(2,1fr)}
 table.errors td:nth-child(4n+2),table.errors th.group{border-left:2px solid var(--line)}
 th.group{text-align:center}.grid figure{margin:6px 0}
-svg{display:block;width:100%;height:auto}figure{margin:10px 0}figcaption{font-size:14px;color:var(--soft);max-width:110ch}
+svg,img{display:block;width:100%;height:auto}figure{margin:10px 0}figcaption{font-size:14px;color:var(--soft);max-width:110ch}
 table{border-collapse:collapse;width:100%;font-size:14px;margin:10px 0}
 th{text-align:left;font-weight:600;color:var(--soft);border-bottom:2px solid var(--line);padding:4px 8px;vertical-align:bottom}
 td{border-bottom:1px solid var(--line);padding:5px 8px;vertical-align:top;overflow-wrap:anywhere}

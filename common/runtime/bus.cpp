@@ -131,7 +131,7 @@ void LiveInput::push(Slot& slot, const lcm::ReceiveBuffer& buffer, const std::st
     ++slot.waiting;
   } else {
     ++slot.superseded;
-    if (slot.capacity > 1) ++slot.dropped;
+    ++(slot.capacity > 1 ? slot.dropped : slot.skipped);
   }
 }
 

@@ -77,6 +77,8 @@ class LiveInput {
   /// The next message, nothing when none waits.
   [[nodiscard]] std::optional<Message> next();
   [[nodiscard]] std::uint64_t dropped(std::size_t subscription) const { return slots_[subscription].dropped; }
+  /// Of a channel whose latest message alone counts: those that a newer one replaced.
+  [[nodiscard]] std::uint64_t skipped(std::size_t subscription) const { return slots_[subscription].skipped; }
 
  private:
   struct Slot {
@@ -87,6 +89,7 @@ class LiveInput {
     std::size_t waiting{};     ///< messages that will be delivered
     std::size_t superseded{};  ///< messages in the queue, the oldest ones, that will not
     std::uint64_t dropped{};
+    std::uint64_t skipped{};  ///< superseded ever
   };
   static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel, Slot* slot);
   void push(Slot& slot, const lcm::ReceiveBuffer& buffer, const std::string& channel);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fathom_lcm/health_t.hpp>
 #include <filesystem>
@@ -51,7 +52,8 @@ void RecorderHealth::tell(std::int64_t written) {
   say(bus_, "HEALTH", health);
 }
 
-void record_live(const std::vector<Url>& in, const Url& out, const std::string& path, bool number) {
+void record_live(const std::vector<Url>& in, const Url& out, const std::string& path, bool number,
+                 const std::vector<std::string>& without) {
   StopSignal stop;
   Output log{Url::parse("file://" + (number ? numbered(path) : path), "--file")};
   Output bus{out};
@@ -62,7 +64,8 @@ void record_live(const std::vector<Url>& in, const Url& out, const std::string& 
   const auto write = [&] {
     while (auto message = live.next()) {
       health.heard();
-      if (message->channel == "LCM_SELF_TEST") continue;
+      if (message->channel == "LCM_SELF_TEST" || std::ranges::find(without, message->channel) != without.end())
+        continue;
       log.write(message->channel, message->bytes, message->received);
       ++written;
     }

@@ -26,7 +26,9 @@ class RecorderHealth {
   std::chrono::steady_clock::time_point last_{};
 };
 
-/// Until SIGINT or SIGTERM. `number`: ".00" or the first number that is free is added to the path.
-void record_live(const std::vector<Url>& in, const Url& out, const std::string& path, bool number);
+/// Until SIGINT or SIGTERM. `number`: ".00" or the first number that is free is added to the path. `without`: channels
+/// that are not recorded.
+void record_live(const std::vector<Url>& in, const Url& out, const std::string& path, bool number,
+                 const std::vector<std::string>& without);
 
 }  // namespace fathom::runtime

@@ -50,6 +50,7 @@ void Process::report_health(const std::string& state, const std::string& reason)
     health.dropped += dropped;
     health.rejected += hearing.rejected;
     tell(hearing, "dropped", dropped);
+    if (state_->live) tell(hearing, "skipped", static_cast<std::int64_t>(state_->live->skipped(i)));
     tell(hearing, "rejected", hearing.rejected);
     const double rate = static_cast<double>(std::exchange(hearing.arrived, 0)) / std::max(elapsed.count(), 0.1);
     const bool paced = !state_->follower && hearing.channel != kLockstepAck;  // lockstep is as fast as it can

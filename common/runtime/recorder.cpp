@@ -26,14 +26,15 @@ bool is_machinery(const std::string& channel) {
          channel.starts_with("BUS_");
 }
 
-void run(const Arguments& arguments, const std::string& path) {
+void run(const Arguments& arguments, const std::string& path, const std::vector<std::string>& without) {
   StopSignal stop;
   Output log{Url::parse("file://" + path, "--file")};
   Output bus{arguments.out};
   LiveInput live{arguments.in, {{kEveryChannel, std::numeric_limits<std::size_t>::max()}}};
   Arrangement arrangement{[&](const std::string& channel, std::vector<std::uint8_t>& bytes, Utime utime) {
-    log.write(channel, bytes, utime);
-  }};
+                            log.write(channel, bytes, utime);
+                          },
+                          {without.begin(), without.end()}};
   Utime newest = 0;  // virtual
   const auto tell = [&](std::int64_t tick) {
     fathom_lcm::lockstep_ack_t ack{};
@@ -90,6 +91,7 @@ void Arrangement::put(const std::string& channel, Utime utime) {
 }
 
 void Arrangement::arrived(const std::string& channel, std::vector<std::uint8_t> bytes) {
+  if (without_.contains(channel)) return;
   waiting_[channel].push_back(std::move(bytes));
   write_complete();
 }
@@ -99,6 +101,7 @@ void Arrangement::announced(const fathom_lcm::lockstep_t& phase) {
     ended_ = ended_ || phase.channel.empty();  // else one process ends, and its last words are announced
   } else {
     phases_.push_back(phase);
+    std::erase_if(phases_.back().channel, [&](const std::string& channel) { return without_.contains(channel); });
   }
   write_complete();
 }
@@ -131,9 +134,13 @@ int recorder_main(int argc, const char* const* argv) {
   try {
     std::string path;
     bool number{false};
+    std::vector<std::string> without;
     const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
       app.add_option("--file", path, "the log to be written");
       app.add_flag("--number", number, "add .00, .01, ... to its name, the first that is free");
+      app.add_option("--without", without, "a channel that is not recorded; more than once if wanted")
+          ->take_all()
+          ->expected(1);
     });
     if (!arguments) return 0;
     if (arguments->interface_only) {
@@ -143,9 +150,9 @@ int recorder_main(int argc, const char* const* argv) {
     if (path.empty()) throw InputError("--file is missing: the log to be written");
     if (!arguments->in.front().live()) throw InputError("--in: a recorder hears a live bus");
     if (arguments->lockstep) {
-      run(*arguments, path);
+      run(*arguments, path, without);
     } else {
-      record_live(arguments->in, arguments->out, path, number);
+      record_live(arguments->in, arguments->out, path, number, without);
     }
     return 0;
   } catch (const std::exception& error) {

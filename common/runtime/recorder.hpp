@@ -8,6 +8,7 @@
 #include <fathom_lcm/lockstep_t.hpp>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,9 @@ inline constexpr char kEveryChannel[] = ".*";  ///< what a recorder says that it
 class Arrangement {
  public:
   using Write = std::function<void(const std::string& channel, std::vector<std::uint8_t>& bytes, Utime utime)>;
-  explicit Arrangement(Write write) : write_{std::move(write)} {}
+  /// `without`: channels that are not written.
+  explicit Arrangement(Write write, std::set<std::string> without = {})
+      : write_{std::move(write)}, without_{std::move(without)} {}
 
   void arrived(const std::string& channel, std::vector<std::uint8_t> bytes);
   /// Writes what is complete.
@@ -37,6 +40,7 @@ class Arrangement {
   void put(const std::string& channel, Utime utime);
 
   Write write_;
+  std::set<std::string> without_;
   std::map<std::string, std::deque<std::vector<std::uint8_t>>> waiting_;
   std::deque<fathom_lcm::lockstep_t> phases_;
   Utime utime_{};

@@ -13,6 +13,7 @@ constexpr double kFree = 0.12;      // share of the edge next to each corner, wh
 constexpr double kStep = 0.5;       // px along the normal
 constexpr double kFarthest = 0.9;   // px that a corner may move: further off lies another edge
 constexpr double kLeastRise = 3.0;  // brightness across the edge that counts as one
+constexpr double kLeastNet = 0.3;   // share of all rises that remains from one side to the other: noise has none
 
 /// A line as a point and a unit direction.
 struct Line {
@@ -38,17 +39,18 @@ std::optional<double> step_along(const cv::Mat& grey, const Eigen::Vector2d& at,
   double weight = 0.0, sum = 0.0;
   const int n = static_cast<int>(std::lround(reach / kStep));
   Eigen::Vector2d p = at - (n + 0.5) * kStep * outward;
-  double before = sample(grey, p.x(), p.y());
+  double before = sample(grey, p.x(), p.y()), net = 0.0;
   for (int i = -n; i <= n; ++i) {
     p += kStep * outward;
     const double now = sample(grey, p.x(), p.y());
     const double rise = sense * (now - before);
     before = now;
+    net += rise;
     if (rise <= 0.0) continue;
     weight += rise;
     sum += rise * i * kStep;
   }
-  if (weight < kLeastRise) return {};
+  if (weight < kLeastRise || net < kLeastNet * weight) return {};
   return sum / weight;
 }
 
@@ -114,10 +116,10 @@ std::optional<Eigen::Vector2d> meeting(const Line& a, const Line& b) {
 
 }  // namespace
 
-bool fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners) {
+std::array<bool, 4> fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners) {
   const std::array<Eigen::Vector2d, 4> begin = corners;
   const double sense = reversed ? -1.0 : 1.0;
-  bool all = true;
+  std::array<bool, 4> fitted{};
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::Vector2d middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     double shortest = 1e9;
@@ -128,19 +130,15 @@ bool fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d,
     for (std::size_t i = 0; i < 4; ++i) {
       edges[i] = fit_edge(grey, corners[i], corners[(i + 1) % 4], middle, reach, sense);
     }
-    all = true;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& before = edges[(i + 3) % 4];
       const auto& after = edges[i];
       const auto at = before && after ? meeting(*before, *after) : std::nullopt;
-      if (at && (*at - begin[i]).norm() < kFarthest) {
-        corners[i] = *at;
-      } else {
-        all = false;
-      }
+      fitted[i] = at && (*at - begin[i]).norm() < kFarthest;
+      if (fitted[i]) corners[i] = *at;
     }
   }
-  return all;
+  return fitted;
 }
 
 }  // namespace fathom::vision

@@ -8,7 +8,8 @@
 namespace fathom::vision {
 
 /// Moves the corners of a quadrilateral that is dark inside (bright, when `reversed`) to where its edges meet. A corner
-/// that cannot be improved, or would move further than the search reaches, stays. True when all four were fitted.
-bool fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners);
+/// that cannot be improved, or would move further than the search reaches, stays. Tells which
+/// lie on two edges now.
+std::array<bool, 4> fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners);
 
 }  // namespace fathom::vision

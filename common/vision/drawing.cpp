@@ -27,7 +27,9 @@ void draw_tag(cv::Mat& picture, const TagSighting& tag) {
   const bool good = tag.verdict == TagVerdict::kAccepted;
   const cv::Scalar colour = good ? kGood : kBad;
   for (std::size_t i = 0; i < 4; ++i) {
-    cv::line(picture, fixed(tag.corners[i]), fixed(tag.corners[(i + 1) % 4]), colour, 1, cv::LINE_AA, kFine);
+    const bool seen = tag.sound[i] && tag.sound[(i + 1) % 4];
+    cv::line(picture, fixed(tag.corners[i]), fixed(tag.corners[(i + 1) % 4]), seen ? colour : kOff, 1, cv::LINE_AA,
+             kFine);
   }
   // The tag's own axes, as the picture shows them: x right, y down as one reads it.
   const Eigen::Vector2d middle = 0.25 * (tag.corners[0] + tag.corners[1] + tag.corners[2] + tag.corners[3]);

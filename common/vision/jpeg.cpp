@@ -115,6 +115,9 @@ std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality) {
   info.in_color_space = picture.channels() == 3 ? JCS_EXT_BGR : JCS_GRAYSCALE;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, quality, TRUE);
+  // Colour at full resolution: the laser's dot is a few pixels of it, and blocks of 16 pixels would move it by half of
+  // one.
+  for (int i = 0; i < info.num_components; ++i) info.comp_info[i].h_samp_factor = info.comp_info[i].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
     auto* row = const_cast<JSAMPROW>(picture.ptr(static_cast<int>(info.next_scanline)));

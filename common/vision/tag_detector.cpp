@@ -59,6 +59,16 @@ const Family* need_family(const std::string& wanted) {
   throw InputError("no family of tags is called '" + wanted + "'; known are " + all);
 }
 
+// The library closes the outline of a tag that leaves the picture with a corner at the border, pixels from the true
+// one. Such a corner lies on no edges that can be fitted anew; a true one does, even just outside the picture.
+bool near_border(const cv::Mat& grey, const TagSighting& tag) {
+  constexpr double kNear = 8.0, kShare = 0.2;  // px; of an edge: such corners lie up to a cell inside
+  return std::any_of(tag.corners.begin(), tag.corners.end(), [&](const Eigen::Vector2d& p) {
+    const double inside = std::min({p.x(), p.y(), grey.cols - 1.0 - p.x(), grey.rows - 1.0 - p.y()});
+    return inside < std::max(kNear, kShare * tag.edge);
+  });
+}
+
 double mean_edge(const std::array<Eigen::Vector2d, 4>& corners) {
   double sum = 0.0;
   for (std::size_t i = 0; i < 4; ++i) sum += (corners[(i + 1) % 4] - corners[i]).norm();
@@ -75,6 +85,8 @@ const char* name(TagVerdict verdict) {
       return "low margin";
     case TagVerdict::kOutsideMap:
       return "outside the map";
+    case TagVerdict::kCut:
+      return "cut off";
     case TagVerdict::kDoubtful:
       return "twice in the map";
     case TagVerdict::kTwice:
@@ -146,7 +158,10 @@ const std::vector<TagSighting>& TagDetector::step(const cv::Mat& grey) {
     // The library counts from the outer corner of the first pixel.
     for (std::size_t k = 0; k < 4; ++k) tag.corners[k] = {each->p[k][0] - 0.5, each->p[k][1] - 0.5};
     tag.edge = mean_edge(tag.corners);
-    if (state.refine) fit_corners(grey, each->family->reversed_border, tag.corners);
+    if (state.refine) {
+      const auto fitted = fit_corners(grey, each->family->reversed_border, tag.corners);
+      if (near_border(grey, tag)) tag.sound = fitted;
+    }
     state.found.push_back(tag);
   }
   apriltag_detections_destroy(detections);

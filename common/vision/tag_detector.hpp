@@ -15,6 +15,7 @@ enum class TagVerdict {
   kAccepted,
   kLowMargin,    ///< nobody else says it must be there
   kOutsideMap,   ///< the site has no such tag
+  kCut,          ///< by the picture's border
   kDoubtful,     ///< the site has two of this number
   kTwice,        ///< seen twice in one picture, and this is not the one that fits
   kGeometry,     ///< not where the others say it must be
@@ -33,6 +34,8 @@ struct TagSighting {
   std::array<Eigen::Vector2d, 4> corners;
   double edge{};  ///< px, mean length of the edges
   TagVerdict verdict{TagVerdict::kAccepted};
+  /// False for a corner that the picture's border cuts off: the library closes the outline somewhere.
+  std::array<bool, 4> sound{true, true, true, true};
   double reprojection{-1.0};  ///< px, root mean square over the corners; negative where no pose is known
 };
 

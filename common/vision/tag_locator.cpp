@@ -51,9 +51,13 @@ void TagLocator::judge_by_map(std::vector<TagSighting>& tags) {
     } else if (known == nullptr || !projection_) {
       tag.verdict = clear ? TagVerdict::kAccepted : TagVerdict::kLowMargin;
     } else {
-      Candidate candidate{.tag = &tag, .clear = clear};
+      Candidate candidate{.tag = &tag, .normal = known->R_WT.col(2), .clear = clear};
       const auto corners = world_corners(*known);
-      for (std::size_t i = 0; i < 4; ++i) candidate.corners.push_back({corners[i], tag.corners[i]});
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (tag.sound[i]) candidate.corners.push_back({corners[i], tag.corners[i]});
+      }
+      tag.verdict = TagVerdict::kCut;
+      if (candidate.corners.empty()) continue;
       candidates_.push_back(std::move(candidate));
     }
   }
@@ -66,7 +70,7 @@ double TagLocator::error(const Candidate& candidate, const Pose& pose) const {
     if (!(p_C.z() > 1e-3)) return 1e9;
     squares += (projection_->pixel(p_C) - each.pixel).squaredNorm();
   }
-  return std::sqrt(0.25 * squares);
+  return std::sqrt(squares / static_cast<double>(candidate.corners.size()));
 }
 
 double TagLocator::gate(const Candidate& candidate, const Pose& pose) const {
@@ -107,9 +111,10 @@ std::optional<TagLocator::Consensus> TagLocator::grow(const Pose& seed) const {
       ++found.n;
       found.margin += candidates_[i].tag->margin;
     }
-    if (found.n == 0) return {};
-    const auto fitted = fit_pose(*projection_, corners_of(found.agrees), found.fitted.pose,
-                                 rough > 0.0 ? 0.0 : 3.0 * settings_.corner_sigma);
+    const std::vector<Correspondence> points = corners_of(found.agrees);
+    if (points.size() < 4) return {};
+    const auto fitted =
+        fit_pose(*projection_, points, found.fitted.pose, rough > 0.0 ? 0.0 : 3.0 * settings_.corner_sigma);
     if (!fitted) return {};
     found.fitted = *fitted;
   }
@@ -152,14 +157,13 @@ bool TagLocator::alone_is_plausible(Utime utime, const Pose& pose, const std::op
 
 // A plane's second pose: its normal mirrored at the line of sight. Both explain the corners when the picture's
 // perspective is smaller than the corners' error. Gravity, or a pose known just before, decides where it can.
-void TagLocator::look_for_second(Utime utime, const std::vector<Correspondence>& points,
+void TagLocator::look_for_second(Utime utime, const std::vector<Correspondence>& points, const Eigen::Vector3d& normal,
                                  const std::optional<Eigen::Vector3d>& down_C, FittedPose& fitted,
                                  CameraFix& fix) const {
   constexpr double kSame = 0.035;    // rad: nearer than that they are one
   constexpr double kDecided = 16.0;  // difference of squared errors in variances: odds of 3000 to 1
   const double dof = std::max(2.0 * static_cast<double>(points.size()) - 6.0, 1.0);
   const double scale = 3.0 * settings_.corner_sigma;
-  const Eigen::Vector3d normal = (points[1].p_W - points[0].p_W).cross(points[2].p_W - points[1].p_W).normalized();
   const auto second = fit_pose(*projection_, points, mirrored(fitted.pose, points, normal), scale);
   if (!second) return;
   const auto tilt = [](const Pose& a, const Eigen::Vector3d& down) {
@@ -200,7 +204,9 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
   if (candidates_.empty()) return {};
   auto best = best_consensus(utime);
   for (Candidate& each : candidates_) {
-    each.tag->verdict = each.clear ? TagVerdict::kGeometry : TagVerdict::kLowMargin;
+    each.tag->verdict = each.corners.size() < 4 ? TagVerdict::kCut
+                        : each.clear            ? TagVerdict::kGeometry
+                                                : TagVerdict::kLowMargin;
     if (best) each.tag->reprojection = error(each, best->fitted.pose);
   }
   if (!best) return {};
@@ -219,7 +225,7 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
   }
   CameraFix fix;
   const std::vector<Correspondence> points = corners_of(best->agrees);
-  look_for_second(utime, points, down_C, best->fitted, fix);
+  look_for_second(utime, points, candidates_[first].normal, down_C, best->fitted, fix);
   if (best->n == 1 && !alone_is_plausible(utime, best->fitted.pose, down_C)) {
     candidates_[first].tag->verdict = TagVerdict::kImplausible;
     return {};

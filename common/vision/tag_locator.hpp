@@ -51,8 +51,9 @@ class TagLocator {
  private:
   struct Candidate {
     TagSighting* tag{};
-    std::vector<Correspondence> corners;
-    bool clear{false};  ///< its margin would do alone
+    std::vector<Correspondence> corners;  ///< the sound ones
+    Eigen::Vector3d normal;               ///< of its plane, in W
+    bool clear{false};                    ///< its margin would do alone
     bool agrees{false};
     double error{};  ///< px
   };
@@ -70,7 +71,7 @@ class TagLocator {
   [[nodiscard]] std::optional<Consensus> best_consensus(Utime utime) const;
   [[nodiscard]] std::vector<Correspondence> corners_of(const std::vector<bool>& chosen) const;
   [[nodiscard]] bool alone_is_plausible(Utime utime, const Pose& pose, const std::optional<Eigen::Vector3d>& down_C);
-  void look_for_second(Utime utime, const std::vector<Correspondence>& points,
+  void look_for_second(Utime utime, const std::vector<Correspondence>& points, const Eigen::Vector3d& normal,
                        const std::optional<Eigen::Vector3d>& down_C, FittedPose& fitted, CameraFix& fix) const;
   [[nodiscard]] bool recent(Utime utime) const;
 

@@ -1,9 +1,11 @@
 // An LCM event log, as recorded or as imported, to a Recording.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "common/samples/recording.hpp"
 
@@ -31,6 +33,9 @@ struct LogContents {
 
 /// InputError when the file is damaged, is not an LCM log, or holds no channel that Fathom knows.
 [[nodiscard]] LogContents read_log(const std::string& path);
+
+/// Up to `most` pictures of a channel, evenly from the first to the last; what cannot be decoded is left out.
+[[nodiscard]] std::vector<Camera> read_pictures(const std::string& path, const std::string& channel, std::size_t most);
 
 /// One line per channel with refused or late messages, and the warning; empty when all is well.
 [[nodiscard]] std::string complaints(const std::string& path, const LogReport& report);

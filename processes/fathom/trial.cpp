@@ -7,11 +7,14 @@
 
 #include "common/base/error.hpp"
 #include "common/report/live_trial.hpp"
+#include "common/wire/channels.hpp"
 #include "common/wire/log_reader.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
 namespace {
+
+constexpr std::size_t kSheet = 12;  // pictures
 
 struct Options {
   std::string log, vehicle, site, truth, out;
@@ -35,7 +38,8 @@ void run(const Options& options) {
   LiveTrialResult result = report::summarise(contents.recording, vehicle, site);
   if (!options.truth.empty()) result.truth = report::compare_truth(options.truth, contents.recording);
   save(options.out + "/result.json", report::to_json(result));
-  save(options.out + "/report.html", report::to_html(result, contents.recording, vehicle, site));
+  save(options.out + "/report.html", report::to_html(result, contents.recording, vehicle, site,
+                                                     wire::read_pictures(options.log, wire::kCameraDebug, kSheet)));
   std::printf("%s\nresult %s/result.json\nreport %s/report.html\n", report::to_table(result).c_str(),
               options.out.c_str(), options.out.c_str());
 }

@@ -1,6 +1,7 @@
 // fathom calibrate: lens and map of tags from a sequence of pictures, by bundle adjustment; what is left of every
 // corner before and after, in numbers and in a picture.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -51,6 +52,9 @@ std::vector<vision::View> look(const Options& options, model::Site& site) {
                        std::to_string(site.lens->height));
     }
     views.push_back({frame->name, detector.step(grey)});
+    std::erase_if(views.back().tags, [](const vision::TagSighting& tag) {
+      return std::ranges::find(tag.sound, false) != tag.sound.end();
+    });
   }
   return views;
 }

@@ -19,7 +19,6 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kDebugPeriod = 0.2;  // s between two drawn pictures
 constexpr int kDebugQuality = 80;
 
 /// The one camera that the section names.
@@ -42,6 +41,7 @@ Rig rig(const std::string& vehicle, const Config& config) {
 
 int main(int argc, char** argv) {
   bool debug = false;
+  double debug_every = 0.2;  // s between two drawn pictures
   return runtime::main(
       "vision", argc, argv,
       [&](runtime::Process& process) {
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
           if (const auto range = watch.front_end().laser_range(name)) {
             process.publish(wire::kLaserRange, wire::encode(*range));
           }
-          if (debug && seconds_between(drawn, picture->utime) >= kDebugPeriod) {
+          if (debug && seconds_between(drawn, picture->utime) >= debug_every) {
             drawn = picture->utime;
             if (const auto shown = watch.drawing(kDebugQuality))
               process.publish(wire::kCameraDebug, wire::encode(*shown));
@@ -103,6 +103,7 @@ int main(int argc, char** argv) {
         process.run();
       },
       [&](CLI::App& app) {
-        app.add_flag("--debug", debug, "publish pictures with everything drawn in, five a second");
+        app.add_flag("--debug", debug, "publish pictures with everything drawn in");
+        app.add_option("--debug-every", debug_every, "seconds between two of them (0.2)")->check(CLI::PositiveNumber);
       });
 }

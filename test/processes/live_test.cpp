@@ -1,48 +1,28 @@
 // scripts/live as ./trial --live runs it: a trial from the first command to the page; and what goes wrong ends with one
 // line, a code, and nothing left running.
+#include "test/support/live.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "common/base/event_log.hpp"
 #include "common/wire/log_reader.hpp"
-#include "test/support/scratch.hpp"
-#include "test/support/shell.hpp"
 
 namespace fathom {
 namespace {
 
 using test::file;
+using test::live;
+using test::live_network;
+using test::nothing_left;
 using test::program;
+using test::result_of;
 using test::Scratch;
 using test::shell;
-
-bool private_network() {
-  if (shell("unshare -rn ip link set lo up").code == 0) return true;
-  MESSAGE("skipped: this machine allows no private network (unshare -rn)");
-  return false;
-}
-
-std::string live(const Scratch& scratch, const std::string& words) {
-  return "FATHOM_BIN='" + std::string{FATHOM_BINARY_DIR} + "/bin' env --default-signal=INT timeout 120 " +
-         file("scripts/live") + " '" + scratch.path("out") + "' " + words;
-}
-
-nlohmann::json result_of(const Scratch& scratch) {
-  std::ifstream text{scratch.path("out/result.json")};
-  return nlohmann::json::parse(text);
-}
-
-// Processes that carry this test's folder in their command line, the shell that asks aside.
-bool nothing_left(const Scratch& scratch) {
-  return shell("for i in $(seq 40); do pgrep -f '" + scratch.path("ou") +
-               "[t]/' >/dev/null || exit 0; sleep 0.05; done; exit 1")
-             .code == 0;
-}
 
 std::vector<std::string> messages(const std::string& path, const std::string& channel) {
   std::vector<std::string> found;
@@ -73,7 +53,7 @@ std::string pid_of(const Scratch& scratch, const std::string& process) {
 }  // namespace
 
 TEST_CASE("live: a trial that is cut short still gives table, result, page and truth, and leaves nothing running") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch;
   const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper lockstep 1007 45"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
@@ -98,7 +78,7 @@ TEST_CASE("live: a trial that is cut short still gives table, result, page and t
 }
 
 TEST_CASE("live: a vehicle that rolls easily learns that too, and is not tilted out of its envelope") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch;
   const auto ran = shell(live(scratch, "tank bluerov2 optimal lockstep 1 100"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
@@ -112,7 +92,7 @@ TEST_CASE("live: a vehicle that rolls easily learns that too, and is not tilted 
 }
 
 TEST_CASE("live: in real time, with the recorder") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch;
   const auto ran = shell(live(scratch, "deep seabotix_lbv150 optimal real 1008 12"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
@@ -123,7 +103,7 @@ TEST_CASE("live: in real time, with the recorder") {
 }
 
 TEST_CASE("live: byte-true through every driver, the same vehicle is identified") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch, plain;
   const auto ran = shell(live(scratch, "tank seabotix_lbv150 optimal bytes 1008 35"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
@@ -174,7 +154,7 @@ TEST_CASE("live: what cannot be played is said in one line") {
 
 TEST_CASE(
     "live: an effect that the simulator draws and hides is adopted, listed in MODEL, and the log gives the same bits") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const std::vector<std::string> effects{"current", "asymmetric_drag", "thrust_asymmetry"};
   std::mt19937 draw{20261121};
   const std::string hidden = effects[draw() % effects.size()];
@@ -198,7 +178,7 @@ TEST_CASE(
 }
 
 TEST_CASE("live: an identifier that falls silent is started again, goes on with what it knew, and the trial goes on") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch;
   const auto ran = disturbed(scratch, "tank seabotix_lbv150 optimal real 3 26",
                              await(scratch, "excite") + "sleep 4; kill -STOP " + pid_of(scratch, "identifier"));
@@ -211,7 +191,7 @@ TEST_CASE("live: an identifier that falls silent is started again, goes on with 
 }
 
 TEST_CASE("live: when the estimator or the supervisor falls silent, the thrusters stop within a second") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   for (const std::string victim : {"estimator", "supervisor"}) {
     CAPTURE(victim);
     const Scratch scratch;
@@ -248,7 +228,7 @@ TEST_CASE("live: when the estimator or the supervisor falls silent, the thruster
 }
 
 TEST_CASE("live: a process that dies ends the trial with one line that names it") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   for (const char* victim : {"identifier", "simulator", "recorder"}) {
     CAPTURE(victim);
     const Scratch scratch;
@@ -261,7 +241,7 @@ TEST_CASE("live: a process that dies ends the trial with one line that names it"
 }
 
 TEST_CASE("live: Ctrl-C stops everything") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch;
   const auto ran = disturbed(scratch, "tank seabotix_lbv150 paper lockstep 1 1500", "kill -INT $script");
   CHECK_MESSAGE(ran.code == 130, ran.text);
@@ -270,7 +250,7 @@ TEST_CASE("live: Ctrl-C stops everything") {
 }
 
 TEST_CASE("live: what cannot start says why") {
-  if (!private_network()) return;
+  if (!live_network()) return;
   const Scratch scratch;
   const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper lockstep 1 20 --hide sea_monster"));
   CHECK(ran.code == 1);

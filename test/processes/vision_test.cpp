@@ -107,6 +107,19 @@ TEST_CASE("vision: a folder through camera_driver and vision: tags where they ar
   CHECK((first.p_CT - p_CT).norm() < kPlace);
 }
 
+TEST_CASE("camera_driver: a camera that is missing or none at all is told in one line") {
+  const Scratch scratch;
+  for (const auto& [device, words] : {std::pair{"/dev/video987", ": no such device; "}, {"/dev/null", ": no camera"}}) {
+    std::ofstream{scratch.path("camera.yaml")} << "camera_driver: {camera: down, device: " << device
+                                               << ", latency: 0 s}\n";
+    const auto ran = shell(program("camera_driver") + " --config " + scratch.path("camera.yaml") + " --out file://" +
+                           scratch.path("camera.lcmlog"));
+    CHECK(ran.code == 1);
+    CHECK_MESSAGE(ran.lines() == 1, ran.text);
+    CHECK_MESSAGE(ran.says(device + std::string{words}), ran.text);
+  }
+}
+
 TEST_CASE("fathom track: a row per detection and per picture, a damaged one said and left out, drawings") {
   const Scratch scratch;
   make_pictures(scratch.path("pictures"));

@@ -143,7 +143,7 @@ TEST_CASE("live: messages pass, health is told once a second, overflow is counte
   CHECK(last.state == "stopped");
   CHECK(last.process == "echo");
   CHECK(last.dropped == 500);
-  CHECK(last.detail == "DEPTH dropped 500; ");
+  CHECK(last.detail == "DEPTH dropped 500; BATTERY skipped 14; ");
   CHECK(listener.health.front().state == "running");
   for (const std::string channel : {"DEPTH", "BATTERY"}) {
     const auto heard = std::ranges::find(last.channels, channel, &fathom_lcm::channel_health_t::channel);

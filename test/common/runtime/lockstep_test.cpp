@@ -206,3 +206,17 @@ TEST_CASE("recorder: whatever the order of arrival, the log has the order of han
   CHECK(arrangement.ended());
   CHECK(log == Names{"HEALTH h 1000", "AHRS a1 1000", "DVL d1 1000", "AHRS a2 1000", "STATE s1 1000"});
 }
+
+TEST_CASE("recorder: a channel that it is told to leave out is neither written nor waited for") {
+  Names log;
+  Arrangement arrangement{
+      [&](const std::string& channel, std::vector<std::uint8_t>&, Utime) { log.push_back(channel); }, {"CAMERA"}};
+  arrangement.announced(phase_of(1, 0, {"AHRS", "CAMERA"}));
+  arrangement.arrived("CAMERA", text("large"));
+  arrangement.arrived("AHRS", text("a"));
+  arrangement.announced(phase_of(1, 1, {"TAG_POSE"}));
+  arrangement.arrived("TAG_POSE", text("t"));
+  arrangement.announced(phase_of(2, 0, {"CAMERA"}));  // lost on the way
+  CHECK(arrangement.tick() == 2);
+  CHECK(log == Names{"AHRS", "TAG_POSE"});
+}

@@ -1,6 +1,7 @@
 // Optical flow and the laser's dot in rendered pictures, where the truth is known.
 #include <doctest/doctest.h>
 
+#include "common/vision/jpeg.hpp"
 #include "common/vision/plane_flow.hpp"
 #include "test/common/vision/scene.hpp"
 
@@ -115,6 +116,26 @@ TEST_CASE("laser: the dot's range is the truth, at every distance, tilted, over 
     CHECK(std::abs(dot.p_CL.z() - truth->z()) < std::max(kRange * truth->z(), 4.0 * dot.sigma_range));
   }
   CHECK(found >= 54);
+}
+
+TEST_CASE("laser: JPEG does not move the dot, wherever it lies between the borders of blocks") {
+  constexpr double kMoved = 0.3;  // px: what the settings state of the dot
+  Renderer renderer{site(), lens(), laser(), {}, 14};
+  LaserFinder finder{lens(), laser(), {}};
+  const Projection projection{lens()};
+  double squares = 0.0;
+  int n = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose at = pose({0.2, 0.2 + 0.003 * i, 0.4 + 0.004 * i});
+    cv::Mat grey, bgr;
+    REQUIRE(decode_jpeg(encode_jpeg(renderer.step(0.1 * i, at), 90), true, grey, bgr).empty());
+    const LaserDot dot = finder.step(bgr);
+    if (dot.state != LaserState::kFound) continue;
+    squares += (dot.pixel - projection.pixel(*renderer.dot(at))).squaredNorm();
+    ++n;
+  }
+  REQUIRE(n >= 54);
+  CHECK(std::sqrt(squares / n) < kMoved);
 }
 
 TEST_CASE("laser: nothing is found where there is no dot, a second one, or no colour") {

@@ -20,19 +20,25 @@ std::vector<TagSighting> detected(const cv::Mat& grey, const std::string& family
   return detector.step(grey);
 }
 
+std::array<double, 4> corner_errors(const TagSighting& tag, const model::Site& site, const Projection& projection,
+                                    const Pose& truth) {
+  const model::Tag* mapped = site.tag(tag.id);
+  REQUIRE(mapped != nullptr);
+  const double h = 0.5 * mapped->size;
+  const std::array<Eigen::Vector3d, 4> corners{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+  std::array<double, 4> errors{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d p_C = truth.R_WC.transpose() * (mapped->p_WT + mapped->R_WT * corners[i] - truth.p_WC);
+    errors[i] = (projection.pixel(p_C) - tag.corners[i]).norm();
+  }
+  return errors;
+}
+
 double corner_error(const std::vector<TagSighting>& tags, const model::Site& site, const Projection& projection,
                     const Pose& truth) {
   double worst = 0.0;
-  for (const TagSighting& tag : tags) {
-    const model::Tag* mapped = site.tag(tag.id);
-    REQUIRE(mapped != nullptr);
-    const double h = 0.5 * mapped->size;
-    const std::array<Eigen::Vector3d, 4> corners{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Eigen::Vector3d p_C = truth.R_WC.transpose() * (mapped->p_WT + mapped->R_WT * corners[i] - truth.p_WC);
-      worst = std::max(worst, (projection.pixel(p_C) - tag.corners[i]).norm());
-    }
-  }
+  for (const TagSighting& tag : tags)
+    worst = std::max(worst, std::ranges::max(corner_errors(tag, site, projection, truth)));
   return worst;
 }
 
@@ -112,6 +118,36 @@ TEST_CASE("tags: a tag that was moved, one twice in the picture and one outside 
     if (tag.id == 11) CHECK((tag.verdict == TagVerdict::kAccepted || tag.verdict == TagVerdict::kTwice));
   }
   CHECK(accepted_11 == 1);
+}
+
+TEST_CASE("tags: of one that the picture's border cuts only the corners that can be seen count") {
+  const model::Site place = site();
+  Renderer renderer{place, lens(), std::nullopt, {}, 3};
+  const Projection projection{lens()};
+  TagLocator locator{place, lens(), {}};
+  int unsound = 0, outside = 0, fixes = 0;
+  for (int k = 0; k < 160; ++k) {
+    const double s = 0.1 * k, yaw = k % 2 == 0 ? s : 0.03 * std::sin(s);  // turned, and with edges along the border
+    const Pose truth = pose({0.4 * std::sin(7.0 * s), 0.4 * std::cos(5.0 * s), 0.75 + 0.35 * std::sin(s)},
+                            0.1 * std::sin(3.0 * s), 0.1 * std::cos(4.0 * s), yaw);
+    auto tags = detected(grey_of(renderer.step(s, truth)), "tag36h11");
+    for (const TagSighting& tag : tags) {
+      const auto errors = corner_errors(tag, place, projection, truth);
+      for (std::size_t i = 0; i < 4; ++i) {
+        unsound += tag.sound[i] ? 0 : 1;
+        CHECK((errors[i] < kCorner || !tag.sound[i]));
+        outside += tag.sound[i] && tag.corners[i].minCoeff() < 0.0 ? 1 : 0;
+      }
+    }
+    locator.reset();
+    const auto fix = locator.step(k, tags, std::nullopt);
+    if (!fix || fix->ambiguous) continue;
+    ++fixes;
+    CHECK((fix->pose.p_WC - truth.p_WC).norm() < 4.0 * std::sqrt(fix->covariance.topLeftCorner<3, 3>().trace()));
+  }
+  CHECK(unsound >= 10);
+  CHECK(outside >= 1);
+  CHECK(fixes > 100);
 }
 
 TEST_CASE("tags: a small tag seen aslant from afar is ambiguous, and said to be; gravity decides which way it leans") {

@@ -2,12 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/base/error.hpp"
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
+#include "common/wire/sensors.hpp"
 #include "common/wire/streams.hpp"
 #include "test/support/filled_samples.hpp"
 #include "test/support/scratch.hpp"
@@ -85,6 +87,34 @@ TEST_CASE("log: events are in the order of time over all channels, stamped with 
   std::string order;
   while (const auto* event = log.readNextEvent()) order += std::to_string(event->timestamp) + event->channel + " ";
   CHECK(order == "10DEPTH 20BATTERY 30BATTERY 30DEPTH ");
+}
+
+TEST_CASE("log: a few pictures of many, evenly from the first to the last") {
+  const test::Scratch scratch;
+  {
+    lcm::LogFile log{scratch.path("a.lcmlog"), "w"};
+    for (int i = 0; i < 30; ++i) {
+      const auto message = wire::encode(Camera{.utime = i, .camera = "down", .width = 2, .height = 1, .jpeg = {0xff}});
+      std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+      message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+      lcm::LogEvent event{};
+      event.timestamp = i;
+      event.channel = i % 3 == 2 ? "CAMERA" : "CAMERA_DEBUG";
+      event.datalen = static_cast<int>(bytes.size());
+      event.data = bytes.data();
+      REQUIRE(log.writeEvent(&event) == 0);
+    }
+  }
+  const auto times = [&](const std::string& channel, std::size_t most) {
+    std::vector<Utime> found;
+    for (const Camera& each : wire::read_pictures(scratch.path("a.lcmlog"), channel, most)) found.push_back(each.utime);
+    return found;
+  };
+  CHECK(times("CAMERA_DEBUG", 3) == std::vector<Utime>{0, 13, 28});
+  CHECK(times("CAMERA_DEBUG", 1) == std::vector<Utime>{0});
+  CHECK(times("CAMERA_DEBUG", 0).empty());
+  CHECK(times("CAMERA", 99).size() == 10);
+  CHECK(times("DEPTH", 3).empty());
 }
 
 TEST_CASE("log: a sample that a reader would refuse is refused by the writer, with its channel and number") {
