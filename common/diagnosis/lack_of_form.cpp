@@ -63,10 +63,13 @@ FitResult in_its_place(const TrajectoryFit& problem, const FitResult& with_none,
 }
 
 /// How much of what the curve explains by itself the effect explains too, when the curve still helps beside it: what
-/// both describe is one thing, and it has not the effect's form.
+/// both describe is one thing, and it has not the effect's form. A curve that explains far less than the effect does
+/// describes another thing, or a corner of this one.
 double overlap(const FitResult& with_none, const FitResult& with_effect, const FitResult& with_curve,
                const FitResult& with_both) {
   const double by_curve = with_none.cost - with_curve.cost;
+  const double by_effect = with_none.cost - with_effect.cost;
+  if (by_curve < kSameThing * by_effect) return 0.0;
   const double shared = by_curve - (with_effect.cost - with_both.cost);
   return by_curve > 0.0 ? shared / by_curve : 0.0;
 }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::array kParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50.0}};
 constexpr int kOffset = 0;
+constexpr std::array kSteps{0.04, 0.06, 0.09, 0.13, 0.2, 0.3, 0.45, 0.67, 1.0};  // of the typical command
 
 class ThrusterDeadband final : public Effect {
  public:
@@ -21,9 +22,13 @@ class ThrusterDeadband final : public Effect {
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene&) const override { return {"offset", "step"}; }
-  std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
+  std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double typical = scene.force_rms.size() > 0 ? scene.force_rms.maxCoeff() : 1.0;
-    return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
+    if (variant == kOffset) return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
+    // Only commands at a step's edge tell where it is: no slope leads there from afar.
+    std::vector<std::vector<double>> starts;
+    for (const double share : kSteps) starts.push_back({share * typical});
+    return starts;
   }
 
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {

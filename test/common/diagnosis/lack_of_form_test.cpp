@@ -36,6 +36,24 @@ class Layer final : public model::Effect {
   std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"force", "N", 5.0}};
 };
 
+/// A dead band with sharp edges, a wider one ahead than astern: nearly the registry's, and on every thruster.
+class CrookedBand final : public model::Effect {
+ public:
+  std::string_view name() const override { return "crooked_band"; }
+  std::string_view sentence() const override { return ""; }
+  std::string_view revealed_by() const override { return ""; }
+  std::span<const model::EffectParameter> parameters() const override { return parameters_; }
+  bool feels_motion() const override { return false; }
+  void feel(model::Motion& motion, model::EffectTheta theta, int, std::span<const double>) const override {
+    for (double& force : motion.force) {
+      if (force < 1.3 * theta[0] && force > -0.7 * theta[0]) force = 0.0;
+    }
+  }
+
+ private:
+  std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"half_width", "N", 1.0}};
+};
+
 struct Case {
   model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   test::VirtualDive dive;
@@ -49,15 +67,16 @@ struct Case {
 };
 
 /// Accepts `suspect` as if a search had, and has its form tested.
-SearchResult tested(const Case& c, const std::string& suspect, const std::vector<double>& start) {
+SearchResult tested(const Case& c, const std::string& suspect, const std::vector<double>& start, int variant = 0) {
   const TrajectoryFit problem{c.vehicle, c.trials, {.window = 5.0, .threads = 1, .iterations = 10}};
   SearchResult result;
   result.before = problem.fit(model::nominal_model(c.vehicle, false));
   model::Model model = result.before.model;
-  model.add(test::active(suspect, start));
+  model.add(test::active(suspect, start, variant));
   result.after = problem.fit(model, &result.before);
   Judged judged;
   judged.effect = model::find_effect(suspect);
+  judged.variant = variant;
   result.accepted.push_back(judged);
   const bool moved = test_forms(result, problem, result.after, c.scene, [](const std::string&, double) {});
   CHECK(moved == result.accepted.empty());
@@ -93,6 +112,14 @@ TEST_CASE("lack of form: what is unlisted elsewhere costs a true effect nothing"
   CHECK(result.accepted.size() == 1);
   REQUIRE(result.free_form);
   CHECK(result.free_form->with == "depth");
+}
+
+TEST_CASE("lack of form: a curve that sees a corner of a large effect does not take its name from it") {
+  const CrookedBand band;
+  const Case c{{{&band, 0, "", {3.0}}}};
+  const SearchResult result = tested(c, "thruster_deadband", {3.05}, 1);
+  CHECK(result.accepted.size() == 1);
+  CHECK(result.free_form.has_value());  // it is said all the same
 }
 
 TEST_CASE("free curve: linear between its knots, held beyond its ends, closed over heading") {

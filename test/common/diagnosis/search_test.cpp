@@ -248,20 +248,26 @@ TEST_CASE("search: hidden effects are named first, with their numbers") {
 }
 
 TEST_CASE("search: a large change is found wherever its moment lies between those that the search begins with") {
-  const model::Vehicle& vehicle = vehicle_named("seabotix_lbv150");
-  constexpr double kMass = 3.0, kWeight = 15.0;  // kg, N: thrice what the vehicle floats
-  std::mt19937 random{std::random_device{}()};
-  std::uniform_real_distribution<double> any{170.0, 210.0};
-  for (int draw = 0; draw < 2; ++draw) {
-    const double moment = any(random);
-    CAPTURE(moment);
-    const Outcome outcome = search_dive(vehicle, {test::active("payload_change", {kMass, kWeight, moment})}, kLong,
-                                        static_cast<unsigned>(draw));
-    CAPTURE(outcome.said);
-    REQUIRE_FALSE(outcome.found.accepted.empty());
-    CHECK(outcome.found.accepted.front().effect->name() == "payload_change");
-    if (!test::kTimed) return;
-  }
+  constexpr double kMass = 3.0, kWeight = 15.0;  // kg, N: far more than what the vehicle floats by
+  std::mt19937 random{20261121};
+  const double moment = std::uniform_real_distribution<double>{170.0, 210.0}(random);
+  CAPTURE(moment);
+  const Outcome outcome = search_dive(vehicle_named("seabotix_lbv150"),
+                                      {test::active("payload_change", {kMass, kWeight, moment})}, kLong, 1);
+  CAPTURE(outcome.said);
+  REQUIRE_FALSE(outcome.found.accepted.empty());
+  CHECK(outcome.found.accepted.front().effect->name() == "payload_change");
+}
+
+TEST_CASE("search: a step in the command is found where it is, also a narrow one") {
+  std::mt19937 random{20261121};
+  const double half_width = std::uniform_real_distribution<double>{0.8, 1.2}(random);  // N
+  CAPTURE(half_width);
+  const Outcome outcome =
+      search_dive(vehicle_named("seabotix_lbv150"), {test::active("thruster_deadband", {half_width}, 1)}, kShort, 1);
+  CAPTURE(outcome.said);
+  REQUIRE_FALSE(outcome.found.accepted.empty());
+  CHECK(outcome.found.accepted.front().effect->name() == "thruster_deadband");
 }
 
 TEST_CASE("search: a clean dive gets no name") {
