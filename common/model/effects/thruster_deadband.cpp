@@ -27,6 +27,7 @@ class ThrusterDeadband final : public Effect {
     if (variant == kOffset) return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
     // Only commands at a step's edge tell where it is: no slope leads there from afar.
     std::vector<std::vector<double>> starts;
+    starts.reserve(kSteps.size());
     for (const double share : kSteps) starts.push_back({share * typical});
     return starts;
   }
