@@ -157,7 +157,7 @@ TEST_CASE(
   if (!live_network()) return;
   const std::vector<std::string> effects{"current", "asymmetric_drag", "thrust_asymmetry"};
   std::mt19937 draw{20261121};
-  const std::string hidden = effects[draw() % effects.size()];
+  const std::string& hidden = effects[draw() % effects.size()];
   const std::string seed = std::to_string(1000 + draw() % 1000);
   CAPTURE(hidden);
   CAPTURE(seed);
