@@ -72,6 +72,13 @@ double reduction(double cost_without, double cost_with) {
   return cost_without > 0.0 ? 1.0 - std::sqrt(std::max(cost_with, 0.0) / cost_without) : 0.0;
 }
 
+model::Model without(model::Model model, const Judged& judged) {
+  std::erase_if(model.effects, [&](const model::ActiveEffect& active) {
+    return active.effect == judged.effect && active.variant == judged.variant;
+  });
+  return model;
+}
+
 double total(std::span<const double> window_cost) {
   double sum = 0.0;
   for (const double cost : window_cost) sum += cost;

@@ -17,6 +17,8 @@ inline constexpr const char* kWeaker = "weaker than the accepted effects";
 
 /// Share of the error (RMS) that a cost has lost.
 [[nodiscard]] double reduction(double cost_without, double cost_with);
+/// The model without that effect in that form.
+[[nodiscard]] model::Model without(model::Model model, const Judged& judged);
 /// Sum of costs per window.
 [[nodiscard]] double total(std::span<const double> window_cost);
 /// By the screening alone; `tried` candidates share the prior.

@@ -46,12 +46,6 @@ std::vector<Curve> promising(const Linearisation& base, std::span<const std::uni
   return best;
 }
 
-model::Model without(model::Model model, const Judged& judged) {
-  std::erase_if(model.effects,
-                [&](const auto& active) { return active.effect == judged.effect && active.variant == judged.variant; });
-  return model;
-}
-
 /// The curve in the effect's place: from the fit with both, or from the fit with neither, whichever leads further.
 FitResult in_its_place(const TrajectoryFit& problem, const FitResult& with_none, const FitResult& with_both,
                        const Judged& judged, const FreeCurve& curve) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/final_fit.hpp"
 #include "common/diagnosis/lack_of_form.hpp"
 #include "common/diagnosis/moments.hpp"
+#include "common/diagnosis/pruning.hpp"
 #include "common/diagnosis/questions.hpp"
 #include "common/identification/input_hold.hpp"
 #include "common/identification/sparse.hpp"
@@ -26,7 +26,6 @@ constexpr double kAsGood = 0.9;              // of the gain: with fewer numbers,
 constexpr double kHopeless = 1.0 / 3.0;      // of the best gain so far: screening does not err by more
 constexpr double kClearlyLess = 0.6;         // of the best gain so far, on a spread of windows
 constexpr double kRestart = 0.1;             // of the screened size: where a fit that went astray begins again
-constexpr double kMissedBadly = 0.5;         // of the error; a quick fit is off by a few per cent of it at most
 constexpr double kQuickTolerance = 1e-3;     // relative decrease of the cost; a tenth of the smallest gain that counts
 
 /// The candidate that gains most and that nothing speaks against.
@@ -155,75 +154,6 @@ class Round {
   Coarse coarse_;
   std::optional<CrossValidation> checked_;  // of the reference, made when the first fit is judged
 };
-
-model::Model lacking(model::Model model, const Judged& judged) {
-  std::erase_if(model.effects, [&](const model::ActiveEffect& active) {
-    return active.effect == judged.effect && active.variant == judged.variant;
-  });
-  return model;
-}
-
-/// For every accepted effect, the fitted model in which it alone is missing. Each test remembers the last one's, so
-/// that fits far from where the effect was begin near their end.
-class FitsWithout {
- public:
-  FitsWithout(const SearchResult& result, const TrajectoryFit& problem) : problem_{problem} {
-    for (const Judged& judged : result.accepted) {
-      model::Model model = result.before.model;
-      model.effects = result.after.model.effects;
-      starts_.push_back(lacking(std::move(model), judged));
-    }
-  }
-
-  FitResult fit(const SearchResult& result, std::size_t i) {
-    const Judged& judged = result.accepted[i];
-    const model::Model plain = lacking(result.after.model, judged);
-    model::Model& start = starts_[i];
-    start.input_hold = plain.input_hold;
-    if (problem_.cost(plain, result.after) < problem_.cost(start, result.after)) start = plain;
-    FitResult fit = problem_.fit(start, &result.after, kQuickTolerance);
-    // What is missed so badly is missed by the best fit too.
-    if (reduction(fit.cost, result.after.cost) < kMissedBadly) fit = problem_.fit(fit.model, &fit);
-    start = fit.model;
-    return fit;
-  }
-
-  void drop(std::size_t i, const Judged& judged) {
-    starts_.erase(starts_.begin() + static_cast<std::ptrdiff_t>(i));
-    for (model::Model& start : starts_) start = lacking(std::move(start), judged);
-  }
-
- private:
-  const TrajectoryFit& problem_;
-  std::vector<model::Model> starts_;
-};
-
-/// Drops every accepted effect that the others have made superfluous or that all data does not bear out; fills in the
-/// final odds of those that stay.
-void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried,
-           const Progress& progress) {
-  FitsWithout fits{result, problem};
-  for (std::size_t i = 0; i < result.accepted.size();) {
-    Judged again = result.accepted[i];
-    progress("testing " + std::string(again.effect->name()) + " on everything", 0.85);
-    FitResult fit = fits.fit(result, i);
-    again.log_odds = log_odds(fit.window_cost, result.after.window_cost,
-                              static_cast<int>(again.effect->parameters().size()), tried) -
-                     surprise(result.after.model, again);
-    again.error_reduction = reduction(fit.cost, result.after.cost);
-    if (evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
-      result.accepted[i] = again;
-      ++i;
-      continue;
-    }
-    again.reason = result.accepted.size() > 1 ? "made superfluous by the other effects" : refusal(again, settings);
-    result.refused.push_back(again);
-    result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
-    fits.drop(i, again);
-    result.after = std::move(fit);
-    i = 0;
-  }
-}
 
 /// The final model without the effects that are no longer accepted.
 model::Model only_accepted(const SearchResult& result) {

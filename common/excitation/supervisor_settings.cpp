@@ -52,8 +52,8 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   const Config largest = config.section("largest");
   for (std::size_t i = 0; i < 6; ++i) {
     const std::string axis = model::kAxisNames[i];
-    if ((i == 3 || i == 4) && !largest.has(axis)) continue;  // roll and pitch right themselves
-    if (!vehicle.dof[i] && !largest.has(axis)) continue;
+    const bool rights_itself = i == 3 || i == 4;
+    if ((rights_itself || !vehicle.dof[i]) && !largest.has(axis)) continue;
     const double value = largest.not_negative(axis, i < 3 ? "N" : "N m");
     if (vehicle.dof[i]) s.largest[static_cast<Eigen::Index>(i)] = value;
   }
