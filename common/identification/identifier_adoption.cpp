@@ -180,7 +180,7 @@ void Identifier::add_effect(ModelEstimate& estimate, const RecursiveReport& repo
     estimate.effect_numbers.push_back({.name = name + "." + std::string{parameters[i].name},
                                        .value = report.estimate(k),
                                        .std = report.sigma(k),
-                                       .unit = std::string{parameters[i].unit}});
+                                       .unit = std::string{effect.effect->unit(effect.variant, i)}});
   }
 }
 

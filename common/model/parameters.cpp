@@ -14,10 +14,13 @@ struct Row {
   int sign;
 };
 
-constexpr std::string_view kLinearForce = "N/(m/s)";
-constexpr std::string_view kLinearMoment = "N m/(rad/s)";
-constexpr std::string_view kQuadraticForce = "N/(m/s)^2";
-constexpr std::string_view kQuadraticMoment = "N m/(rad/s)^2";
+/// By kind of the load (force, moment), kind of the velocity (m/s, rad/s), and power.
+constexpr std::array<std::array<std::array<std::string_view, 3>, 2>, 2> kDrag{
+    {{{{"N/(m/s)", "N/(m/s)^2", "N/(m/s)^3"}, {"N/(rad/s)", "N/(rad/s)^2", "N/(rad/s)^3"}}},
+     {{{"N m/(m/s)", "N m/(m/s)^2", "N m/(m/s)^3"}, {"N m/(rad/s)", "N m/(rad/s)^2", "N m/(rad/s)^3"}}}}};
+constexpr std::string_view kLinearForce = kDrag[0][0][0], kQuadraticForce = kDrag[0][0][1];
+constexpr std::string_view kLinearMoment = kDrag[1][1][0], kQuadraticMoment = kDrag[1][1][1];
+constexpr std::array<std::string_view, 3> kInertia{"kg", "kg m", "kg m^2"};  // by how many of the two axes turn
 
 constexpr std::array<Row, kBaseParameterCount> kRows{{
     {"m_X", "kg", 0, +1},
@@ -56,6 +59,10 @@ constexpr std::array<BaseParameter, kBaseParameterCount> kAll = [] {
 
 std::string_view name(BaseParameter parameter) { return row(parameter).name; }
 std::string_view unit(BaseParameter parameter) { return row(parameter).unit; }
+std::string_view drag_unit(int row, int column, int power) {
+  return kDrag[row < 3 ? 0 : 1][column < 3 ? 0 : 1][static_cast<std::size_t>(power - 1)];
+}
+std::string_view inertia_unit(int row, int column) { return kInertia[(row < 3 ? 0U : 1U) + (column < 3 ? 0U : 1U)]; }
 int axis(BaseParameter parameter) { return row(parameter).axis; }
 int sign_constraint(BaseParameter parameter) { return row(parameter).sign; }
 std::span<const BaseParameter> base_parameters() { return kAll; }

@@ -27,6 +27,10 @@ constexpr int index(BaseParameter parameter) { return static_cast<int>(parameter
 [[nodiscard]] std::string_view name(BaseParameter parameter);
 /// "kg", "N/(m/s)^2", ...
 [[nodiscard]] std::string_view unit(BaseParameter parameter);
+/// Of a load on axis `row` (0..5 = X Y Z K M N) per velocity of axis `column` (u v w p q r) to the power 1, 2 or 3.
+[[nodiscard]] std::string_view drag_unit(int row, int column, int power);
+/// Of an element of the mass matrix: "kg", "kg m" or "kg m^2".
+[[nodiscard]] std::string_view inertia_unit(int row, int column);
 /// 0..5 = X Y Z K M N: the axis whose equation the parameter belongs to (W-B: Z, G_x: M, G_y: K, G_z: K).
 /// Masses, W-B and G enter other axes' equations too.
 [[nodiscard]] int axis(BaseParameter parameter);

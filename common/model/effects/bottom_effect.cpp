@@ -14,7 +14,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"strength", "SI", 5.0, -1e4, 1e4},
+constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
                                  EffectParameter{"bottom_depth", "m", 20.0}};
 constexpr int kForce = 0;
 constexpr double kSmallestRange = 0.05;           // m of depth
@@ -30,6 +30,9 @@ class BottomEffect final : public Effect {
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }
+  std::string_view unit(int variant, std::size_t number) const override {
+    return number == 0 && variant != kForce ? "N m^2/(m/s)^2" : kParameters[number].unit;
+  }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     if (!scene.position || scene.p_high.z() - scene.p_low.z() <= kSmallestRange) return {};

@@ -7,12 +7,13 @@
 #include <cmath>
 
 #include "common/model/effect.hpp"
+#include "common/model/parameters.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "SI", 1.0}};
+constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)", 1.0}};
 constexpr std::array<std::array<int, 3>, 2> kPlanes{{{0, 2, 4}, {1, 3, 5}}};
 
 enum class Form { kLinear, kQuadratic, kInertia };
@@ -58,6 +59,11 @@ class CrossCoupling final : public Effect {
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
+  std::string_view unit(int variant, std::size_t) const override {
+    const Term& term = kTerms[static_cast<std::size_t>(variant)];
+    if (term.form == Form::kInertia) return inertia_unit(term.row, term.column);
+    return drag_unit(term.row, term.column, term.form == Form::kLinear ? 1 : 2);
+  }
   std::vector<std::string> variants(const Scene& scene) const override {
     // Positions in this list are the variant numbers, so a term whose axes stand still keeps its place with no name.
     std::vector<std::string> names;

@@ -6,12 +6,13 @@
 #include <array>
 
 #include "common/model/effect.hpp"
+#include "common/model/parameters.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "SI", 50.0, 0.0, 1e5}};
+constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^3", 50.0, 0.0, 1e5}};
 
 class CubicDrag final : public Effect {
  public:
@@ -21,6 +22,7 @@ class CubicDrag final : public Effect {
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
+  std::string_view unit(int variant, std::size_t) const override { return drag_unit(variant, variant, 3); }
   std::vector<std::string> variants(const Scene& scene) const override {
     constexpr std::array<const char*, 6> kNames{"X_uuu", "Y_vvv", "Z_www", "K_ppp", "M_qqq", "N_rrr"};
     std::vector<std::string> names;

@@ -9,12 +9,13 @@
 #include <cmath>
 
 #include "common/model/effect.hpp"
+#include "common/model/parameters.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "SI", 20.0, -1e4, 1e4},
+constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)", 20.0, -1e4, 1e4},
                                  EffectParameter{"time_constant", "s", 3.0, 0.05, 30.0}};
 constexpr std::size_t kAxes = 6;  // z, then the relative velocity that was felt last
 
@@ -27,6 +28,9 @@ class FluidMemory final : public Effect {
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
+  std::string_view unit(int variant, std::size_t number) const override {
+    return number == 0 ? drag_unit(variant, variant, 1) : kParameters[number].unit;
+  }
   std::vector<std::string> variants(const Scene& scene) const override {
     std::vector<std::string> names;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {

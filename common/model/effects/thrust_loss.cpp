@@ -16,7 +16,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "SI", 1.0, 0.0, 50.0}};
+constexpr std::array kParameters{EffectParameter{"coefficient", "N^(1/2)/(m/s)", 1.0, 0.0, 50.0}};
 constexpr int kShaftSpeed = 0;
 constexpr Eigen::Index kForces = 3;  // of a wrench: moments have no advance speed
 
@@ -26,6 +26,9 @@ class ThrustLoss final : public Effect {
   std::string_view sentence() const override { return "Thrust falls as the vehicle moves along with it."; }
   std::string_view revealed_by() const override { return "equal thrust while hovering and at full speed"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::string_view unit(int variant, std::size_t) const override {
+    return variant == kShaftSpeed ? kParameters[0].unit : "1/(m/s)";
+  }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const bool moves = scene.input_is_wrench ? dof[0] || dof[1] || dof[2] : !scene.vehicle->thrusters.empty();

@@ -16,7 +16,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"strength", "SI", 5.0, -1e4, 1e4},
+constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
                                  EffectParameter{"bearing", "rad", 3.0}, EffectParameter{"distance", "m", 20.0}};
 constexpr int kForce = 0;
 constexpr int kBearings = 8;
@@ -33,6 +33,9 @@ class WallEffect final : public Effect {
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }
+  std::string_view unit(int variant, std::size_t number) const override {
+    return number == 0 && variant != kForce ? "N m^2/(m/s)^2" : kParameters[number].unit;
+  }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const double range = (scene.p_high - scene.p_low).head<2>().maxCoeff();

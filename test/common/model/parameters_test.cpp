@@ -38,3 +38,13 @@ TEST_CASE("base parameters: drag is named by its axis and velocity, dissipates, 
   }
   CHECK(model::sign_constraint(model::BaseParameter::W_B) == 0);
 }
+
+TEST_CASE("parameters: units of coefficients follow load and velocity") {
+  CHECK(model::drag_unit(0, 0, 2) == model::unit(model::BaseParameter::X_uu));
+  CHECK(model::drag_unit(5, 5, 1) == model::unit(model::BaseParameter::N_r));
+  CHECK(model::drag_unit(1, 5, 1) == "N/(rad/s)");
+  CHECK(model::drag_unit(4, 2, 3) == "N m/(m/s)^3");
+  CHECK(model::inertia_unit(0, 2) == model::unit(model::BaseParameter::m_X));
+  CHECK(model::inertia_unit(1, 5) == "kg m");
+  CHECK(model::inertia_unit(3, 5) == model::unit(model::BaseParameter::I_Z));
+}
