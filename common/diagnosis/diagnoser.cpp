@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/search.hpp"
 #include "common/diagnosis/verdict.hpp"
@@ -80,6 +81,13 @@ bool carries_over(const SearchResult& found, const Interval& change) {
   return change.value > -kMostHarm && (promised < kPromised || change.value > kKept * promised);
 }
 
+/// By the accepted effects, on runs that no fit has seen.
+double share_on(std::span<const Trial> unseen, const SearchResult& found, const model::Vehicle& vehicle,
+                const Settings& settings) {
+  const identification::TrajectoryFit windows{vehicle, unseen, settings.fit};
+  return share_explained(lasting_error(windows, found.before.model), lasting_error(windows, found.after.model));
+}
+
 /// Takes back everything that was accepted.
 void take_back(SearchResult& found) {
   for (Judged& judged : found.accepted) {
@@ -113,6 +121,7 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
     take_back(found);
     after = before;
   }
+  if (!found.accepted.empty()) found.explained = share_on(unseen, found, vehicle, settings);
   const Residuals residual_before = residuals_of(found.before.model, unseen);
   const Residuals residual_after = residuals_of(found.after.model, unseen);
   result.error_before = {force_rmse(vehicle, residual_before), before.summary(vehicle)};

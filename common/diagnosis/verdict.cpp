@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/diagnosis/judgement.hpp"
+#include "common/diagnosis/left_over.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -45,6 +46,7 @@ std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& fou
 void list_effects(const SearchResult& found, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
+    const double log_odds = at_most_for(found.explained, judged.log_odds);
     const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
                                      [&](const Judged& j) { return j.effect == judged.effect; });
     const std::vector<NamedValue> numbers = numbers_of(judged, found, judged.effect->variants_matter() || forms > 1);
@@ -53,7 +55,7 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
     if (known != result.effects.end()) {
       known->variant += ", " + judged.variant_name;
       known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
-      known->log_odds = std::max(known->log_odds, judged.log_odds);
+      known->log_odds = std::max(known->log_odds, log_odds);
       known->error_reduction = 1.0 - (1.0 - known->error_reduction) * (1.0 - judged.error_reduction);
       for (const std::string& other : judged.alternatives) {
         if (std::find(known->alternatives.begin(), known->alternatives.end(), other) == known->alternatives.end()) {
@@ -70,7 +72,7 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
                               .variant = judged.variant_name,
                               .accepted = true,
                               .parameters = numbers,
-                              .log_odds = judged.log_odds,
+                              .log_odds = log_odds,
                               .error_reduction = judged.error_reduction,
                               .alternatives = judged.alternatives,
                               .other_forms = other_forms,
@@ -166,6 +168,7 @@ std::string next_manoeuvre(const DiagnosisResult& result) {
 }  // namespace
 
 void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result) {
+  result.explained = found.accepted.empty() ? 1.0 : found.explained;
   list_effects(found, result);
   list_candidates(found, result);
   std::vector<std::string> names, open;
@@ -174,8 +177,11 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     if (!effect.alternatives.empty()) open.push_back(effect.name + " (or " + joined(effect.alternatives, " or ") + ")");
   }
   const bool structure = !left.empty() || found.free_form || found.taken_back;
+  const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : "adequate";
+  } else if (stand_ins) {
+    result.verdict = "unexplained";
   } else {
     result.verdict = open.empty() ? "effect" : "ambiguous";
   }
@@ -197,6 +203,12 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
         text += "Which form of " + effect.name + " it is remains open: " + joined(effect.other_forms, "; ") + ". ";
     }
     text += improvement_sentence(result);
+  }
+  if (stand_ins) {
+    text += "Where " + joined(names) + " act" + (names.size() > 1 ? "" : "s") + ", only " + percent(found.explained) +
+            " of the error that outlasts the noise is gone; a whole cause removes nearly all of it. So " +
+            (names.size() > 1 ? "these may stand in" : "it may stand in") +
+            " for something that no known effect describes: kept because the prediction gains, not as a certain name. ";
   }
   if (!open.empty()) {
     text += "On this data " + joined(open) + " cannot be told apart";

@@ -38,6 +38,11 @@ class WindowResidual {
     return window_.trial->nu[window_.start + static_cast<std::size_t>(at.sample)][at.axis];
   }
 
+  /// When a row was measured, s.
+  [[nodiscard]] double time(Eigen::Index row) const {
+    return window_.trial->t[window_.start + static_cast<std::size_t>(rows_[static_cast<std::size_t>(row)].sample)];
+  }
+
   /// Simulated minus measured over sigma; `trace` is workspace. False when the simulation diverged.
   bool evaluate(const model::Model& model, const Vector6d& nu0, const Vector6d& sigma, model::VelocityTrace& trace,
                 Eigen::Ref<Eigen::VectorXd> residual) const;

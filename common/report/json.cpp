@@ -120,6 +120,7 @@ std::string to_json(const DiagnosisResult& result) {
   file["error"]["improvement"] = improvement;
   file["parameters"]["before"] = named(result.parameters_before);
   file["parameters"]["after"] = named(result.parameters_after);
+  file["explained"] = result.explained;
   file["residual"]["before"] = whiteness(result.residual_before);
   file["residual"]["after"] = whiteness(result.residual_after);
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -83,7 +83,8 @@ struct DiagnosisResult {
   std::vector<CandidateTried> candidates;
   ModelError error_before;
   ModelError error_after;
-  Interval improvement;  ///< relative reduction of the normalised 5 s prediction error on validation
+  double explained{1.0};  ///< by the accepted effects, of the lasting error on validation; 1 when there are none
+  Interval improvement;   ///< relative reduction of the normalised 5 s prediction error on validation
   std::vector<NamedValue> parameters_before;
   std::vector<NamedValue> parameters_after;
   std::vector<AxisWhiteness> residual_before;

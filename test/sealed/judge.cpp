@@ -78,7 +78,10 @@ std::string outcome_of(const Score& score, const std::vector<Named>& named) {
   if (score.kind == "foreign") {
     const bool sure = std::any_of(named.begin(), named.end(),
                                   [](const Named& n) { return n.set.size() == 1 && !(n.probability < kConfident); });
-    return named.empty() ? "refused" : sure ? "wrong name" : "hesitant";
+    return named.empty()                    ? "refused"
+           : sure                           ? "wrong name"
+           : score.verdict == "unexplained" ? "unexplained"
+                                            : "hesitant";
   }
   if (named.empty()) return "missed";
   if (score.kind == "pair") {
@@ -183,7 +186,7 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
     compare_parameters(truth, one, score);
   }
   score.outcome = outcome_of(score, named);
-  const Names wished{"named", "alias", "whole", "silent", "refused"};
+  const Names wished{"named", "alias", "whole", "silent", "refused", "unexplained"};
   score.good = contains(wished, score.outcome);
   const std::string first = score.truth.empty() ? "" : score.truth.front();
   for (const Json& finding : result.at("consistency")) {

@@ -28,9 +28,9 @@ Json effect(const std::string& name, const Names& others = {}, double log_odds =
       {"parameters", {{"time_constant", {{"value", 0.22}, {"std", 0.02}}}, {"own", {{"value", 1.0}, {"std", 1.0}}}}}};
 }
 
-Score judged(const Json& truth, const std::vector<Json>& effects) {
+Score judged(const Json& truth, const std::vector<Json>& effects, const std::string& verdict = "effect") {
   const Json error{{"prediction", {{{"horizon_s", 5}, {"r2", {{"u", 0.99}, {"v", 0.96}, {"p", nullptr}}}}}}};
-  const Json result{{"verdict", "effect"},
+  const Json result{{"verdict", verdict},
                     {"effects", effects},
                     {"consistency", Json::array()},
                     {"parameters", {{"after", Json::object()}}},
@@ -65,6 +65,8 @@ TEST_CASE("judge: pairs, silence and strangers") {
   CHECK(judged(foreign, {effect("current")}).outcome == "wrong name");
   CHECK(judged(foreign, {effect("current", {"wave"})}).outcome == "hesitant");
   CHECK(judged(foreign, {effect("current", {}, 0.5)}).outcome == "hesitant");
+  CHECK(judged(foreign, {effect("current", {}, 0.5)}, "unexplained").outcome == "unexplained");
+  CHECK(judged(foreign, {effect("current")}, "unexplained").outcome == "wrong name");
 }
 
 TEST_CASE("judge: the right name for the wrong thruster is seen") {

@@ -90,7 +90,7 @@ void add_targets(std::span<const Score> scores, std::string& text) {
   }
   add_row(text, "sets with an effect in which a wrong one is accepted too", "-", percent(strangers, sets));
   add_row(text, "false alarms: clean data, coloured noise alone", "at most 2 %", percent(alarms, quiet));
-  add_row(text, "outside the catalogue: nothing accepted", "80 %",
+  add_row(text, "outside the catalogue: nothing accepted, or no name above 90 % and the verdict unexplained", "80 %",
           good_of(scores, [](const Score& s) { return s.kind == "foreign"; }));
   add_row(text, "outside the catalogue: a wrong confident name", "at most 5 %", percent(named, foreign));
   const Filter effects = [](const Score& s) { return s.kind == "single" || s.kind == "pair"; };

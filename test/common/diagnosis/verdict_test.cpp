@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "test/support/virtual_dive.hpp"
@@ -72,6 +73,21 @@ void check_all_listed(const DiagnosisResult& result) {
 }
 
 }  // namespace
+
+TEST_CASE("verdict: what leaves much of the error that lasts is kept, and is no certain name") {
+  MadeUp made;
+  made.accept("current", {0.1, 0.0});
+  made.found.explained = 0.98;
+  CHECK(made.concluded().verdict == "effect");
+  made.found.explained = 0.6;
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "unexplained");
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].accepted);
+  CHECK(result.effects[0].log_odds == doctest::Approx(std::log(0.6 / 0.4)));
+  CHECK(result.explained == 0.6);
+  CHECK(says(result.paragraph, "only 60 %"));
+}
 
 TEST_CASE("verdict: nothing found and nothing left is adequate, and there is nothing to drive") {
   MadeUp made;

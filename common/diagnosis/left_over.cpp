@@ -1,0 +1,94 @@
+#include "common/diagnosis/left_over.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::diagnosis {
+namespace {
+
+constexpr double kMoment = 0.1;   // s: longer than what sensors filter, shorter than a hull's answer
+constexpr double kCertain = 2.0;  // standard errors
+
+/// Sum and number of products of an axis' residuals kMoment apart, and the sum of the early ones' squares.
+struct Products {
+  double sum{}, count{}, square{};
+};
+
+Products products(const identification::WindowResidual& window, const identification::AxisRows& rows,
+                  const Eigen::VectorXd& residual) {
+  Products found;
+  const Eigen::Index end = rows.first + rows.count;
+  for (Eigen::Index early = rows.first, late = rows.first; early < end; ++early) {
+    const double moment = window.time(early) + kMoment;
+    while (late < end && window.time(late) < moment - 1e-6) ++late;
+    if (late == end) break;
+    if (window.time(late) > moment + kMoment) continue;  // a gap
+    found.sum += residual[early] * residual[late];
+    found.square += residual[early] * residual[early];
+    found.count += 1.0;
+  }
+  return found;
+}
+
+}  // namespace
+
+LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model) {
+  identification::FitResult fit;
+  fit.model = model;
+  for (const identification::WindowResidual& window : problem.windows())
+    fit.nu0.push_back(window.window().trial->nu[window.window().start]);
+  const std::vector<identification::ProjectedWindow> projected = problem.linearise(fit);
+  Vector6d sum = Vector6d::Zero(), count = Vector6d::Zero(), square = Vector6d::Zero(), cross = Vector6d::Zero();
+  Vector6d count_square = Vector6d::Zero(), all = Vector6d::Zero();
+  for (std::size_t w = 0; w < problem.windows().size(); ++w) {
+    const identification::WindowResidual& window = problem.windows()[w];
+    for (const identification::AxisRows& rows : window.axes()) {
+      if (rows.count == 0) continue;
+      const Products of_window = products(window, rows, projected[w].residual);
+      const int axis = window.axis(rows.first);
+      sum[axis] += of_window.sum;
+      count[axis] += of_window.count;
+      all[axis] += of_window.square;
+      square[axis] += of_window.sum * of_window.sum;
+      cross[axis] += of_window.sum * of_window.count;
+      count_square[axis] += of_window.count * of_window.count;
+    }
+  }
+  LastingError lasting;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (count[axis] <= 0.0) continue;
+    const double mean = sum[axis] / count[axis];
+    // Of a ratio of sums over windows.
+    const double scatter = square[axis] - 2.0 * mean * cross[axis] + mean * mean * count_square[axis];
+    lasting.all[axis] = all[axis] / count[axis];
+    lasting.square[axis] = std::max(mean, 0.0);
+    lasting.error[axis] = std::sqrt(std::max(scatter, 0.0)) / count[axis];
+  }
+  return lasting;
+}
+
+double share_explained(const LastingError& before, const LastingError& after) {
+  double weighted = 0.0, weights = 0.0;
+  bool lacking = false;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (before.square[axis] <= 0.0 || after.all[axis] <= 0.0) continue;
+    lacking = lacking || before.square[axis] > kCertain * before.error[axis];
+    const double left = std::max(after.square[axis] - kCertain * after.error[axis], 0.0);
+    const double gone = 1.0 - left / before.square[axis];
+    if (gone <= 0.0) continue;
+    const double weight = std::max(before.square[axis] - after.square[axis], 0.0) / after.all[axis];
+    weighted += weight * gone;
+    weights += weight;
+  }
+  if (weights > 0.0) return weighted / weights;
+  return lacking ? 0.0 : 1.0;
+}
+
+double at_most_for(double share, double log_odds) {
+  constexpr double kNone = 1e-3;  // explains next to nothing
+  if (share >= 1.0) return log_odds;
+  const double sure = std::max(share, kNone);
+  return std::min(log_odds, std::log(sure / (1.0 - sure)));
+}
+
+}  // namespace fathom::diagnosis

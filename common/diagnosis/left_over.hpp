@@ -1,0 +1,30 @@
+// How much of what the base model lacks the accepted effects explain. Noise has forgotten itself after a moment, what a
+// model lacks has not: the residual's covariance over that moment measures it, whatever the sensors' noise.
+#pragma once
+
+#include "common/identification/trajectory_fit.hpp"
+
+namespace fathom::diagnosis {
+
+/// Below this share an accepted effect may be the imitation of something else: most causes explain nearly everything
+/// that they cause, and a stand-in leaves its own wrong form behind.
+constexpr double kWholeCause = 0.9;
+
+/// Mean square of what lasts in the velocities that a model predicts over windows, whose initial velocity is free, per
+/// axis, and its standard error over windows, (m/s)^2 and (rad/s)^2.
+struct LastingError {
+  Vector6d square{Vector6d::Zero()};
+  Vector6d error{Vector6d::Zero()};
+  Vector6d all{Vector6d::Zero()};  ///< mean square of the whole residual, noise included
+};
+[[nodiscard]] LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model);
+
+/// Share (0..1) of the lasting error of `before` that is gone in `after`, over the axes where something is gone, each
+/// with the weight of what is gone from it over what is left there in all. What is left counts only as far as it is
+/// certain (two standard errors). Where nothing is gone: 0, or 1 if nothing was certainly lacking.
+[[nodiscard]] double share_explained(const LastingError& before, const LastingError& after);
+
+/// Log odds that a name is right, given that it stands for `share` of what was lacking: at most share to 1 - share.
+[[nodiscard]] double at_most_for(double share, double log_odds);
+
+}  // namespace fathom::diagnosis

@@ -1,0 +1,88 @@
+// A whole cause takes what lasts in the error with it, whatever the noise; a stand-in leaves its own wrong form behind.
+#include "common/diagnosis/left_over.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "test/support/virtual_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::diagnosis;
+using identification::FitResult;
+using identification::TrajectoryFit;
+
+namespace {
+
+constexpr double kDuration = 150.0;  // s
+
+/// Weed collects: all drag grows with time. No effect of the registry does this.
+class Weed final : public model::Effect {
+ public:
+  std::string_view name() const override { return "weed"; }
+  std::string_view sentence() const override { return ""; }
+  std::string_view revealed_by() const override { return ""; }
+  std::span<const model::EffectParameter> parameters() const override { return parameters_; }
+  void load(const model::Motion& motion, model::EffectTheta theta, int, model::Load& load) const override {
+    const Eigen::Vector3d v = motion.nu.head<3>();
+    load.wrench.head<3>() -= theta[0] * motion.t / kDuration * v.cwiseProduct(v.cwiseAbs());
+  }
+
+ private:
+  std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"growth", "", 100.0}};
+};
+
+/// Share that `suspect` explains on a dive that it was not fitted to, with `hidden` in both.
+double share(const model::ActiveEffect& hidden, const model::ActiveEffect& suspect) {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto dive = [&](unsigned seed) {
+    return test::make_dive(vehicle, {.duration = kDuration, .seed = seed, .spread = 0.0, .effects = {hidden}});
+  };
+  const test::VirtualDive first = dive(21), second = dive(22);
+  const std::vector<Trial> train{first.trial}, unseen{second.trial};
+  const identification::FitSettings settings{.window = 5.0, .threads = 1, .iterations = 10};
+  const TrajectoryFit problem{vehicle, train, settings};
+  const FitResult without = problem.fit(model::nominal_model(vehicle, false));
+  model::Model model = without.model;
+  model.add(suspect);
+  const FitResult with = problem.fit(model, &without);
+  const TrajectoryFit windows{vehicle, unseen, settings};
+  return share_explained(lasting_error(windows, without.model), lasting_error(windows, with.model));
+}
+
+LastingError axis(int which, double square, double error, double all) {
+  LastingError lasting;
+  lasting.square[which] = square;
+  lasting.error[which] = error;
+  lasting.all[which] = all;
+  return lasting;
+}
+
+}  // namespace
+
+TEST_CASE("left over: a true cause explains what lasts, a stand-in does not") {
+  CHECK(share(test::active("current", {0.08, -0.05}), test::active("current", {0.01, 0.01})) > kWholeCause);
+  const Weed weed;
+  const model::ActiveEffect hidden{&weed, 0, "", {150.0}};
+  CHECK(share(hidden, test::active("battery_sag", {0.5})) < kWholeCause);
+}
+
+TEST_CASE("left over: what is not certainly left counts as gone, and axes where nothing is gone do not count") {
+  CHECK(share_explained(axis(0, 4.0, 0.1, 5.0), axis(0, 1.0, 0.0, 2.0)) == doctest::Approx(0.75));
+  CHECK(share_explained(axis(0, 4.0, 0.1, 5.0), axis(0, 1.0, 0.5, 2.0)) == 1.0);
+  LastingError before = axis(0, 4.0, 0.0, 5.0), after = axis(0, 1.0, 0.0, 2.0);
+  before.square[5] = after.square[5] = 7.0;
+  before.all[5] = after.all[5] = 8.0;
+  CHECK(share_explained(before, after) == doctest::Approx(0.75));
+  CHECK(share_explained(axis(0, 4.0, 0.1, 5.0), axis(0, 4.5, 0.1, 5.0)) == 0.0);
+  CHECK(share_explained(axis(0, 0.1, 0.1, 5.0), axis(0, 0.2, 0.01, 5.0)) == 1.0);
+  CHECK(share_explained(LastingError{}, LastingError{}) == 1.0);
+}
+
+TEST_CASE("left over: a name is no surer than the share that it stands for") {
+  CHECK(at_most_for(1.0, 40.0) == 40.0);
+  CHECK(at_most_for(0.9, 40.0) == doctest::Approx(std::log(9.0)));
+  CHECK(at_most_for(0.9, 1.0) == 1.0);
+  CHECK(at_most_for(0.5, 40.0) == doctest::Approx(0.0));
+  CHECK(std::isfinite(at_most_for(0.0, 40.0)));
+}
