@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/search.hpp"

@@ -16,6 +16,7 @@ using identification::TrajectoryFit;
 
 constexpr double kSameStory = 0.5;  // correlation of what two forms of one effect claim
 constexpr double kEdge = 0.03;      // of the data's length
+constexpr double kInside = 0.05;    // of the time: a boundary is known to some centimetres
 constexpr double kAtLimit = 0.05;   // of a limit: nearer than that, the number wants to be beyond it
 
 /// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none
@@ -46,6 +47,24 @@ std::vector<Eigen::Index> places_of(const model::Model& model, const Judged& jud
     }
   }
   return places;
+}
+
+/// True when the effect's numbers have the vehicle where it cannot be, and not just for a moment.
+bool in_the_way(const TrajectoryFit& problem, const model::Model& model, const Judged& judged) {
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != judged.effect || active.variant != judged.variant) continue;
+    double samples = 0.0, inside = 0.0;
+    for (const auto& window : problem.windows()) {
+      const model::Window& of = window.window();
+      for (std::size_t k = of.start; k < of.start + of.count && k < of.trial->size(); ++k) {
+        if (of.trial->pose_valid[k] == 0) continue;
+        samples += 1.0;
+        if (!active.effect->possible(of.trial->p_WB[k], active.theta, active.variant)) inside += 1.0;
+      }
+    }
+    if (inside > kInside * samples) return true;
+  }
+  return false;
 }
 
 /// True when the effect begins or ends so close to the edge of the data that it acts all the time, or never.
@@ -127,6 +146,7 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
     return text;
   }
   if (judged.lasting) return "begins at the edge of the data: something that always acts, not an event";
+  if (judged.in_the_way) return "has the vehicle on the wrong side of what it would be near to";
   if (judged.held_out_blocks < 0.0) return "does not help on blocks of data left out of its estimate";
   if (judged.held_out_runs < 0.0) return "does not carry over from run to run";
   const std::string limited = model != nullptr ? limited_number(*model, judged) : "";
@@ -151,6 +171,7 @@ void judge_by_data_left_out(Judged& judged, const TrajectoryFit& problem, const 
                             const CrossValidation& without_checked, const FitResult& with) {
   judged.change = prediction_change(problem, without, with);
   judged.lasting = onset_at_edge(problem, with.model, judged);
+  judged.in_the_way = in_the_way(problem, with.model, judged);
   const HeldOut carried =
       held_out(problem, without_checked, CrossValidation{problem, with}, places_of(with.model, judged));
   judged.held_out_blocks = carried.blocks;

@@ -12,7 +12,6 @@ constexpr double kStride = 5.0;    // s
 constexpr std::size_t kBlock = 6;  // windows per bootstrap block: 30 s, longer than the residual's memory
 constexpr int kDraws = 1000;
 constexpr unsigned kSeed = 20240607;
-constexpr double kDerivativeSpan = 0.5;  // s, of the local fit that gives nu_dot
 constexpr std::size_t kScoredHorizon = 1;
 
 /// A prediction may start here: everything that is observed is valid.
@@ -182,40 +181,6 @@ Interval improvement(const Predictions& before, const Predictions& after, const 
   interval.low = draws[static_cast<std::size_t>(0.025 * kDraws)];
   interval.high = draws[static_cast<std::size_t>(0.975 * kDraws)];
   return interval;
-}
-
-std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
-  const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kDerivativeSpan / trial.dt)));
-  double weight = 0.0;  // sum of squared offsets [s^2]: slope of the local straight line through symmetric samples
-  for (std::size_t i = 1; i <= half; ++i) weight += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
-  std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  const model::InputSignal input = model::input_of(model, trial);
-  std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
-  const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());
-  for (std::size_t k = 0; k < trial.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    model::Motion motion{
-        .t = trial.t[k], .p_WB = trial.p_WB[k], .R_WB = trial.q_WB[k].toRotationMatrix(), .nu = nu.col(at)};
-    input.at(motion.t, motion.force);
-    motion.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
-    motion.input = &input;
-    motion.vehicle = model.vehicle;
-    if (k == 0) model::settle(model, motion, memory);
-    model::feel(model, motion, memory, k == 0 ? 0.0 : trial.dt);
-    if (k < half || k + half >= trial.size()) continue;
-    bool valid = true;
-    Vector6d slope = Vector6d::Zero();
-    for (std::size_t i = 1; i <= half; ++i) {
-      const auto apart = static_cast<Eigen::Index>(i);
-      slope += static_cast<double>(i) * trial.dt * (nu.col(at + apart) - nu.col(at - apart));
-      for (const std::size_t j : {k - i, k + i}) {
-        valid = valid && (!trial.observed.velocity || trial.velocity_valid[j] != 0) &&
-                (!trial.observed.rates || trial.rates_valid[j] != 0);
-      }
-    }
-    if (valid) residuals[k] = model::residual_wrench(model, motion, slope / weight);
-  }
-  return residuals;
 }
 
 }  // namespace fathom::diagnosis

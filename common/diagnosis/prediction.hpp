@@ -44,8 +44,4 @@ struct Predictions {
 /// `after`, relative to before, with a 95 % interval by bootstrap over blocks of windows (seeded: repeatable).
 [[nodiscard]] Interval improvement(const Predictions& before, const Predictions& after, const model::Vehicle& vehicle);
 
-/// Wrench residual X..N [N, N m] per sample: what acts and the model lacks, with nu_dot from a local quadratic fit to
-/// nu.
-[[nodiscard]] std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial);
-
 }  // namespace fathom::diagnosis

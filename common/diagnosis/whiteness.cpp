@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 
+#include "common/diagnosis/prediction.hpp"
+
 namespace fathom::diagnosis {
 namespace {
 
@@ -48,7 +50,16 @@ Moments moments(std::span<const double> series) {
   return m;
 }
 
-using Features = std::function<Eigen::Vector4d(const Trial&, std::size_t, int axis)>;
+/// A sample, with the velocity that the model predicts there: the measured one carries the noise that is also in the
+/// residual, and noise with a memory would go with itself.
+struct Moment {
+  const Trial& trial;
+  std::size_t k;
+  const std::array<double, 6>& nu;
+};
+
+using Velocities = std::vector<std::array<double, 6>>;
+using Features = std::function<Eigen::Vector4d(const Moment&, int axis)>;
 
 struct Suspect {
   std::string name;
@@ -61,43 +72,49 @@ std::vector<Suspect> suspects(const model::Model& model) {
   const auto always = [](const Trial&) { return true; };
   return {
       {"position", [](const Trial& t) { return t.observed.position; },
-       [](const Trial& t, std::size_t k, int) {
-         const Eigen::Vector3d& p = t.p_WB[k];
+       [](const Moment& at, int) {
+         const Eigen::Vector3d& p = at.trial.p_WB[at.k];
          return Eigen::Vector4d(p.x(), p.y(), p.x() * p.y(), p.head<2>().squaredNorm());
        }},
       {"depth", [](const Trial& t) { return t.observed.position; },
-       [](const Trial& t, std::size_t k, int) {
-         const double z = t.p_WB[k].z();
+       [](const Moment& at, int) {
+         const double z = at.trial.p_WB[at.k].z();
          return Eigen::Vector4d(z, z * z, 0.0, 0.0);
        }},
       {"heading", [](const Trial& t) { return t.observed.attitude; },
-       [](const Trial& t, std::size_t k, int) {
-         const double psi = euler_from_rotation(t.q_WB[k].toRotationMatrix()).z();
+       [](const Moment& at, int) {
+         const double psi = euler_from_rotation(at.trial.q_WB[at.k].toRotationMatrix()).z();
          return Eigen::Vector4d(std::sin(psi), std::cos(psi), std::sin(2.0 * psi), std::cos(2.0 * psi));
        }},
       {"speed", always,
-       [](const Trial& t, std::size_t k, int axis) {
-         const double v = t.nu[k][axis];
-         return Eigen::Vector4d(v, std::abs(v), v * std::abs(v), t.nu[k].head<3>().squaredNorm());
+       [](const Moment& at, int axis) {
+         const auto& nu = at.nu;
+         const double v = nu[static_cast<std::size_t>(axis)];
+         return Eigen::Vector4d(v, std::abs(v), v * std::abs(v), nu[0] * nu[0] + nu[1] * nu[1] + nu[2] * nu[2]);
        }},
       {"thrust", always,
-       [allocation](const Trial& t, std::size_t k, int axis) {
-         const Vector6d tau = allocation * t.input[k];
-         return Eigen::Vector4d(tau[axis], std::abs(tau[axis]), t.input[k].cwiseAbs().sum(), 0.0);
+       [allocation](const Moment& at, int axis) {
+         const auto& input = at.trial.input[at.k];
+         const Vector6d tau = allocation * input;
+         return Eigen::Vector4d(tau[axis], std::abs(tau[axis]), input.cwiseAbs().sum(), 0.0);
        }},
       {"voltage", [](const Trial& t) { return !t.voltage.empty(); },
-       [allocation](const Trial& t, std::size_t k, int axis) {
-         const double tau = (allocation * t.input[k])[axis];
-         return Eigen::Vector4d(t.voltage[k], t.voltage[k] * tau, 0.0, 0.0);
+       [allocation](const Moment& at, int axis) {
+         const double tau = (allocation * at.trial.input[at.k])[axis], voltage = at.trial.voltage[at.k];
+         return Eigen::Vector4d(voltage, voltage * tau, 0.0, 0.0);
        }},
       {"time", always,
-       [](const Trial& t, std::size_t k, int) { return Eigen::Vector4d(t.t[k], t.t[k] * t.t[k], 0.0, 0.0); }},
+       [](const Moment& at, int) {
+         const double t = at.trial.t[at.k];
+         return Eigen::Vector4d(t, t * t, 0.0, 0.0);
+       }},
   };
 }
 
 /// Share of variance that a linear function of the features explains on folds that did not set it.
 double held_out_share(const Suspect& suspect, std::span<const Trial> trials,
-                      std::span<const std::vector<Vector6d>> residuals, int axis) {
+                      std::span<const std::vector<Vector6d>> residuals, std::span<const Velocities> predicted,
+                      int axis) {
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
   using Vector5d = Eigen::Matrix<double, 5, 1>;
   std::array<Matrix5d, kFolds> normal;
@@ -114,7 +131,8 @@ double held_out_share(const Suspect& suspect, std::span<const Trial> trials,
       if (!std::isfinite(y)) continue;
       const std::size_t fold = (block_offset + static_cast<std::size_t>((trial.t[k] - trial.t[0]) / kBlock)) % kFolds;
       Vector5d x;
-      x << 1.0, suspect.features(trial, k, axis);
+      x << 1.0, suspect.features({trial, k, predicted[r][k]}, axis);
+      if (!x.allFinite()) continue;
       normal[fold] += x * x.transpose();
       right[fold] += x * y;
       square[fold] += y * y;
@@ -213,10 +231,19 @@ std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const 
 std::vector<Association> associations(const model::Model& model, std::span<const Trial> trials,
                                       std::span<const std::vector<Vector6d>> residuals, double smallest) {
   std::vector<Association> found;
+  std::vector<Velocities> predicted;
+  for (const Trial& trial : trials) {
+    predicted.push_back(predict_anew(model, trial, restarts(trial)));
+    for (std::size_t k = 0; k < trial.size(); ++k) {  // nothing moves along an axis that is not simulated
+      for (std::size_t axis = 0; axis < 6; ++axis) {
+        if (!model.vehicle->dof[axis]) predicted.back()[k][axis] = 0.0;
+      }
+    }
+  }
   for (const Suspect& suspect : suspects(model)) {
     for (int axis = 0; axis < 6; ++axis) {
       if (!model.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
-      const double share = held_out_share(suspect, trials, residuals, axis);
+      const double share = held_out_share(suspect, trials, residuals, predicted, axis);
       if (share > smallest) found.push_back({model::kAxisNames[static_cast<std::size_t>(axis)], suspect.name, share});
     }
   }

@@ -68,25 +68,31 @@ PairResult Check::acceleration() const {
   return compare(names, names_, std::move(fits));
 }
 
-void Check::align_clocks() {
-  bool any = false;
-  bool on_board = false;
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    Corrections& one = result_.corrections[r];
-    on_board = on_board || (!gyro_[r].empty() && one.gyro.delay != 0.0);
-    any = any || one.gyro.delay != 0.0 || one.dvl.delay != 0.0;
-    one.pose_shift = one.gyro.delay;  // gyro(t + delay) belongs to pose(t): the pose's stamps move to the gyro's clock
-    one.gyro_shift = 0.0;
-    one.dvl_shift = one.gyro.delay - one.dvl.delay;
+void Check::align_clocks(bool dvl_compared) {
+  bool gyro_apart = false, dvl_apart = false;
+  for (const Corrections& one : result_.corrections) {
+    gyro_apart = gyro_apart || one.gyro.delay != 0.0;
+    dvl_apart = dvl_apart || one.dvl.delay != 0.0;
   }
-  if (!any) return;
+  // Two that agree outvote the third; where all differ, the gyro is taken to be on board with the thrusters.
+  const bool gyro_alone = gyro_apart && dvl_compared && !dvl_apart;
+  for (Corrections& one : result_.corrections) {
+    const double base = gyro_alone ? 0.0 : one.gyro.delay;
+    one.pose_shift = base;  // gyro(t + delay) belongs to pose(t): the pose's stamps move to the gyro's clock
+    one.gyro_shift = base - one.gyro.delay;
+    one.dvl_shift = base - one.dvl.delay;
+  }
+  if (!gyro_apart && !dvl_apart) return;
+  const bool on_gyro = gyro_apart && !gyro_alone;
   report(
       "thrusters", "clock", result_.corrections[0].pose_shift, "s",
-      on_board
-          ? "the clocks differ; kinematics cannot tell on whose clock the thrusters are: taken to be that of the "
-            "on-board gyro"
-          : "the clocks differ; kinematics cannot tell on whose clock the thrusters are: taken to be that of the pose",
-      "assumed: thruster stamps unshifted; pose stamps moved by the size", on_board ? "gyro" : reference_);
+      std::string("the clocks differ; kinematics cannot tell on whose clock the thrusters are: taken to be that of ") +
+          (on_gyro      ? "the on-board gyro"
+           : gyro_alone ? "the pose, with which the velocity log agrees"
+                        : "the pose"),
+      on_gyro ? "assumed: thruster stamps unshifted; pose stamps moved by the size"
+              : "assumed: thruster and pose stamps unshifted",
+      on_gyro ? "gyro" : reference_);
 }
 
 void Check::report_outliers(const std::string& name, const PairResult& pair) {
@@ -139,7 +145,7 @@ ConsistencyResult Check::run() {
   std::vector<PoseSeries> poses;
   for (std::size_t r = 0; r < runs_.size(); ++r) poses.push_back(pose(r));
   append(compare_with_vertical(reference_ + ".attitude", names_, poses));
-  align_clocks();
+  align_clocks(dvl.checked);
   append(compare_noise(runs_));
   result_.pairs.emplace("gyro", std::move(gyro));
   result_.pairs.emplace("dvl", std::move(dvl));

@@ -35,7 +35,7 @@ class Check {
   [[nodiscard]] PairResult rates() const;
   [[nodiscard]] PairResult velocity(const PairResult& gyro) const;
   [[nodiscard]] PairResult acceleration() const;
-  void align_clocks();
+  void align_clocks(bool dvl_compared);
   void report_outliers(const std::string& name, const PairResult& pair);
   // pose_blame.cpp
   bool blame_pose_axes(const PairResult& gyro, const PairResult& dvl);

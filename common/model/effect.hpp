@@ -79,6 +79,10 @@ class Effect {
   /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
   /// fitted anew (its small sizes may even look harmful). Tried by full fits; none by default.
   [[nodiscard]] virtual std::vector<std::vector<double>> far_starts(const Scene&, int /*variant*/) const { return {}; }
+  /// False where the vehicle cannot have been, were these numbers true: inside a wall, say.
+  [[nodiscard]] virtual bool possible(const Eigen::Vector3d& /*p_WB*/, EffectTheta, int /*variant*/) const {
+    return true;
+  }
   /// Alters what is felt (forces that reach the water, the water's motion). `z` is the effect's memory.
   virtual void feel(Motion&, EffectTheta, int /*variant*/, std::span<const double> /*z*/) const {}
   /// Adds wrench and inertia. Sees the motion after all feel().

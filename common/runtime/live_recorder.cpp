@@ -20,10 +20,10 @@ constexpr int kWaitMs = 50;
 constexpr std::chrono::milliseconds kKeepPeriod{200};  // what a loss of power may cost
 
 std::string numbered(const std::string& path) {
-  constexpr int kMost = 1000;
-  char end[8];
-  for (int i = 0; i < kMost; ++i) {
-    std::snprintf(end, sizeof end, ".%02d", i);
+  constexpr unsigned kMost = 1000;
+  char end[16];
+  for (unsigned i = 0; i < kMost; ++i) {
+    std::snprintf(end, sizeof end, ".%02u", i);
     if (!std::filesystem::exists(path + end)) return path + end;
   }
   throw InputError(path + ": numbers up to 999 are taken; move the old logs away");

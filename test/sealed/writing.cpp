@@ -1,5 +1,6 @@
 #include "test/sealed/writing.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
@@ -50,7 +51,9 @@ std::string to_csv(const SealedSet& set, const Dive& run) {
   } else {
     for (std::size_t i = 1; i <= jets; ++i) add(text, ",f%zu", i);
   }
-  const bool voltage = !run.voltage.empty() || set.plan.voltage;
+  // Thrust that falls with time is that of a battery nobody watches.
+  const bool unwatched = std::ranges::find(set.plan.names, "battery_sag") != set.plan.names.end();
+  const bool voltage = !run.voltage.empty() || (set.plan.voltage && !unwatched);
   text += voltage ? ",voltage\n" : "\n";
   const auto allocation = set.craft.allocation();
   Random volts(set.plan.seed, "voltage");

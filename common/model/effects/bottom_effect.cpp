@@ -29,6 +29,7 @@ class BottomEffect final : public Effect {
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
+  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int) const override { return theta[1] > p_WB.z(); }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
     return number == 0 && variant != kForce ? "N m^2/(m/s)^2" : kParameters[number].unit;

@@ -32,6 +32,9 @@ class WallEffect final : public Effect {
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
+  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int) const override {
+    return theta[2] > std::cos(theta[1]) * p_WB.x() + std::sin(theta[1]) * p_WB.y();
+  }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
     return number == 0 && variant != kForce ? "N m^2/(m/s)^2" : kParameters[number].unit;

@@ -32,6 +32,9 @@ Trial quiet_trial(std::size_t count) {
     trial.p_WB.emplace_back(0, 0, 0);
     trial.q_WB.push_back(Eigen::Quaterniond::Identity());
     trial.nu.emplace_back(Vector6d::Zero());
+    trial.pose_valid.push_back(1);
+    trial.velocity_valid.push_back(1);
+    trial.rates_valid.push_back(1);
     trial.input.emplace_back(Eigen::VectorXd::Unit(6, 0) * std::sin(0.05 * static_cast<double>(k)));
   }
   return trial;

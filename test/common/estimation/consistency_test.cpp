@@ -78,6 +78,20 @@ TEST_CASE("one recording unlike the others is named and corrected alone") {
   CHECK(result.corrections[3].dvl.delay == doctest::Approx(0.3).epsilon(0.03));
 }
 
+TEST_CASE("of three clocks the two that agree are taken to be that of the thrusters") {
+  const auto shifts = [](double gyro_delay, double dvl_delay) {
+    const Recording recording =
+        test::synthetic_recording({.seed = 31, .gyro_delay = gyro_delay, .dvl_delay = dvl_delay});
+    const estimation::Corrections one = estimation::check_consistency(std::span(&recording, 1)).corrections[0];
+    return Eigen::Vector3d(one.pose_shift, one.gyro_shift, one.dvl_shift);
+  };
+  constexpr double kClose = 0.01;  // s; the delays' own errors are a few ms
+  CHECK((shifts(0.3, 0.0) - Eigen::Vector3d(0.0, -0.3, 0.0)).norm() < kClose);      // the gyro alone is late
+  CHECK((shifts(0.0, 0.3) - Eigen::Vector3d(0.0, 0.0, -0.3)).norm() < kClose);      // the velocity log alone
+  CHECK((shifts(-0.2, -0.2) - Eigen::Vector3d(-0.2, 0.0, 0.0)).norm() < kClose);    // the pose alone
+  CHECK((shifts(0.07, 0.22) - Eigen::Vector3d(0.07, 0.0, -0.15)).norm() < kClose);  // all differ: the gyro's
+}
+
 TEST_CASE("missing groups are worked without") {
   SUBCASE("velocity only") {
     const Recording recording = test::synthetic_recording({.seed = 20, .pose_rate = 0.0, .gyro_rate = 0.0});

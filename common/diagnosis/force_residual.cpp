@@ -1,0 +1,85 @@
+#include "common/diagnosis/force_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/model/rollout.hpp"
+
+namespace fathom::diagnosis {
+namespace {
+
+constexpr double kSpan = 0.5;  // s, of the straight line whose slope is the acceleration
+
+struct Sides {
+  Vector6d still;                    ///< residual of the sample if it did not accelerate: minus the load
+  Eigen::Matrix<double, 6, 6> mass;  ///< what acceleration adds to it
+};
+
+std::vector<Sides> sides_of(const model::Model& model, const Trial& trial, const model::VelocityTrace& nu) {
+  std::vector<Sides> sides;
+  sides.reserve(trial.size());
+  const model::InputSignal input = model::input_of(model, trial);
+  std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    model::Motion motion{.t = trial.t[k],
+                         .p_WB = trial.p_WB[k],
+                         .R_WB = trial.q_WB[k].toRotationMatrix(),
+                         .nu = nu.col(static_cast<Eigen::Index>(k))};
+    input.at(motion.t, motion.force);
+    motion.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
+    motion.input = &input;
+    motion.vehicle = model.vehicle;
+    if (k == 0) model::settle(model, motion, memory);
+    model::feel(model, motion, memory, k == 0 ? 0.0 : trial.dt);
+    Sides& of = sides.emplace_back();
+    of.still = model::residual_wrench(model, motion, Vector6d::Zero());
+    for (int i = 0; i < 6; ++i) of.mass.col(i) = model::residual_wrench(model, motion, Vector6d::Unit(i)) - of.still;
+  }
+  return sides;
+}
+
+/// Weight of the samples up to `half` away from the middle in the mean acceleration that the slope of a straight line
+/// through 2 half + 1 velocities is: acceleration runs straight from sample to sample.
+std::vector<double> weights_of(std::size_t half) {
+  double squares = 0.0;
+  for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * static_cast<double>(i * i);
+  std::vector<double> weight(half + 1, 0.0);
+  for (std::size_t step = 0; step < half; ++step) {  // between sample `step` and the next
+    double share = 0.0;
+    for (std::size_t i = step + 1; i <= half; ++i) share += static_cast<double>(i) / squares;
+    weight[step] += (step == 0 ? 1.0 : 0.5) * share;  // the middle has such a step on either side
+    weight[step + 1] += 0.5 * share;
+  }
+  return weight;
+}
+
+}  // namespace
+
+std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
+  const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / trial.dt)));
+  double squares = 0.0;  // s^2, of the offsets
+  for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
+  const std::vector<double> weight = weights_of(half);
+  std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());
+  const std::vector<Sides> sides = sides_of(model, trial, nu);
+  for (std::size_t k = half; k + half < trial.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    bool valid = true;
+    Vector6d slope = Vector6d::Zero(), still = weight[0] * sides[k].still;
+    for (std::size_t i = 1; i <= half; ++i) {
+      const auto apart = static_cast<Eigen::Index>(i);
+      slope += static_cast<double>(i) * trial.dt * (nu.col(at + apart) - nu.col(at - apart));
+      still += weight[i] * (sides[k - i].still + sides[k + i].still);
+      for (const std::size_t j : {k - i, k + i}) {
+        valid = valid && (!trial.observed.velocity || trial.velocity_valid[j] != 0) &&
+                (!trial.observed.rates || trial.rates_valid[j] != 0);
+      }
+    }
+    if (valid) residuals[k] = sides[k].mass * (slope / squares) + still;
+  }
+  return residuals;
+}
+
+}  // namespace fathom::diagnosis

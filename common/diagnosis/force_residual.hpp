@@ -1,0 +1,17 @@
+// What acts on the vehicle and the model lacks, as a force: for pictures, tests of whiteness and associations. No fit
+// uses it.
+#pragma once
+
+#include <vector>
+
+#include "common/model/dynamics.hpp"
+#include "common/samples/trial.hpp"
+
+namespace fathom::diagnosis {
+
+/// Wrench residual X..N [N, N m] per sample, the mean over half a second: inertia times the slope of a straight line
+/// through the measured velocity, less the model's load averaged as that slope averages acceleration (so that a step of
+/// thrust within the span leaves nothing). NaN where the span meets an edge or an invalid sample.
+[[nodiscard]] std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial);
+
+}  // namespace fathom::diagnosis
