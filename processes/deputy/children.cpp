@@ -73,6 +73,22 @@ int open_terminal(std::string& name) {
   return master;
 }
 
+/// How we hear a child: a terminal, so that it prints line by line, or a pipe where there is none (a bare chroot).
+struct Line {
+  std::string terminal;  ///< empty: a pipe
+  int ours{-1}, theirs{-1};
+};
+
+Line open_line() {
+  Line line;
+  line.ours = open_terminal(line.terminal);
+  if (line.ours >= 0) return line;
+  std::array<int, 2> ends{-1, -1};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) return line;
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  return {.terminal = "", .ours = ends[0], .theirs = ends[1]};
+}
+
 }  // namespace
 
 Children::~Children() {
@@ -86,9 +102,8 @@ std::int32_t Children::start(const std::string& id, const std::string& exec) {
     return 0;
   };
   if (line.words.empty()) return complain("it names no program");
-  std::string name;
-  const int terminal = open_terminal(name);
-  if (terminal < 0) return complain(std::string{"no terminal: "} + std::strerror(errno));
+  const Line heard = open_line();
+  if (heard.ours < 0) return complain(std::string{"neither a terminal nor a pipe: "} + std::strerror(errno));
 
   // Signals as a program expects them; a session of its own, whose terminal is the first that it opens; none of ours.
   Attributes attributes;
@@ -99,9 +114,10 @@ std::int32_t Children::start(const std::string& id, const std::string& exec) {
   posix_spawnattr_setsigdefault(&attributes.value, &all);
   posix_spawnattr_setflags(&attributes.value, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   Actions actions;
-  posix_spawn_file_actions_addopen(&actions.value, 0, name.c_str(), O_RDWR, 0);
-  posix_spawn_file_actions_adddup2(&actions.value, 0, 1);
-  posix_spawn_file_actions_adddup2(&actions.value, 0, 2);
+  const bool pipe = heard.terminal.empty();
+  posix_spawn_file_actions_addopen(&actions.value, 0, pipe ? "/dev/null" : heard.terminal.c_str(), O_RDWR, 0);
+  posix_spawn_file_actions_adddup2(&actions.value, pipe ? heard.theirs : 0, 1);
+  posix_spawn_file_actions_adddup2(&actions.value, 1, 2);
   posix_spawn_file_actions_addclosefrom_np(&actions.value, 3);
 
   std::vector<std::string> environment = environment_with(line.settings);
@@ -109,11 +125,12 @@ std::int32_t Children::start(const std::string& id, const std::string& exec) {
   pid_t pid{};
   const int error =
       posix_spawnp(&pid, arguments[0], &actions.value, &attributes.value, arguments.data(), variables.data());
+  if (pipe) close(heard.theirs);
   if (error != 0) {
-    close(terminal);
+    close(heard.ours);
     return complain(line.words.front() + ": " + std::strerror(error));
   }
-  children_[id] = {.pid = pid, .terminal = terminal};
+  children_[id] = {.pid = pid, .terminal = heard.ours};
   return pid;
 }
 

@@ -1,4 +1,4 @@
-// The programs that this deputy has started, each on a terminal of its own.
+// The programs that this deputy has started, each on a terminal of its own (on a pipe where there is none).
 #pragma once
 
 #include <poll.h>
