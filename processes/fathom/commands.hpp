@@ -16,6 +16,7 @@ void add_compare(CLI::App& app);
 void add_smooth(CLI::App& app);
 void add_regress(CLI::App& app);
 void add_methods(CLI::App& app);
+void add_plan(CLI::App& app);
 
 /// Two vehicle files flown through one manoeuvre; the second may be a file of coefficients for the first one's vehicle.
 void compare_manoeuvre(const std::string& first, const std::string& second, const std::string& name,

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_smooth(app);
   fathom::tool::add_regress(app);
   fathom::tool::add_methods(app);
+  fathom::tool::add_plan(app);
   fathom::tool::add_decode(app);
   fathom::tool::add_emulate(app);
   fathom::tool::add_operator(app);

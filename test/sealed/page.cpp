@@ -205,16 +205,16 @@ std::vector<Bin> calibration(std::span<const Score> scores) {
 }  // namespace
 
 std::string to_page(std::span<const Score> scores, const std::string& how, const std::string& picture) {
-  std::string text = "# Benchmark\n\nWritten by `" + how + "`: " + std::to_string(scores.size()) +
-                     " sets of a generator that shares no physics with the tool (`test/sealed`). Each draws a vehicle, "
-                     "a trial, an effect\n"
-                     "(or a pair, or none, or one that no list has) and noise from its number; the tool sees the data "
-                     "and a vehicle file only.\n"
-                     "Sizes: weak, medium and strong effects add 5, 15 and 40 % of the applied wrench to the residual "
-                     "that the base model\n"
-                     "leaves after its own best fit (root mean square over the driven axes, each against its own "
-                     "applied wrench). Where\n"
-                     "physics ends before the class is reached, the set counts for the nearest class.\n\n";
+  std::string text =
+      "# Benchmark\n\nWritten by `" + how + "`: " + std::to_string(scores.size()) +
+      " sets of a generator that shares no physics with\nthe tool (`test/sealed`). Each draws a vehicle, a "
+      "trial, an effect (or a pair, or none, or one that no list has) and\nnoise from its number; the tool "
+      "sees the data and a vehicle file only.\n"
+      "Sizes: weak, medium and strong effects add 5, 15 and 40 % of the applied wrench to the residual "
+      "that the base model\n"
+      "leaves after its own best fit (root mean square over the driven axes, each against its own "
+      "applied wrench). Where\n"
+      "physics ends before the class is reached, the set counts for the nearest class.\n\n";
   add_targets(scores, text);
   add_effects(scores, text);
   const auto bins = calibration(scores);

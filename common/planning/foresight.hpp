@@ -1,0 +1,50 @@
+// What an excitation would tell, before it is flown: for every effect how much of it hides in the base parameters,
+// which of them it would falsify, the smallest size that would be found, and the segment that would find it soonest.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/diagnosis/diagnoser.hpp"
+#include "common/planning/view.hpp"
+
+namespace fathom::planning {
+
+/// A stretch that could be flown in addition.
+struct Extra {
+  std::string name;
+  double duration{};  ///< s
+  const View* view{};
+};
+
+/// The segment with which a question is answered soonest.
+struct Answer {
+  std::string segment;
+  double seconds{};  ///< of it, repeated
+};
+
+struct LookAlike {
+  std::string name;
+  std::optional<Answer> told_apart;
+};
+
+struct Foreseen {
+  std::string name, form;
+  int forms{}, forms_found{};     ///< that could act here; that would be found within their physical limits
+  bool found{};                   ///< at some size within the physical limits
+  std::vector<NamedValue> size;   ///< the smallest that would be found
+  double hidden{};                ///< share of its mean square that base parameters imitate
+  std::string corrupted;          ///< the base parameter that it would falsify most, relative to its value
+  double corruption{};            ///< of the value, at that size
+  std::optional<Answer> soonest;  ///< base parameters known from the excitation
+  std::vector<LookAlike> like;    ///< effects that explain the same as well, whose odds would stay open
+};
+
+/// `progress` hears the share that is done.
+[[nodiscard]] std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitation,
+                                            std::span<const Extra> extras, const diagnosis::Settings& settings,
+                                            const std::function<void(double)>& progress);
+
+}  // namespace fathom::planning

@@ -1,0 +1,51 @@
+#include "common/planning/segments.hpp"
+
+#include <array>
+#include <string>
+
+namespace fathom::planning {
+namespace {
+
+constexpr double kDuration = 20.0;  // s
+constexpr std::array kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
+
+excitation::Segment named(const std::string& name) { return {.name = name, .duration = kDuration}; }
+
+}  // namespace
+
+std::vector<excitation::Segment> segments(const model::Vehicle& vehicle, const Vector6d& largest) {
+  std::vector<excitation::Segment> all;
+  std::vector<Eigen::Index> axes;
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    if (vehicle.dof[static_cast<std::size_t>(axis)] && largest[axis] > 0.0) axes.push_back(axis);
+  }
+  excitation::Segment together = named("full steps on all axes");
+  for (const Eigen::Index axis : axes) {
+    const std::string motion = kMotions[static_cast<std::size_t>(axis)];
+    excitation::Segment full = named("full steps in " + motion), small = named("small steps in " + motion),
+                        slow = named("a slow sine in " + motion), quick = named("a quick sine in " + motion);
+    full.step[axis] = 0.95;
+    full.switch_at[axis] = 2.5;
+    small.step[axis] = 0.2;
+    small.switch_at[axis] = 2.5;
+    slow.amplitude(axis, 0) = 0.8;
+    slow.frequency(axis, 0) = 0.1;
+    quick.amplitude(axis, 0) = 0.8;
+    quick.frequency(axis, 0) = 0.5;
+    together.step[axis] = 0.8;
+    together.switch_at[axis] = 1.5 + 0.4 * static_cast<double>(axis);
+    for (const auto& each : {full, small, slow, quick}) all.push_back(each);
+    if (axis != 5 && axis < 3 && vehicle.dof[5] && largest[5] > 0.0) {
+      excitation::Segment turning = named("full steps in " + motion + " while turning to and fro");
+      turning.step[axis] = 0.9;
+      turning.switch_at[axis] = 2.0;
+      turning.amplitude(5, 0) = 0.8;
+      turning.frequency(5, 0) = 0.15;
+      all.push_back(turning);
+    }
+  }
+  if (axes.size() > 1) all.push_back(together);
+  return all;
+}
+
+}  // namespace fathom::planning

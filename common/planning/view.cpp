@@ -1,0 +1,72 @@
+#include "common/planning/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace fathom::planning {
+namespace {
+
+std::vector<Trial> one(Trial trial) {
+  std::vector<Trial> trials;
+  trials.push_back(std::move(trial));
+  return trials;
+}
+
+}  // namespace
+
+View::View(const model::Vehicle& vehicle, Trial trial, double window)
+    : trials_{one(std::move(trial))}, fit_{vehicle, trials_, {.window = window, .threads = 1}} {
+  at_.model = model::nominal_model(vehicle, trials_.front().input_is_wrench);
+  at_.sigma = trials_.front().nu_sigma;
+  for (const auto& each : fit_.windows()) at_.nu0.push_back(each.window().trial->nu[each.window().start]);
+  const std::vector<identification::ProjectedWindow> windows = fit_.linearise(at_, false);
+  for (const auto& each : windows) rows_.push_back(each.jacobian.rows());
+  const Eigen::Index all = std::accumulate(rows_.begin(), rows_.end(), Eigen::Index{0});
+  jacobian_.resize(all, windows.front().jacobian.cols());
+  Eigen::Index row = 0;
+  for (const auto& each : windows) {
+    jacobian_.middleRows(row, each.jacobian.rows()) = each.jacobian;
+    row += each.jacobian.rows();
+    free_.push_back(each.initial_basis);
+  }
+  without_ = residual(at_.model);
+  for (const auto& each : fit_.windows()) {
+    for (Eigen::Index i = 0; i < each.rows(); ++i) {
+      axis_.push_back(each.axis(i));
+      motion_square_[axis_.back()] += std::pow(each.measured(i) / at_.sigma[axis_.back()], 2);
+    }
+  }
+}
+
+double View::share_of_motion(const Eigen::VectorXd& change) const {
+  Vector6d square = Vector6d::Zero();
+  for (Eigen::Index i = 0; i < change.size(); ++i) square[axis_[static_cast<std::size_t>(i)]] += change[i] * change[i];
+  double share = 0.0;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (motion_square_[axis] > 0.0) share = std::max(share, std::sqrt(square[axis] / motion_square_[axis]));
+  }
+  return share;
+}
+
+Eigen::VectorXd View::residual(const model::Model& model) const {
+  Eigen::VectorXd all(jacobian_.rows());
+  model::VelocityTrace trace;
+  Eigen::Index row = 0;
+  for (std::size_t w = 0; w < rows_.size(); ++w) {
+    Eigen::VectorXd of(rows_[w]);
+    fit_.windows()[w].evaluate(model, at_.nu0[w], at_.sigma, trace, of);
+    all.segment(row, rows_[w]) = of - free_[w] * (free_[w].transpose() * of);
+    row += rows_[w];
+  }
+  return all;
+}
+
+Eigen::VectorXd View::change(const model::ActiveEffect& effect) const {
+  model::Model with = at_.model;
+  with.add(effect);
+  return residual(with) - without_;
+}
+
+}  // namespace fathom::planning

@@ -1,0 +1,43 @@
+// A stretch of motion as a fit will see it: what the base parameters change there, and what an effect would.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/identification/trajectory_fit.hpp"
+
+namespace fathom::planning {
+
+class View {
+ public:
+  /// `trial` without noise; its nu_sigma weighs. `window` [s].
+  View(const model::Vehicle& vehicle, Trial trial, double window);
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+
+  /// Change of all weighted residuals, initial velocities free, that the effect would make.
+  [[nodiscard]] Eigen::VectorXd change(const model::ActiveEffect& effect) const;
+  /// How far such a change moves the predicted velocity: share of the velocity itself, on the axis where it is most.
+  [[nodiscard]] double share_of_motion(const Eigen::VectorXd& change) const;
+  /// Derivatives by the scaled base parameters, rows as in change().
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
+  /// Rows of each window, one after the other.
+  [[nodiscard]] const std::vector<Eigen::Index>& rows() const { return rows_; }
+  [[nodiscard]] const Trial& trial() const { return trials_.front(); }
+  [[nodiscard]] const model::Model& model() const { return at_.model; }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd residual(const model::Model& model) const;
+
+  std::vector<Trial> trials_;
+  identification::TrajectoryFit fit_;
+  identification::FitResult at_;
+  std::vector<Eigen::MatrixXd> free_;  ///< per window, basis of what the initial velocity can change
+  std::vector<Eigen::Index> rows_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::VectorXd without_;
+  std::vector<int> axis_;                     ///< of each row
+  Vector6d motion_square_{Vector6d::Zero()};  ///< sum over an axis' rows of (velocity / sigma)^2
+};
+
+}  // namespace fathom::planning

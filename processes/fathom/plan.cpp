@@ -1,0 +1,174 @@
+// fathom plan: before a trial, what its excitation would tell about every effect, and what to fly in addition.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
+#include "common/model/site.hpp"
+#include "common/planning/foresight.hpp"
+#include "common/planning/rehearsal.hpp"
+#include "common/planning/segments.hpp"
+#include "processes/fathom/commands.hpp"
+#include "processes/fathom/progress.hpp"
+
+namespace fathom::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using planning::Answer;
+using planning::Foreseen;
+
+constexpr double kWindow = 10.0;  // s, as in a diagnosis
+constexpr double kEnd = 0.1;      // s of a flight after its last whole window
+constexpr double kTold = 2.0;     // times the excitation: an answer that takes longer is none
+
+struct Options {
+  std::string vehicle, site, config, excitation{"paper"}, json;
+  double velocity_noise{0.005}, rate_noise{0.0035}, rate{100.0}, longest{600.0};
+};
+
+std::string pipeline_beside(const std::string& site) {
+  const std::filesystem::path path{site};
+  return (path.parent_path().parent_path() / "pipelines" / path.filename()).string();
+}
+
+planning::RehearsalSettings settings_from(const Options& options, const model::Vehicle& vehicle) {
+  const model::Site site = model::Site::load(options.site);
+  const Config pipeline = Config::load(options.config.empty() ? pipeline_beside(options.site) : options.config);
+  planning::RehearsalSettings s{
+      .supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), vehicle, site),
+      .identifier = identification::IdentifierSettings::from(pipeline.section("identifier")),
+      .longest = options.longest,
+      .rate = options.rate};
+  s.noise << Eigen::Vector3d::Constant(options.velocity_noise), Eigen::Vector3d::Constant(options.rate_noise);
+  s.supervisor.optimal = options.excitation == "optimal";
+  if (s.supervisor.optimal) s.supervisor.schedule = {s.supervisor.schedule.back()};
+  return s;
+}
+
+std::string said(const Answer& answer) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f s of ", std::max(answer.seconds, 1.0));
+  return text + answer.segment;
+}
+
+std::string size_of(const Foreseen& one) {
+  std::string text;
+  char number[64];
+  for (const NamedValue& value : one.size) {
+    std::snprintf(number, sizeof number, "%s%s %.3g%s%s", text.empty() ? "" : ", ", value.name.c_str(), value.value,
+                  value.unit.empty() ? "" : " ", value.unit.c_str());
+    text += number;
+  }
+  return text;
+}
+
+void print(const std::vector<Foreseen>& all, double duration) {
+  std::printf("\n%-22s %7s  %-18s %s\n", "effect", "hidden", "corrupts", "the smallest that would be found");
+  for (const Foreseen& one : all) {
+    const std::string form = one.form.empty() ? "" : " (" + one.form + ")";
+    if (!one.found) {
+      std::printf("%-22s %7s  %-18s not at any physical size%s\n", one.name.c_str(), "-", "-", form.c_str());
+      continue;
+    }
+    char corrupts[48];
+    std::snprintf(corrupts, sizeof corrupts, "%s %+.0f %%", one.corrupted.c_str(), 100.0 * one.corruption);
+    std::printf("%-22s %5.0f %%  %-18s %s%s\n", one.name.c_str(), 100.0 * one.hidden, corrupts, size_of(one).c_str(),
+                form.c_str());
+    if (one.forms > 1)
+      std::printf("%-22s %7s  %-18s of %d forms %d would be found\n", "", "", "", one.forms, one.forms_found);
+    if (one.soonest && one.soonest->seconds < duration)
+      std::printf("%-22s %7s  %-18s sooner: %s\n", "", "", "", said(*one.soonest).c_str());
+    for (const planning::LookAlike& other : one.like) {
+      const bool apart = other.told_apart && other.told_apart->seconds < kTold * duration;
+      std::printf("%-22s %7s  %-18s not told from %s; %s\n", "", "", "", other.name.c_str(),
+                  apart ? ("told apart by " + said(*other.told_apart)).c_str() : "by none of the segments either");
+    }
+  }
+}
+
+Json json_of(const std::optional<Answer>& answer) {
+  if (!answer) return nullptr;
+  return {{"segment", answer->segment}, {"seconds", answer->seconds}};
+}
+
+void write(const Options& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
+  Json file{{"schema", 1},
+            {"vehicle", options.vehicle},
+            {"site", options.site},
+            {"excitation", options.excitation},
+            {"duration_s", rehearsal.trial.t.back()},
+            {"ends", rehearsal.end},
+            {"effects", Json::array()}};
+  for (const Foreseen& one : all) {
+    Json size = Json::object(), like = Json::array();
+    for (const NamedValue& v : one.size) size[v.name] = {{"value", v.value}, {"unit", v.unit}};
+    for (const auto& other : one.like)
+      like.push_back({{"name", other.name}, {"told_apart_by", json_of(other.told_apart)}});
+    file["effects"].push_back({{"name", one.name},
+                               {"form", one.form},
+                               {"forms", one.forms},
+                               {"forms_found", one.forms_found},
+                               {"found", one.found},
+                               {"smallest_size", size},
+                               {"hidden_share", one.hidden},
+                               {"corrupts", one.corrupted},
+                               {"corruption", one.corruption},
+                               {"soonest", json_of(one.soonest)},
+                               {"not_told_from", like}});
+  }
+  std::ofstream out{options.json};
+  out << file.dump(2) << "\n";
+  if (!out.flush()) throw InputError(options.json + ": cannot be written");
+}
+
+void run(const Options& options) {
+  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  const planning::RehearsalSettings settings = settings_from(options, vehicle);
+  ProgressLine progress;
+  progress.show("rehearsing the " + options.excitation + " excitation", 0.0);
+  const planning::Rehearsal rehearsal = planning::rehearse(vehicle, settings);
+  const double duration = rehearsal.trial.t.back();
+  const planning::View excitation{vehicle, rehearsal.trial, kWindow};
+  std::vector<std::unique_ptr<planning::View>> views;
+  std::vector<planning::Extra> extras;
+  for (const excitation::Segment& segment : planning::segments(vehicle, settings.supervisor.largest)) {
+    progress.show("flying " + segment.name, 0.1);
+    views.push_back(std::make_unique<planning::View>(
+        vehicle, planning::fly(vehicle, settings, segment, segment.duration + kEnd), kWindow));
+    extras.push_back({segment.name, segment.duration, views.back().get()});
+  }
+  const std::vector<Foreseen> all = planning::foresee(
+      vehicle, excitation, extras, {}, [&](double share) { progress.show("asking every effect", 0.2 + 0.8 * share); });
+  std::printf("%s excitation of %s: %.0f s, %s\n", options.excitation.c_str(), vehicle.name.c_str(), duration,
+              rehearsal.end.c_str());
+  print(all, duration);
+  if (!options.json.empty()) write(options, all, rehearsal);
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("plan", "before a trial: what would its excitation tell about every effect?");
+  command->add_option("--vehicle", options->vehicle, "vehicle file")->required()->check(CLI::ExistingFile);
+  command->add_option("--site", options->site, "site file")->required()->check(CLI::ExistingFile);
+  command->add_option("--excitation", options->excitation, "paper or optimal")
+      ->check(CLI::IsMember({"paper", "optimal"}));
+  command->add_option("--config", options->config, "pipeline file (../pipelines/ beside the site's, of the same name)")
+      ->check(CLI::ExistingFile);
+  command->add_option("--velocity-noise", options->velocity_noise, "m/s of a sample (0.005)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--rate-noise", options->rate_noise, "rad/s of a sample (0.0035)")->check(CLI::PositiveNumber);
+  command->add_option("--rate", options->rate, "Hz of samples (100)")->check(CLI::PositiveNumber);
+  command->add_option("--longest", options->longest, "s after which the trial is ended (600)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--json", options->json, "write the plan here too");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace fathom::tool
