@@ -17,10 +17,12 @@ struct Meaning {
   std::string words;
 };
 
-Meaning meaning(const std::string& verdict) {
+Meaning meaning(const std::string& verdict, bool partly) {
   if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
   if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
   if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
+  if (verdict == "unexplained" && partly)
+    return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
 }
@@ -64,7 +66,7 @@ const char* kWords =
 
 std::string verdict_section(const DiagnosisReport& report) {
   const DiagnosisResult& result = report.result;
-  const Meaning said = meaning(result.verdict);
+  const Meaning said = meaning(result.verdict, !result.effects.empty() && result.explained < 1.0);
   std::string html =
       "<header><h1>Why does " + escape(result.vehicle) + " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " +
       std::to_string(result.train.size() + result.validate.size()) + " recorded runs</p>\n<div class=\"badge " +

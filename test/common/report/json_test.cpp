@@ -24,11 +24,12 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("result.json holds exactly the promised names") {
   const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
-  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "parameters", "residual", "schema",
-                            "train", "validate", "vehicle", "verdict"});
+  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "explained", "parameters", "residual",
+                            "schema", "train", "validate", "vehicle", "verdict"});
   CHECK(file["schema"] == 1);
   CHECK(file["vehicle"] == "Beluga <test>");
   CHECK(file["verdict"] == "effect");
+  CHECK(file["explained"] == 1.0);
   CHECK(file["train"].size() == 5);
   CHECK(keys(file["consistency"][0]) ==
         Names{"action", "evidence", "finding", "reference", "run", "signal", "size", "unit"});

@@ -132,6 +132,15 @@ TEST_CASE("A page without effects, candidates, findings or traces is whole") {
   CHECK(has(page, "</html>"));
 }
 
+TEST_CASE("What is explained in part is not called explained, nor called foreign to all known causes") {
+  fathom::DiagnosisReport report = made_up_report({.samples = 0});
+  report.result.verdict = "unexplained";
+  report.result.explained = 0.6;
+  CHECK(has(to_html(report), "the known causes explain only a part of it"));
+  report.result.effects.clear();
+  CHECK(has(to_html(report), "none of the known causes fits"));
+}
+
 TEST_CASE("Traces that are all gaps, constant or too short do not break the page") {
   auto report = made_up_report({.samples = 300});
   for (auto& row : report.traces[0].measured) row.fill(fathom::test::kAbsent);
