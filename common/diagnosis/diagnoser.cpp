@@ -104,7 +104,8 @@ void take_back(SearchResult& found) {
 }  // namespace
 
 DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
-                         const Settings& settings, const Progress& progress) {
+                         const Settings& settings, const Progress& progress,
+                         identification::FitResult* fitted) {
   std::vector<Trial> unseen;
   for (const Trial& trial : validate) unseen.push_back(identification::sparse(trial, kStep));
   SearchResult found = search(vehicle, train, settings, progress);
@@ -136,6 +137,7 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   for (std::size_t r = 0; r < unseen.size(); ++r) {
     report.traces.push_back(trace_of(unseen[r], found, residual_before[r], residual_after[r]));
   }
+  if (fitted != nullptr) *fitted = std::move(found.after);
   return report;
 }
 

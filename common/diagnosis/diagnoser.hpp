@@ -28,9 +28,10 @@ struct Settings {
 /// Called with what is being done and the share of the work that is done, 0..1.
 using Progress = std::function<void(const std::string&, double)>;
 
-/// Diagnosis of `train`, judged on `validate`. Consistency findings are the caller's to add.
+/// Diagnosis of `train`, judged on `validate`. Consistency findings are the caller's to add. `fitted`: takes the fit
+/// with the accepted effects.
 [[nodiscard]] DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train,
                                        std::span<const Trial> validate, const Settings& settings,
-                                       const Progress& progress);
+                                       const Progress& progress, identification::FitResult* fitted = nullptr);
 
 }  // namespace fathom::diagnosis

@@ -1,11 +1,9 @@
 #include "common/planning/foresight.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <mutex>
 
 #include "common/base/parallel.hpp"
@@ -13,48 +11,17 @@
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/questions.hpp"
 #include "common/identification/parameter_map.hpp"
+#include "common/planning/energies.hpp"
 
 namespace fathom::planning {
 namespace {
 
-constexpr double kToldApart = 2.0 * 3.0;  // twice the log odds at which one of two is ruled out
-constexpr std::size_t kMostStarts = 5;    // of a form: places, moments, time constants
-constexpr int kRounds = 10;               // of finding a size; most effects are nearly proportional
-constexpr double kLargestStep = 30.0;     // factor between rounds
-constexpr double kClose = 0.1;            // of the size
-constexpr double kCrooked = 0.3;          // of a change: what half of the effect does otherwise
-constexpr double kNever = 1e-9;           // of the noise: no energy at all
-constexpr double kWave = 1.5;             // rad/s: a wave that nobody has seen yet
-
-/// Base parameters as the prior and some stretches know them.
-class Base {
- public:
-  Base(const model::Model& model, std::span<const View* const> views) {
-    const identification::ParameterMap map{model};
-    const auto n = static_cast<Eigen::Index>(map.size());
-    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto& free = map[static_cast<std::size_t>(i)];
-      information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
-    }
-    for (const View* view : views) information += view->jacobian().transpose() * view->jacobian();
-    factor_.compute(information);
-  }
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return factor_.solve(b); }
-
- private:
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
-};
-
-/// An effect in one form at one size, and what it changes.
-struct Suspect {
-  const model::Effect* effect{};
-  model::ActiveEffect active;
-  double ordinary{std::numeric_limits<double>::infinity()};  ///< its first number over what is ordinary for it
-  bool found{false};
-  Eigen::VectorXd change;    ///< during the excitation
-  Eigen::VectorXd imitated;  ///< the step of the base parameters that follows it
-};
+constexpr std::size_t kMostStarts = 5;  // of a form: places, moments, time constants
+constexpr int kRounds = 10;             // of finding a size; most effects are nearly proportional
+constexpr double kLargestStep = 30.0;   // factor between rounds
+constexpr double kClose = 0.1;          // of the size
+constexpr double kNever = 1e-9;         // of the noise: no energy at all
+constexpr double kWave = 1.5;           // rad/s: a wave that nobody has seen yet
 
 class Judge {
  public:
@@ -99,19 +66,6 @@ class Judge {
   int tried_;
 };
 
-/// Multiplies what the effect is proportional to; false when that leaves the physical limits.
-bool grow(model::ActiveEffect& active, double factor) {
-  const auto parameters = active.effect->parameters();
-  const auto sizes =
-      active.effect->amplitudes() > 0 ? static_cast<std::size_t>(active.effect->amplitudes()) : parameters.size();
-  bool inside = true;
-  for (std::size_t i = 0; i < sizes; ++i) {
-    active.theta[i] *= factor;
-    inside = inside && active.theta[i] >= parameters[i].low && active.theta[i] <= parameters[i].high;
-  }
-  return inside;
-}
-
 /// The smallest size of this form from this start.
 Suspect smallest(const View& view, const Base& base, const Judge& judge, const diagnosis::Candidate& candidate,
                  const std::vector<double>& start) {
@@ -145,7 +99,7 @@ Suspect typical(const View& view, const Base& base, const Judge& judge, const di
 }
 
 model::Scene scene_for(const model::Vehicle& vehicle, const View& view) {
-  model::Scene scene = model::scene_of(vehicle, std::span{&view.trial(), 1});
+  model::Scene scene = model::scene_of(vehicle, view.trials());
   const double force = 0.05 * std::max(scene.tau_rms.head<3>().norm(), 1e-2);
   scene.tones_horizontal = {{.omega = kWave, .cosine = {force, 0.0, 0.0}, .sine = {0.0, force, 0.0}}};
   scene.tones_vertical = {{.omega = kWave, .cosine = {0.0, 0.0, force}}};
@@ -164,72 +118,6 @@ void say_corruption(const View& view, const Suspect& suspect, Foreseen& out) {
     out.corruption = share;
   }
 }
-
-/// Nothing where the change is not proportional to the effect: a motion that is unstable (a hull that will not run
-/// straight) carries anything anywhere, and no fit would make sense of it.
-Eigen::VectorXd sober_change(const View& view, const model::ActiveEffect& active) {
-  Eigen::VectorXd change = view.change(active);
-  model::ActiveEffect half = active;
-  static_cast<void>(grow(half, 0.5));
-  const double crooked = (2.0 * view.change(half) - change).norm();
-  if (!change.allFinite() || !(crooked <= kCrooked * change.norm())) change.setZero();
-  return change;
-}
-
-/// Energy, in squared standard deviations, that nothing else explains: of one effect beside the base parameters, or of
-/// one beside another.
-class Energies {
- public:
-  Energies(const View& excitation, std::span<const Extra> extras, const std::vector<Suspect>& suspects)
-      : excitation_{excitation}, extras_{extras}, suspects_{suspects} {
-    const View* alone = &excitation;
-    bases_.emplace_back(excitation.model(), std::span{&alone, 1});
-    for (const Extra& extra : extras) {
-      const std::array<const View*, 2> both{&excitation, extra.view};
-      bases_.emplace_back(excitation.model(), both);
-    }
-    changes_.resize(extras.size());
-    for (std::size_t e = 0; e < extras.size(); ++e) {
-      for (const Suspect& suspect : suspects) changes_[e].push_back(sober_change(*extras[e].view, suspect.active));
-    }
-  }
-  /// With the excitation alone (0) or with extra number `with` - 1 in addition.
-  [[nodiscard]] double product(std::size_t i, std::size_t j, std::size_t with) const {
-    double product = suspects_[i].change.dot(suspects_[j].change);
-    Eigen::VectorXd left = excitation_.jacobian().transpose() * suspects_[i].change;
-    Eigen::VectorXd right = excitation_.jacobian().transpose() * suspects_[j].change;
-    if (with > 0) {
-      const auto& jacobian = extras_[with - 1].view->jacobian();
-      product += changes_[with - 1][i].dot(changes_[with - 1][j]);
-      left += jacobian.transpose() * changes_[with - 1][i];
-      right += jacobian.transpose() * changes_[with - 1][j];
-    }
-    return product - left.dot(bases_[with].solve(right));
-  }
-  [[nodiscard]] double beside(std::size_t i, std::size_t j, std::size_t with) const {
-    const double other = product(j, j, with), shared = product(i, j, with);
-    return product(i, i, with) - (other > kNever ? shared * shared / other : 0.0);
-  }
-  /// The extra that brings `energy` soonest, where `now` is what there is of it and `then` what there would be.
-  template <typename Then>
-  [[nodiscard]] std::optional<Answer> soonest(double energy, double now, const Then& then) const {
-    std::optional<Answer> best;
-    for (std::size_t e = 0; e < extras_.size(); ++e) {
-      const double gain = then(e + 1) - now;
-      if (!(gain > kNever)) continue;
-      const double seconds = extras_[e].duration * energy / gain;
-      if (!best || seconds < best->seconds) best = {extras_[e].name, seconds};
-    }
-    return best;
-  }
-
- private:
-  const View& excitation_;
-  std::span<const Extra> extras_;
-  const std::vector<Suspect>& suspects_;
-  std::vector<Base> bases_;
-  std::vector<std::vector<Eigen::VectorXd>> changes_;
-};
 
 }  // namespace
 
@@ -282,14 +170,12 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
     const double whole = suspect.change.squaredNorm(), own = energies.product(i, i, 0);
     out.hidden = whole > 0.0 ? std::clamp(1.0 - own / whole, 0.0, 1.0) : 0.0;
     say_corruption(excitation, suspect, out);
-    out.soonest = energies.soonest(own, own, [&](std::size_t with) { return energies.product(i, i, with); });
+    out.soonest = energies.as_strong(i);
     for (std::size_t j = 0; j < chosen.size(); ++j) {
       if (j == i || !chosen[j].found) continue;
       const double apart = energies.beside(i, j, 0);
       if (apart >= kToldApart) continue;
-      out.like.push_back({foreseen[j].name, energies.soonest(kToldApart, apart, [&](std::size_t with) {
-                            return energies.beside(i, j, with);
-                          })});
+      out.like.push_back({foreseen[j].name, energies.tells_apart(i, j)});
     }
   }
   return foreseen;

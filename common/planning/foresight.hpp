@@ -8,22 +8,9 @@
 #include <vector>
 
 #include "common/diagnosis/diagnoser.hpp"
-#include "common/planning/view.hpp"
+#include "common/planning/energies.hpp"
 
 namespace fathom::planning {
-
-/// A stretch that could be flown in addition.
-struct Extra {
-  std::string name;
-  double duration{};  ///< s
-  const View* view{};
-};
-
-/// The segment with which a question is answered soonest.
-struct Answer {
-  std::string segment;
-  double seconds{};  ///< of it, repeated
-};
 
 struct LookAlike {
   std::string name;

@@ -21,16 +21,16 @@ constexpr const char* kToken = "rehearsal";
 /// The vehicle file's model with thrusters that obey at once.
 class Stage {
  public:
-  Stage(const model::Vehicle& vehicle, const RehearsalSettings& settings, const Eigen::Vector3d& p_WB)
-      : vehicle_{vehicle}, model_{model::nominal_model(vehicle, vehicle.thrusters.empty())}, p_WB_{p_WB} {
-    if (!vehicle.thrusters.empty())
-      allocation_.emplace(vehicle, vehicle.largest_thrust > 0.0 ? vehicle.largest_thrust : kStrong);
+  Stage(const model::Vehicle& vehicle, const model::Model& model, bool by_wrench, const RehearsalSettings& settings,
+        const Eigen::Vector3d& p_WB)
+      : vehicle_{vehicle}, model_{model}, p_WB_{p_WB} {
+    if (!by_wrench) allocation_.emplace(vehicle, vehicle.largest_thrust > 0.0 ? vehicle.largest_thrust : kStrong);
     force_ = model::ActuatorForces::Zero(model_.allocation.cols());
     slope_ = force_;
     trial_.name = "rehearsal";
     trial_.dt = kStep * kSample;
     trial_.observed = {true, true, true, true};
-    trial_.input_is_wrench = vehicle.thrusters.empty();
+    trial_.input_is_wrench = by_wrench;
     trial_.input_step = trial_.dt;
     trial_.nu_sigma = settings.noise / std::sqrt(std::max(settings.rate * trial_.dt, 1.0));
   }
@@ -112,7 +112,9 @@ Eigen::Vector3d start_in(const excitation::FenceSettings& fence) {
 }  // namespace
 
 Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& settings) {
-  Stage stage{vehicle, settings, start_in(settings.supervisor.fence)};
+  const bool by_wrench = vehicle.thrusters.empty();
+  Stage stage{vehicle, model::nominal_model(vehicle, by_wrench), by_wrench, settings,
+              start_in(settings.supervisor.fence)};
   excitation::SupervisorSettings alone = settings.supervisor;
   alone.needs.clear();  // nobody else is there
   excitation::Supervisor supervisor{alone, vehicle, kToken};
@@ -150,6 +152,12 @@ Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& setti
 
 Trial fly(const model::Vehicle& vehicle, const RehearsalSettings& settings, const excitation::Segment& segment,
           double duration) {
+  const bool by_wrench = vehicle.thrusters.empty();
+  return fly(vehicle, model::nominal_model(vehicle, by_wrench), by_wrench, settings, segment, duration);
+}
+
+Trial fly(const model::Vehicle& vehicle, const model::Model& model, bool by_wrench, const RehearsalSettings& settings,
+          const excitation::Segment& segment, double duration) {
   const excitation::SupervisorSettings& s = settings.supervisor;
   excitation::FenceSettings room = s.fence;
   const Eigen::Vector3d start = start_in(room);
@@ -158,7 +166,7 @@ Trial fly(const model::Vehicle& vehicle, const RehearsalSettings& settings, cons
     if (!std::isfinite(room.high[i])) room.high[i] = start[i] + s.open_range;
   }
   const excitation::Fence fence{room};
-  Stage stage{vehicle, settings, start};
+  Stage stage{vehicle, model, by_wrench, settings, start};
   excitation::Hold hold{s.hold, s.largest};
   std::array<bool, 6> held{};
   for (Eigen::Index axis = 0; axis < 6; ++axis) {

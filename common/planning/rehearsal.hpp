@@ -32,5 +32,8 @@ struct Rehearsal {
 /// that it leaves alone are held.
 [[nodiscard]] Trial fly(const model::Vehicle& vehicle, const RehearsalSettings& settings,
                         const excitation::Segment& segment, double duration);
+/// The same with a model that was fitted, its inputs the wrench or the thrusters' forces.
+[[nodiscard]] Trial fly(const model::Vehicle& vehicle, const model::Model& model, bool by_wrench,
+                        const RehearsalSettings& settings, const excitation::Segment& segment, double duration);
 
 }  // namespace fathom::planning

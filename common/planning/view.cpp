@@ -8,18 +8,18 @@
 namespace fathom::planning {
 namespace {
 
-std::vector<Trial> one(Trial trial) {
-  std::vector<Trial> trials;
-  trials.push_back(std::move(trial));
-  return trials;
-}
+std::vector<Trial> one(const Trial& trial) { return {trial}; }
 
 }  // namespace
 
-View::View(const model::Vehicle& vehicle, Trial trial, double window)
-    : trials_{one(std::move(trial))}, fit_{vehicle, trials_, {.window = window, .threads = 1}} {
-  at_.model = model::nominal_model(vehicle, trials_.front().input_is_wrench);
-  at_.sigma = trials_.front().nu_sigma;
+View::View(const model::Vehicle& vehicle, const Trial& trial, double window)
+    : View{vehicle, one(trial), model::nominal_model(vehicle, trial.input_is_wrench), trial.nu_sigma, window} {}
+
+View::View(const model::Vehicle& vehicle, std::vector<Trial> trials, const model::Model& model, const Vector6d& sigma,
+           double window)
+    : trials_{std::move(trials)}, fit_{vehicle, trials_, {.window = window, .threads = 1}} {
+  at_.model = model;
+  at_.sigma = sigma;
   for (const auto& each : fit_.windows()) at_.nu0.push_back(each.window().trial->nu[each.window().start]);
   const std::vector<identification::ProjectedWindow> windows = fit_.linearise(at_, false);
   for (const auto& each : windows) rows_.push_back(each.jacobian.rows());
@@ -30,6 +30,7 @@ View::View(const model::Vehicle& vehicle, Trial trial, double window)
     jacobian_.middleRows(row, each.jacobian.rows()) = each.jacobian;
     row += each.jacobian.rows();
     free_.push_back(each.initial_basis);
+    weight_.push_back(each.weight);
   }
   without_ = residual(at_.model);
   for (const auto& each : fit_.windows()) {
@@ -57,6 +58,7 @@ Eigen::VectorXd View::residual(const model::Model& model) const {
   for (std::size_t w = 0; w < rows_.size(); ++w) {
     Eigen::VectorXd of(rows_[w]);
     fit_.windows()[w].evaluate(model, at_.nu0[w], at_.sigma, trace, of);
+    of.array() *= weight_[w].array();
     all.segment(row, rows_[w]) = of - free_[w] * (free_[w].transpose() * of);
     row += rows_[w];
   }

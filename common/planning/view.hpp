@@ -10,8 +10,11 @@ namespace fathom::planning {
 
 class View {
  public:
-  /// `trial` without noise; its nu_sigma weighs. `window` [s].
-  View(const model::Vehicle& vehicle, Trial trial, double window);
+  /// Of a vehicle as its file has it: `trial` without noise, whose nu_sigma weighs. `window` [s].
+  View(const model::Vehicle& vehicle, const Trial& trial, double window);
+  /// Of measured trials and a model that was fitted to them; `sigma` is what it leaves, m/s and rad/s.
+  View(const model::Vehicle& vehicle, std::vector<Trial> trials, const model::Model& model, const Vector6d& sigma,
+       double window);
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
@@ -23,7 +26,7 @@ class View {
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   /// Rows of each window, one after the other.
   [[nodiscard]] const std::vector<Eigen::Index>& rows() const { return rows_; }
-  [[nodiscard]] const Trial& trial() const { return trials_.front(); }
+  [[nodiscard]] std::span<const Trial> trials() const { return trials_; }
   [[nodiscard]] const model::Model& model() const { return at_.model; }
 
  private:
@@ -32,7 +35,8 @@ class View {
   std::vector<Trial> trials_;
   identification::TrajectoryFit fit_;
   identification::FitResult at_;
-  std::vector<Eigen::MatrixXd> free_;  ///< per window, basis of what the initial velocity can change
+  std::vector<Eigen::VectorXd> weight_;  ///< per window and row: less than 1 where it is an outlier
+  std::vector<Eigen::MatrixXd> free_;    ///< per window, basis of what the initial velocity can change
   std::vector<Eigen::Index> rows_;
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd without_;

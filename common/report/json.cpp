@@ -73,6 +73,9 @@ Json consistency(const std::vector<ConsistencyFinding>& findings) {
 Json effects(const std::vector<EffectFound>& found) {
   Json array = Json::array();
   for (const auto& e : found) {
+    Json told_apart = Json::array();
+    for (const auto& t : e.told_apart)
+      told_apart.push_back({{"name", t.name}, {"segment", t.segment}, {"seconds", finite(t.seconds)}});
     array.push_back({{"name", e.name},
                      {"variant", e.variant},
                      {"accepted", e.accepted},
@@ -80,6 +83,7 @@ Json effects(const std::vector<EffectFound>& found) {
                      {"log_odds", finite(e.log_odds)},
                      {"error_reduction", finite(e.error_reduction)},
                      {"alternatives", e.alternatives},
+                     {"told_apart_by", told_apart},
                      {"other_forms", e.other_forms},
                      {"sentence", e.sentence}});
   }

@@ -44,6 +44,13 @@ struct AxisWhiteness {
   double explained{};  ///< share of variance explained, of the applied wrench's axis
 };
 
+/// What to fly to tell an effect from another that explains the same.
+struct ToldApart {
+  std::string name;
+  std::string segment;
+  double seconds{};
+};
+
 struct EffectFound {
   std::string name;
   std::string variant;  ///< e.g. "thruster 3"; empty when the effect has one form only
@@ -54,6 +61,7 @@ struct EffectFound {
   std::vector<std::string> alternatives;  ///< other effects that the data cannot rule out
   std::vector<std::string> other_forms;   ///< "T4 or T0": forms of this effect that would explain as much
   std::string sentence;
+  std::vector<ToldApart> told_apart{};  ///< from some alternatives, by a segment; only where a site was given
 };
 
 struct CandidateTried {

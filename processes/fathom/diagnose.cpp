@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/diagnoser.hpp"
@@ -18,6 +19,8 @@
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/progress.hpp"
 #include "processes/fathom/recordings.hpp"
+#include "processes/fathom/rehearsals.hpp"
+#include "processes/fathom/separations.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -26,7 +29,7 @@ constexpr double kHeldOut = 0.3;  // of every run, when no validation run is giv
 constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
 
 struct Options {
-  std::string vehicle, map, out;
+  std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
   int threads{2};
 };
@@ -39,6 +42,8 @@ void make_folder(const std::string& path) {  // before the long work, so that a 
 
 DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  std::optional<planning::RehearsalSettings> room;  // read before the long work
+  if (!options.site.empty()) room = rehearsal_settings(options.site, options.config, vehicle);
   make_folder(options.out);
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
@@ -76,10 +81,14 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
 
   diagnosis::Settings settings;
   settings.threads = options.threads;
-  DiagnosisReport report =
-      diagnosis::diagnose(vehicle, train, validate, settings, [&](const std::string& what, double share) {
+  identification::FitResult fitted;
+  DiagnosisReport report = diagnosis::diagnose(
+      vehicle, train, validate, settings,
+      [&](const std::string& what, double share) {
         progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
-      });
+      },
+      &fitted);
+  if (room) separate(vehicle, *room, train, fitted, report.result);
   report.result.consistency = std::move(consistency.findings);
   diagnosis::adopt_sensor_faults(report.result);
   return report;
@@ -111,6 +120,8 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
   command->add_option("--validate", options->validate, "files to judge by; without: the last 30 % of every run");
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
+  command->add_option("--site", options->site, "site file: what to fly there to tell look-alikes apart is computed");
+  command->add_option("--config", options->config, "with --site: pipeline file (its namesake in ../pipelines/)");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->check(CLI::Range(1, 64));

@@ -1,19 +1,17 @@
 // fathom plan: before a trial, what its excitation would tell about every effect, and what to fly in addition.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/model/site.hpp"
 #include "common/planning/foresight.hpp"
 #include "common/planning/rehearsal.hpp"
 #include "common/planning/segments.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/progress.hpp"
+#include "processes/fathom/rehearsals.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -31,19 +29,10 @@ struct Options {
   double velocity_noise{0.005}, rate_noise{0.0035}, rate{100.0}, longest{600.0};
 };
 
-std::string pipeline_beside(const std::string& site) {
-  const std::filesystem::path path{site};
-  return (path.parent_path().parent_path() / "pipelines" / path.filename()).string();
-}
-
 planning::RehearsalSettings settings_from(const Options& options, const model::Vehicle& vehicle) {
-  const model::Site site = model::Site::load(options.site);
-  const Config pipeline = Config::load(options.config.empty() ? pipeline_beside(options.site) : options.config);
-  planning::RehearsalSettings s{
-      .supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), vehicle, site),
-      .identifier = identification::IdentifierSettings::from(pipeline.section("identifier")),
-      .longest = options.longest,
-      .rate = options.rate};
+  planning::RehearsalSettings s = rehearsal_settings(options.site, options.config, vehicle);
+  s.longest = options.longest;
+  s.rate = options.rate;
   s.noise << Eigen::Vector3d::Constant(options.velocity_noise), Eigen::Vector3d::Constant(options.rate_noise);
   s.supervisor.optimal = options.excitation == "optimal";
   if (s.supervisor.optimal) s.supervisor.schedule = {s.supervisor.schedule.back()};
@@ -52,7 +41,7 @@ planning::RehearsalSettings settings_from(const Options& options, const model::V
 
 std::string said(const Answer& answer) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.0f s of ", std::max(answer.seconds, 1.0));
+  std::snprintf(text, sizeof text, "%.0f s of ", answer.seconds);
   return text + answer.segment;
 }
 

@@ -84,7 +84,7 @@ TEST_CASE("foresight: what a parameter can imitate hides in that parameter") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   Trial trial = clean(vehicle);
   for (Eigen::Vector3d& p : trial.p_WB) p.z() = 3.0 + 0.1 * p.z();
-  const View view{vehicle, std::move(trial), kWindow};
+  const View view{vehicle, trial, kWindow};
   const std::vector<Foreseen> all = foresee(vehicle, view, {}, {}, [](double) {});
   const Foreseen& compressibility = named(all, "compressibility");
   REQUIRE(compressibility.found);
