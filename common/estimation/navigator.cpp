@@ -131,7 +131,7 @@ const Navigator::Output& Navigator::step(const Depth& sample) {
   return wait({.utime = sample.utime, .source = Source::kDepth, .a = {0.0, 0.0, sample.z}});
 }
 
-const Navigator::Output& Navigator::wait(Measurement m) {
+const Navigator::Output& Navigator::wait(const Measurement& m) {
   const std::size_t i = slot(m.source);
   if (!aid(m.source).used) return output_;
   if (!m.a.allFinite() || !m.b.allFinite() || !std::isfinite(m.sigma)) {

@@ -132,7 +132,7 @@ class Navigator {
     Memory after;
   };
 
-  const Output& wait(Measurement measurement);
+  const Output& wait(const Measurement& measurement);
   [[nodiscard]] bool usable(const Ahrs& sample);
   [[nodiscard]] Input input_of(const Ahrs& sample);
   void run(std::size_t from, Utime since);
