@@ -82,9 +82,10 @@ bool carries_over(const SearchResult& found, const Interval& change) {
   return change.value > -kMostHarm && (promised < kPromised || change.value > kKept * promised);
 }
 
-/// By the accepted effects, on runs that no fit has seen.
+/// By the accepted effects, on runs that no fit has seen; 1 when these are too short to tell.
 double share_on(std::span<const Trial> unseen, const SearchResult& found, const model::Vehicle& vehicle,
                 const Settings& settings) {
+  if (identification::cut_windows(unseen, settings.fit.window).empty()) return 1.0;
   const identification::TrajectoryFit windows{vehicle, unseen, settings.fit};
   return share_explained(lasting_error(windows, found.before.model), lasting_error(windows, found.after.model));
 }
@@ -104,8 +105,7 @@ void take_back(SearchResult& found) {
 }  // namespace
 
 DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
-                         const Settings& settings, const Progress& progress,
-                         identification::FitResult* fitted) {
+                         const Settings& settings, const Progress& progress, identification::FitResult* fitted) {
   std::vector<Trial> unseen;
   for (const Trial& trial : validate) unseen.push_back(identification::sparse(trial, kStep));
   SearchResult found = search(vehicle, train, settings, progress);
@@ -119,7 +119,8 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   const std::vector<model::Window> windows = prediction_windows(unseen);
   const Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
-  if (!found.accepted.empty() && !carries_over(found, improvement(before, after, vehicle))) {
+  const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
+  if (!found.accepted.empty() && judged && !carries_over(found, improvement(before, after, vehicle))) {
     take_back(found);
     after = before;
   }

@@ -140,6 +140,14 @@ TEST_CASE("diagnoser: too little data is one line that says what to do") {
   }
 }
 
+TEST_CASE("diagnoser: a validation run of a few seconds judges nothing, and stops nothing") {
+  Laggard laggard;
+  laggard.validate = {test::cut_trial(laggard.validate[0], 0, 60)};  // 6 s: not one window
+  const DiagnosisReport report = laggard.report();
+  CHECK_FALSE(report.result.effects.empty());
+  CHECK(report.result.explained == 1.0);
+}
+
 TEST_CASE("diagnoser: what the validation run contradicts is taken back, and called unexplained") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const auto dive = [&](unsigned seed, double v_N) {
