@@ -97,7 +97,7 @@ class Process {
                 [this, channel, handler = std::move(handler)](std::span<const std::uint8_t> bytes) mutable {
                   Message message{};
                   const int length = static_cast<int>(bytes.size());
-                  if (message.decode(bytes.data(), 0, length) != length) return false;
+                  if (message.decode(bytes.data(), 0, length) != length || !is_time(message.utime)) return false;
                   arrived(channel, message.utime);
                   handler(static_cast<const Message&>(message));
                   return true;

@@ -45,7 +45,7 @@ bool take(const LogEvent& event, std::vector<Sample>& stream, ChannelCount& coun
   const int length = static_cast<int>(event.data.size());
   if (message.decode(event.data.data(), 0, length) != length) return false;
   std::optional<Sample> sample = decode(message);
-  if (!sample) return false;
+  if (!sample || !is_time(sample->utime)) return false;
   if (!stream.empty() && sample->utime < stream.back().utime) ++count.late;
   stream.push_back(std::move(*sample));
   return true;
