@@ -8,7 +8,6 @@
 namespace fathom::planning {
 namespace {
 
-constexpr double kNever = 1e-9;      // of the noise: no energy at all
 constexpr double kShortest = 5.0;    // s: a step there and back
 constexpr double kLongest = 1800.0;  // s: nobody flies the same for longer
 constexpr double kCrooked = 0.3;     // of a change: what half of the effect does otherwise
@@ -25,7 +24,7 @@ Eigen::VectorXd sober_change(const View& view, const model::ActiveEffect& active
 }
 
 void choose(std::optional<Answer>& best, const Extra& extra, double needed, double gain) {
-  if (!(gain > kNever)) return;
+  if (!(gain > kNoEnergy)) return;
   const double seconds = extra.duration * needed / gain;
   if (seconds > kLongest) return;
   if (!best || seconds < best->seconds) best = {extra.name, seconds};
@@ -88,7 +87,7 @@ double Energies::product(std::size_t i, std::size_t j, std::size_t with) const {
 
 double Energies::beside(std::size_t i, std::size_t j, std::size_t with) const {
   const double other = product(j, j, with), shared = product(i, j, with);
-  return product(i, i, with) - (other > kNever ? shared * shared / other : 0.0);
+  return product(i, i, with) - (other > kNoEnergy ? shared * shared / other : 0.0);
 }
 
 std::optional<Answer> Energies::as_strong(std::size_t i) const {

@@ -25,6 +25,9 @@ struct Answer {
   double seconds{};  ///< of it, repeated; five at least, half an hour at most
 };
 
+/// Energy below which there is none: of the noise.
+constexpr double kNoEnergy = 1e-9;
+
 /// Twice the log odds at which one of two look-alikes is ruled out: what must set them apart, in squared standard
 /// deviations.
 constexpr double kToldApart = 2.0 * 3.0;
@@ -42,7 +45,6 @@ class Base {
 
 /// An effect in one form at one size, and what it changes.
 struct Suspect {
-  const model::Effect* effect{};
   model::ActiveEffect active;
   double ordinary{std::numeric_limits<double>::infinity()};  ///< its first number over what is ordinary for it
   bool found{false};

@@ -20,7 +20,6 @@ constexpr std::size_t kMostStarts = 5;  // of a form: places, moments, time cons
 constexpr int kRounds = 10;             // of finding a size; most effects are nearly proportional
 constexpr double kLargestStep = 30.0;   // factor between rounds
 constexpr double kClose = 0.1;          // of the size
-constexpr double kNever = 1e-9;         // of the noise: no energy at all
 constexpr double kWave = 1.5;           // rad/s: a wave that nobody has seen yet
 
 class Judge {
@@ -37,7 +36,7 @@ class Judge {
       fall.push_back(0.5 * own.segment(row, rows).squaredNorm());
       row += rows;
     }
-    if (diagnosis::total(fall) < kNever) return std::numeric_limits<double>::infinity();
+    if (diagnosis::total(fall) < kNoEnergy) return std::numeric_limits<double>::infinity();
     double low = -12.0, high = 12.0;  // natural logarithm
     if (!accepted(suspect, fall, std::exp(high))) return std::numeric_limits<double>::infinity();
     while (high - low > 0.01) {
@@ -54,9 +53,10 @@ class Judge {
       with.push_back(0.5 * static_cast<double>(view_.rows()[w]));  // noise
       without.push_back(with.back() + factor * factor * fall[w]);
     }
-    diagnosis::Judged judged{.effect = suspect.effect};
+    diagnosis::Judged judged{.effect = suspect.active.effect};
     judged.error_reduction = diagnosis::reduction(diagnosis::total(without), diagnosis::total(with));
-    judged.log_odds = diagnosis::log_odds(without, with, static_cast<int>(suspect.effect->parameters().size()), tried_);
+    judged.log_odds =
+        diagnosis::log_odds(without, with, static_cast<int>(suspect.active.effect->parameters().size()), tried_);
     return judged.error_reduction >= settings_.smallest_reduction &&
            judged.log_odds >= diagnosis::needed_log_odds(judged, settings_);
   }
@@ -69,7 +69,7 @@ class Judge {
 /// The smallest size of this form from this start.
 Suspect smallest(const View& view, const Base& base, const Judge& judge, const diagnosis::Candidate& candidate,
                  const std::vector<double>& start) {
-  Suspect suspect{.effect = candidate.effect, .active = {candidate.effect, candidate.variant, candidate.name, start}};
+  Suspect suspect{.active = {candidate.effect, candidate.variant, candidate.name, start}};
   for (int round = 0; round < kRounds; ++round) {
     suspect.change = view.change(suspect.active);
     suspect.imitated = base.solve(view.jacobian().transpose() * suspect.change);
@@ -92,8 +92,7 @@ Suspect typical(const View& view, const Base& base, const Judge& judge, const di
   std::vector<Suspect> all;
   for (std::size_t i = 0; i < starts.size(); i += std::max<std::size_t>(stride, 1))
     all.push_back(smallest(view, base, judge, candidate, starts[i]));
-  if (all.empty())
-    return {.effect = candidate.effect, .active = {candidate.effect, candidate.variant, candidate.name, {}}};
+  if (all.empty()) return {.active = {candidate.effect, candidate.variant, candidate.name, {}}};
   std::ranges::stable_sort(all, {}, &Suspect::ordinary);
   return std::move(all[all.size() / 2]);
 }
@@ -145,7 +144,7 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
     const Suspect* easiest = nullptr;
     Foreseen out{.name = std::string{effect->name()}, .form = ""};
     for (const Suspect& form : forms) {
-      if (form.effect != effect) continue;
+      if (form.active.effect != effect) continue;
       ++out.forms;
       out.forms_found += form.found ? 1 : 0;
       if (easiest == nullptr || form.ordinary < easiest->ordinary) easiest = &form;
@@ -161,11 +160,11 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
     Foreseen& out = foreseen[i];
     const Suspect& suspect = chosen[i];
     if (!out.found) continue;
-    const auto parameters = suspect.effect->parameters();
+    const auto parameters = suspect.active.effect->parameters();
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       out.size.push_back({.name = std::string{parameters[p].name},
                           .value = suspect.active.theta[p],
-                          .unit = std::string{suspect.effect->unit(suspect.active.variant, p)}});
+                          .unit = std::string{suspect.active.effect->unit(suspect.active.variant, p)}});
     }
     const double whole = suspect.change.squaredNorm(), own = energies.product(i, i, 0);
     out.hidden = whole > 0.0 ? std::clamp(1.0 - own / whole, 0.0, 1.0) : 0.0;

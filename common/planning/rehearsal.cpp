@@ -174,7 +174,7 @@ Trial fly(const model::Vehicle& vehicle, const model::Model& model, bool by_wren
     held[static_cast<std::size_t>(axis)] = !moved && axis != 3 && axis != 4;
   }
   double turned = 0.0;
-  while (stage.seconds() < duration) {
+  for (const double end = duration + kStep * kSample; stage.seconds() < end;) {
     const StateEstimate state = stage.state();
     if (stage.due()) {
       Vector6d tau = hold.step(state, turned, {start, 0.0}, held, kStep * kSample);

@@ -28,8 +28,8 @@ struct Rehearsal {
 /// InputError when the supervisor does not arm or aborts at once.
 [[nodiscard]] Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& settings);
 
-/// One segment from rest in the middle of the room, again and again for `duration` [s], bent by the fence; the axes
-/// that it leaves alone are held.
+/// One segment from rest in the middle of the room, again and again for `duration` [s] with a sample at its end, bent
+/// by the fence; the axes that it leaves alone are held.
 [[nodiscard]] Trial fly(const model::Vehicle& vehicle, const RehearsalSettings& settings,
                         const excitation::Segment& segment, double duration);
 /// The same with a model that was fitted, its inputs the wrench or the thrusters' forces.

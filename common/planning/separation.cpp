@@ -20,7 +20,7 @@ std::optional<Answer> segment_between(const model::ActiveEffect& found, const mo
   const View* alone = &data;
   const Base base{data.model(), std::span{&alone, 1}};
   std::vector<Suspect> pair(2);
-  pair[0] = {.effect = found.effect, .active = found, .change = data.change(found), .imitated = {}};
+  pair[0] = {.active = found, .change = data.change(found), .imitated = {}};
   const Eigen::VectorXd target = own(data, base, pair[0].change);
   double nearest = 0.0;
   const std::vector<std::string> forms = other.variants(scene);
@@ -28,7 +28,7 @@ std::optional<Answer> segment_between(const model::ActiveEffect& found, const mo
     if (forms[form] == "-") continue;
     const int variant = static_cast<int>(form);
     for (const std::vector<double>& start : other.starts(scene, variant)) {
-      Suspect like{.effect = &other, .active = {&other, variant, forms[form], start}, .change = {}, .imitated = {}};
+      Suspect like{.active = {&other, variant, forms[form], start}, .change = {}, .imitated = {}};
       double cosine = 0.0;
       for (int round = 0; round < kRounds; ++round) {
         like.change = data.change(like.active);

@@ -28,6 +28,8 @@ class View {
   [[nodiscard]] const std::vector<Eigen::Index>& rows() const { return rows_; }
   [[nodiscard]] std::span<const Trial> trials() const { return trials_; }
   [[nodiscard]] const model::Model& model() const { return at_.model; }
+  [[nodiscard]] const Vector6d& sigma() const { return at_.sigma; }
+  [[nodiscard]] double window() const { return fit_.settings().window; }
 
  private:
   [[nodiscard]] Eigen::VectorXd residual(const model::Model& model) const;

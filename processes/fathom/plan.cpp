@@ -2,13 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
+#include "common/planning/flights.hpp"
 #include "common/planning/foresight.hpp"
-#include "common/planning/rehearsal.hpp"
-#include "common/planning/segments.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/progress.hpp"
 #include "processes/fathom/rehearsals.hpp"
@@ -21,7 +19,6 @@ using planning::Answer;
 using planning::Foreseen;
 
 constexpr double kWindow = 10.0;  // s, as in a diagnosis
-constexpr double kEnd = 0.1;      // s of a flight after its last whole window
 constexpr double kTold = 2.0;     // times the excitation: an answer that takes longer is none
 
 struct Options {
@@ -112,10 +109,13 @@ void write(const Options& options, const std::vector<Foreseen>& all, const plann
   }
   std::ofstream out{options.json};
   out << file.dump(2) << "\n";
-  if (!out.flush()) throw InputError(options.json + ": cannot be written");
+  if (!out.flush()) throw InputError(options.json + ": cannot be written; check the free space");
 }
 
 void run(const Options& options) {
+  // Before the work, not after it.
+  if (!options.json.empty() && !std::ofstream{options.json, std::ios::app})
+    throw InputError(options.json + ": cannot be written; check that the folder exists and is yours");
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const planning::RehearsalSettings settings = settings_from(options, vehicle);
   ProgressLine progress;
@@ -123,16 +123,11 @@ void run(const Options& options) {
   const planning::Rehearsal rehearsal = planning::rehearse(vehicle, settings);
   const double duration = rehearsal.trial.t.back();
   const planning::View excitation{vehicle, rehearsal.trial, kWindow};
-  std::vector<std::unique_ptr<planning::View>> views;
-  std::vector<planning::Extra> extras;
-  for (const excitation::Segment& segment : planning::segments(vehicle, settings.supervisor.largest)) {
-    progress.show("flying " + segment.name, 0.1);
-    views.push_back(std::make_unique<planning::View>(
-        vehicle, planning::fly(vehicle, settings, segment, segment.duration + kEnd), kWindow));
-    extras.push_back({segment.name, segment.duration, views.back().get()});
-  }
-  const std::vector<Foreseen> all = planning::foresee(
-      vehicle, excitation, extras, {}, [&](double share) { progress.show("asking every effect", 0.2 + 0.8 * share); });
+  const planning::Flights flights{vehicle, excitation, settings,
+                                  [&](const std::string& segment) { progress.show("flying " + segment, 0.1); }};
+  const std::vector<Foreseen> all = planning::foresee(vehicle, excitation, flights.extras(), {}, [&](double share) {
+    progress.show("asking every effect", 0.2 + 0.8 * share);
+  });
   std::printf("%s excitation of %s: %.0f s, %s\n", options.excitation.c_str(), vehicle.name.c_str(), duration,
               rehearsal.end.c_str());
   print(all, duration);

@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <vector>
 
 #include "common/model/effect.hpp"
 #include "common/model/rollout.hpp"
-#include "common/planning/segments.hpp"
+#include "common/planning/flights.hpp"
 #include "common/planning/separation.hpp"
 
 namespace fathom::tool {
 namespace {
 
 constexpr double kWindow = 10.0;  // s, as in a diagnosis
-constexpr double kEnd = 0.1;      // s of a flight after its last whole window
 
 /// Of the base parameters alone: the effects stand beside it as suspects.
 model::Model bare(model::Model model) {
@@ -39,24 +37,16 @@ void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& 
               const identification::FitResult& fit, DiagnosisResult& result) {
   const bool open = std::ranges::any_of(result.effects, [](const EffectFound& e) { return !e.alternatives.empty(); });
   if (!open || train.empty()) return;
-  const model::Model base = bare(fit.model);
-  const planning::View data{vehicle, {train.begin(), train.end()}, base, fit.sigma, kWindow};
+  const planning::View data{vehicle, {train.begin(), train.end()}, bare(fit.model), fit.sigma, kWindow};
   const model::Scene scene = model::scene_of(vehicle, train);
-  const bool by_wrench = train.front().input_is_wrench;
-  std::vector<std::unique_ptr<planning::View>> views;
-  std::vector<planning::Extra> extras;
-  for (const excitation::Segment& segment : planning::segments(vehicle, settings.supervisor.largest)) {
-    std::vector<Trial> flown{planning::fly(vehicle, base, by_wrench, settings, segment, segment.duration + kEnd)};
-    views.push_back(std::make_unique<planning::View>(vehicle, std::move(flown), base, fit.sigma, kWindow));
-    extras.push_back({segment.name, segment.duration, views.back().get()});
-  }
+  const planning::Flights flights{vehicle, data, settings};
   std::string proposal;
   for (EffectFound& effect : result.effects) {
     const auto active = std::ranges::find_if(
         fit.model.effects, [&](const model::ActiveEffect& a) { return a.effect->name() == effect.name; });
     if (active == fit.model.effects.end()) continue;
     for (const std::string& other : effect.alternatives) {
-      const auto answer = planning::segment_between(*active, *model::find_effect(other), scene, data, extras);
+      const auto answer = planning::segment_between(*active, *model::find_effect(other), scene, data, flights.extras());
       if (answer) effect.told_apart.push_back({other, answer->segment, answer->seconds});
     }
     if (proposal.empty()) proposal = sentence(effect);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
@@ -22,10 +23,15 @@ std::string plan(const std::string& vehicle, const std::string& site) {
          file("config/sites/" + site + ".yaml");
 }
 
-void one_line(const Ran& ran, const std::string& words) {
+void refused_in_one_line(const Ran& ran, const std::string& words) {
   CAPTURE(ran.text);
   CHECK(ran.code != 0);
   CHECK(ran.says(words));
+  // One line, and what was being done until then.
+  std::istringstream lines{ran.text};
+  int others = 0;
+  for (std::string line; std::getline(lines, line);) others += line.find(" % rehearsing") == std::string::npos ? 1 : 0;
+  CHECK(others == 1);
 }
 
 }  // namespace
@@ -73,11 +79,11 @@ TEST_CASE("fathom plan: less noise finds smaller effects") {
 }
 
 TEST_CASE("fathom plan: what is missing is said in one line") {
-  one_line(shell(plan("none", "tank")), "none.yaml");
-  one_line(shell(plan("seabotix_lbv150", "tank_tag16h5")), "water");
-  one_line(shell(plan("seabotix_lbv150", "tank") + " --excitation loud"), "loud");
-  one_line(shell(plan("seabotix_lbv150", "tank") + " --longest 3"), "ends as soon as it begins");
-  one_line(shell(plan("seabotix_lbv150", "tank") + " --json /nowhere/plan.json"), "/nowhere/plan.json");
+  refused_in_one_line(shell(plan("none", "tank")), "none.yaml");
+  refused_in_one_line(shell(plan("seabotix_lbv150", "tank_tag16h5")), "water");
+  refused_in_one_line(shell(plan("seabotix_lbv150", "tank") + " --excitation loud"), "loud");
+  refused_in_one_line(shell(plan("seabotix_lbv150", "tank") + " --longest 3"), "ends as soon as it begins");
+  refused_in_one_line(shell(plan("seabotix_lbv150", "tank") + " --json /nowhere/plan.json"), "/nowhere/plan.json");
 }
 
 }  // namespace fathom
