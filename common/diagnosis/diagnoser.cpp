@@ -85,8 +85,10 @@ bool carries_over(const SearchResult& found, const Interval& change) {
 /// By the accepted effects, on runs that no fit has seen; 1 when these are too short to tell.
 double share_on(std::span<const Trial> unseen, const SearchResult& found, const model::Vehicle& vehicle,
                 const Settings& settings) {
-  if (identification::cut_windows(unseen, settings.fit.window).empty()) return 1.0;
-  const identification::TrajectoryFit windows{vehicle, unseen, settings.fit};
+  if (identification::cut_windows(unseen, found.window).empty()) return 1.0;
+  identification::FitSettings fits = settings.fit;
+  fits.window = found.window;
+  const identification::TrajectoryFit windows{vehicle, unseen, fits};
   return share_explained(lasting_error(windows, found.before.model), lasting_error(windows, found.after.model));
 }
 

@@ -51,11 +51,13 @@ std::vector<Eigen::Index> places_of(const model::Model& model, const Judged& jud
 
 /// True when the effect's numbers have the vehicle where it cannot be, and not just for a moment.
 bool in_the_way(const TrajectoryFit& problem, const model::Model& model, const Judged& judged) {
+  if (!judged.effect->feels_place()) return false;
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;
     double samples = 0.0, inside = 0.0;
     for (const auto& window : problem.windows()) {
       const model::Window& of = window.window();
+      if (!of.trial->observed.position) continue;
       for (std::size_t k = of.start; k < of.start + of.count && k < of.trial->size(); ++k) {
         if (of.trial->pose_valid[k] == 0) continue;
         samples += 1.0;

@@ -220,6 +220,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   // The search may have seen a spread of windows at a lower rate; what it found is tested on everything.
   near.fit(result.after.model);
   auto [whole, after] = fit_everything(vehicle, train, settings, near, result.after.model);
+  result.window = whole.settings().window;
   result.after = identification::with_input_hold(whole, std::move(after));
   result.before = result.accepted.empty() ? result.after : whole.fit(result.before.model);
   prune(result, whole, settings, tried, progress);

@@ -42,6 +42,7 @@ struct SearchResult {
   std::vector<Judged> accepted;  ///< in the order of acceptance
   std::vector<Judged> refused;   ///< best form of every other effect, from the last round
   std::optional<FreeForm> free_form{};
+  double window{};         ///< s, of the final fits
   double explained{1.0};   ///< by the accepted effects, of the lasting error on runs that no fit has seen
   bool taken_back{false};  ///< what was accepted did not help the validation run
 };
