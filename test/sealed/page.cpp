@@ -68,7 +68,8 @@ void add_targets(std::span<const Score> scores, std::string& text) {
           good_of(scores, [](const Score& s) { return s.kind == "pair" && s.size == "medium"; }));
   add_row(text, "pair found whole, other sizes", "-",
           good_of(scores, [](const Score& s) { return s.kind == "pair" && s.size != "medium"; }));
-  long strangers = 0, sets = 0, alarms = 0, quiet = 0, failed = 0, foreign = 0, named = 0, worse = 0, compared = 0;
+  long strangers = 0, sets = 0, alarms = 0, quiet = 0, failed = 0, foreign = 0, named = 0, refused = 0, worse = 0,
+       compared = 0;
   for (const Score& s : scores) {
     failed += s.outcome == "failed" ? 1 : 0;
     if (s.kind == "single" || s.kind == "pair") {
@@ -82,6 +83,7 @@ void add_targets(std::span<const Score> scores, std::string& text) {
     if (s.kind == "foreign") {
       ++foreign;
       named += s.outcome == "wrong name" ? 1 : 0;
+      refused += s.outcome == "refused" ? 1 : 0;
     }
     if (std::isfinite(s.after)) {
       ++compared;
@@ -90,6 +92,7 @@ void add_targets(std::span<const Score> scores, std::string& text) {
   }
   add_row(text, "sets with an effect in which a wrong one is accepted too", "-", percent(strangers, sets));
   add_row(text, "false alarms: clean data, coloured noise alone", "at most 2 %", percent(alarms, quiet));
+  add_row(text, "outside the catalogue: nothing accepted", "-", percent(refused, foreign));
   add_row(text, "outside the catalogue: nothing accepted, or no name above 90 % and the verdict unexplained", "80 %",
           good_of(scores, [](const Score& s) { return s.kind == "foreign"; }));
   add_row(text, "outside the catalogue: a wrong confident name", "at most 5 %", percent(named, foreign));

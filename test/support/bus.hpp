@@ -22,8 +22,8 @@ class Bus {
  public:
   Bus() : url{"udpm://239.255.76.67:" + std::to_string(31000 + getpid() % 9000) + "?ttl=0"}, lcm_{url} {
     REQUIRE(lcm_.good());
-    lcm_.subscribe("HEALTH", &Bus::on_health, this);
-    lcm_.subscribe("THRUSTERS", &Bus::on_thrusters, this);
+    lcm_.subscribeFunction("HEALTH", &Bus::on_health, this);
+    lcm_.subscribeFunction("THRUSTERS", &Bus::on_thrusters, this);
   }
   void listen(double seconds) {
     const double end = link::wall_seconds() + seconds;
@@ -38,11 +38,14 @@ class Bus {
   std::vector<fathom_lcm::thrusters_t> thrusters;
 
  private:
-  void on_health(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::health_t* message) {
-    health.push_back(*message);
+  // Functions, not members: GCC 12's undefined-behaviour sanitizer miscompiles LCM's call of a member that is not
+  // virtual (the object's address is read before it is stored).
+  static void on_health(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::health_t* message, Bus* bus) {
+    bus->health.push_back(*message);
   }
-  void on_thrusters(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::thrusters_t* message) {
-    thrusters.push_back(*message);
+  static void on_thrusters(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::thrusters_t* message,
+                           Bus* bus) {
+    bus->thrusters.push_back(*message);
   }
   lcm::LCM lcm_;
 };

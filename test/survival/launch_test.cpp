@@ -8,6 +8,7 @@
 #include "common/base/event_log.hpp"
 #include "common/wire/log_reader.hpp"
 #include "test/support/private_network.hpp"
+#include "test/support/timing.hpp"
 
 namespace fathom {
 namespace {
@@ -226,7 +227,8 @@ TEST_CASE("launch: broken messages on every channel and a flood kill nobody, mov
   std::size_t alive = 0;
   for (auto at = ran.text.find("alive "); at != std::string::npos; at = ran.text.find("alive ", at + 1)) {
     ++alive;
-    CHECK(std::stol(ran.text.substr(at + 6)) < 300'000);  // kB; queues of 1000 messages and the minds' own
+    // kB; queues of 1000 messages and the minds' own. A sanitizer's shadow of the memory is not theirs.
+    if (test::kTimed) CHECK(std::stol(ran.text.substr(at + 6)) < 300'000);
   }
   CHECK_MESSAGE(alive == 5, ran.text);
   CHECK_MESSAGE(ran.says("hostile 0"), ran.text);

@@ -247,7 +247,7 @@ TEST_CASE("search: hidden effects are named first, with their numbers") {
   check_finds("bluerov2", "thrust_asymmetry", kShort, 4);
 }
 
-TEST_CASE("search: a large change is found wherever its moment lies between those that the search begins with") {
+TEST_CASE("search: a large change of payload is named, whatever its moment") {
   constexpr double kMass = 3.0, kWeight = 15.0;  // kg, N: far more than what the vehicle floats by
   std::mt19937 random{20261121};
   const double moment = std::uniform_real_distribution<double>{170.0, 210.0}(random);
@@ -259,7 +259,7 @@ TEST_CASE("search: a large change is found wherever its moment lies between thos
   CHECK(outcome.found.accepted.front().effect->name() == "payload_change");
 }
 
-TEST_CASE("search: a step in the command is found where it is, also a narrow one") {
+TEST_CASE("search: a narrow dead band is named") {
   std::mt19937 random{20261121};
   const double half_width = std::uniform_real_distribution<double>{0.8, 1.2}(random);  // N
   CAPTURE(half_width);
