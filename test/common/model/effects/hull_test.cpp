@@ -157,9 +157,11 @@ TEST_CASE("cross_coupling: covers drag and added mass of every pair that a symme
 TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the step") {
   const model::Effect& effect = *model::find_effect("fluid_memory");
   const std::vector<double> theta{10.0, 2.0};
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   model::Motion motion;
+  motion.vehicle = &vehicle;
   for (const double dt : {0.01, 0.5, 7.0}) {
-    std::vector<double> z(12, 0.0);
+    std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 4)), 0.0);
     motion.nu.setZero();
     effect.settle(motion, theta, z);
     motion.nu.setConstant(1.0);
@@ -175,6 +177,30 @@ TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the s
     CHECK(felt.w_memory[1] == doctest::Approx(-10.0 * z[1]));
     CHECK(felt.w_memory[0] == 0.0);
   }
+}
+
+TEST_CASE("fluid_memory: on all axes it is each axis' own, in proportion to the drag that the file states") {
+  const model::Effect& effect = *model::find_effect("fluid_memory");
+  model::Vehicle vehicle;
+  vehicle.dof = {true, false, true, false, false, true};
+  vehicle.parameters = {"m_X", "X_u", "X_u|u|", "Y_v", "Z_w", "N_r|r|"};
+  vehicle.priors = {{10.0, 1.0}, {-4.0, 1.0}, {-12.0, 1.0}, {-99.0, 1.0}, {-30.0, 1.0}, {-2.0, 1.0}};
+  const auto names = effect.variants({.vehicle = &vehicle});
+  const auto all = std::ranges::find(names, "all axes");
+  REQUIRE(all != names.end());
+  const Vector6d share{1.0, 0.0, 3.0, 0.0, 0.0, 0.1};  // of 4 + 12 / 2 N at half a metre per second
+  model::Motion motion;
+  motion.vehicle = &vehicle;
+  motion.nu.setConstant(0.7);
+  std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 6)), 0.0);
+  const std::vector<double> theta{10.0, 2.0};
+  effect.settle(motion, theta, z);
+  effect.feel(motion, theta, static_cast<int>(all - names.begin()), z);
+  CHECK((motion.w_memory + 10.0 * 0.7 * share).norm() < 1e-12);
+
+  vehicle.parameters = {"m_X", "Z_w"};
+  vehicle.priors = {{10.0, 1.0}, {-30.0, 1.0}};
+  CHECK_FALSE(std::ranges::count(effect.variants({.vehicle = &vehicle}), "all axes") > 0);  // one axis: its own form
 }
 
 TEST_CASE("fluid_memory: follows a sine late and smaller, and takes energy") {
