@@ -1,14 +1,10 @@
-// fathom: the offline tool. Exit 0: done; 1: bad input, one line says what; 2: bad command line.
-#include <CLI/CLI.hpp>
-#include <cstdio>
-
-#include "common/base/error.hpp"
+// fathom: the offline tool.
+#include "processes/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{"Explains from recordings why an underwater vehicle moves as it does.", "fathom"};
   app.set_version_flag("--version", FATHOM_VERSION);
-  app.require_subcommand(1);
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
@@ -26,16 +22,5 @@ int main(int argc, char** argv) {
   fathom::tool::add_watch(app);
   fathom::tool::add_bus(app);
   fathom::tool::add_trial(app);
-  try {
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::Success& asked) {
-    return app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "fathom: %s; see fathom --help\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "fathom: %s\n", error.what());
-    return 1;
-  }
+  return fathom::run_command_line(app, argc, argv);
 }

@@ -18,11 +18,7 @@ Observation observe(const KinematicPoint& point, const Accelerometer& sensor, do
     result.set(at::kRates, d * w.dot(r) + r * w.dot(d) - 2.0 * w * r.dot(d));
     result.set(at::kRateSlopes, r.cross(d));
   }
-  if (sensor.bias >= 0) {
-    result.innovation -= point.x[at::kBias + sensor.bias];
-    result.row[at::kBias + sensor.bias] = 1.0;
-    result.groups |= 1U << static_cast<unsigned>((at::kBias + sensor.bias) / 3);
-  }
+  if (sensor.bias >= 0) result.add_bias(point.x, sensor.bias);
   return result;
 }
 

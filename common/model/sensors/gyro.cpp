@@ -7,11 +7,7 @@ Observation observe(const KinematicPoint& point, const Gyro& sensor, double meas
   result.innovation = measured - sensor.direction_B.dot(point.group(at::kRates));
   result.variance = variance;
   result.set(at::kRates, sensor.direction_B);
-  if (sensor.bias >= 0) {
-    result.innovation -= point.x[at::kBias + sensor.bias];
-    result.row[at::kBias + sensor.bias] = 1.0;
-    result.groups |= 1U << static_cast<unsigned>((at::kBias + sensor.bias) / 3);
-  }
+  if (sensor.bias >= 0) result.add_bias(point.x, sensor.bias);
   return result;
 }
 

@@ -41,6 +41,13 @@ struct Observation {
     row.segment<3>(begin) = entries;
     groups |= 1U << static_cast<unsigned>(begin / 3);
   }
+  /// The measurement holds the state's bias number `bias` too.
+  void add_bias(const KinematicVector& x, int bias) {
+    const int entry = at::kBias + bias;
+    innovation -= x[entry];
+    row[entry] = 1.0;
+    groups |= 1U << static_cast<unsigned>(entry / 3);
+  }
 };
 
 struct KinematicPoint {

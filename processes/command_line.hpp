@@ -1,0 +1,26 @@
+// How a program with subcommands ends. Exit 0: done; 1: bad input, one line says what; 2: bad command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+namespace fathom {
+
+/// Runs the subcommand that was asked for; the return value of main().
+inline int run_command_line(CLI::App& app, int argc, char** argv) {
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "fathom: %s; see fathom --help\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fathom: %s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace fathom
