@@ -7,6 +7,7 @@
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
 #include "common/estimation/smoothing_derivative.hpp"
+#include "common/estimation/steady_attitude.hpp"
 #include "common/estimation/trial_input.hpp"
 
 namespace fathom::estimation {
@@ -270,6 +271,8 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
     const Eigen::Quaterniond q(y[i].x(), x[i].x(), x[i].y(), x[i].z());
     trial.q_WB.push_back(trial.observed.attitude && q.norm() > 1e-6 ? q.normalized() : Eigen::Quaterniond::Identity());
   }
+
+  if (trial.observed.attitude && gyro.exists()) steady_attitude(trial);
 
   add_input(recording, run.origin, corrections.thrusters, vehicle, trial);
   const double start = trial.t.front();
