@@ -1,6 +1,7 @@
 // Physics: motion along one axis loads another. Off-diagonal drag w_i = D_ij nu_r,j or D_ij |nu_r,j| nu_r,j, and
-// off-diagonal added mass M_ij = M_ji with its Coriolis part, so that it does no work. Only pairs that a hull symmetric
-// about its x-z plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4). Revealed by
+// off-diagonal added mass M_ij = M_ji with its Coriolis part, so that it does no work. Pairs that a hull symmetric
+// about its x-z plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4); and the drag
+// of what is carried on one side only: N and Y with u, K with w. Ignores added mass of the latter. Revealed by
 // single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment.
 #include <algorithm>
 #include <array>
@@ -24,8 +25,10 @@ struct Term {
   Form form;
 };
 
-constexpr std::array<Term, 30> make_terms() {
-  std::array<Term, 30> terms{};
+constexpr std::array<std::array<int, 2>, 3> kOneSided{{{5, 0}, {1, 0}, {3, 2}}};
+
+constexpr std::array<Term, 36> make_terms() {
+  std::array<Term, 36> terms{};
   std::size_t n = 0;
   for (const auto& plane : kPlanes) {
     for (const int row : plane) {
@@ -36,6 +39,10 @@ constexpr std::array<Term, 30> make_terms() {
         if (row < column) terms[n++] = {row, column, Form::kInertia};
       }
     }
+  }
+  for (const auto& [row, column] : kOneSided) {
+    terms[n++] = {row, column, Form::kLinear};
+    terms[n++] = {row, column, Form::kQuadratic};
   }
   return terms;
 }

@@ -144,11 +144,11 @@ TEST_CASE("payload_change, cross_coupling: what mass adds does no work") {
   }
 }
 
-TEST_CASE("cross_coupling: covers drag and added mass of every pair that a symmetric hull has") {
+TEST_CASE("cross_coupling: covers every pair that a symmetric hull has, and the drag of what one side carries") {
   const model::Vehicle beluga = test::vehicle_from_repository("beluga");
   const auto names = model::find_effect("cross_coupling")->variants({.vehicle = &beluga, .nu_rms = Vector6d::Ones()});
-  for (const char* wanted :
-       {"Y_r", "N_v", "Y_r|r|", "N_v|v|", "Y_r_dot", "X_q_dot", "M_u", "Z_q|q|", "K_v", "K_r_dot"}) {
+  for (const char* wanted : {"Y_r", "N_v", "Y_r|r|", "N_v|v|", "Y_r_dot", "X_q_dot", "M_u", "Z_q|q|", "K_v", "K_r_dot",
+                             "N_u|u|", "Y_u", "K_w"}) {
     CAPTURE(wanted);
     CHECK(std::count(names.begin(), names.end(), wanted) == 1);
   }
