@@ -38,8 +38,7 @@ LastingError lasting_error(const identification::TrajectoryFit& problem, const m
   for (const identification::WindowResidual& window : problem.windows())
     fit.nu0.push_back(window.window().trial->nu[window.window().start]);
   const std::vector<identification::ProjectedWindow> projected = problem.linearise(fit);
-  Vector6d sum = Vector6d::Zero(), count = Vector6d::Zero(), square = Vector6d::Zero(), cross = Vector6d::Zero();
-  Vector6d count_square = Vector6d::Zero(), all = Vector6d::Zero();
+  Vector6d sum = Vector6d::Zero(), count = Vector6d::Zero(), square = Vector6d::Zero();
   for (std::size_t w = 0; w < problem.windows().size(); ++w) {
     const identification::WindowResidual& window = problem.windows()[w];
     for (const identification::AxisRows& rows : window.axes()) {
@@ -48,21 +47,15 @@ LastingError lasting_error(const identification::TrajectoryFit& problem, const m
       const int axis = window.axis(rows.first);
       sum[axis] += of_window.sum;
       count[axis] += of_window.count;
-      all[axis] += of_window.square;
-      square[axis] += of_window.sum * of_window.sum;
-      cross[axis] += of_window.sum * of_window.count;
-      count_square[axis] += of_window.count * of_window.count;
+      square[axis] += of_window.square;
     }
   }
   LastingError lasting;
   for (int axis = 0; axis < 6; ++axis) {
     if (count[axis] <= 0.0) continue;
-    const double mean = sum[axis] / count[axis];
-    // Of a ratio of sums over windows.
-    const double scatter = square[axis] - 2.0 * mean * cross[axis] + mean * mean * count_square[axis];
-    lasting.all[axis] = all[axis] / count[axis];
-    lasting.square[axis] = std::max(mean, 0.0);
-    lasting.error[axis] = std::sqrt(std::max(scatter, 0.0)) / count[axis];
+    lasting.all[axis] = square[axis] / count[axis];
+    lasting.square[axis] = std::max(sum[axis] / count[axis], 0.0);
+    lasting.error[axis] = lasting.all[axis] / std::sqrt(count[axis]);
   }
   return lasting;
 }

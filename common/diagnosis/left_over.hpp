@@ -11,7 +11,7 @@ namespace fathom::diagnosis {
 constexpr double kWholeCause = 0.9;
 
 /// Mean square of what lasts in the velocities that a model predicts over windows, whose initial velocity is free, per
-/// axis, and its standard error over windows, (m/s)^2 and (rad/s)^2.
+/// axis, and the standard error that noise without memory would give it, (m/s)^2 and (rad/s)^2.
 struct LastingError {
   Vector6d square{Vector6d::Zero()};
   Vector6d error{Vector6d::Zero()};
@@ -20,8 +20,8 @@ struct LastingError {
 [[nodiscard]] LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model);
 
 /// Share (0..1) of the lasting error of `before` that is gone in `after`, over the axes where something is gone, each
-/// with the weight of what is gone from it over what is left there in all. What is left counts only as far as it is
-/// certain (two standard errors). Where nothing is gone: 0, or 1 if nothing was certainly lacking.
+/// with the weight of what is gone from it over what is left there in all. What is left counts only as far as noise
+/// cannot be it (two standard errors). Where nothing is gone: 0, or 1 if nothing was certainly lacking.
 [[nodiscard]] double share_explained(const LastingError& before, const LastingError& after);
 
 /// Log odds that a name is right, given that it stands for `share` of what was lacking: at most share to 1 - share.
