@@ -1,0 +1,44 @@
+// One round of the search: full fits of the candidates that promise most, until one stands that nothing speaks against.
+#pragma once
+
+#include <optional>
+
+#include "common/diagnosis/held_out.hpp"
+#include "common/diagnosis/questions.hpp"
+
+namespace fathom::diagnosis {
+
+/// The candidate that gains most and that nothing speaks against.
+struct Winner {
+  std::size_t place{};  ///< among the answers
+  identification::FitResult fit;
+};
+
+/// What it is made from must outlive it.
+class Round {
+ public:
+  Round(Answers& answers, Promises& promises, const identification::TrajectoryFit& problem,
+        const identification::FitResult& reference, std::span<const Trial> train, const Settings& settings, int tried,
+        const Progress& progress, double done);
+
+  /// `first` tells which candidates are meant; after `few` fits without a winner, only open ones, `most` in all.
+  std::optional<Winner> fit_best(Which first, std::size_t few, std::size_t most);
+
+  [[nodiscard]] Coarse& coarse() { return coarse_; }
+
+ private:
+  std::optional<identification::FitResult> fit_in_full(std::size_t i, double best_share);
+
+  Answers& answers_;
+  Promises& promises_;
+  const identification::TrajectoryFit& problem_;
+  const identification::FitResult& reference_;
+  const Settings& settings_;
+  int tried_;
+  const Progress& progress_;
+  double done_;
+  Coarse coarse_;
+  std::optional<CrossValidation> checked_;  // of the reference, made when the first fit is judged
+};
+
+}  // namespace fathom::diagnosis
