@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "common/base/distributions.hpp"
 #include "common/base/error.hpp"
 #include "common/base/parallel.hpp"
 #include "common/identification/fit_costs.hpp"
@@ -15,6 +16,7 @@
 namespace fathom::identification {
 namespace {
 
+constexpr double kLeastFreedom = 3.0;       // of a covariance from fewer windows than it has numbers
 constexpr double kReleaseStep = 0.02;       // of a parameter's scale, away from its bound
 constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
 constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
@@ -50,6 +52,8 @@ bool let_go(ceres::Problem& problem, const ParameterMap& map, const std::vector<
 
 }  // namespace
 
+double FitResult::t95() const { return std::sqrt(f_quantile(0.05, freedom)); }
+
 std::vector<NamedValue> FitResult::parameters() const {
   const ParameterMap map{model};
   const Eigen::VectorXd x = map.pack(model);
@@ -60,7 +64,16 @@ std::vector<NamedValue> FitResult::parameters() const {
     // Between straight lines and inputs that are held lies half a step: even odds over twice that, either way.
     const double held = map[i].after_command ? input_step / std::sqrt(12.0) : 0.0;
     const double std = variance > 0.0 ? std::hypot(std::sqrt(variance), map[i].form_sigma, held) : 0.0;
-    values.push_back({map[i].name, x[k] * map[i].scale, std, map[i].unit});
+    NamedValue value{map[i].name, x[k] * map[i].scale, std, map[i].unit};
+    if (variance > 0.0) {
+      // What the fit does not see adds as variances do.
+      const double unseen = kNormal95 * std::hypot(map[i].form_sigma, held), same = t95() * std::sqrt(variance);
+      const bool own = i < interval95.size() && interval95[i];
+      const double below = own ? value.value - (*interval95[i])[0] : same;
+      const double above = own ? (*interval95[i])[1] - value.value : same;
+      value.interval95 = {value.value - std::hypot(below, unseen), value.value + std::hypot(above, unseen)};
+    }
+    values.push_back(value);
   }
   return values;
 }
@@ -212,7 +225,8 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   return fit;
 }
 
-std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool hold_bounds) const {
+std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool hold_bounds,
+                                                      std::span<const ProjectedWindow> like) const {
   const ParameterMap map{fit.model};
   std::vector<ProjectedWindow> projected(windows_.size());
   for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) {
@@ -226,7 +240,7 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
     if (hold_bounds) {
       for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
     }
-    out.weight = robust_weight(out.residual, window.axes());
+    out.weight = like.empty() ? robust_weight(out.residual, window.axes()) : like[w].weight;
     out.residual.array() *= out.weight.array();
     out.jacobian.array().colwise() *= out.weight.array();
     initial.array().colwise() *= out.weight.array();
@@ -263,6 +277,7 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
   const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
   Eigen::VectorXd scale(n);
   for (Eigen::Index i = 0; i < n; ++i) scale[i] = map[static_cast<std::size_t>(i)].scale;
+  fit.freedom = std::max(clusters - static_cast<double>(n), kLeastFreedom);
   fit.covariance = small_sample * scale.asDiagonal() * (inverse * meat * inverse) * scale.asDiagonal();
 }
 

@@ -31,10 +31,13 @@ struct FitResult {
   std::vector<std::array<double, 6>> window_count;   ///< rows per window and axis
   double cost{};                                     ///< sum of window_cost
   Eigen::MatrixXd covariance;  ///< of the free parameters in physical units, order of ParameterMap
-  double input_step{};         ///< s, the longest time between inputs; set with the covariance
+  double freedom{};            ///< windows beyond free parameters: how well the covariance itself is known
+  std::vector<std::optional<std::array<double, 2>>> interval95{};  ///< physical units; where one side is not the other
+  double input_step{};  ///< s, the longest time between inputs; set with the covariance
   bool converged{false};
 
-  [[nodiscard]] std::vector<NamedValue> parameters() const;  ///< with standard deviations when covariance is there
+  [[nodiscard]] std::vector<NamedValue> parameters() const;  ///< with deviations and intervals when covariance is there
+  [[nodiscard]] double t95() const;  ///< standard deviations to each side that hold 95 % (Student), with the covariance
 };
 
 /// One window's residual and derivatives, weighted as the fit weighs them and with the initial velocity projected out
@@ -56,8 +59,9 @@ class TrajectoryFit {
   /// Cost of a model with the weights and the initial velocities of a fit.
   [[nodiscard]] double cost(const model::Model& model, const FitResult& like) const;
   /// Residuals and derivatives at a fit, per window. With `hold_bounds`, numbers on a physical bound have no
-  /// derivative: they stay there.
-  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit, bool hold_bounds = true) const;
+  /// derivative: they stay there. With `like`, rows have the weights that they had there.
+  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit, bool hold_bounds = true,
+                                                       std::span<const ProjectedWindow> like = {}) const;
   /// Fills fit.covariance: sandwich with windows as clusters, so that correlation inside a window is counted.
   void add_covariance(FitResult& fit) const;
 

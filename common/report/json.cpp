@@ -18,7 +18,11 @@ Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json named(const std::vector<NamedValue>& values) {
   Json object = Json::object();
   for (const auto& v : values) {
-    object[v.name] = {{"value", finite(v.value)}, {"std", finite(v.std)}, {"unit", v.unit}};
+    const auto [low, high] = v.range95();
+    object[v.name] = {{"value", finite(v.value)},
+                      {"std", finite(v.std)},
+                      {"unit", v.unit},
+                      {"interval_95", {finite(low), finite(high)}}};
   }
   return object;
 }

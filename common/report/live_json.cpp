@@ -11,7 +11,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kSchema = 1;
-constexpr double kNormal95 = 1.96;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 

@@ -14,7 +14,6 @@
 namespace fathom::report {
 namespace {
 
-constexpr double kNormal95 = 1.96;
 constexpr const char* kTagColour = "#e07b00";
 constexpr const char* kLaserColour = "#2a9d4b";
 

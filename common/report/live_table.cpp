@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 constexpr std::size_t kBestOf = 3;
-constexpr double kNormal95 = 1.96;
 
 std::string rule(const std::string& title) {
   std::string line = "── " + title + " ";

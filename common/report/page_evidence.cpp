@@ -9,7 +9,6 @@
 namespace fathom::report {
 namespace {
 
-constexpr double kTwoSided95 = 1.96;
 constexpr double kNotRandom = 0.05;  // p value below which a residual counts as not random
 
 // Odds run from fractions to e^500; asinh keeps sign and order and shows the small ones too.
@@ -65,8 +64,8 @@ const NamedValue* find(const std::vector<NamedValue>& values, const std::string&
 Whisker whisker(const NamedValue* value, const char* colour) {
   const double nothing = std::nan("");
   if (value == nullptr) return {nothing, nothing, nothing, colour};
-  const double half = kTwoSided95 * value->std;
-  return {value->value - half, value->value, value->value + half, colour};
+  const auto [low, high] = value->range95();
+  return {low, value->value, high, colour};
 }
 
 std::string parameter_row(const NamedValue* before, const NamedValue* after) {

@@ -154,7 +154,7 @@ Memory memory(std::span<const PredictionTrace> traces, std::size_t axis) {
   for (const auto& record : records[any_value(result.after) ? 1 : 0]) {
     samples += std::ranges::count_if(record, [](double v) { return std::isfinite(v); });
   }
-  result.band = samples > 0 ? 1.96 / std::sqrt(static_cast<double>(samples)) : kNaN;
+  result.band = samples > 0 ? kNormal95 / std::sqrt(static_cast<double>(samples)) : kNaN;
   return result;
 }
 

@@ -9,8 +9,8 @@
 namespace fathom::report {
 namespace {
 
+constexpr double kLopsided = 1.25;  // one side of an interval over the other: written as a range
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kTwoSided95 = 1.96;
 
 std::string printed(const char* format, int digits, double value) {
   std::array<char, 64> buffer{};
@@ -105,7 +105,12 @@ std::string effect_title(const std::string& name, const std::string& variant) {
 
 std::string with_interval(const NamedValue& value) {
   std::string text = number(value.value);
-  if (std::isfinite(value.std) && value.std > 0.0) text += " ± " + number(kTwoSided95 * value.std, 2);
+  if (std::isfinite(value.std) && value.std > 0.0) {
+    const auto [low, high] = value.range95();
+    const double below = value.value - low, above = high - value.value;
+    const bool lopsided = std::max(below, above) > kLopsided * std::min(below, above);
+    text += lopsided ? " (" + number(low, 3) + " to " + number(high, 3) + ")" : " ± " + number(0.5 * (high - low), 2);
+  }
   return value.unit.empty() ? text : text + " " + value.unit;
 }
 

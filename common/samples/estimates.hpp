@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,12 +42,20 @@ struct SmoothedState {
   Eigen::Matrix<double, 18, 1> sigma{Eigen::Matrix<double, 18, 1>::Zero()};  ///< std of p_WB, rotation, nu, nu_dot
 };
 
+/// Standard deviations on each side of a normal number that hold 95 % of it.
+inline constexpr double kNormal95 = 1.96;
+
 /// One named number with its standard deviation.
 struct NamedValue {
   std::string name;  ///< SNAME letters, e.g. "X_u", "m_X"
   double value{};
   double std{};
-  std::string unit;  ///< e.g. "N/(m/s)"
+  std::string unit;                                   ///< e.g. "N/(m/s)"
+  std::optional<std::array<double, 2>> interval95{};  ///< where it was found otherwise than from `std`
+
+  [[nodiscard]] std::array<double, 2> range95() const {
+    return interval95.value_or(std::array{value - kNormal95 * std, value + kNormal95 * std});
+  }
 };
 
 /// How sure the parameters of one motion are.

@@ -26,7 +26,6 @@ ModelEstimate last_model(const std::string& path) {
 
 // Two trials of the same vehicle have noise of their own: their 95 % intervals must meet.
 void compare_intervals(const ModelEstimate& a, const ModelEstimate& b) {
-  constexpr double kWide = 1.96;  // sigmas in 95 %
   std::size_t apart = 0;
   std::printf("%-10s %26s %26s %9s  %s\n", "parameter", "first, 95 %", "second, 95 %", "apart", "unit");
   for (const NamedValue& x : a.parameters) {
@@ -35,10 +34,10 @@ void compare_intervals(const ModelEstimate& a, const ModelEstimate& b) {
     if (y == b.parameters.end()) throw InputError("only the first model has the parameter " + x.name);
     const double sigma = std::hypot(x.std, y->std);
     const double distance = std::abs(x.value - y->value);
-    const bool meet = distance <= kWide * (x.std + y->std);
+    const bool meet = distance <= kNormal95 * (x.std + y->std);
     if (!meet) ++apart;
-    std::printf("%-10s %14.5g ± %9.2g %14.5g ± %9.2g %5.2f sig  %s%s\n", x.name.c_str(), x.value, kWide * x.std,
-                y->value, kWide * y->std, sigma > 0.0 ? distance / sigma : 0.0, x.unit.c_str(),
+    std::printf("%-10s %14.5g ± %9.2g %14.5g ± %9.2g %5.2f sig  %s%s\n", x.name.c_str(), x.value, kNormal95 * x.std,
+                y->value, kNormal95 * y->std, sigma > 0.0 ? distance / sigma : 0.0, x.unit.c_str(),
                 meet ? "" : "  INTERVALS DO NOT MEET");
   }
   std::printf("%zu of %zu parameters agree within their intervals\n", a.parameters.size() - apart, a.parameters.size());

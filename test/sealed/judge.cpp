@@ -133,6 +133,15 @@ constexpr std::array kSameMeaning{SameMeaning{"current", "v_N", "v_N"},
                                   SameMeaning{"lever_arm", "dvl.y", "l_y"},
                                   SameMeaning{"lever_arm", "dvl.z", "l_z"}};
 
+/// Of a number from the truth: 1.96 is the end of its 95 % interval on that side.
+double deviation(const Json& found, double truth) {
+  const double value = found.at("value"), away = value - truth;
+  const Json range = found.value("interval_95", Json{nullptr, nullptr});
+  const Json& end = range.at(away > 0.0 ? 0 : 1);
+  const double room = end.is_number() ? std::abs(value - end.get<double>()) : 0.0;
+  return room > 0.0 ? 1.96 * away / room : away / found.at("std").get<double>();
+}
+
 void compare_parameters(const Json& truth, const Named& named, Score& score) {
   for (const Json& effect : truth.at("effects")) {
     if (effect.at("name") != named.set.front()) continue;
@@ -153,7 +162,7 @@ void compare_parameters(const Json& truth, const Named& named, Score& score) {
       if (same == kSameMeaning.end() || !value.is_number() || !std.is_number() || std.get<double>() <= 0.0) continue;
       if (!effect.at("parameters").contains(same->truth)) continue;  // battery_sag by time has other numbers
       const double true_value = same->factor * effect.at("parameters").at(same->truth).get<double>();
-      score.deviations.push_back((value.get<double>() - true_value) / std.get<double>());
+      score.deviations.push_back(deviation(found, true_value));
     }
   }
 }

@@ -32,7 +32,8 @@ struct Score {
   double before{kUnknown}, after{kUnknown}, floor{kUnknown}, base{kUnknown};  ///< normalised 5 s errors
   double seconds{}, megabytes{};
   std::vector<Claim> claims;
-  std::vector<double> deviations;  ///< (found - true) / standard deviation, of effect parameters that mean the same
+  /// (found - true) over what is 1.96 at the end of the stated 95 % interval, of effect parameters that mean the same.
+  std::vector<double> deviations;
   bool wrong_form{};               ///< right name, but another thruster, axis or law than the true one
   std::vector<double> over_all;    ///< as over_bound, over the bound of all signals
   std::vector<double> over_bound;  ///< (found - true) / Cramer-Rao bound, of base numbers on clean data

@@ -78,6 +78,14 @@ TEST_CASE("judge: the right name for the wrong thruster is seen") {
   }
 }
 
+TEST_CASE("judge: a lopsided interval counts on the side where the truth is") {
+  Json one = effect("thruster_lag");
+  one["parameters"]["time_constant"]["interval_95"] = {0.1, 0.23};  // the truth is 0.2, found 0.22
+  const Score score = judged(truth_of("single", {"thruster_lag"}), {one});
+  REQUIRE(score.deviations.size() == 1);
+  CHECK(score.deviations.front() == doctest::Approx(1.96 * 0.02 / 0.12));
+}
+
 TEST_CASE("judge: numbers") {
   const Score score = judged(truth_of("single", {"thruster_lag"}), {effect("thruster_lag")});
   CHECK(score.after == doctest::Approx(0.5 * (0.1 + 0.2)));  // sqrt(1 - r2), mean over axes that are simulated

@@ -51,7 +51,8 @@ auto members(const T& s) {
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
   }
 }
-static bool operator==(const NamedValue& a, const NamedValue& b) { return members<4>(a) == members<4>(b); }
+// interval95 is not carried: it is found after a trial.
+static bool operator==(const NamedValue& a, const NamedValue& b) { return members<5>(a) == members<5>(b); }
 static bool operator==(const ModeMetric& a, const ModeMetric& b) { return members<3>(a) == members<3>(b); }
 static bool operator==(const EffectEvidence& a, const EffectEvidence& b) { return members<5>(a) == members<5>(b); }
 static bool operator==(const ChannelHealth& a, const ChannelHealth& b) { return members<3>(a) == members<3>(b); }

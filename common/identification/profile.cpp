@@ -1,0 +1,166 @@
+#include "common/identification/profile.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/identification/parameter_map.hpp"
+
+namespace fathom::identification {
+namespace {
+
+constexpr int kSteps = 3;           // of the other numbers, at one place
+constexpr double kSettled = 0.1;    // of the rise: what a further step of the others may still bring
+constexpr int kProbes = 6;          // of one side
+constexpr double kNear = 0.25;      // of the rise: near enough for a parabola
+constexpr double kFarthest = 15.0;  // of half an interval
+constexpr double kLongestStride = 3.0;
+
+/// Cost over one number, all others following.
+class Profile {
+ public:
+  Profile(const TrajectoryFit& problem, const FitResult& fit)
+      : problem_{problem},
+        fit_{fit},
+        map_{fit.model},
+        best_{map_.pack(fit.model)},
+        windows_{problem.linearise(fit, false)} {
+    normal_ = normal_at(best_);
+    for (Eigen::Index i = 0; i < best_.size(); ++i) {
+      if (!map_[static_cast<std::size_t>(i)].at_bound(best_[i])) free_.push_back(i);
+    }
+  }
+
+  [[nodiscard]] const ParameterMap& map() const { return map_; }
+  [[nodiscard]] double best(Eigen::Index i) const { return best_[i]; }
+  /// Scaled variance were every row independent of all others.
+  [[nodiscard]] double plain_variance(Eigen::Index i) const {
+    return normal_.H.ldlt().solve(Eigen::VectorXd::Unit(best_.size(), i))[i];
+  }
+  /// How much the cost rises when number `i` is moved to `value` (scaled); settled to a share of `significant`.
+  [[nodiscard]] double rise(Eigen::Index i, double value, double significant) const {
+    std::vector<Eigen::Index> others;
+    std::ranges::copy_if(free_, std::back_inserter(others), [&](Eigen::Index k) { return k != i; });
+    const Others at_best = others_of(normal_, others);
+    Eigen::VectorXd x = best_;
+    x[i] = value;
+    move(x, others, -(value - best_[i]) * at_best.factor.solve(normal_.H(others, i)));
+    double left = 0.0;
+    for (int step = 0; step < kSteps; ++step) {
+      const Normal now = normal_at(x);
+      if (!std::isfinite(now.cost)) return std::numeric_limits<double>::infinity();
+      const Others following = others_of(now, others);
+      left = now.cost - following.gain;
+      if (following.gain < kSettled * significant) break;
+      move(x, others, following.step);
+    }
+    return left - (normal_.cost - at_best.gain);
+  }
+
+ private:
+  struct Normal {
+    Eigen::MatrixXd H;
+    Eigen::VectorXd g;
+    double cost{};
+  };
+  struct Others {
+    Eigen::LDLT<Eigen::MatrixXd> factor;
+    Eigen::VectorXd step;
+    double gain{};  // of that step
+  };
+
+  /// With the weights of the fit's own outliers, so that costs can be compared.
+  [[nodiscard]] Normal normal_at(const Eigen::VectorXd& x) const {
+    FitResult at;
+    at.model = fit_.model;
+    map_.unpack(x, at.model);
+    at.sigma = fit_.sigma;
+    at.nu0 = fit_.nu0;
+    const ParameterMap own{at.model};  // its scales follow the model
+    const Eigen::Index n = x.size();
+    Eigen::VectorXd ratio(n);
+    Normal normal{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const FreeParameter& free = map_[static_cast<std::size_t>(i)];
+      ratio[i] = free.scale / own[static_cast<std::size_t>(i)].scale;
+      const double slope = free.scale / free.prior_sigma;
+      const double away = (x[i] * free.scale - free.prior_mean) / free.prior_sigma;
+      normal.H(i, i) = slope * slope;
+      normal.g[i] = slope * away;
+      normal.cost += 0.5 * away * away;
+    }
+    for (const ProjectedWindow& window : problem_.linearise(at, false, windows_)) {
+      const Eigen::MatrixXd jacobian = window.jacobian * ratio.asDiagonal();
+      normal.H.noalias() += jacobian.transpose() * jacobian;
+      normal.g.noalias() += jacobian.transpose() * window.residual;
+      normal.cost += 0.5 * window.residual.squaredNorm();
+    }
+    return normal;
+  }
+  static Others others_of(const Normal& normal, const std::vector<Eigen::Index>& others) {
+    Others made{Eigen::LDLT<Eigen::MatrixXd>{normal.H(others, others)}, {}, 0.0};
+    const Eigen::VectorXd g = normal.g(others);
+    made.step = -made.factor.solve(g);
+    made.gain = -0.5 * g.dot(made.step);
+    return made;
+  }
+  void move(Eigen::VectorXd& x, const std::vector<Eigen::Index>& others, const Eigen::VectorXd& step) const {
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const FreeParameter& free = map_[static_cast<std::size_t>(others[k])];
+      double& value = x[others[k]];
+      value = std::clamp(value + step[static_cast<Eigen::Index>(k)], free.low / free.scale, free.high / free.scale);
+    }
+  }
+
+  const TrajectoryFit& problem_;
+  const FitResult& fit_;
+  ParameterMap map_;
+  Eigen::VectorXd best_;
+  std::vector<ProjectedWindow> windows_;
+  Normal normal_;
+  std::vector<Eigen::Index> free_;
+};
+
+/// Where number `i` ends on one side (`sign` -1 or 1), scaled; `half` is where a parabola would end.
+double end_of(const Profile& profile, Eigen::Index i, double sign, double half, double significant) {
+  const FreeParameter& free = profile.map()[static_cast<std::size_t>(i)];
+  const double from = profile.best(i), bound = (sign < 0.0 ? free.low : free.high) / free.scale;
+  const double farthest = std::min(kFarthest * half, std::abs(bound - from));
+  double inside = 0.0, outside = std::numeric_limits<double>::infinity();
+  double reach = std::min(half, farthest);
+  for (int probe = 0; probe < kProbes; ++probe) {
+    const double share = profile.rise(i, from + sign * reach, significant) / significant;
+    if (share <= 1.0 && reach >= farthest) return from + sign * farthest;
+    (share < 1.0 ? inside : outside) = reach;
+    const double next =
+        reach / std::sqrt(std::clamp(share, 1.0 / (kLongestStride * kLongestStride), kLongestStride * kLongestStride));
+    if (std::abs(share - 1.0) < kNear) return from + sign * std::min(next, farthest);
+    const bool between = next > inside && next < outside;
+    reach = std::min(between ? next : 0.5 * (inside + outside), farthest);
+  }
+  return from + sign * reach;
+}
+
+}  // namespace
+
+void add_profiles(const TrajectoryFit& problem, FitResult& fit) {
+  const Profile profile{problem, fit};
+  const ParameterMap& map = profile.map();
+  const double t = fit.t95();
+  fit.interval95.assign(map.size(), std::nullopt);
+  for (std::size_t k = 0; k < map.size(); ++k) {
+    const FreeParameter& free = map[k];
+    const auto i = static_cast<Eigen::Index>(k);
+    if (free.effect < 0 || free.at_bound(profile.best(i))) continue;
+    if (free.component < fit.model.effects[static_cast<std::size_t>(free.effect)].effect->amplitudes()) continue;
+    const double variance = fit.covariance(i, i) / (free.scale * free.scale), plain = profile.plain_variance(i);
+    if (!(variance > 0.0) || !(plain > 0.0)) continue;
+    const double significant = 0.5 * t * t * variance / plain;
+    const double half = t * std::sqrt(variance);
+    fit.interval95[k] = {free.scale * end_of(profile, i, -1.0, half, significant),
+                         free.scale * end_of(profile, i, 1.0, half, significant)};
+  }
+}
+
+}  // namespace fathom::identification
