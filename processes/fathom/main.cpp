@@ -1,5 +1,5 @@
 // fathom: the offline tool.
-#include "processes/command_line.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 int main(int argc, char** argv) {

@@ -1,5 +1,5 @@
 // fathom-pictures: what `fathom track` and its like run.
-#include "processes/command_line.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/pictures/commands.hpp"
 
 int main(int argc, char** argv) {
