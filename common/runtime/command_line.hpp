@@ -3,13 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <string>
 
-namespace fathom {
+namespace fathom::runtime {
 
 /// Runs the subcommand that was asked for; the return value of main().
 inline int run_command_line(CLI::App& app, int argc, char** argv) {
   app.require_subcommand(1);
   try {
+    const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty())
+      throw CLI::ExtrasError(std::string(argv[1]) + " is no command", CLI::ExitCodes::ExtrasError);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& asked) {
@@ -23,4 +27,4 @@ inline int run_command_line(CLI::App& app, int argc, char** argv) {
   }
 }
 
-}  // namespace fathom
+}  // namespace fathom::runtime

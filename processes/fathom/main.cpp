@@ -22,5 +22,5 @@ int main(int argc, char** argv) {
   fathom::tool::add_watch(app);
   fathom::tool::add_bus(app);
   fathom::tool::add_trial(app);
-  return fathom::run_command_line(app, argc, argv);
+  return fathom::runtime::run_command_line(app, argc, argv);
 }

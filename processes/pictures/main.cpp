@@ -6,5 +6,5 @@ int main(int argc, char** argv) {
   CLI::App app{"Reads pictures: what `fathom` runs for its subcommands track and calibrate.", "fathom"};
   fathom::pictures::add_track(app);
   fathom::pictures::add_calibrate(app);
-  return fathom::run_command_line(app, argc, argv);
+  return fathom::runtime::run_command_line(app, argc, argv);
 }

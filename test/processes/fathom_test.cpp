@@ -47,6 +47,7 @@ void one_line(const Ran& ran, int code, const std::string& words) {
 TEST_CASE("fathom: a bad command line is one line and exit code 2") {
   one_line(shell(kTool + " diagnose --trian x"), 2, "--help");
   one_line(shell(kTool), 2, "subcommand");
+  one_line(shell(kTool + " nonsense"), 2, "nonsense is no command");
   CHECK(shell(kTool + " --help").code == 0);
   CHECK(shell(kTool + " diagnose --help").says("--validate"));
 }
