@@ -7,11 +7,12 @@ namespace fathom::report {
 
 std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto byte = [&](std::size_t k) -> unsigned { return k < bytes.size() ? bytes[k] : 0U; };
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t left = bytes.size() - i;
-    const unsigned three = bytes[i] << 16U | (left > 1 ? bytes[i + 1] << 8U : 0U) | (left > 2 ? bytes[i + 2] : 0U);
+    const unsigned three = byte(i) << 16U | byte(i + 1) << 8U | byte(i + 2);
     text += kDigits[three >> 18U];
     text += kDigits[three >> 12U & 63U];
     text += left > 1 ? kDigits[three >> 6U & 63U] : '=';
