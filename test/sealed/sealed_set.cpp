@@ -57,6 +57,10 @@ std::vector<Dive> train_dives(const SealedSet& set, const Mechanisms& mechanisms
   return dives;
 }
 
+bool sound(std::span<const Dive> dives) {
+  return std::ranges::all_of(dives, [](const Dive& one) { return one.sound; });
+}
+
 /// Mechanism `index` alone, at `size`: its share; a run that ran away is as bad as any.
 double share_of(SealedSet& set, std::size_t index, double size) {
   Mechanisms alone;
@@ -64,9 +68,7 @@ double share_of(SealedSet& set, std::size_t index, double size) {
   alone.front()->set_size(size);
   const std::vector<Dive> dives = train_dives(set, alone);
   set.mechanisms[index] = std::move(alone.front());
-  for (const Dive& one : dives) {
-    if (!one.sound) return 1e3;
-  }
+  if (!sound(dives)) return 1e3;
   return added_share(set.craft, fit_base(set.craft, dives), set.clean_fit);
 }
 
@@ -103,6 +105,17 @@ double scale(SealedSet& set, std::size_t index, double target) {
   }
   (void)share_of(set, index, best);  // leaves the size set
   return best_share;
+}
+
+void draw_vehicle(const Needs& needs, Random& random, SealedSet& set) {
+  const auto family = static_cast<Family>(needs.tilting || random.chance(0.25) ? 4 + random.below(2) : random.below(4));
+  set.craft = draw_craft(family, random);
+  if (needs.moments) {
+    set.craft.states_moments = false;
+    set.craft.hull.first_moment.setZero();
+  }
+  set.site.half << random.uniform(1.5, 4.0), random.uniform(1.5, 3.5), random.uniform(0.7, 1.8);
+  set.site.centre << random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), set.site.half.z() + random.uniform(0.6, 2.0);
 }
 
 }  // namespace
@@ -179,28 +192,25 @@ SealedSet make_set(const Plan& plan) {
     needs.moments = needs.moments || one.moments;
   }
   Random random(plan.seed, "vehicle");
-  const auto family = static_cast<Family>(needs.tilting || random.chance(0.25) ? 4 + random.below(2) : random.below(4));
-  set.craft = draw_craft(family, random);
-  if (needs.moments) {
-    set.craft.states_moments = false;
-    set.craft.hull.first_moment.setZero();
-  }
-  set.site.half << random.uniform(1.5, 4.0), random.uniform(1.5, 3.5), random.uniform(0.7, 1.8);
-  set.site.centre << random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), set.site.half.z() + random.uniform(0.6, 2.0);
+  std::vector<Dive> clean;
+  do {  // a craft that its pilot cannot hold even without an effect is nobody's
+    draw_vehicle(needs, random, set);
+    clean = train_dives(set, {});
+  } while (!sound(clean));
   Random details(plan.seed, "effect");
   for (const std::string& name : plan.names) {
     const Entry* entry = find_entry(name);
     set.mechanisms.push_back(entry->make(name, set.craft, set.site, details));
   }
   const double target = kShares[static_cast<std::size_t>(plan.size)];
-  set.clean_fit = fit_base(set.craft, train_dives(set, {}));
+  set.clean_fit = fit_base(set.craft, clean);
   for (std::size_t i = 0; i < set.mechanisms.size(); ++i) {
     set.shares.push_back(scale(set, i, target));
     set.reached = set.reached && std::abs(set.shares.back() - target) < kReached * target;
   }
   for (int i = 0; i < kTries; ++i) {  // two that are bearable alone may not be so together
     set.train = train_dives(set, set.mechanisms);
-    if (std::all_of(set.train.begin(), set.train.end(), [](const Dive& d) { return d.sound; })) break;
+    if (sound(set.train)) break;
     for (const auto& mechanism : set.mechanisms) mechanism->set_size(0.7 * mechanism->size());
     set.reached = false;
   }
