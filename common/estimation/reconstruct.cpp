@@ -131,6 +131,7 @@ struct Choice {
   std::vector<Eigen::Vector3d> x;
   std::vector<std::uint8_t> ok;
   Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d share{Eigen::Vector3d::Ones()};  ///< of the sensor
 };
 
 Choice choose(const Source& sensor, const Source& derivative, const std::vector<double>& grid, Doubt doubt) {
@@ -156,7 +157,7 @@ Choice choose(const Source& sensor, const Source& derivative, const std::vector<
   Choice choice;
   choice.x.resize(grid.size());
   choice.ok.resize(grid.size());
-  Eigen::Vector3d share = Eigen::Vector3d::Ones();  // of the sensor
+  Eigen::Vector3d& share = choice.share;
   for (int k = 0; k < 3; ++k) {
     if (!sensor.exists()) share[k] = 0.0;
     if (!sensor.exists() || !derivative.exists()) continue;
@@ -272,7 +273,7 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
     trial.q_WB.push_back(trial.observed.attitude && q.norm() > 1e-6 ? q.normalized() : Eigen::Quaterniond::Identity());
   }
 
-  if (trial.observed.attitude && gyro.exists()) steady_attitude(trial);
+  if (trial.observed.attitude && (angular.share.array() == 1.0).all()) steady_attitude(trial);
 
   add_input(recording, run.origin, corrections.thrusters, vehicle, trial);
   const double start = trial.t.front();

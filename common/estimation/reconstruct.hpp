@@ -10,7 +10,7 @@ namespace fathom::estimation {
 
 /// Velocity is DVL or derivative of position, whichever is less noisy (both, weighted, when alike); rates likewise. The
 /// derivative's gain at 1 Hz is within 3 % of one. The other signal bridges gaps. Attitude is
-/// averaged along a gyro's rates. InputError without any motion or
+/// averaged along the rates where they are a gyro's alone. InputError without any motion or
 /// input.
 [[nodiscard]] Trial reconstruct(const Recording& recording, const Corrections& corrections,
                                 const model::Vehicle& vehicle);
