@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "common/model/rollout.hpp"
 #include "common/model/sensitivity.hpp"
@@ -15,7 +16,7 @@ constexpr double kExplicitShare = 1.5;  // damping times step that the plain rul
 constexpr double kShortestStep = 0.02;  // s: what is faster decays exactly anyway
 constexpr double kTypicalSpeed = 0.5;   // m/s, rad/s, where quadratic drag is taken to choose the step
 constexpr double kAbsurd = 50.0;        // m/s or rad/s: no vehicle of ours moves like that
-constexpr int kMaxMemory = 128;
+constexpr int kMaxMemory = 256;
 
 /// Step that follows the fastest motion of the priors: the same for every theta, so that derivatives see no change of
 /// it.
@@ -56,6 +57,7 @@ class Rollout {
         input_{input_of(model, trial)},
         memory_size_{model.memory_size()},
         sensitivity_{sensitivity} {
+    if (memory_size_ > kMaxMemory) throw std::length_error("the model's effects remember more than a rollout can hold");
     const auto& dof = model.vehicle->dof;
     tilt_measured_ = !(dof[3] && dof[4]);
     heading_measured_ = !dof[5];

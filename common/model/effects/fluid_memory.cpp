@@ -2,9 +2,9 @@
 //   mu_i = -k z_i,  T z_dot_i = nu_r,i - z_i,   that is  -int K(t - s) nu_r(s) ds  with K = k/T exp(-t/T)
 // (Cummins 1962; one term of the state-space form in Fossen 2011, sec. 5.4.2). k > 0 takes energy at every frequency.
 // k may be negative beside a linear drag: drag then grows with frequency instead of falling. Forms: one axis alone, or
-// all axes that move, each in proportion to the drag that the vehicle file states for it; k is then that of the first
-// one. Ignores: more than one time constant, coupling between axes. Revealed by the same speeds reached slowly and
-// quickly. Confused with linear drag (motions slower than T), added mass (faster ones) and thrust_overshoot.
+// all axes that move, each in proportion to the drag that the vehicle file states or implies; k is then that of the
+// first one. Ignores: more than one time constant, coupling between axes. Revealed by the same speeds reached slowly
+// and quickly. Confused with linear drag (motions slower than T), added mass (faster ones) and thrust_overshoot.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,7 +55,8 @@ class FluidMemory final : public Effect {
       names.emplace_back(scene.vehicle->dof[axis] ? kVelocityNames[axis] : "-");
     }
     const Vector6d share = shares(*scene.vehicle);
-    names.emplace_back((share.array() > 0.0).count() > 1 ? "all axes" : "-");
+    const bool can = (share.head<3>().array() > 0.0).any() && (share.array() > 0.0).count() > 1;
+    names.emplace_back(can ? "all axes" : "-");
     return names;
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {

@@ -179,7 +179,7 @@ TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the s
   }
 }
 
-TEST_CASE("fluid_memory: on all axes it is each axis' own, in proportion to the drag that the file states") {
+TEST_CASE("fluid_memory: on all axes it is each axis' own, in proportion to the drag in the vehicle file") {
   const model::Effect& effect = *model::find_effect("fluid_memory");
   model::Vehicle vehicle;
   vehicle.dof = {true, false, true, false, false, true};
