@@ -27,9 +27,6 @@ class Profile {
         best_{map_.pack(fit.model)},
         windows_{problem.linearise(fit, false)} {
     normal_ = normal_at(best_);
-    for (Eigen::Index i = 0; i < best_.size(); ++i) {
-      if (!map_[static_cast<std::size_t>(i)].at_bound(best_[i])) free_.push_back(i);
-    }
   }
 
   [[nodiscard]] const ParameterMap& map() const { return map_; }
@@ -40,20 +37,19 @@ class Profile {
   }
   /// How much the cost rises when number `i` is moved to `value` (scaled); settled to a share of `significant`.
   [[nodiscard]] double rise(Eigen::Index i, double value, double significant) const {
-    std::vector<Eigen::Index> others;
-    std::ranges::copy_if(free_, std::back_inserter(others), [&](Eigen::Index k) { return k != i; });
-    const Others at_best = others_of(normal_, others);
+    const Others at_best = others_of(normal_, best_, i);
     Eigen::VectorXd x = best_;
     x[i] = value;
-    move(x, others, -(value - best_[i]) * at_best.factor.solve(normal_.H(others, i)));
+    const Eigen::VectorXd along = normal_.H(at_best.which, i);
+    move(x, at_best.which, -(value - best_[i]) * normal_.H(at_best.which, at_best.which).ldlt().solve(along));
     double left = 0.0;
     for (int step = 0; step < kSteps; ++step) {
       const Normal now = normal_at(x);
       if (!std::isfinite(now.cost)) return std::numeric_limits<double>::infinity();
-      const Others following = others_of(now, others);
+      const Others following = others_of(now, x, i);
       left = now.cost - following.gain;
       if (following.gain < kSettled * significant) break;
-      move(x, others, following.step);
+      move(x, following.which, following.step);
     }
     return left - (normal_.cost - at_best.gain);
   }
@@ -65,7 +61,7 @@ class Profile {
     double cost{};
   };
   struct Others {
-    Eigen::LDLT<Eigen::MatrixXd> factor;
+    std::vector<Eigen::Index> which;  // all that are not held by a bound
     Eigen::VectorXd step;
     double gain{};  // of that step
   };
@@ -98,12 +94,25 @@ class Profile {
     }
     return normal;
   }
-  static Others others_of(const Normal& normal, const std::vector<Eigen::Index>& others) {
-    Others made{Eigen::LDLT<Eigen::MatrixXd>{normal.H(others, others)}, {}, 0.0};
-    const Eigen::VectorXd g = normal.g(others);
-    made.step = -made.factor.solve(g);
-    made.gain = -0.5 * g.dot(made.step);
-    return made;
+  /// The step of all numbers but `i`. What lies on a bound and would cross it stays there.
+  [[nodiscard]] Others others_of(const Normal& normal, const Eigen::VectorXd& x, Eigen::Index i) const {
+    Others made;
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      if (k != i) made.which.push_back(k);
+    }
+    for (;;) {
+      const Eigen::VectorXd g = normal.g(made.which);
+      made.step = -normal.H(made.which, made.which).ldlt().solve(g);
+      made.gain = -0.5 * g.dot(made.step);
+      std::vector<Eigen::Index> left;
+      for (std::size_t k = 0; k < made.which.size(); ++k) {
+        const FreeParameter& free = map_[static_cast<std::size_t>(made.which[k])];
+        const double at = x[made.which[k]], step = made.step[static_cast<Eigen::Index>(k)];
+        if (!(step < 0.0 ? free.at_low(at) : free.at_high(at))) left.push_back(made.which[k]);
+      }
+      if (left.size() == made.which.size()) return made;
+      made.which = std::move(left);
+    }
   }
   void move(Eigen::VectorXd& x, const std::vector<Eigen::Index>& others, const Eigen::VectorXd& step) const {
     for (std::size_t k = 0; k < others.size(); ++k) {
@@ -119,7 +128,6 @@ class Profile {
   Eigen::VectorXd best_;
   std::vector<ProjectedWindow> windows_;
   Normal normal_;
-  std::vector<Eigen::Index> free_;
 };
 
 /// Where number `i` ends on one side (`sign` -1 or 1), scaled; `half` is where a parabola would end.
@@ -145,6 +153,7 @@ double end_of(const Profile& profile, Eigen::Index i, double sign, double half, 
 }  // namespace
 
 void add_profiles(const TrajectoryFit& problem, FitResult& fit) {
+  if (fit.model.effects.empty()) return;
   const Profile profile{problem, fit};
   const ParameterMap& map = profile.map();
   const double t = fit.t95();

@@ -71,7 +71,8 @@ std::vector<NamedValue> FitResult::parameters() const {
       const bool own = i < interval95.size() && interval95[i];
       const double below = own ? value.value - (*interval95[i])[0] : same;
       const double above = own ? (*interval95[i])[1] - value.value : same;
-      value.interval95 = {value.value - std::hypot(below, unseen), value.value + std::hypot(above, unseen)};
+      value.interval95 = {std::max(value.value - std::hypot(below, unseen), std::min(map[i].low, value.value)),
+                          std::min(value.value + std::hypot(above, unseen), std::max(map[i].high, value.value))};
     }
     values.push_back(value);
   }

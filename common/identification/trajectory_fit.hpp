@@ -32,7 +32,7 @@ struct FitResult {
   double cost{};                                     ///< sum of window_cost
   Eigen::MatrixXd covariance;  ///< of the free parameters in physical units, order of ParameterMap
   double freedom{};            ///< windows beyond free parameters: how well the covariance itself is known
-  std::vector<std::optional<std::array<double, 2>>> interval95{};  ///< physical units; where one side is not the other
+  std::vector<std::optional<std::array<double, 2>>> interval95{};  ///< physical units, where it was profiled
   double input_step{};  ///< s, the longest time between inputs; set with the covariance
   bool converged{false};
 

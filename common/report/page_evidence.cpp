@@ -166,7 +166,8 @@ std::string candidate_section(const DiagnosisResult& result) {
 std::string parameter_section(const DiagnosisResult& result) {
   std::string html =
       "<section><h2>The numbers of the model</h2>\n<p>Before: the base model alone. After: with the accepted "
-      "effects. Values with the half width of their 95 % interval; in the pictures the thin line is zero.</p>\n";
+      "effects. Values with their 95 % interval: half its width, or its ends where the sides differ; in the pictures "
+      "the thin line is zero.</p>\n";
   std::string rows;
   for (const auto& after : result.parameters_after)
     rows += parameter_row(find(result.parameters_before, after.name), &after);

@@ -40,7 +40,7 @@ extern const std::array<Axis, 6> kAxes;
 [[nodiscard]] std::string strength(double log_odds);
 /// "thruster_lag", "thruster 3" become "thruster lag (thruster 3)".
 [[nodiscard]] std::string effect_title(const std::string& name, const std::string& variant = "");
-/// "value ± half width of the 95 % interval unit".
+/// "value ± half width of the 95 % interval unit", or "value (low to high) unit" where the sides differ.
 [[nodiscard]] std::string with_interval(const NamedValue& value);
 [[nodiscard]] std::string join(const std::vector<std::string>& parts, std::string_view separator);
 

@@ -133,8 +133,9 @@ void Process::deliver(std::size_t index, std::span<const std::uint8_t> bytes) {
   if (hearing.deliver(bytes)) {
     ++state_->received;
   } else if (hearing.rejected++ == 0) {
-    state_->logger.warn("{}: not a {} of this version, or with a time that no clock shows; is every process of the same build?", hearing.channel,
-                        hearing.type);
+    state_->logger.warn(
+        "{}: not a {} of this version, or with a time that no clock shows; is every process of the same build?",
+        hearing.channel, hearing.type);
   }
   state_->busy += Clock::now() - begin;
 }

@@ -1,6 +1,7 @@
 // fathom plan: before a trial, what its excitation would tell about every effect, and what to fly in addition.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -114,8 +115,12 @@ void write(const Options& options, const std::vector<Foreseen>& all, const plann
 
 void run(const Options& options) {
   // Before the work, not after it.
-  if (!options.json.empty() && !std::ofstream{options.json, std::ios::app})
-    throw InputError(options.json + ": cannot be written; check that the folder exists and is yours");
+  if (!options.json.empty()) {
+    const bool there = std::filesystem::exists(options.json);
+    if (!std::ofstream{options.json, std::ios::app})
+      throw InputError(options.json + ": cannot be written; check that the folder exists and is yours");
+    if (!there) std::filesystem::remove(options.json);
+  }
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const planning::RehearsalSettings settings = settings_from(options, vehicle);
   ProgressLine progress;

@@ -51,6 +51,7 @@ TEST_CASE("Named values become objects with value, std and unit, and arrive unch
   CHECK(lag["value"] == 0.352);
   CHECK(lag["std"] == 0.012);
   CHECK(lag["unit"] == "s");
+  CHECK(lag["interval_95"][1].get<double>() == doctest::Approx(0.352 + 1.96 * 0.012));
   CHECK(file["parameters"]["after"]["X_u|u|"]["value"] == -12.4);
   CHECK(file["effects"][0]["accepted"] == true);
   CHECK(file["error"]["improvement"]["ci95"] == json::array({0.36, 0.55}));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+using fathom::NamedValue;
 using namespace fathom::report;
 
 TEST_CASE("Numbers keep their significant digits and stay plain") {
@@ -20,6 +21,15 @@ TEST_CASE("Odds are ratios, and powers of ten when huge") {
   CHECK(odds(std::log(20.0)) == "20 : 1");
   CHECK(odds(-std::log(8.0)) == "1 : 8.0");
   CHECK(odds(230.2585093) == "10^100 : 1");
+}
+
+TEST_CASE("An interval is half its width, or its ends where the sides differ") {
+  NamedValue value{.name = "delay", .value = 2.0, .std = 0.5, .unit = "s"};
+  CHECK(with_interval(value) == "2.00 ± 0.98 s");
+  value.interval95 = {1.1, 2.9};
+  CHECK(with_interval(value) == "2.00 ± 0.90 s");
+  value.interval95 = {1.5, 4.0};
+  CHECK(with_interval(value) == "2.00 (1.50 to 4.00) s");
 }
 
 TEST_CASE("Wrapping respects words, long words and characters of several bytes") {
