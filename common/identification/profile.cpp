@@ -4,20 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "common/identification/parameter_map.hpp"
 
 namespace fathom::identification {
 namespace {
 
-constexpr int kSteps = 3;           // of the other numbers, at one place
+constexpr int kSteps = 4;           // of the other numbers, at one place
 constexpr double kSettled = 0.1;    // of the rise: what a further step of the others may still bring
 constexpr int kProbes = 6;          // of one side
 constexpr double kNear = 0.25;      // of the rise: near enough for a parabola
 constexpr double kFarthest = 15.0;  // of half an interval
 constexpr double kLongestStride = 3.0;
 
-/// Cost over one number, all others following.
+/// Cost over one number, all others following: beyond their physical bounds too, as they may in the covariance. A
+/// number that was stopped by a bound is not known the better for it.
 class Profile {
  public:
   Profile(const TrajectoryFit& problem, const FitResult& fit)
@@ -35,23 +38,18 @@ class Profile {
   [[nodiscard]] double plain_variance(Eigen::Index i) const {
     return normal_.H.ldlt().solve(Eigen::VectorXd::Unit(best_.size(), i))[i];
   }
-  /// How much the cost rises when number `i` is moved to `value` (scaled); settled to a share of `significant`.
-  [[nodiscard]] double rise(Eigen::Index i, double value, double significant) const {
-    const Others at_best = others_of(normal_, best_, i);
+  /// How much the cost rises when number `i` is moved to `value` (scaled); settled to a share of `significant`. Nothing
+  /// where the others do not settle: then no parabola is near, or the fit itself has not come to rest.
+  [[nodiscard]] std::optional<double> rise(Eigen::Index i, double value, double significant) const {
+    const Others at_best = others_of(normal_, i);
+    const std::optional<double> least = settled(best_, i, significant);
+    if (!least) return std::nullopt;
     Eigen::VectorXd x = best_;
     x[i] = value;
     const Eigen::VectorXd along = normal_.H(at_best.which, i);
-    move(x, at_best.which, -(value - best_[i]) * normal_.H(at_best.which, at_best.which).ldlt().solve(along));
-    double left = 0.0;
-    for (int step = 0; step < kSteps; ++step) {
-      const Normal now = normal_at(x);
-      if (!std::isfinite(now.cost)) return std::numeric_limits<double>::infinity();
-      const Others following = others_of(now, x, i);
-      left = now.cost - following.gain;
-      if (following.gain < kSettled * significant) break;
-      move(x, following.which, following.step);
-    }
-    return left - (normal_.cost - at_best.gain);
+    x(at_best.which) -= (value - best_[i]) * normal_.H(at_best.which, at_best.which).ldlt().solve(along);
+    const std::optional<double> cost = settled(x, i, significant);
+    return cost ? std::optional{*cost - *least} : std::nullopt;
   }
 
  private:
@@ -61,10 +59,25 @@ class Profile {
     double cost{};
   };
   struct Others {
-    std::vector<Eigen::Index> which;  // all that are not held by a bound
+    std::vector<Eigen::Index> which;
     Eigen::VectorXd step;
     double gain{};  // of that step
   };
+
+  /// The cost when all numbers but `i` have gone where they want to.
+  [[nodiscard]] std::optional<double> settled(Eigen::VectorXd x, Eigen::Index i, double significant) const {
+    Normal now = normal_at(x);
+    if (!std::isfinite(now.cost)) return std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kSteps; ++step) {
+      const Others following = others_of(now, i);
+      if (following.gain < kSettled * significant) return now.cost - following.gain;
+      x(following.which) += following.step;
+      Normal next = normal_at(x);
+      if (!(next.cost < now.cost)) return std::nullopt;
+      now = std::move(next);
+    }
+    return std::nullopt;
+  }
 
   /// With the weights of the fit's own outliers, so that costs can be compared.
   [[nodiscard]] Normal normal_at(const Eigen::VectorXd& x) const {
@@ -94,34 +107,17 @@ class Profile {
     }
     return normal;
   }
-  /// The step of all numbers but `i`. What lies on a bound and would cross it stays there.
-  [[nodiscard]] Others others_of(const Normal& normal, const Eigen::VectorXd& x, Eigen::Index i) const {
+  /// The step of all numbers but `i`.
+  static Others others_of(const Normal& normal, Eigen::Index i) {
     Others made;
-    for (Eigen::Index k = 0; k < x.size(); ++k) {
+    for (Eigen::Index k = 0; k < normal.g.size(); ++k) {
       if (k != i) made.which.push_back(k);
     }
-    for (;;) {
-      const Eigen::VectorXd g = normal.g(made.which);
-      made.step = -normal.H(made.which, made.which).ldlt().solve(g);
-      made.gain = -0.5 * g.dot(made.step);
-      std::vector<Eigen::Index> left;
-      for (std::size_t k = 0; k < made.which.size(); ++k) {
-        const FreeParameter& free = map_[static_cast<std::size_t>(made.which[k])];
-        const double at = x[made.which[k]], step = made.step[static_cast<Eigen::Index>(k)];
-        if (!(step < 0.0 ? free.at_low(at) : free.at_high(at))) left.push_back(made.which[k]);
-      }
-      if (left.size() == made.which.size()) return made;
-      made.which = std::move(left);
-    }
+    const Eigen::VectorXd g = normal.g(made.which);
+    made.step = -normal.H(made.which, made.which).ldlt().solve(g);
+    made.gain = -0.5 * g.dot(made.step);
+    return made;
   }
-  void move(Eigen::VectorXd& x, const std::vector<Eigen::Index>& others, const Eigen::VectorXd& step) const {
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      const FreeParameter& free = map_[static_cast<std::size_t>(others[k])];
-      double& value = x[others[k]];
-      value = std::clamp(value + step[static_cast<Eigen::Index>(k)], free.low / free.scale, free.high / free.scale);
-    }
-  }
-
   const TrajectoryFit& problem_;
   const FitResult& fit_;
   ParameterMap map_;
@@ -130,7 +126,8 @@ class Profile {
   Normal normal_;
 };
 
-/// Where number `i` ends on one side (`sign` -1 or 1), scaled; `half` is where a parabola would end.
+/// Where number `i` ends on one side (`sign` -1 or 1), scaled; `half` is where a parabola would end, and the answer
+/// where nothing better is known.
 double end_of(const Profile& profile, Eigen::Index i, double sign, double half, double significant) {
   const FreeParameter& free = profile.map()[static_cast<std::size_t>(i)];
   const double from = profile.best(i), bound = (sign < 0.0 ? free.low : free.high) / free.scale;
@@ -138,7 +135,9 @@ double end_of(const Profile& profile, Eigen::Index i, double sign, double half, 
   double inside = 0.0, outside = std::numeric_limits<double>::infinity();
   double reach = std::min(half, farthest);
   for (int probe = 0; probe < kProbes; ++probe) {
-    const double share = profile.rise(i, from + sign * reach, significant) / significant;
+    const std::optional<double> rise = profile.rise(i, from + sign * reach, significant);
+    if (!rise) return from + sign * std::min(std::max(half, inside), farthest);
+    const double share = *rise / significant;
     if (share <= 1.0 && reach >= farthest) return from + sign * farthest;
     (share < 1.0 ? inside : outside) = reach;
     const double next =

@@ -89,7 +89,7 @@ TEST_CASE("profile: holds the truth as often as it says") {
   CHECK(widths < 1.5);
 }
 
-TEST_CASE("profile: a number that a bound holds does not widen the interval of another") {
+TEST_CASE("profile: a number that a bound stops neither widens nor narrows the interval of another") {
   // Without linear drag in truth, half of the fits want it positive, which its bound forbids.
   model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
@@ -103,7 +103,7 @@ TEST_CASE("profile: a number that a bound holds does not widen the interval of a
   const auto drag = std::ranges::find(all, "X_u", &NamedValue::name);
   REQUIRE(drag != all.end());
   REQUIRE(drag->value > -0.1 * drag->std);  // it is at its bound, or all but there
-  CHECK(high - low < 1.3 * 2.0 * fit.t95() * memory.std);
+  CHECK(high - low == doctest::Approx(2.0 * fit.t95() * memory.std).epsilon(0.25));
   CHECK(low < 1.0);
   CHECK(high > 1.0);
 }
