@@ -10,6 +10,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Masses stay above this share of their prior's size: a vehicle without inertia cannot be simulated.
 constexpr double kSmallestMassShare = 1e-3;
+// What is ordinary on one vehicle is not on another: a prior holds what the data leaves open, and never what it shows.
+constexpr double kPriorOpen = 10.0;        // of an effect's number
 constexpr double kScaleFloorShare = 0.02;  // of the prior's sigma: the scale of a number that is still zero
 
 }  // namespace
@@ -36,7 +38,7 @@ ParameterMap::ParameterMap(const model::Model& model) {
       FreeParameter free{.effect = static_cast<int>(e), .component = static_cast<int>(c)};
       free.name = std::string(active.effect->name()) + "." + std::string(parameters[c].name);
       free.unit = std::string(active.effect->unit(active.variant, c));
-      free.prior_sigma = parameters[c].sigma;
+      free.prior_sigma = std::max(parameters[c].sigma, kPriorOpen * std::abs(active.theta[c]));
       free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameters[c].sigma);
       free.low = parameters[c].low;
       free.high = parameters[c].high;
