@@ -150,7 +150,9 @@ void compare_parameters(const Json& truth, const Named& named, Score& score) {
       score.wrong_form = true;
       continue;
     }
-    for (const auto& [key, found] : named.json->at("parameters").items()) {
+    for (const auto& item : named.json->at("parameters").items()) {
+      const std::string& key = item.key();
+      const Json& found = item.value();
       const auto dot = key.find_last_of('.');
       const std::string name = key.substr(dot + 1);  // npos + 1 is 0: no prefix
       if (dot != std::string::npos && !form.empty() && key.substr(0, dot) != form) continue;
