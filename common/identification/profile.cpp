@@ -38,18 +38,27 @@ class Profile {
   [[nodiscard]] double plain_variance(Eigen::Index i) const {
     return normal_.H.ldlt().solve(Eigen::VectorXd::Unit(best_.size(), i))[i];
   }
-  /// How much the cost rises when number `i` is moved to `value` (scaled); settled to a share of `significant`. Nothing
-  /// where the others do not settle: then no parabola is near, or the fit itself has not come to rest.
-  [[nodiscard]] std::optional<double> rise(Eigen::Index i, double value, double significant) const {
-    const Others at_best = others_of(normal_, i);
-    const std::optional<double> least = settled(best_, i, significant);
-    if (!least) return std::nullopt;
+  /// The least cost with number `i` at `value` (scaled), settled to a share of `significant`. Nothing where the others
+  /// do not settle: then no parabola is near, or the fit itself has not come to rest.
+  [[nodiscard]] std::optional<double> cost_at(Eigen::Index i, double value, double significant) const {
+    const std::vector<Eigen::Index> others = all_but(i);
     Eigen::VectorXd x = best_;
     x[i] = value;
-    const Eigen::VectorXd along = normal_.H(at_best.which, i);
-    x(at_best.which) -= (value - best_[i]) * normal_.H(at_best.which, at_best.which).ldlt().solve(along);
-    const std::optional<double> cost = settled(x, i, significant);
-    return cost ? std::optional{*cost - *least} : std::nullopt;
+    const Eigen::VectorXd along = normal_.H(others, i);
+    x(others) -= (value - best_[i]) * normal_.H(others, others).ldlt().solve(along);
+    Normal now = normal_at(x);
+    if (!std::isfinite(now.cost)) return std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kSteps; ++step) {
+      const Eigen::VectorXd g = now.g(others);
+      const Eigen::VectorXd move = -now.H(others, others).ldlt().solve(g);
+      const double gain = -0.5 * g.dot(move);
+      if (gain < kSettled * significant) return now.cost - gain;
+      x(others) += move;
+      Normal next = normal_at(x);
+      if (!(next.cost < now.cost)) return std::nullopt;
+      now = std::move(next);
+    }
+    return std::nullopt;
   }
 
  private:
@@ -58,25 +67,13 @@ class Profile {
     Eigen::VectorXd g;
     double cost{};
   };
-  struct Others {
-    std::vector<Eigen::Index> which;
-    Eigen::VectorXd step;
-    double gain{};  // of that step
-  };
 
-  /// The cost when all numbers but `i` have gone where they want to.
-  [[nodiscard]] std::optional<double> settled(Eigen::VectorXd x, Eigen::Index i, double significant) const {
-    Normal now = normal_at(x);
-    if (!std::isfinite(now.cost)) return std::numeric_limits<double>::infinity();
-    for (int step = 0; step < kSteps; ++step) {
-      const Others following = others_of(now, i);
-      if (following.gain < kSettled * significant) return now.cost - following.gain;
-      x(following.which) += following.step;
-      Normal next = normal_at(x);
-      if (!(next.cost < now.cost)) return std::nullopt;
-      now = std::move(next);
+  [[nodiscard]] std::vector<Eigen::Index> all_but(Eigen::Index i) const {
+    std::vector<Eigen::Index> others;
+    for (Eigen::Index k = 0; k < best_.size(); ++k) {
+      if (k != i) others.push_back(k);
     }
-    return std::nullopt;
+    return others;
   }
 
   /// With the weights of the fit's own outliers, so that costs can be compared.
@@ -107,17 +104,7 @@ class Profile {
     }
     return normal;
   }
-  /// The step of all numbers but `i`.
-  static Others others_of(const Normal& normal, Eigen::Index i) {
-    Others made;
-    for (Eigen::Index k = 0; k < normal.g.size(); ++k) {
-      if (k != i) made.which.push_back(k);
-    }
-    const Eigen::VectorXd g = normal.g(made.which);
-    made.step = -normal.H(made.which, made.which).ldlt().solve(g);
-    made.gain = -0.5 * g.dot(made.step);
-    return made;
-  }
+
   const TrajectoryFit& problem_;
   const FitResult& fit_;
   ParameterMap map_;
@@ -126,18 +113,18 @@ class Profile {
   Normal normal_;
 };
 
-/// Where number `i` ends on one side (`sign` -1 or 1), scaled; `half` is where a parabola would end, and the answer
-/// where nothing better is known.
-double end_of(const Profile& profile, Eigen::Index i, double sign, double half, double significant) {
+/// Where number `i` ends on one side (`sign` -1 or 1), scaled: where the cost has risen by `significant` over `least`.
+/// `half` is where a parabola would end, and the answer where nothing better is known.
+double end_of(const Profile& profile, Eigen::Index i, double sign, double half, double least, double significant) {
   const FreeParameter& free = profile.map()[static_cast<std::size_t>(i)];
   const double from = profile.best(i), bound = (sign < 0.0 ? free.low : free.high) / free.scale;
   const double farthest = std::min(kFarthest * half, std::abs(bound - from));
   double inside = 0.0, outside = std::numeric_limits<double>::infinity();
   double reach = std::min(half, farthest);
   for (int probe = 0; probe < kProbes; ++probe) {
-    const std::optional<double> rise = profile.rise(i, from + sign * reach, significant);
-    if (!rise) return from + sign * std::min(std::max(half, inside), farthest);
-    const double share = *rise / significant;
+    const std::optional<double> cost = profile.cost_at(i, from + sign * reach, significant);
+    if (!cost) return from + sign * std::min(std::max(half, inside), farthest);
+    const double share = (*cost - least) / significant;
     if (share <= 1.0 && reach >= farthest) return from + sign * farthest;
     (share < 1.0 ? inside : outside) = reach;
     const double next =
@@ -165,9 +152,11 @@ void add_profiles(const TrajectoryFit& problem, FitResult& fit) {
     const double variance = fit.covariance(i, i) / (free.scale * free.scale), plain = profile.plain_variance(i);
     if (!(variance > 0.0) || !(plain > 0.0)) continue;
     const double significant = 0.5 * t * t * variance / plain;
+    const std::optional<double> least = profile.cost_at(i, profile.best(i), significant);
+    if (!least || !std::isfinite(*least)) continue;
     const double half = t * std::sqrt(variance);
-    fit.interval95[k] = {free.scale * end_of(profile, i, -1.0, half, significant),
-                         free.scale * end_of(profile, i, 1.0, half, significant)};
+    fit.interval95[k] = {free.scale * end_of(profile, i, -1.0, half, *least, significant),
+                         free.scale * end_of(profile, i, 1.0, half, *least, significant)};
   }
 }
 

@@ -150,12 +150,6 @@ Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& setti
   return rehearsal;
 }
 
-Trial fly(const model::Vehicle& vehicle, const RehearsalSettings& settings, const excitation::Segment& segment,
-          double duration) {
-  const bool by_wrench = vehicle.thrusters.empty();
-  return fly(vehicle, model::nominal_model(vehicle, by_wrench), by_wrench, settings, segment, duration);
-}
-
 Trial fly(const model::Vehicle& vehicle, const model::Model& model, bool by_wrench, const RehearsalSettings& settings,
           const excitation::Segment& segment, double duration) {
   const excitation::SupervisorSettings& s = settings.supervisor;

@@ -29,10 +29,7 @@ struct Rehearsal {
 [[nodiscard]] Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& settings);
 
 /// One segment from rest in the middle of the room, again and again for `duration` [s] with a sample at its end, bent
-/// by the fence; the axes that it leaves alone are held.
-[[nodiscard]] Trial fly(const model::Vehicle& vehicle, const RehearsalSettings& settings,
-                        const excitation::Segment& segment, double duration);
-/// The same with a model that was fitted, its inputs the wrench or the thrusters' forces.
+/// by the fence; the axes that it leaves alone are held. The model's inputs are the wrench or the thrusters' forces.
 [[nodiscard]] Trial fly(const model::Vehicle& vehicle, const model::Model& model, bool by_wrench,
                         const RehearsalSettings& settings, const excitation::Segment& segment, double duration);
 

@@ -25,7 +25,8 @@ namespace {
   for (std::string& each : words) arguments.push_back(each.data());
   arguments.push_back(nullptr);
   execv(program.c_str(), arguments.data());
-  throw InputError(program.string() + ": cannot be started; it belongs beside fathom (build target pictures)");
+  throw InputError(program.string() +
+                   ": cannot be started; it belongs beside fathom: cmake --build --preset release --target pictures");
 }
 
 void add(CLI::App& app, const std::string& name, const std::string& what) {

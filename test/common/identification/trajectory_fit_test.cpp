@@ -117,3 +117,19 @@ TEST_CASE("trajectory fit: no usable stretch is an error that says what to do") 
   test::VirtualDive dive = test::make_dive(vehicle, {.duration = 3.0});
   CHECK_THROWS_AS((TrajectoryFit{vehicle, {&dive.trial, 1}, quick()}), InputError);
 }
+
+TEST_CASE("trajectory fit: an effect fifty times what is ordinary for it comes back whole") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  constexpr double kCubic = 2500.0;  // N/(m/s)^3
+  const model::ActiveEffect cubic = test::active("cubic_drag", {kCubic}, 1);
+  REQUIRE(kCubic == doctest::Approx(50.0 * cubic.effect->parameters()[0].sigma));
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0, .seed = 7, .effects = {cubic}});
+  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
+  FitResult fit = problem.fit(dive.truth);
+  problem.add_covariance(fit);
+  const NamedValue found = fit.parameters().back();
+  REQUIRE(found.name == "cubic_drag.coefficient");
+  CAPTURE(found.value);
+  CAPTURE(found.std);
+  CHECK(std::abs(found.value - kCubic) < 3.0 * found.std);
+}

@@ -7,6 +7,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/model/dynamics.hpp"
 #include "common/model/site.hpp"
 #include "common/planning/segments.hpp"
 #include "test/support/virtual_dive.hpp"
@@ -67,7 +68,8 @@ TEST_CASE("segments: each has a name of its own, moves what it names, and stays 
   for (const excitation::Segment& segment : segments(tank.vehicle, tank.settings.supervisor.largest)) {
     CAPTURE(segment.name);
     CHECK(names.insert(segment.name).second);
-    const Trial trial = fly(tank.vehicle, tank.settings, segment, segment.duration);
+    const Trial trial =
+        fly(tank.vehicle, model::nominal_model(tank.vehicle, false), false, tank.settings, segment, segment.duration);
     CHECK(trial.t.back() == doctest::Approx(segment.duration).epsilon(0.01));
     tank.check_inside(trial);
     const Vector6d moved = rms(trial);

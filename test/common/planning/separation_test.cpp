@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/base/config.hpp"
+#include "common/model/dynamics.hpp"
 #include "common/model/rollout.hpp"
 #include "common/model/site.hpp"
 #include "common/planning/flights.hpp"
@@ -35,7 +36,8 @@ struct Ahead {
                                                                model::Site::load(root + "/config/sites/tank.yaml"));
     excitation::Segment ahead{.name = "ahead", .duration = 20.0};
     ahead.step[0] = 0.15;
-    data.emplace(vehicle, fly(vehicle, settings, ahead, ahead.duration), kWindow);
+    data.emplace(vehicle, fly(vehicle, model::nominal_model(vehicle, false), false, settings, ahead, ahead.duration),
+                 kWindow);
     scene = model::scene_of(vehicle, data->trials());
   }
 };
