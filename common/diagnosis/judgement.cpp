@@ -157,14 +157,14 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
 
 Judged judge(const Screened& screened, const Linearisation& base, int tried) {
   Judged judged{.effect = screened.effect, .variant = screened.variant, .variant_name = screened.variant_name};
-  const auto parameters = static_cast<int>(screened.effect->parameters().size());
+  const int parameters = screened.effect->numbers(screened.variant);
   judged.log_odds = log_odds(base.window_cost(), screened.window_cost, parameters, tried);
   judged.error_reduction = reduction(total(base.window_cost()), total(screened.window_cost));
   return judged;
 }
 
 void judge_by_odds(Judged& judged, const FitResult& without, const FitResult& with, int tried) {
-  const auto parameters = static_cast<int>(judged.effect->parameters().size());
+  const int parameters = judged.effect->numbers(judged.variant);
   judged.log_odds = log_odds(without.window_cost, with.window_cost, parameters, tried) - surprise(with.model, judged);
   judged.error_reduction = reduction(without.cost, with.cost);
 }

@@ -220,7 +220,8 @@ std::vector<LiveSuspicion> LiveEvidence::judge() const {
     const Eigen::VectorXd own = best.coefficients.segment(1 + best_start->column, best_start->columns());
     const double penalty = shrinkage(imitation_.col(0), -base.head(base_));
     for (std::size_t b = 0; b < blocks_.size(); ++b) with[b] = penalty * block_cost(blocks_[b], best_start, base, own);
-    const auto parameters = static_cast<int>(best.theta.size());
+    const LiveForm& asked = candidates_.forms()[static_cast<std::size_t>(form)];
+    const int parameters = asked.effect->numbers(asked.variant);
     best.log_odds = log_odds(without, with, parameters, tried);
     best.error_reduction = 1.0 - std::sqrt(std::clamp(penalty * best_cost / cost_without, 0.0, 1.0));
     best.block_cost = with;

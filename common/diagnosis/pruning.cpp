@@ -60,8 +60,7 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
     Judged again = result.accepted[i];
     progress("testing " + std::string(again.effect->name()) + " on everything", 0.85);
     const FitResult fit = fits.fit(result, i);
-    again.log_odds = log_odds(fit.window_cost, result.after.window_cost,
-                              static_cast<int>(again.effect->parameters().size()), tried) -
+    again.log_odds = log_odds(fit.window_cost, result.after.window_cost, again.effect->numbers(again.variant), tried) -
                      surprise(result.after.model, again);
     again.error_reduction = reduction(fit.cost, result.after.cost);
     if (evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {

@@ -20,8 +20,8 @@ constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a te
 bool better(const Answers& answers, std::size_t place, const FitResult& fit, const Winner& best, double reference) {
   const double gain = reference - fit.cost;
   const double other = reference - best.fit.cost;
-  const auto numbers = answers.near[place].effect->parameters().size();
-  const auto others = answers.near[best.place].effect->parameters().size();
+  const Screened &own = answers.near[place], &its = answers.near[best.place];
+  const int numbers = own.effect->numbers(own.variant), others = its.effect->numbers(its.variant);
   if (numbers == others) return gain > other;
   return numbers < others ? gain > kAsGood * other : kAsGood * gain > other;
 }

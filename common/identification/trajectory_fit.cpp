@@ -210,7 +210,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   if (like != nullptr) {
     fit.sigma = like->sigma;
     fit.nu0 = like->nu0;
-    solve(fit, tolerance == 0.0, tolerance);  // a quick look leaves numbers on their bounds
+    solve(fit, true, tolerance);
     score(fit);
     return fit;
   }

@@ -26,6 +26,12 @@ const Effect* find_effect(std::string_view name) {
   return nullptr;
 }
 
+int Effect::numbers(int variant) const {
+  int count = 0;
+  for (std::size_t i = 0; i < parameters().size(); ++i) count += takes_part(variant, i) ? 1 : 0;
+  return count;
+}
+
 std::vector<std::vector<double>> Effect::starts(const Scene&, int) const {
   std::vector<double> start;
   for (const EffectParameter& parameter : parameters()) start.push_back(0.1 * parameter.sigma);

@@ -69,6 +69,10 @@ class Effect {
   [[nodiscard]] virtual std::string_view unit(int /*variant*/, std::size_t number) const {
     return parameters()[number].unit;
   }
+  /// False when that form of the effect has no use for the number.
+  [[nodiscard]] virtual bool takes_part(int /*variant*/, std::size_t /*number*/) const { return true; }
+  /// How many numbers that form has.
+  [[nodiscard]] int numbers(int variant) const;
   /// True when several forms can act at once, so that results must say which one a number belongs to.
   [[nodiscard]] virtual bool variants_matter() const { return false; }
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.

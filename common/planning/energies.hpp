@@ -46,7 +46,7 @@ class Base {
 /// An effect in one form at one size, and what it changes.
 struct Suspect {
   model::ActiveEffect active;
-  double ordinary{std::numeric_limits<double>::infinity()};  ///< its first number over what is ordinary for it
+  double ordinary{std::numeric_limits<double>::infinity()};  ///< its sizes over what is ordinary for them, the largest
   bool found{false};
   Eigen::VectorXd change;    ///< during the excitation
   Eigen::VectorXd imitated;  ///< the step of the base parameters that follows it

@@ -56,7 +56,7 @@ class Judge {
     diagnosis::Judged judged{.effect = suspect.active.effect};
     judged.error_reduction = diagnosis::reduction(diagnosis::total(without), diagnosis::total(with));
     judged.log_odds =
-        diagnosis::log_odds(without, with, static_cast<int>(suspect.active.effect->parameters().size()), tried_);
+        diagnosis::log_odds(without, with, suspect.active.effect->numbers(suspect.active.variant), tried_);
     return judged.error_reduction >= settings_.smallest_reduction &&
            judged.log_odds >= diagnosis::needed_log_odds(judged, settings_);
   }
@@ -80,7 +80,12 @@ Suspect smallest(const View& view, const Base& base, const Judge& judge, const d
     if (!grow(suspect.active, std::clamp(factor, 1.0 / kLargestStep, kLargestStep))) return suspect;
   }
   if (!suspect.found) return suspect;
-  suspect.ordinary = std::abs(suspect.active.theta[0]) / candidate.effect->parameters()[0].sigma;
+  suspect.ordinary = 0.0;
+  const auto sizes = static_cast<std::size_t>(std::max(candidate.effect->amplitudes(), 1));
+  for (std::size_t i = 0; i < sizes; ++i) {
+    const double size = std::abs(suspect.active.theta[i]) / candidate.effect->parameters()[i].sigma;
+    if (candidate.effect->takes_part(candidate.variant, i)) suspect.ordinary = std::max(suspect.ordinary, size);
+  }
   return suspect;
 }
 
@@ -162,6 +167,7 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
     if (!out.found) continue;
     const auto parameters = suspect.active.effect->parameters();
     for (std::size_t p = 0; p < parameters.size(); ++p) {
+      if (!suspect.active.effect->takes_part(suspect.active.variant, p)) continue;
       out.size.push_back({.name = std::string{parameters[p].name},
                           .value = suspect.active.theta[p],
                           .unit = std::string{suspect.active.effect->unit(suspect.active.variant, p)}});

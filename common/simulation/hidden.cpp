@@ -159,7 +159,13 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
     given.erase(wanted);
   }
   active.variant_name = variants[static_cast<std::size_t>(active.variant)];
+  std::vector<std::string_view> names;
   for (const model::EffectParameter& parameter : effect->parameters()) {
+    if (!effect->takes_part(active.variant, active.theta.size())) {
+      active.theta.push_back(0.0);
+      continue;
+    }
+    names.push_back(parameter.name);
     double value = drawn(*effect, parameter, active.variant_name, occasion, scene, stream);
     if (const auto stated = given.find(std::string{parameter.name}); stated != given.end()) {
       value = number(text, stated->second);
@@ -172,8 +178,6 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
     active.theta.push_back(value);
   }
   if (!given.empty()) {
-    std::vector<std::string_view> names;
-    for (const model::EffectParameter& parameter : effect->parameters()) names.push_back(parameter.name);
     names.push_back("variant");
     throw InputError("--hide " + text + ": " + name + " has no '" + given.begin()->first + "'; it has " + list(names));
   }

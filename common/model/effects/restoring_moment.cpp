@@ -12,8 +12,16 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"offset", "N m", 5.0}};
-constexpr double kSmallestTilt = 0.01;  // rad: less and yaw feels nothing
+// Components are sought together: what hangs askew is not even nearly described by one of them.
+constexpr std::array kParameters{EffectParameter{"G_x", "N m", 5.0}, EffectParameter{"G_y", "N m", 5.0},
+                                 EffectParameter{"G_z", "N m", 5.0}};
+constexpr double kOrdinaryHeight = 0.02;  // m, of buoyancy above gravity
+constexpr double kGravity = 9.81;         // m/s^2
+constexpr double kFallbackMass = 20.0;    // kg
+constexpr double kSmallestTilt = 0.01;    // rad: less and yaw feels nothing
+
+/// Its forms are the sets of components that are asked for: bit i of the variant is component i.
+constexpr bool asked(int variant, std::size_t component) { return (variant >> component & 1) != 0; }
 
 class RestoringMoment final : public Effect {
  public:
@@ -23,26 +31,39 @@ class RestoringMoment final : public Effect {
   }
   std::string_view revealed_by() const override { return "tilted attitudes, each held for several seconds"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
+  bool takes_part(int variant, std::size_t number) const override { return asked(variant, number); }
+  int amplitudes() const override { return 3; }
   bool feels_motion() const override { return false; }
-  bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
+    const auto& free = scene.vehicle->parameters;
     const bool yaw_feels = dof[5] && scene.tilt_rms > kSmallestTilt;
     const std::array acts{dof[4] || yaw_feels, dof[3] || yaw_feels, dof[3] || dof[4]};
-    constexpr std::array<const char*, 3> kNames{"G_x", "G_y", "G_z"};
-    std::vector<std::string> names;
+    std::size_t all = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& free = scene.vehicle->parameters;
-      const bool in_base = std::find(free.begin(), free.end(), kNames[i]) != free.end();
-      names.emplace_back(acts[i] && !in_base ? kNames[i] : "-");
+      const bool in_base = std::find(free.begin(), free.end(), kParameters[i].name) != free.end();
+      if (acts[i] && !in_base) all |= std::size_t{1} << i;
     }
-    const bool any = std::any_of(names.begin(), names.end(), [](const std::string& one) { return one != "-"; });
-    return any ? names : std::vector<std::string>{};
+    if (all == 0) return {};
+    std::vector<std::string> names(all, "-");
+    names.emplace_back();
+    return names;
+  }
+
+  /// Beside a pendulum that it does not know, a base model takes the inertia away, and no small pendulum helps.
+  std::vector<std::vector<double>> far_starts(const Scene& scene, int variant) const override {
+    if (!asked(variant, 2)) return {};
+    const double weight = kGravity * (scene.vehicle->mass > 0.0 ? scene.vehicle->mass : kFallbackMass);
+    return {{0.0, 0.0, kOrdinaryHeight * weight}};
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
     const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
-    load.wrench.tail<3>() += theta[0] * Eigen::Vector3d::Unit(variant).cross(down_B);
+    Eigen::Vector3d G = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (asked(variant, i)) G[static_cast<Eigen::Index>(i)] = theta[i];
+    }
+    load.wrench.tail<3>() += G.cross(down_B);
   }
 };
 

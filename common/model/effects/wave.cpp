@@ -21,6 +21,7 @@ constexpr std::array kParameters{EffectParameter{"cosine", "N", 5.0, -1e4, 1e4},
                                  EffectParameter{"sine", "N", 5.0, -1e4, 1e4}, EffectParameter{"bearing", "rad", 3.0},
                                  EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
 constexpr int kAmplitudes = 2;  // the leading numbers
+constexpr std::size_t kBearing = 2;
 enum Form { kForce, kHeave, kOrbital };
 constexpr double kGravity = 9.81;          // m/s^2
 constexpr double kMostDecay = 3.0;         // exponents of the decay with depth: the surface need not be at z = 0
@@ -35,6 +36,7 @@ class Wave final : public Effect {
   int amplitudes() const override { return kAmplitudes; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }
+  bool takes_part(int variant, std::size_t number) const override { return variant != kHeave || number != kBearing; }
   std::string_view unit(int variant, std::size_t number) const override {
     return variant == kOrbital && number < std::size_t{kAmplitudes} ? "m/s" : kParameters[number].unit;
   }

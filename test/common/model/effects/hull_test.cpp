@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -63,23 +65,38 @@ TEST_CASE("cubic_drag: constant thrust ends at the cube root") {
   CHECK(nu(0, nu.cols() - 1) == doctest::Approx(0.5).epsilon(kMidpoint));
 }
 
-TEST_CASE("restoring_moment: the same motion as with that component in the base model") {
+TEST_CASE("restoring_moment: the same motion as with those components in the base model") {
   Bare bare{{true, true, true, true, true, true}};
   model::Motion motion;
   motion.vehicle = &bare.vehicle;
   motion.force = Vector6d::Zero();
   motion.R_WB = rotation_from_euler({0.3, -0.2, 1.0});
   const Eigen::Vector3d down = motion.R_WB.transpose() * Eigen::Vector3d::UnitZ();
-  for (int component = 0; component < 3; ++component) {
+  const std::vector G{2.0, -1.0, 3.0};
+  for (int asked = 1; asked < 8; ++asked) {
     model::Load load;
-    model::find_effect("restoring_moment")->load(motion, std::vector{2.0}, component, load);
-    const Eigen::Vector3d expected = (2.0 * Eigen::Vector3d::Unit(component)).cross(down);
-    CHECK((load.wrench.tail<3>() - expected).norm() < kRounding);
-    CHECK(load.wrench.head<3>().isZero(0.0));
+    model::find_effect("restoring_moment")->load(motion, G, asked, load);
     model::Model base = bare.model;
-    base.theta[model::index(BaseParameter::G_x) + component] = 2.0;
-    CHECK((model::acceleration(base, motion).tail<3>() - expected).norm() < kRounding);
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    for (int component = 0; component < 3; ++component) {
+      if ((asked >> component & 1) == 0) continue;
+      const double size = G[static_cast<std::size_t>(component)];
+      moment += (size * Eigen::Vector3d::Unit(component)).cross(down);
+      base.theta[model::index(BaseParameter::G_x) + component] = size;
+    }
+    CHECK((load.wrench.tail<3>() - moment).norm() < kRounding);
+    CHECK(load.wrench.head<3>().isZero(0.0));
+    CHECK((model::acceleration(base, motion).tail<3>() - moment).norm() < kRounding);
   }
+}
+
+/// One form, in which just these components take part.
+void check_asked(const model::Effect& effect, const model::Scene& scene, const std::array<bool, 3>& components) {
+  const std::vector<std::string> forms = effect.variants(scene);
+  CHECK(std::ranges::count(forms, "-") + 1 == std::ssize(forms));
+  const int form = static_cast<int>(std::ranges::find(forms, "") - forms.begin());
+  for (std::size_t i = 0; i < 3; ++i) CHECK(effect.takes_part(form, i) == components[i]);
+  CHECK(effect.numbers(form) == std::ranges::count(components, true));
 }
 
 TEST_CASE("restoring_moment: asked for only where the base model does not have it and something feels it") {
@@ -88,10 +105,10 @@ TEST_CASE("restoring_moment: asked for only where the base model does not have i
   const model::Effect& effect = *model::find_effect("restoring_moment");
   CHECK(effect.variants(scene).empty());
   scene.tilt_rms = 0.1;  // then G_x turns the bow
-  CHECK(effect.variants(scene) == std::vector<std::string>{"G_x", "-", "-"});
+  check_asked(effect, scene, {true, false, false});
   vehicle.parameters = {"m_X"};
   scene.tilt_rms = 0.0;
-  CHECK(effect.variants(scene) == std::vector<std::string>{"-", "G_y", "G_z"});
+  check_asked(effect, scene, {false, true, true});
 }
 
 TEST_CASE("compressibility: stiffer than water, a vehicle swings about its neutral depth") {
