@@ -209,6 +209,7 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
   score.before = normalised(result.at("error").at("before"));
   score.after = normalised(result.at("error").at("after"));
   if (truth.contains("bound")) {
+    score.tilts = truth.at("bound").contains("I_X");
     for (const auto& [name, bound] : truth.at("bound").items()) {
       const Json& fitted = result.at("parameters").at("after");
       if (!fitted.contains(name) || !fitted.at(name).at("value").is_number()) continue;
@@ -240,6 +241,7 @@ Json to_json(const Score& score) {
             {"megabytes", finite(score.megabytes)},
             {"deviations", score.deviations},
             {"over_bound", score.over_bound},
+            {"tilts", score.tilts},
             {"wrong_form", score.wrong_form}};
   json["claims"] = Json::array();
   for (const Claim& claim : score.claims) json["claims"].push_back({claim.probability, claim.right});
