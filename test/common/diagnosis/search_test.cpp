@@ -248,6 +248,7 @@ TEST_CASE("search: hidden effects are named first, with their numbers") {
 }
 
 TEST_CASE("search: a large change of payload is named, whatever its moment") {
+  if (!test::kTimed) return;
   constexpr double kMass = 3.0, kWeight = 15.0;  // kg, N: far more than what the vehicle floats by
   std::mt19937 random{20261121};
   const double moment = std::uniform_real_distribution<double>{170.0, 210.0}(random);
@@ -260,6 +261,7 @@ TEST_CASE("search: a large change of payload is named, whatever its moment") {
 }
 
 TEST_CASE("search: a narrow dead band is named") {
+  if (!test::kTimed) return;
   std::mt19937 random{20261121};
   const double half_width = std::uniform_real_distribution<double>{0.8, 1.2}(random);  // N
   CAPTURE(half_width);
