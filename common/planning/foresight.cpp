@@ -20,6 +20,7 @@ constexpr std::size_t kMostStarts = 5;  // of a form: places, moments, time cons
 constexpr int kRounds = 10;             // of finding a size; most effects are nearly proportional
 constexpr double kLargestStep = 30.0;   // factor between rounds
 constexpr double kClose = 0.1;          // of the size
+constexpr double kNoSmaller = 0.95;     // of the change before
 constexpr double kWave = 1.5;           // rad/s: a wave that nobody has seen yet
 
 class Judge {
@@ -70,6 +71,8 @@ class Judge {
 Suspect smallest(const View& view, const Base& base, const Judge& judge, const diagnosis::Candidate& candidate,
                  const std::vector<double>& start) {
   Suspect suspect{.active = {candidate.effect, candidate.variant, candidate.name, start}};
+  model::ActiveEffect larger;
+  double change = std::numeric_limits<double>::infinity();  // that the larger one makes
   for (int round = 0; round < kRounds; ++round) {
     suspect.change = view.change(suspect.active);
     suspect.imitated = base.solve(view.jacobian().transpose() * suspect.change);
@@ -77,6 +80,14 @@ Suspect smallest(const View& view, const Base& base, const Judge& judge, const d
     if (!std::isfinite(factor) || !suspect.change.allFinite()) return suspect;
     suspect.found = std::abs(factor - 1.0) < kClose;
     if (suspect.found) break;
+    if (factor < 1.0 && suspect.change.norm() > kNoSmaller * change) {
+      // A lag shorter than the steps of time acts as if it were as long: nothing is promised below that.
+      suspect.active = larger;
+      suspect.found = true;
+      break;
+    }
+    larger = suspect.active;
+    change = factor < 1.0 ? suspect.change.norm() : std::numeric_limits<double>::infinity();
     if (!grow(suspect.active, std::clamp(factor, 1.0 / kLargestStep, kLargestStep))) return suspect;
   }
   if (!suspect.found) return suspect;

@@ -96,6 +96,17 @@ TEST_CASE("foresight: what a parameter can imitate hides in that parameter") {
   CHECK_FALSE(asymmetric.soonest.has_value());  // nothing to choose from
 }
 
+TEST_CASE("foresight: quiet data show a lag shorter than steps of time, and it is promised at what they can hold") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  Trial trial = clean(vehicle);
+  trial.nu_sigma.setConstant(1e-4);
+  const std::vector<Foreseen> all = foresee(vehicle, View{vehicle, trial, kWindow}, {}, {}, [](double) {});
+  const Foreseen& lag = named(all, "thruster_lag");
+  REQUIRE(lag.found);
+  CHECK(lag.size[0].value > 1e-3);  // s: a twentieth of the longest step
+  CHECK(lag.size[0].value < 0.01);
+}
+
 TEST_CASE("view: an effect's change has what the initial velocity can do taken out") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const View view{vehicle, clean(vehicle), kWindow};
