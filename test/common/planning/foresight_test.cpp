@@ -97,9 +97,9 @@ TEST_CASE("foresight: what a parameter can imitate hides in that parameter") {
 }
 
 TEST_CASE("foresight: quiet data show a lag shorter than steps of time, and it is promised at what they can hold") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   Trial trial = clean(vehicle);
-  trial.nu_sigma.setConstant(1e-4);
+  trial.nu_sigma.setConstant(1e-3);
   const std::vector<Foreseen> all = foresee(vehicle, View{vehicle, trial, kWindow}, {}, {}, [](double) {});
   const Foreseen& lag = named(all, "thruster_lag");
   REQUIRE(lag.found);
