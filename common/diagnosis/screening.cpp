@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/diagnosis/judgement.hpp"
 #include "common/identification/outlier.hpp"
@@ -16,6 +17,7 @@ using identification::ProjectedWindow;
 constexpr int kBestStarts = 2;
 constexpr int kNewtonSteps = 8;
 constexpr double kLinearEnough = 0.03;
+constexpr double kNothing = 1e-5;    // of the cost: no gain worth a step
 constexpr double kSmallStep = 1e-3;  // of the parameter's sigma or value, for differences
 
 /// Projected residuals of all windows with the candidate at theta, the base parameters unchanged.
@@ -27,11 +29,12 @@ class CandidateModel {
     const auto place = std::find_if(model_.effects.begin(), model_.effects.end(), [&](const auto& active) {
       return active.effect == &effect && active.variant == variant;
     });
-    theta_ = &place->theta;
+    active_ = &*place;
   }
+  [[nodiscard]] const model::ActiveEffect& active() const { return *active_; }
 
   Eigen::VectorXd residual(const std::vector<double>& theta) {
-    *theta_ = theta;
+    active_->theta = theta;
     Eigen::VectorXd all(total_rows());
     Eigen::Index offset = 0;
     for (std::size_t w = 0; w < base_.windows().size(); ++w) {
@@ -56,7 +59,7 @@ class CandidateModel {
  private:
   const Linearisation& base_;
   model::Model model_;
-  std::vector<double>* theta_{};
+  model::ActiveEffect* active_{};
   model::VelocityTrace trace_;
 };
 
@@ -192,12 +195,39 @@ Start with_best_amplitude(const model::Effect& effect, std::vector<double> theta
   return {-(share * top + 0.5 * share * share * bottom), theta};
 }
 
+/// How `residual` at theta changes with each number, in units of its prior sigma; what base parameters can imitate is
+/// taken out. Numbers that are zero move by the whole of `first` where it is not zero, the others by a little.
+Eigen::MatrixXd derivatives(const Linearisation& base, CandidateModel& candidate, const Eigen::VectorXd& residual,
+                            const std::vector<double>& theta, const std::vector<double>& first) {
+  const model::ActiveEffect& active = candidate.active();
+  const auto parameters = active.effect->parameters();
+  Eigen::MatrixXd columns(residual.size(), static_cast<Eigen::Index>(theta.size()));
+  std::vector<double> sizes(theta.size());
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    sizes[i] = theta[i] == 0.0 && first[i] != 0.0
+                   ? first[i]
+                   : kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
+    if (theta[i] + sizes[i] > parameters[i].high) sizes[i] = -sizes[i];
+    std::vector<double> moved = theta;
+    moved[i] += sizes[i];
+    columns.col(static_cast<Eigen::Index>(i)) = candidate.residual(moved);
+  }
+  remove_base(base, columns);
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    auto column = columns.col(static_cast<Eigen::Index>(i));
+    column = (column - residual) * (parameters[i].sigma / sizes[i]);
+    if (!active.effect->takes_part(active.variant, i)) column.setZero();
+  }
+  return columns;
+}
+
 /// `refining`: the only start is a point found before, not merely the size of a first step away from nothing.
 Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
                      const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining) {
   CandidateModel candidate{base, effect, variant, variant_name};
   const auto parameters = effect.parameters();
   const std::size_t k = parameters.size();
+  const std::vector<double> none(k, 0.0);
 
   const Eigen::VectorXd unfitted = base.stacked_residual();
   const Eigen::MatrixXd& without = base.unexplained();
@@ -238,22 +268,10 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     double cost = total(window_costs(base, residual.col(0)));
     double damping = 0.0;
     Eigen::MatrixXd columns;
+    bool moved = true;
     for (int step = 0; step < kNewtonSteps; ++step) {
-      columns.resize(residual.rows(), static_cast<Eigen::Index>(k));
-      std::vector<double> sizes(k);
-      for (std::size_t i = 0; i < k; ++i) {
-        sizes[i] = theta[i] == 0.0 && from_zero ? start.theta[i]
-                                                : kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
-        if (theta[i] + sizes[i] > parameters[i].high) sizes[i] = -sizes[i];
-        std::vector<double> moved = theta;
-        moved[i] += sizes[i];
-        columns.col(static_cast<Eigen::Index>(i)) = candidate.residual(moved);
-      }
-      remove_base(base, columns);
-      for (std::size_t i = 0; i < k; ++i) {
-        const auto c = static_cast<Eigen::Index>(i);
-        columns.col(c) = (columns.col(c) - residual.col(0)) * (parameters[i].sigma / sizes[i]);
-      }
+      if (std::exchange(moved, false))
+        columns = derivatives(base, candidate, residual.col(0), theta, from_zero ? start.theta : none);
       // Unknowns in units of their prior sigma, which is also their prior.
       Eigen::MatrixXd normal = columns.transpose() * columns;
       Eigen::VectorXd gradient = columns.transpose() * residual.col(0);
@@ -263,6 +281,8 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
         gradient[c] += theta[i] / parameters[i].sigma;
       }
       const Eigen::VectorXd move = -normal.ldlt().solve(gradient);
+      const double foretold = -0.5 * gradient.dot(move);
+      if (foretold < kNothing * cost_without) break;
       std::vector<double> next = theta;
       for (std::size_t i = 0; i < k; ++i) next[i] += move[static_cast<Eigen::Index>(i)] * parameters[i].sigma;
       next = clamped(effect, next);
@@ -274,11 +294,11 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
         continue;
       }
       // Settled: hardly any progress, or as much as the linear picture foretold.
-      const double foretold = -0.5 * gradient.dot(move);
       const bool settled = cost - next_cost < 1e-3 * (cost_without - next_cost) ||
                            std::abs(cost - next_cost - foretold) < kLinearEnough * foretold;
       theta = next;
       residual = next_residual;
+      moved = true;
       cost = next_cost;
       damping *= 0.1;
       if (settled) break;
