@@ -146,7 +146,7 @@ double TrajectoryFit::cost(const model::Model& model, const FitResult& like) con
   return fit.cost;
 }
 
-void TrajectoryFit::solve(FitResult& fit, bool release, double tolerance) const {
+void TrajectoryFit::solve(FitResult& fit, double tolerance) const {
   const ParameterMap map{fit.model};
   const model::Model shape = fit.model;
   Eigen::VectorXd x = map.pack(fit.model);
@@ -187,6 +187,7 @@ void TrajectoryFit::solve(FitResult& fit, bool release, double tolerance) const 
   // bound are held there while the others move, and let go again when the cost wants them inside.
   constexpr int kPasses = 4;
   std::vector<int> held;
+  bool release = true;
   for (int pass = 0; pass < kPasses; ++pass) {
     const std::vector<int> at_bound = numbers_at_bound(map, x);
     if (pass > 0 && at_bound == held) {
@@ -210,7 +211,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   if (like != nullptr) {
     fit.sigma = like->sigma;
     fit.nu0 = like->nu0;
-    solve(fit, true, tolerance);
+    solve(fit, tolerance);
     score(fit);
     return fit;
   }
@@ -218,7 +219,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   score(fit);
   for (int round = 0; round < settings_.weight_rounds; ++round) {
     fit.sigma = residual_scale(fit);
-    solve(fit, true, tolerance);
+    solve(fit, tolerance);
     score(fit);
   }
   fit.sigma = residual_scale(fit);

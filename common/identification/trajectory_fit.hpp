@@ -70,7 +70,7 @@ class TrajectoryFit {
   [[nodiscard]] const FitSettings& settings() const { return settings_; }
 
  private:
-  void solve(FitResult& fit, bool release, double tolerance) const;
+  void solve(FitResult& fit, double tolerance) const;
   void score(FitResult& fit) const;
   [[nodiscard]] Vector6d residual_scale(const FitResult& fit) const;
 

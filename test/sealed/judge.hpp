@@ -35,7 +35,7 @@ struct Score {
   /// (found - true) over what is 1.96 at the end of the stated 95 % interval, of effect parameters that mean the same.
   std::vector<double> deviations;
   bool wrong_form{};               ///< right name, but another thruster, axis or law than the true one
-  bool tilts{false};               ///< six axes: the bound is of a craft whose tilt is known without error
+  bool tilts{false};               ///< roll or pitch is free
   std::vector<double> over_all;    ///< as over_bound, over the bound of all signals
   std::vector<double> over_bound;  ///< (found - true) / Cramer-Rao bound, of base numbers on clean data
 };

@@ -8,6 +8,7 @@
 
 #include "common/model/effect.hpp"
 #include "common/model/vehicle.hpp"
+#include "common/model/wide_prior.hpp"
 
 namespace fathom::model::effects {
 namespace {
@@ -15,10 +16,8 @@ namespace {
 // Components are sought together: what hangs askew is not even nearly described by one of them.
 constexpr std::array kParameters{EffectParameter{"G_x", "N m", 5.0}, EffectParameter{"G_y", "N m", 5.0},
                                  EffectParameter{"G_z", "N m", 5.0}};
-constexpr double kOrdinaryHeight = 0.02;  // m, of buoyancy above gravity
-constexpr double kGravity = 9.81;         // m/s^2
-constexpr double kFallbackMass = 20.0;    // kg
-constexpr double kSmallestTilt = 0.01;    // rad: less and yaw feels nothing
+constexpr double kFarStart = 1.0 / 3.0;  // of the G_z that a prior allows: of a vehicle that rights itself
+constexpr double kSmallestTilt = 0.01;   // rad: less and yaw feels nothing
 
 /// Its forms are the sets of components that are asked for: bit i of the variant is component i.
 constexpr bool asked(int variant, std::size_t component) { return (variant >> component & 1) != 0; }
@@ -39,22 +38,24 @@ class RestoringMoment final : public Effect {
     const auto& free = scene.vehicle->parameters;
     const bool yaw_feels = dof[5] && scene.tilt_rms > kSmallestTilt;
     const std::array acts{dof[4] || yaw_feels, dof[3] || yaw_feels, dof[3] || dof[4]};
-    std::size_t all = 0;
+    std::size_t form = 0;
+    std::string name;
     for (std::size_t i = 0; i < 3; ++i) {
       const bool in_base = std::find(free.begin(), free.end(), kParameters[i].name) != free.end();
-      if (acts[i] && !in_base) all |= std::size_t{1} << i;
+      if (!acts[i] || in_base) continue;
+      form |= std::size_t{1} << i;
+      name += (name.empty() ? "" : ", ") + std::string{kParameters[i].name};
     }
-    if (all == 0) return {};
-    std::vector<std::string> names(all, "-");
-    names.emplace_back();
+    if (form == 0) return {};
+    std::vector<std::string> names(form, "-");
+    names.push_back(name);
     return names;
   }
 
   /// Beside a pendulum that it does not know, a base model takes the inertia away, and no small pendulum helps.
   std::vector<std::vector<double>> far_starts(const Scene& scene, int variant) const override {
     if (!asked(variant, 2)) return {};
-    const double weight = kGravity * (scene.vehicle->mass > 0.0 ? scene.vehicle->mass : kFallbackMass);
-    return {{0.0, 0.0, kOrdinaryHeight * weight}};
+    return {{0.0, 0.0, kFarStart * wide_prior(BaseParameter::G_z, *scene.vehicle).sigma}};
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {

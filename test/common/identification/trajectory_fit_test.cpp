@@ -133,3 +133,18 @@ TEST_CASE("trajectory fit: an effect fifty times what is ordinary for it comes b
   CAPTURE(found.std);
   CHECK(std::abs(found.value - kCubic) < 3.0 * found.std);
 }
+
+TEST_CASE("trajectory fit: a quick look lets a number go that starts at its bound") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  constexpr double kExponent = 1.0;
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 120.0, .seed = 9, .effects = {test::active("battery_sag", {kExponent})}});
+  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
+  const FitResult base = problem.fit(model::nominal_model(vehicle, false));
+  model::Model start = base.model;
+  const double bound = dive.truth.effects.front().effect->parameters()[0].high;
+  start.effects.push_back(test::active("battery_sag", {bound}));
+  constexpr double kQuick = 1e-3;  // of the cost, as where candidates are compared
+  const FitResult found = problem.fit(start, &base, kQuick);
+  CHECK(found.parameters().back().value == doctest::Approx(kExponent).epsilon(0.1));
+}

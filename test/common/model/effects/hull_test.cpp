@@ -90,11 +90,13 @@ TEST_CASE("restoring_moment: the same motion as with those components in the bas
   }
 }
 
-/// One form, in which just these components take part.
-void check_asked(const model::Effect& effect, const model::Scene& scene, const std::array<bool, 3>& components) {
+/// One form of that name, in which just these components take part.
+void check_asked(const model::Effect& effect, const model::Scene& scene, const std::string& name,
+                 const std::array<bool, 3>& components) {
   const std::vector<std::string> forms = effect.variants(scene);
   CHECK(std::ranges::count(forms, "-") + 1 == std::ssize(forms));
-  const int form = static_cast<int>(std::ranges::find(forms, "") - forms.begin());
+  REQUIRE(forms.back() == name);
+  const int form = static_cast<int>(forms.size()) - 1;
   for (std::size_t i = 0; i < 3; ++i) CHECK(effect.takes_part(form, i) == components[i]);
   CHECK(effect.numbers(form) == std::ranges::count(components, true));
 }
@@ -105,10 +107,10 @@ TEST_CASE("restoring_moment: asked for only where the base model does not have i
   const model::Effect& effect = *model::find_effect("restoring_moment");
   CHECK(effect.variants(scene).empty());
   scene.tilt_rms = 0.1;  // then G_x turns the bow
-  check_asked(effect, scene, {true, false, false});
+  check_asked(effect, scene, "G_x", {true, false, false});
   vehicle.parameters = {"m_X"};
   scene.tilt_rms = 0.0;
-  check_asked(effect, scene, {false, true, true});
+  check_asked(effect, scene, "G_y, G_z", {false, true, true});
 }
 
 TEST_CASE("compressibility: stiffer than water, a vehicle swings about its neutral depth") {
