@@ -128,7 +128,10 @@ class Identifier {
   [[nodiscard]] bool vanishes() const;
   void drop();
   void follow(model::ActiveEffect effect, const ParameterVector& base);
-  void learn_anew();
+  void learn_anew(bool hold_effect = false);
+  [[nodiscard]] double moved() const;
+  bool relearn();
+  [[nodiscard]] double cost_with(const model::ActiveEffect& effect, const ParameterVector& base);
   [[nodiscard]] model::Model base_model(const ParameterVector& estimate) const;
   [[nodiscard]] RecursiveSettings estimator_settings(const model::ActiveEffect* effect) const;
   void add_effect(ModelEstimate& estimate, const RecursiveReport& report) const;
@@ -152,6 +155,8 @@ class Identifier {
   std::deque<EffectSample> kept_;
   std::unique_ptr<EffectTrack> track_;
   ParameterVector linearised_at_;  // base parameters of the track
+  std::vector<double> stuck_at_;   // numbers of the effect around which it fitted no better; empty: not so
+  double cost_{};                  // squared innovations over their variance since all was learnt anew
   Utime origin_{};                 // of the first motion used
   double voltage_{};
   std::vector<std::string> frozen_;

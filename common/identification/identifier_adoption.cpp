@@ -1,5 +1,6 @@
 // An effect that the diagnoser accepts again and again enters the model; one that it no longer sees leaves it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -8,12 +9,15 @@
 namespace fathom::identification {
 namespace {
 
-constexpr int kRounds = 3;             // of learning anew around the last numbers: effects are not linear in theirs
+constexpr int kRounds = 6;             // of learning anew around the last numbers: effects are not linear in theirs
 constexpr double kSmallestMass = 0.1;  // of the prior mean: keeps a poor first estimate physical
 constexpr double kFewest = 5.0;        // residuals before anything is said of them
 constexpr double kLargestRatio = 2.0;  // of the residual's power to that of the stated noise, as for leaving a mode
 constexpr double kPresent = 3.0;       // sigmas from zero: smaller, and the effect may as well be absent
 constexpr double kMoved = 1.0;         // sigmas that a number may go from where the effect was linearised
+constexpr std::array kShares{1.0, 0.5, 0.25, 0.1};  // of the way to the new numbers
+constexpr double kHeld = 1e-6;                      // of a number's prior sigma, where it shall stay
+constexpr double kGain = 1.0;                       // of twice the log likelihood, which a step must bring
 
 // A scene that admits every form whose place in the list of variants is then its number.
 model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
@@ -29,6 +33,12 @@ model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
   scene.p_low.setConstant(-1.0);
   scene.p_high.setOnes();
   return scene;
+}
+
+void keep_inside(model::ActiveEffect& effect) {
+  const auto parameters = effect.effect->parameters();
+  for (std::size_t i = 0; i < effect.theta.size(); ++i)
+    effect.theta[i] = std::clamp(effect.theta[i], parameters[i].low, parameters[i].high);
 }
 
 }  // namespace
@@ -80,35 +90,63 @@ void Identifier::adopt(const EffectEvidence& found) {
     return;
   }
   const auto number = static_cast<int>(variant - variants.begin());
-  const bool known = track_ && track_->effect().effect == effect && track_->effect().variant == number;
-  std::vector<double> theta = found.numbers;
-  const auto base = static_cast<Eigen::Index>(parameters_.size());
-  if (known) {  // linearised anew only where its numbers have left the place of before
-    const RecursiveReport report = estimator_.report();
-    double moved = 0.0;
-    for (std::size_t i = 0; i < theta.size(); ++i) {
-      const Eigen::Index k = base + static_cast<Eigen::Index>(i);
-      moved = std::max(moved, std::abs(report.estimate(k) - track_->effect().theta[i]) / report.sigma(k));
-      theta[i] = report.estimate(k);
-    }
-    if (moved < kMoved) return;
+  if (track_ && track_->effect().effect == effect && track_->effect().variant == number) {
+    if (moved() >= kMoved) (void)relearn();
+    return;
   }
-  const auto inside = [&](std::size_t i, double value) {
-    return std::clamp(value, effect->parameters()[i].low, effect->parameters()[i].high);
-  };
-  for (int round = 0; round < (known ? 1 : kRounds); ++round) {
-    const ParameterVector estimate = estimator_.projected();
-    if (round > 0) {
-      for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = estimate(base + static_cast<Eigen::Index>(i));
-    }
-    for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = inside(i, theta[i]);
-    follow({.effect = effect, .variant = number, .variant_name = found.variant, .theta = theta}, estimate.head(base));
-    learn_anew();
-  }
-  if (!known && !explains()) {
+  model::ActiveEffect first{.effect = effect, .variant = number, .variant_name = found.variant, .theta = found.numbers};
+  keep_inside(first);
+  follow(std::move(first), estimator_.projected().head(static_cast<Eigen::Index>(parameters_.size())));
+  learn_anew();
+  for (int round = 1; round < kRounds && relearn(); ++round) continue;
+  if (!explains()) {
     ++rejected_["effect leaves a residual"];
     drop();
   }
+}
+
+// How far the numbers are, in sigmas, from where the effect was linearised, or from where that led to nothing.
+double Identifier::moved() const {
+  const RecursiveReport report = estimator_.report();
+  const auto base = static_cast<Eigen::Index>(parameters_.size());
+  double moved = 0.0;
+  for (std::size_t i = 0; i < track_->effect().theta.size(); ++i) {
+    const Eigen::Index k = base + static_cast<Eigen::Index>(i);
+    const double from = stuck_at_.empty() ? track_->effect().theta[i] : stuck_at_[i];
+    moved = std::max(moved, std::abs(report.estimate(k) - from) / report.sigma(k));
+  }
+  return moved;
+}
+
+// Linearised anew where its numbers have gone, or part of the way there: effects are not linear in theirs, and a number
+// that the motion hardly shows goes anywhere. Steps are judged with the numbers held, so that no promise counts. False
+// when nothing fits better; then the effect stays where it was.
+bool Identifier::relearn() {
+  const auto base = static_cast<Eigen::Index>(parameters_.size());
+  const model::ActiveEffect at = track_->effect();
+  const ParameterVector estimate = estimator_.projected();
+  const ParameterVector linearised_at = linearised_at_;
+  const double cost = cost_with(at, linearised_at);
+  for (const double share : kShares) {
+    model::ActiveEffect next = at;
+    for (std::size_t i = 0; i < next.theta.size(); ++i)
+      next.theta[i] += share * (estimate(base + static_cast<Eigen::Index>(i)) - at.theta[i]);
+    keep_inside(next);
+    if (cost_with(next, estimate.head(base)) > cost - kGain) continue;
+    follow(std::move(next), estimate.head(base));
+    learn_anew();
+    return true;
+  }
+  follow(at, linearised_at);
+  learn_anew();
+  stuck_at_.assign(estimate.data() + base, estimate.data() + base + static_cast<Eigen::Index>(at.theta.size()));
+  return false;
+}
+
+double Identifier::cost_with(const model::ActiveEffect& effect, const ParameterVector& base) {
+  follow(effect, base);
+  learn_anew(true);
+  return cost_;
 }
 
 // Whether what the effect leaves is what noise makes: the wrong name may explain much, but hardly ever all.
@@ -119,6 +157,7 @@ bool Identifier::explains() const {
 
 void Identifier::follow(model::ActiveEffect effect, const ParameterVector& base) {
   linearised_at_ = base;
+  stuck_at_.clear();
   track_ = std::make_unique<EffectTrack>(base_model(base), std::move(effect), parameters_, origin_,
                                          regressor_.capacity(), settings_.max_gap);
 }
@@ -144,10 +183,13 @@ void Identifier::drop() {
 }
 
 // From the prior through all that is kept; parameters that are paused are paused again at the end.
-void Identifier::learn_anew() {
-  estimator_ = RecursiveEstimator{estimator_settings(adopted())};
+void Identifier::learn_anew(bool hold_effect) {
+  RecursiveSettings settings = estimator_settings(adopted());
+  if (hold_effect) settings.sigma.tail(settings.sigma.size() - static_cast<Eigen::Index>(parameters_.size())) *= kHeld;
+  estimator_ = RecursiveEstimator{std::move(settings)};
   regressor_.reset();
   recent_ = {};
+  cost_ = 0.0;
   for (const EffectSample& sample : kept_) {
     const std::optional<RowBlock> block = rows_of(sample);
     if (!block) continue;

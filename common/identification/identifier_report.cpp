@@ -92,6 +92,7 @@ void Identifier::remember(const RowBlock& block) {
     // Scaled by the estimator so that it has the row's variance when the model is right.
     const double value = estimator_.state().axes[axis].last / std::sqrt(row.variance);
     Recent& r = recent_[axis];
+    cost_ += value * value;
     const double product = value * r.last;
     r.weight = keep * r.weight + 1.0;
     const double share = 1.0 / r.weight;

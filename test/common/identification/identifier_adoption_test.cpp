@@ -2,6 +2,7 @@
 // contract (bits, restart, leaving again) holds with it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -105,6 +106,30 @@ TEST_CASE("adoption: an accepted effect is listed, its numbers are learnt, and t
     CHECK(worst(without.model(), dive.truth) > kSigmas);
     CHECK(model.updates == without.model().updates);
     CHECK(without.model().effects.empty());
+  }
+}
+
+TEST_CASE("adoption: numbers that hardly show yet do not run away, however rough the diagnoser's are") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const model::ActiveEffect truth = test::active("tether_drag", {5.5, -2.5, 0.0, -0.5});
+  const model::ActiveEffect found = test::active("tether_drag", {6.5, -0.8, -0.6, 0.3});
+  for (const unsigned seed : {32U, 33U, 34U}) {
+    CAPTURE(seed);
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0, .seed = seed, .effects = {truth}});
+    Identifier identifier{settings(), vehicle};
+    double next = 20.0, farthest = 0.0;
+    feed(identifier, dive.trial, 0.0, 1e9, [&](double t) {
+      if (t < next) return;
+      const ModelEstimate model = identifier.model();
+      for (std::size_t i = 0; i < model.effect_numbers.size(); ++i) {
+        const NamedValue& p = model.effect_numbers[i];
+        farthest = std::max(farthest, std::abs(p.value - truth.theta[i]) / p.std);
+      }
+      identifier.hear(accepted(next, found));
+      next += 10.0;
+    });
+    REQUIRE(identifier.model().effect_numbers.size() == 4);
+    CHECK(farthest < kSigmas + 1.0);  // the largest of forty
   }
 }
 
