@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/places.hpp"
 #include "common/model/onset.hpp"
 
 namespace fathom::diagnosis {
@@ -16,7 +17,6 @@ using identification::TrajectoryFit;
 
 constexpr double kSameStory = 0.5;  // correlation of what two forms of one effect claim
 constexpr double kEdge = 0.03;      // of the data's length
-constexpr double kInside = 0.05;    // of the time: a boundary is known to some centimetres
 constexpr double kAtLimit = 0.05;   // of a limit: nearer than that, the number wants to be beyond it
 
 /// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none

@@ -29,7 +29,10 @@ class BottomEffect final : public Effect {
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
-  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int) const override { return theta[1] > p_WB.z(); }
+  /// A floor that takes drag away is none.
+  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const override {
+    return theta[1] > p_WB.z() && (variant == kForce || theta[0] >= 0.0);
+  }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
     return number == 0 && variant != kForce ? "N m^2/(m/s)^2" : kParameters[number].unit;

@@ -32,7 +32,9 @@ class WallEffect final : public Effect {
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
-  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int) const override {
+  /// A wall that takes drag away is none.
+  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const override {
+    if (variant != kForce && theta[0] < 0.0) return false;
     return theta[2] > std::cos(theta[1]) * p_WB.x() + std::sin(theta[1]) * p_WB.y();
   }
   bool variants_matter() const override { return true; }
