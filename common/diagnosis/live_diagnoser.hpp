@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/diagnosis/live_evidence.hpp"
+#include "common/diagnosis/places.hpp"
 #include "common/identification/integral_regressor.hpp"
 #include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
@@ -65,6 +66,10 @@ class LiveDiagnoser {
   /// Best numbers per form behind the last ranking, best first; names in forms().
   [[nodiscard]] const std::vector<LiveSuspicion>& suspicions() const { return suspicions_; }
   [[nodiscard]] const std::vector<LiveForm>& forms() const;
+  /// The first candidate of the last ranking and the one that it cannot be told from, with the numbers of both.
+  [[nodiscard]] const std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>>& rivals() const {
+    return rivals_;
+  }
   /// Samples not used, by reason: "late", "state invalid", "no force", "not finite", "no input".
   [[nodiscard]] const std::map<std::string, std::int64_t>& rejected() const { return rejected_; }
 
@@ -122,7 +127,9 @@ class LiveDiagnoser {
   Utime past_begin_{};
   identification::IntegralRegressor regressor_;
   std::unique_ptr<Candidates> candidates_;
+  Places places_;
   std::vector<LiveSuspicion> suspicions_;
+  std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_;
   struct Left {
     Utime utime{};
     double ratio{};

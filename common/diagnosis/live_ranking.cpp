@@ -71,6 +71,7 @@ void LiveDiagnoser::use(const Sample& sample, std::optional<EffectRanking>& rank
     ranking = rank(rows->end);
   }
   block_ = block;
+  if (sample.has_position) places_.add(sample.p_WB);
   add(*rows);
 }
 
@@ -104,11 +105,16 @@ void LiveDiagnoser::add(const identification::RowBlock& block) {
 }
 
 EffectRanking LiveDiagnoser::rank(Utime utime) {
-  EffectRanking ranking{.utime = utime, .verdict = "collecting", .candidates = {}};
+  EffectRanking ranking{.utime = utime, .verdict = "collecting"};
+  rivals_.reset();
   if (!candidates_) return ranking;
   const LiveEvidence& evidence = candidates_->evidence;
   if (evidence.blocks() < static_cast<std::size_t>(settings_.fewest_blocks)) return ranking;
   suspicions_ = evidence.judge();
+  std::erase_if(suspicions_, [&](const LiveSuspicion& s) {
+    const LiveForm& form = forms()[static_cast<std::size_t>(s.form)];
+    return places_.rule_out(*form.effect, s.theta, form.variant);
+  });
   const auto convinces = [&](const LiveSuspicion& s) {
     return s.log_odds >= settings_.accept_log_odds && s.error_reduction >= settings_.smallest_reduction;
   };
@@ -135,11 +141,21 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
     return ranking;
   }
   const LiveSuspicion& winner = *best.front();
-  const bool rivalled = std::any_of(best.begin() + 1, best.end(), [&](const LiveSuspicion* other) {
+  const auto rival = std::find_if(best.begin() + 1, best.end(), [&](const LiveSuspicion* other) {
     return convinces(*other) && evidence.likeness(winner, *other) > settings_.alias_correlation &&
            robust_log_likelihood_ratio(other->block_cost, winner.block_cost) < settings_.alternative_log_odds;
   });
-  ranking.verdict = rivalled ? "ambiguous" : "effect";
+  if (rival == best.end()) {
+    ranking.verdict = "effect";
+    return ranking;
+  }
+  const auto active = [&](const LiveSuspicion& s) {
+    const LiveForm& form = forms()[static_cast<std::size_t>(s.form)];
+    return model::ActiveEffect{form.effect, form.variant, form.variant_name, s.theta};
+  };
+  ranking.verdict = "ambiguous";
+  ranking.against = effect_of(**rival)->name();
+  rivals_.emplace(active(winner), active(**rival));
   return ranking;
 }
 
@@ -176,7 +192,9 @@ void LiveDiagnoser::reset() {
   regressor_.reset();
   candidates_.reset();
   left_.clear();
+  places_.clear();
   suspicions_.clear();
+  rivals_.reset();
 }
 
 }  // namespace fathom::diagnosis

@@ -36,6 +36,8 @@ Vector6d Segment::at(double t) const {
   return share.cwiseMax(-1.0).cwiseMin(1.0);
 }
 
+bool Segment::moves(Eigen::Index axis) const { return step[axis] != 0.0 || !amplitude.row(axis).isZero(0.0); }
+
 Information::Information(const model::Vehicle& vehicle, const Vector6d& noise)
     : dof_{vehicle.dof}, weight_{noise.cwiseAbs2().cwiseInverse()} {
   for (const std::string& name : vehicle.parameters)

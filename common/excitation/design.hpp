@@ -26,6 +26,7 @@ struct Segment {
   Eigen::Matrix<double, 6, kSines> phase{Eigen::Matrix<double, 6, kSines>::Zero()};      ///< rad
   /// Share of the largest wrench at `t` [s] from the segment's start.
   [[nodiscard]] Vector6d at(double t) const;
+  [[nodiscard]] bool moves(Eigen::Index axis) const;
 };
 
 enum class Criterion { kD, kA };  ///< volume of the ellipsoid; sum of squared relative standard deviations

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/excitation/segments.hpp"
 
 namespace fathom::excitation {
 namespace {
@@ -86,78 +88,6 @@ void Supervisor::hear(const Health& health) {
   }
 }
 
-void Supervisor::hear(const EffectRanking& ranking) {
-  const bool found = ranking.verdict == "effect" && !ranking.candidates.empty();
-  suspect_ = found ? ranking.candidates.front().name : "";
-}
-
-// An abort needs no permission. Everything else must come from somebody who knows the token, once, and now.
-void Supervisor::hear(const Operator& order) {
-  if (order.abort) {
-    stop(Phase::kAborted, "aborted by the operator");
-    return;
-  }
-  if (order.token != token_ || order.sequence <= last_sequence_) return;
-  if (!has_state_ || std::abs(seconds_between(order.utime, state_.utime)) > settings_.order_age) return;
-  last_sequence_ = order.sequence;
-  if (order.enable && !armed_) {
-    arm();
-  } else if (armed_) {
-    this->order(order);
-  }
-}
-
-void Supervisor::order(const Operator& order) {
-  if (order.order == "hold") {
-    phase_ = Phase::kHold;
-    place_ = {state_.p_WB, turned_};
-    reason_ = "the operator wants it to stay";
-  } else if (order.order == "manual") {
-    phase_ = Phase::kManual;
-    manual_ = order.tau;
-    reason_ = "the operator steers";
-  } else if (order.order == "identify") {
-    if (phase_ == Phase::kHold || phase_ == Phase::kManual || phase_ == Phase::kDone)
-      enter(phase_ == Phase::kDone ? 0 : mode_);
-  } else if (order.order == "skip") {
-    finish_mode(false, "skipped by the operator");
-  } else if (order.order == "retry") {
-    enter(mode_);
-  }
-}
-
-void Supervisor::arm() {
-  std::string why;
-  if (!state_.valid) why = "the state is not valid";
-  if (why.empty()) why = fence_.outside(state_, 0.0);
-  if (why.empty() && !unhealthy_.empty()) why = unhealthy_.begin()->first + " is " + unhealthy_.begin()->second;
-  if (!why.empty()) {
-    reason_ = "not armed: " + why;
-    return;
-  }
-  armed_ = true;
-  armed_at_ = state_.utime;
-  lost_since_ = 0;
-  turned_ = 0.0;
-  FenceSettings settings = settings_.fence;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    if (!std::isfinite(settings.low[i])) settings.low[i] = state_.p_WB[i] - settings_.open_range;
-    if (!std::isfinite(settings.high[i])) settings.high[i] = state_.p_WB[i] + settings_.open_range;
-  }
-  fence_ = Fence{settings};
-  middle_ = fence_.middle();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    // A side far away does not pull the vehicle there.
-    const double reach = settings_.open_range;
-    middle_[i] = std::clamp(middle_[i], std::max(settings.low[i], state_.p_WB[i] - reach),
-                            std::min(settings.high[i], state_.p_WB[i] + reach));
-  }
-  visits_.clear();
-  frozen_.clear();
-  hold_.reset();
-  enter(0);
-}
-
 void Supervisor::stop(Phase phase, const std::string& reason) {
   if (phase_ == Phase::kAborted && !armed_) return;
   armed_ = false;
@@ -165,20 +95,24 @@ void Supervisor::stop(Phase phase, const std::string& reason) {
   reason_ = reason;
   armed_at_ = state_.utime;
   segment_.reset();
+  flight_.reset();
 }
 
 // A mode begins in the middle of the room, with the axis that it excites along the room's longer side.
 Place Supervisor::place_for(const Mode& mode) const {
   const Eigen::Vector3d room = fence_.settings().high - fence_.settings().low;
   const double longer = room.x() >= room.y() ? 0.0 : 0.5 * kHalfTurn;
-  const double heading = mode.axis == 1 ? longer + 0.5 * kHalfTurn : longer;
-  // Either way round serves; the nearer one, but not further than half a turn of the tether.
+  return {middle_, turned_towards(mode.axis == 1 ? longer + 0.5 * kHalfTurn : longer)};
+}
+
+// Either way round serves; the nearer one, but not further than half a turn of the tether.
+double Supervisor::turned_towards(double heading) const {
   const double start = last_heading_ - turned_;
   double target = heading - start;
   target += kHalfTurn * std::round((turned_ - target) / kHalfTurn);
   while (target > kHalfTurn) target -= kHalfTurn;
   while (target < -kHalfTurn) target += kHalfTurn;
-  return {middle_, target};
+  return target;
 }
 
 void Supervisor::enter(std::size_t mode) {
@@ -187,6 +121,7 @@ void Supervisor::enter(std::size_t mode) {
   mode_since_ = now();
   dwell_ = 0.0;
   verdict_ = {};
+  flight_.reset();
   if (this->mode().axis < 0) frozen_.clear();  // all are learnt again to the end
   begin();
 }
@@ -215,8 +150,8 @@ void Supervisor::begin() {
 }
 
 bool Supervisor::excites(int axis) const {
-  return vehicle_.dof[static_cast<std::size_t>(axis)] && settings_.largest[axis] > 0.0 &&
-         (mode().axis < 0 || mode().axis == axis);
+  if (!vehicle_.dof[static_cast<std::size_t>(axis)] || settings_.largest[axis] <= 0.0) return false;
+  return flight_ ? flight_->segment.moves(axis) : mode().axis < 0 || mode().axis == axis;
 }
 
 void Supervisor::finish_mode(bool left, const std::string& missing) {
@@ -228,14 +163,24 @@ void Supervisor::finish_mode(bool left, const std::string& missing) {
     enter(mode_ + 1);
     return;
   }
-  phase_ = Phase::kDone;
-  phase_since_ = now();
-  place_ = {state_.p_WB, turned_};
   std::string open;
   for (const Visit& visit : visits_) {
     if (!visit.left) open += (open.empty() ? "" : "; ") + visit.mode + ": " + visit.missing;
   }
-  reason_ = open.empty() ? "all modes are done" : "done, but not settled: " + open;
+  finish(open.empty() ? "all modes are done" : "done, but not settled: " + open);
+}
+
+// At the end it flies what it may without being asked.
+void Supervisor::finish(const std::string& reason) {
+  phase_ = Phase::kDone;
+  phase_since_ = now();
+  place_ = {state_.p_WB, turned_};
+  reason_ = reason;
+  if (!proposal_ || flights_ >= settings_.flights) return;
+  std::optional<Segment> segment = segment_named(proposal_->segment, vehicle_, settings_.largest);
+  if (!segment) return;
+  flight_ = {std::move(*segment), proposal_->duration, proposal_->purpose, Phase::kDone};
+  take_off();
 }
 
 void Supervisor::judge(double now) {
@@ -261,6 +206,10 @@ void Supervisor::judge(double now) {
 
 Vector6d Supervisor::probe(double dt) {
   Vector6d tau = Vector6d::Zero();
+  if (flight_) {
+    const Segment& segment = flight_->segment;
+    return segment.at(std::fmod(now() - phase_since_, segment.duration)).cwiseProduct(settings_.largest);
+  }
   if (settings_.optimal) {
     if (!segment_ || now() - segment_since_ >= segment_->duration - kRounding) {
       segment_ = designer_.next(state_, turned_, model_.value_or(ModelEstimate{}), fence_, hold_.trim());
@@ -275,7 +224,7 @@ Vector6d Supervisor::probe(double dt) {
 }
 
 void Supervisor::turn(const std::array<bool, 6>& axes) {
-  if (settings_.optimal) return;  // what is designed fits, or is bent for the rest of a segment
+  if (settings_.optimal || flight_) return;  // what is designed fits, or is bent for the rest of a segment
   for (std::size_t axis = 0; axis < 6; ++axis) {
     if (axes[axis] && signals_[axis]) signals_[axis]->turn();
   }
@@ -290,6 +239,7 @@ void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
   output_.command = WrenchCommand{.utime = state_.utime, .tau = tau, .life = settings_.life, .commander = {}};
   const bool active = phase_ == Phase::kExcite;
   Excitation said{.utime = state_.utime, .active = active, .reason = reason_, .probe = probe};
+  if (!refused_.empty()) said.reason += "; " + refused_;
   said.mode = armed_ ? mode().name : "";
   said.phase = name(phase_);
   said.signal = !active ? "" : (settings_.optimal ? (segment_ ? segment_->name : "") : "algorithm 1");
@@ -300,6 +250,16 @@ void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
   said.missing = joined(verdict_.missing);
   said.bent = bent;
   said.frozen = frozen_;
+  if (flight_) {
+    said.mode = "segment";
+    said.signal = active ? flight_->segment.name : "";
+    said.elapsed = active ? now() - phase_since_ : 0.0;
+    said.duration = flight_->duration;
+    said.metric = -1.0;
+    said.threshold = 0.0;
+    said.missing.clear();
+    said.frozen.clear();
+  }
   output_.excitation = said;
 }
 
@@ -348,19 +308,27 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   }
   if (lost_since_ != 0) {  // back again: where a mode begins, not where it was cut
     lost_since_ = 0;
-    if (phase_ == Phase::kExcite || phase_ == Phase::kApproach) begin();
+    if (phase_ == Phase::kExcite || phase_ == Phase::kApproach) {
+      if (flight_) {
+        take_off();
+      } else {
+        begin();
+      }
+    }
   }
 
-  const bool anywhere = settings_.optimal && fence_.holds(state.p_WB, state.q_WB * state.nu.head<3>());
+  const bool anywhere = settings_.optimal && !flight_ && fence_.holds(state.p_WB, state.q_WB * state.nu.head<3>());
   if (phase_ == Phase::kApproach && (anywhere || arrived() || now() - phase_since_ > settings_.approach_time)) {
     phase_ = Phase::kExcite;
     phase_since_ = now();
-    reason_ = "settles mode " + mode().name;
+    reason_ = flight_ ? "flies '" + flight_->segment.name + "' " + flight_->purpose : "settles mode " + mode().name;
   }
   std::array<bool, 6> held{};
   for (std::size_t axis = 0; axis < 6; ++axis) held[axis] = vehicle_.dof[axis];
   Vector6d share = Vector6d::Zero();
-  if (phase_ == Phase::kExcite) {
+  if (phase_ == Phase::kExcite && flight_) {
+    if (now() - phase_since_ >= flight_->duration - kRounding) land("is flown");
+  } else if (phase_ == Phase::kExcite) {
     dwell_ += dt;
     judge(now());
   }

@@ -49,6 +49,7 @@ struct SupervisorSettings {
   double patience{3.0};            ///< s without a valid state after which the operator must arm again
   double model_patience{0.0};      ///< s of valid states without a MODEL after which nothing is excited; 0: for ever
   double order_age{5.0};           ///< s that an order may be old
+  int flights{0};                  ///< proposed segments that may be flown at the end without an order
   double open_range{8.0};          ///< m around the start where the site has no walls
   std::vector<std::string> needs;  ///< processes that must not be unhealthy
   HoldSettings hold;
@@ -60,6 +61,9 @@ struct SupervisorSettings {
   [[nodiscard]] static SupervisorSettings from(const Config& config, const model::Vehicle& vehicle,
                                                const model::Site& site);
 };
+
+/// With these words EXCITATION says that a segment could not be flown.
+inline constexpr char kNotFlown[] = "not flown: ";
 
 /// What an operator may want to see at any time.
 enum class Phase { kDisarmed, kApproach, kExcite, kHold, kManual, kDone, kAborted, kLost };
@@ -87,7 +91,7 @@ class Supervisor {
   void hear(const ModelEstimate& model);
   void hear(const Operator& order);
   void hear(const Health& health);
-  /// What the diagnoser suspects is named beside a residual that does not fit.
+  /// What the diagnoser suspects is named beside a residual that does not fit; what it proposes may be flown.
   void hear(const EffectRanking& ranking);
   /// A log started over: disarmed, nothing known.
   void reset();
@@ -98,8 +102,26 @@ class Supervisor {
   [[nodiscard]] const Fence& fence() const { return fence_; }
 
  private:
+  /// A segment that is flown by its name, whatever the schedule says.
+  struct Flight {
+    Segment segment;
+    double duration{};    // s
+    std::string purpose;  // "to tell ... from ..."
+    Phase before{};       // what goes on afterwards; kDone: nothing
+  };
+  struct Proposal {
+    std::string segment;
+    double duration{};
+    std::string purpose;
+  };
   void order(const Operator& order);
-  void arm();
+  [[nodiscard]] bool arm();
+  void fly(const Operator& order);
+  void refuse(const std::string& why);
+  void stay(const std::string& why);
+  void take_off();
+  void land(const std::string& how);
+  void finish(const std::string& reason);
   void stop(Phase phase, const std::string& reason);
   void enter(std::size_t mode);
   void begin();
@@ -108,6 +130,7 @@ class Supervisor {
   [[nodiscard]] Vector6d probe(double dt);
   void turn(const std::array<bool, 6>& axes);
   [[nodiscard]] Place place_for(const Mode& mode) const;
+  [[nodiscard]] double turned_towards(double heading) const;
   [[nodiscard]] bool arrived() const;
   void say(const Vector6d& tau, const Vector6d& probe, bool bent);
   [[nodiscard]] const Mode& mode() const { return settings_.schedule[mode_]; }
@@ -123,6 +146,10 @@ class Supervisor {
   std::vector<std::optional<PaperSignal>> signals_;  // by axis
   std::optional<Segment> segment_;
   double segment_since_{};
+  std::optional<Flight> flight_;
+  std::optional<Proposal> proposal_;  // of the newest EFFECTS
+  int flights_{};                     // since arming
+  std::string refused_;               // what could not be flown, and why
   Phase phase_{Phase::kDisarmed};
   std::string reason_{"waits for the operator to arm"};
   bool armed_{false};

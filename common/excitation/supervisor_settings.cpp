@@ -78,6 +78,7 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   s.closing_time = config.not_negative("closing_time", "s");
   s.patience = config.positive("patience", "s");
   if (config.has("model_patience")) s.model_patience = config.positive("model_patience", "s");
+  if (config.has("flights")) s.flights = std::max(0, config.integer("flights"));
   s.order_age = config.positive("order_age", "s");
   s.open_range = config.positive("open_range", "m");
   s.needs = config.texts("needs");

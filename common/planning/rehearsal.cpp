@@ -164,8 +164,7 @@ Trial fly(const model::Vehicle& vehicle, const model::Model& model, bool by_wren
   excitation::Hold hold{s.hold, s.largest};
   std::array<bool, 6> held{};
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    const bool moved = segment.step[axis] != 0.0 || !segment.amplitude.row(axis).isZero();
-    held[static_cast<std::size_t>(axis)] = !moved && axis != 3 && axis != 4;
+    held[static_cast<std::size_t>(axis)] = !segment.moves(axis) && axis != 3 && axis != 4;
   }
   double turned = 0.0;
   for (const double end = duration + kStep * kSample; stage.seconds() < end;) {

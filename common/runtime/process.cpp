@@ -101,6 +101,11 @@ std::string Process::config_path(const std::string& key) const {
   return found;
 }
 
+bool Process::has_config(const std::string& key) const {
+  return std::ranges::any_of(state_->arguments.config,
+                             [&](const std::string& path) { return Config::load(path).has(key); });
+}
+
 void Process::send(const std::string& channel, const std::string& type, Utime utime) {
   const auto speech = find_channel(state_->speeches, channel);
   if (speech == state_->speeches.end() || speech->type != type) {

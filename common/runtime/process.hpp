@@ -57,6 +57,8 @@ class Process {
   [[nodiscard]] Config config();
   /// Path of the one --config file with this top-level key, for files that others load (the vehicle).
   [[nodiscard]] std::string config_path(const std::string& key) const;
+  /// Whether any --config file has this top-level key.
+  [[nodiscard]] bool has_config(const std::string& key) const;
 
   /// Called when message time jumps back by more than a second: a log started over.
   void on_restart(std::function<void()> callback);

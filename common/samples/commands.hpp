@@ -23,8 +23,10 @@ struct Operator {
   Utime utime{};
   bool abort{false};               ///< thrust to zero at once
   bool enable{false};              ///< automatic motion is allowed
-  std::string order;               ///< "hold", "identify", "manual", "skip", "retry"; empty: no change
+  std::string order;               ///< "hold", "identify", "manual", "skip", "retry", "fly"; empty: no change
   Vector6d tau{Vector6d::Zero()};  ///< N, N m at the body origin, body axes; used under "manual"
+  std::string segment;             ///< what to "fly", by name; empty: what EFFECTS proposes
+  double duration{};               ///< s of "fly", the segment again and again; 0: as proposed, else once
   std::string token;               ///< as configured on the vehicle: without it only an abort is obeyed
   std::int64_t sequence{};         ///< rises with every order: one that was heard before is not obeyed again
 };
@@ -38,7 +40,7 @@ struct Excitation {
   double elapsed{};                  ///< s since the experiment began
   double duration{};                 ///< s planned
   Vector6d probe{Vector6d::Zero()};  ///< N, N m: the experiment's share of the command
-  std::string mode;                  ///< "yaw", "surge", "sway", "heave" or "total"; empty: none
+  std::string mode;                  ///< "yaw", "surge", "sway", "heave", "total", "segment"; empty: none
   std::string phase;                 ///< "disarmed", "approach", "excite", "done", "aborted" or "lost"
   double metric{-1.0};               ///< of MODEL for this mode; -1: not known
   double threshold{};                ///< below which the mode may be left

@@ -150,7 +150,13 @@ fathom_lcm::residual_t encode(const Residual& sample) {
 
 std::optional<EffectRanking> decode(const fathom_lcm::effects_t& message) {
   if (!length(message.n_candidates, message.candidates.size())) return {};
-  EffectRanking sample{.utime = message.utime, .verdict = message.verdict, .candidates = {}};
+  if (!finite(message.duration)) return {};
+  EffectRanking sample{.utime = message.utime,
+                       .verdict = message.verdict,
+                       .candidates = {},
+                       .against = message.against,
+                       .segment = message.segment,
+                       .duration = message.duration};
   sample.candidates.reserve(message.candidates.size());
   for (const auto& part : message.candidates) {
     if (!finite(part.log_odds) || !finite(part.error_reduction)) return {};
@@ -178,6 +184,9 @@ fathom_lcm::effects_t encode(const EffectRanking& sample) {
     to.n_numbers = count(part.numbers);
     to.numbers = part.numbers;
   }
+  message.against = sample.against;
+  message.segment = sample.segment;
+  message.duration = sample.duration;
   return message;
 }
 
@@ -198,13 +207,15 @@ fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
 
 std::optional<Operator> decode(const fathom_lcm::operator_t& message) {
   // An abort must never be refused for a bad number that nobody will use.
-  const bool usable = finite(message.tau);
+  const bool usable = finite(message.tau) && finite(message.duration);
   if (!usable && message.abort == 0) return {};
   return Operator{.utime = message.utime,
                   .abort = message.abort != 0,
                   .enable = message.enable != 0,
                   .order = message.order,
                   .tau = usable ? vector(message.tau) : Vector6d(Vector6d::Zero()),
+                  .segment = message.segment,
+                  .duration = usable ? message.duration : 0.0,
                   .token = message.token,
                   .sequence = message.sequence};
 }
@@ -216,6 +227,8 @@ fathom_lcm::operator_t encode(const Operator& sample) {
   message.enable = sample.enable;
   message.order = sample.order;
   put(sample.tau, message.tau);
+  message.segment = sample.segment;
+  message.duration = sample.duration;
   message.token = sample.token;
   message.sequence = sample.sequence;
   return message;

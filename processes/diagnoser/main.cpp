@@ -8,21 +8,40 @@
 #include "common/diagnosis/live_diagnoser.hpp"
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/thruster_forces.hpp"
+#include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
+#include "processes/diagnoser/proposals.hpp"
 
 using namespace fathom;
+
+namespace {
+
+/// Where the site is known, and what the supervisor may do there.
+std::optional<diagnoser::Proposals> proposals_of(const runtime::Process& process, const model::Vehicle& vehicle) {
+  if (!process.has_config("site") || !process.has_config("supervisor")) return {};
+  const model::Site site = model::Site::load(process.config_path("site"));
+  const Config pipeline = Config::load(process.config_path("supervisor"));
+  const planning::RehearsalSettings settings{
+      .supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), vehicle, site)};
+  return diagnoser::Proposals{planning::LiveSeparation{vehicle, settings}};
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   return runtime::main("diagnoser", argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
+    std::optional<diagnoser::Proposals> proposals = proposals_of(process, vehicle);
     diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle};
     estimation::ThrusterForces forces{corrections.thrusters, vehicle};
-    const auto say = [&](const std::optional<EffectRanking>& ranking) {
-      if (ranking) process.publish(wire::kEffects, wire::encode(*ranking));
+    const auto say = [&](std::optional<EffectRanking> ranking) {
+      if (!ranking) return;
+      if (proposals) proposals->complete(*ranking, diagnoser.rivals());
+      process.publish(wire::kEffects, wire::encode(*ranking));
     };
 
     process.publishes<fathom_lcm::effects_t>(wire::kEffects);
@@ -46,9 +65,11 @@ int main(int argc, char** argv) {
       const auto model = wire::decode(message);
       if (!model) return process.reject(wire::kModel);
       diagnoser.hear(*model);
+      if (proposals) proposals->hear(*model);
     });
     process.on_restart([&] {
       diagnoser.reset();
+      if (proposals) proposals->reset();
       forces.reset();
     });
     process.on_end([&] {

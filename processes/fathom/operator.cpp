@@ -1,5 +1,5 @@
-// fathom arm, abort, order, status: the operator's console. Orders carry the token of the vehicle's operator file, the
-// vehicle's time and a sequence number; an abort needs none of these.
+// fathom arm, fly, abort, order, status: the operator's console. Orders carry the token of the vehicle's operator file,
+// the vehicle's time and a sequence number; an abort needs none of these.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/operator_token.hpp"
+#include "common/excitation/supervisor.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/console.hpp"
 
@@ -17,7 +18,8 @@ namespace {
 struct Options {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
   std::string operator_file;
-  std::string word;
+  std::string word, segment;
+  double seconds{};
 };
 
 Utime wall_clock() {
@@ -42,14 +44,25 @@ void order(const Options& options, bool enable, const std::string& word) {
     throw InputError("no THRUSTERS on the bus: is the thruster driver (or the simulator) running?");
   const std::string before = console.excitation ? console.excitation->phase : "";
   const auto give = [&] {
-    console.say(
-        {.utime = *console.vehicle_time, .enable = enable, .order = word, .token = token, .sequence = wall_clock()});
+    console.say({.utime = *console.vehicle_time,
+                 .enable = enable,
+                 .order = word,
+                 .segment = options.segment,
+                 .duration = options.seconds,
+                 .token = token,
+                 .sequence = wall_clock()});
   };
   give();
-  const auto moved = [&] { return console.excitation && console.excitation->phase != before; };
+  // What is refused changes the reason only.
+  const std::string said = console.excitation ? console.excitation->reason : "";
+  const auto moved = [&] {
+    return console.excitation && (console.excitation->phase != before || console.excitation->reason != said);
+  };
   console.listen(1.5, moved);
   if (!console.excitation) throw InputError("no EXCITATION on the bus: is the supervisor running?");
   print(*console.excitation);
+  if (console.excitation->reason.find(excitation::kNotFlown) != std::string::npos)
+    throw InputError("the supervisor goes on as before; see above");
   if (enable && console.excitation->phase == "disarmed") throw InputError("the supervisor did not arm; see above");
 }
 
@@ -101,6 +114,14 @@ void add_operator(CLI::App& app) {
   with_token(say);
   say->add_option("word", options->word)->required()->check(CLI::IsMember({"hold", "identify", "skip", "retry"}));
   say->callback([options] { order(*options, false, options->word); });
+  CLI::App* fly = add(
+      app, "fly", "one segment by its name, as fathom plan and diagnose give it; without one the diagnoser's proposal",
+      options);
+  with_token(fly);
+  fly->add_option("segment", options->segment, "for instance 'full steps in surge'");
+  fly->add_option("--seconds", options->seconds, "of it, again and again (as proposed, else once)")
+      ->check(CLI::PositiveNumber);
+  fly->callback([options] { order(*options, true, "fly"); });
   CLI::App* abort = add(app, "abort", "thrusters to zero at once; needs no token", options);
   abort->callback([options] { abort_now(*options); });
   CLI::App* ask = add(app, "status", "what runs, in which mode, and what is missing", options);

@@ -24,7 +24,7 @@ void Options::add_to(CLI::App& app) {
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-for", wait_for, "processes started with --lockstep: wait for each of them")->delimiter(',');
-  app.add_option("--order", orders, "the operator's word at a virtual time: SECONDS=enable, abort, hold, identify")
+  app.add_option("--order", orders, "the operator's word at a virtual time: SECONDS=enable, abort, hold, identify, fly")
       ->take_all()
       ->expected(1);
   app.add_option("--bytes", drivers,
@@ -41,13 +41,13 @@ std::vector<Operator> Options::schedule() const {
     const char* end = text.data() + std::min(equals, text.size());
     const auto [stop, error] = std::from_chars(text.data(), end, seconds);
     const std::string word = equals == std::string::npos ? "" : text.substr(equals + 1);
-    const bool known = word == "enable" || word == "abort" || word == "hold" || word == "identify";
+    const bool known = word == "enable" || word == "abort" || word == "hold" || word == "identify" || word == "fly";
     if (error != std::errc{} || stop != end || !(seconds >= 0.0) || !known) {
-      throw InputError("--order " + text + ": write SECONDS=WORD, WORD one of enable, abort, hold, identify");
+      throw InputError("--order " + text + ": write SECONDS=WORD, WORD one of enable, abort, hold, identify, fly");
     }
     schedule.push_back({.utime = utime_after(setup.origin, seconds),
                         .abort = word == "abort",
-                        .enable = word == "enable" || word == "identify",
+                        .enable = word == "enable" || word == "identify" || word == "fly",
                         .order = word == "abort"    ? ""
                                  : word == "enable" ? "identify"
                                                     : word,

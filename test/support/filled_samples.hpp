@@ -64,7 +64,7 @@ inline void fill(Fill& f, OpticalFlow& s) {
 inline void fill(Fill& f, LaserRange& s) { s = {f.utime(), f.word(), f.matrix<Vector3>(), f.number()}; }
 inline void fill(Fill& f, WrenchCommand& s) { s = {f.utime(), f.matrix<Vector6d>(), f.number(), f.word()}; }
 inline void fill(Fill& f, Operator& s) {
-  s = {f.utime(), false, true, f.word(), f.matrix<Vector6d>(), f.word(), f.whole()};
+  s = {f.utime(), false, true, f.word(), f.matrix<Vector6d>(), f.word(), f.number(), f.word(), f.whole()};
 }
 inline void fill(Fill& f, Excitation& s) {
   s = {f.utime(), true,     f.word(),   f.word(),   f.number(), f.number(), f.matrix<Vector6d>(),
@@ -95,7 +95,7 @@ inline void fill(Fill& f, ModelEstimate& s) {
 }
 inline void fill(Fill& f, Residual& s) { s = {f.utime(), f.matrix<Vector6d>()}; }
 inline void fill(Fill& f, EffectRanking& s) {
-  s = {f.utime(), f.word(), {}};
+  s = {f.utime(), f.word(), {}, f.word(), f.word(), f.number()};
   for (int i = 0; i < 2; ++i) s.candidates.push_back({f.word(), f.number(), f.number(), f.word(), f.list()});
 }
 inline void fill(Fill& f, Truth& s) {

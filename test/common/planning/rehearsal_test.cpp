@@ -7,9 +7,9 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/excitation/segments.hpp"
 #include "common/model/dynamics.hpp"
 #include "common/model/site.hpp"
-#include "common/planning/segments.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -65,7 +65,7 @@ TEST_CASE("rehearsal: what ends as soon as it begins is said") {
 TEST_CASE("segments: each has a name of its own, moves what it names, and stays inside") {
   const Tank tank;
   std::set<std::string> names;
-  for (const excitation::Segment& segment : segments(tank.vehicle, tank.settings.supervisor.largest)) {
+  for (const excitation::Segment& segment : excitation::segments(tank.vehicle, tank.settings.supervisor.largest)) {
     CAPTURE(segment.name);
     CHECK(names.insert(segment.name).second);
     const Trial trial =

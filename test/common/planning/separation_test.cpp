@@ -5,13 +5,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "common/base/config.hpp"
+#include "common/excitation/segments.hpp"
 #include "common/model/dynamics.hpp"
 #include "common/model/rollout.hpp"
 #include "common/model/site.hpp"
 #include "common/planning/flights.hpp"
+#include "common/planning/live_separation.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -65,4 +68,31 @@ TEST_CASE("separation: the segment that is named tells look-alikes apart, and an
 TEST_CASE("separation: where nothing more can be flown there is no answer") {
   const Ahead ahead;
   CHECK_FALSE(segment_between(ahead.weak, ahead.shifted, ahead.scene, *ahead.data, {}));
+}
+
+TEST_CASE("separation: while a trial runs, the identifier's parameters and two suspects are enough") {
+  const Ahead ahead;
+  const LiveSeparation live{ahead.vehicle, ahead.settings};
+  ModelEstimate known;
+  for (std::size_t i = 0; i < ahead.vehicle.parameters.size(); ++i) {
+    const double mean = ahead.vehicle.priors[i].mean;
+    known.parameters.push_back({ahead.vehicle.parameters[i], mean, 0.01 * std::abs(mean) + 0.01, ""});
+  }
+  model::ActiveEffect weak = ahead.weak, strong = ahead.weak;
+  weak.theta = {-0.1};
+  strong.theta = {-0.4};
+  const std::vector<std::string> forms = ahead.shifted.variants(ahead.scene);
+  const auto form = std::ranges::find_if(forms, [](const std::string& name) { return name != "-"; });
+  REQUIRE(form != forms.end());
+  const model::ActiveEffect shifted =
+      test::active("thruster_misalignment", {0.02}, static_cast<int>(form - forms.begin()));
+  const auto answer = live.between(weak, shifted, known);
+  REQUIRE(answer);
+  CHECK(excitation::segment_named(answer->segment, ahead.vehicle, ahead.settings.supervisor.largest));
+  CHECK(answer->seconds >= 5.0);
+  CHECK_FALSE(live.between(weak, weak, known));
+  // What is four times as large shows sooner, or as soon as anything can.
+  const auto sooner = live.between(strong, shifted, known);
+  REQUIRE(sooner);
+  CHECK(sooner->seconds <= answer->seconds);
 }

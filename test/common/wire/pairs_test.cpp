@@ -154,13 +154,13 @@ TEST_CASE("wire: every sensor sample comes back whole, and no non-finite number 
 
 TEST_CASE("wire: every sample of minds, commands and processes comes back whole, and no non-finite number comes in") {
   check_pair<WrenchCommand, 4>();
-  check_pair<Operator, 7>();
+  check_pair<Operator, 9>();
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
   check_pair<SmoothedState, 6>();
   check_pair<ModelEstimate, 10>();
   check_pair<Residual, 2>();
-  check_pair<EffectRanking, 3>();
+  check_pair<EffectRanking, 6>();
   check_pair<Truth, 7>();
   check_pair<Health, 14>();
   check_pair<ProcessInfo, 5>();

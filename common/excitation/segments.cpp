@@ -1,29 +1,29 @@
-#include "common/planning/segments.hpp"
+#include "common/excitation/segments.hpp"
 
 #include <array>
-#include <string>
+#include <utility>
 
-namespace fathom::planning {
+namespace fathom::excitation {
 namespace {
 
 constexpr double kDuration = 20.0;  // s
 constexpr std::array kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
-excitation::Segment named(const std::string& name) { return {.name = name, .duration = kDuration}; }
+Segment named(const std::string& name) { return {.name = name, .duration = kDuration}; }
 
 }  // namespace
 
-std::vector<excitation::Segment> segments(const model::Vehicle& vehicle, const Vector6d& largest) {
-  std::vector<excitation::Segment> all;
+std::vector<Segment> segments(const model::Vehicle& vehicle, const Vector6d& largest) {
+  std::vector<Segment> all;
   std::vector<Eigen::Index> axes;
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     if (vehicle.dof[static_cast<std::size_t>(axis)] && largest[axis] > 0.0) axes.push_back(axis);
   }
-  excitation::Segment together = named("full steps on all axes");
+  Segment together = named("full steps on all axes");
   for (const Eigen::Index axis : axes) {
     const std::string motion = kMotions[static_cast<std::size_t>(axis)];
-    excitation::Segment full = named("full steps in " + motion), small = named("small steps in " + motion),
-                        slow = named("a slow sine in " + motion), quick = named("a quick sine in " + motion);
+    Segment full = named("full steps in " + motion), small = named("small steps in " + motion),
+            slow = named("a slow sine in " + motion), quick = named("a quick sine in " + motion);
     full.step[axis] = 0.95;
     full.switch_at[axis] = 2.5;
     small.step[axis] = 0.2;
@@ -36,7 +36,7 @@ std::vector<excitation::Segment> segments(const model::Vehicle& vehicle, const V
     together.switch_at[axis] = 1.5 + 0.4 * static_cast<double>(axis);
     for (const auto& each : {full, small, slow, quick}) all.push_back(each);
     if (axis != 5 && axis < 3 && vehicle.dof[5] && largest[5] > 0.0) {
-      excitation::Segment turning = named("full steps in " + motion + " while turning to and fro");
+      Segment turning = named("full steps in " + motion + " while turning to and fro");
       turning.step[axis] = 0.9;
       turning.switch_at[axis] = 2.0;
       turning.amplitude(5, 0) = 0.8;
@@ -48,4 +48,11 @@ std::vector<excitation::Segment> segments(const model::Vehicle& vehicle, const V
   return all;
 }
 
-}  // namespace fathom::planning
+std::optional<Segment> segment_named(const std::string& name, const model::Vehicle& vehicle, const Vector6d& largest) {
+  for (Segment& one : segments(vehicle, largest)) {
+    if (one.name == name) return std::move(one);
+  }
+  return std::nullopt;
+}
+
+}  // namespace fathom::excitation
