@@ -35,7 +35,7 @@ struct LiveSettings {
   int most_blocks{200};              ///< then pairs are merged
   double accept_log_odds{5.0};       ///< 150 to 1, after paying for parameters and candidates; as offline
   double smallest_reduction{0.005};  ///< of the residual (RMS): less changes no prediction
-  double alias_correlation{0.9};     ///< of two effects' signatures
+  double alias_correlation{0.6};     ///< of two effects' signatures: beyond, they may be one
   double alternative_log_odds{3.0};  ///< closer than this, two look-alikes are not told apart
   bool interpolate_input{true};      ///< false: a command holds until the next
   double max_input_gap{0.5};         ///< s

@@ -45,7 +45,11 @@ std::optional<Answer> LiveSeparation::between(const model::ActiveEffect& first, 
   std::vector<Suspect> pair(2);
   pair[0] = {.active = first, .change = silent.change(first), .imitated = {}};
   pair[1] = {.active = second, .change = silent.change(second), .imitated = {}};
-  return Energies{silent, flights.extras(), pair}.tells_apart(0, 1);
+  std::optional<Answer> answer = Energies{silent, flights.extras(), pair}.tells_apart(0, 1);
+  if (!answer) return answer;
+  const auto segment = std::ranges::find(flights.extras(), answer->segment, &Extra::name);
+  answer->seconds = std::max(answer->seconds, segment->duration);
+  return answer;
 }
 
 }  // namespace fathom::planning

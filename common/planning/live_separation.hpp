@@ -14,7 +14,8 @@ class LiveSeparation {
  public:
   LiveSeparation(const model::Vehicle& vehicle, const RehearsalSettings& settings);
 
-  /// At the sizes at which both explain the trial so far. Empty when no segment would tell them apart.
+  /// At the sizes at which both explain the trial so far. A whole segment at least: evidence on line comes in blocks.
+  /// Empty when no segment would tell them apart.
   [[nodiscard]] std::optional<Answer> between(const model::ActiveEffect& first, const model::ActiveEffect& second,
                                               const ModelEstimate& known) const;
 

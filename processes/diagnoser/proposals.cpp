@@ -10,24 +10,17 @@ std::string word(const model::ActiveEffect& effect) {
 }  // namespace
 
 void Proposals::complete(EffectRanking& ranking, const Rivals& rivals) {
-  if (answer_.valid()) answers_[asked_] = answer_.get();
-  if (!rivals) return;
+  if (!rivals || !model_) return;
   const std::string question = word(rivals->first) + " or " + word(rivals->second);
-  const auto known = answers_.find(question);
-  if (known == answers_.end()) {
-    if (!model_) return;
-    asked_ = question;
-    answer_ = std::async(std::launch::async, [this, pair = *rivals, model = *model_] {
-      return separation_.between(pair.first, pair.second, model);
-    });
-  } else if (known->second) {
-    ranking.segment = known->second->segment;
-    ranking.duration = known->second->seconds;
-  }
+  auto known = answers_.find(question);
+  if (known == answers_.end())
+    known = answers_.emplace(question, separation_.between(rivals->first, rivals->second, *model_)).first;
+  if (!known->second) return;
+  ranking.segment = known->second->segment;
+  ranking.duration = known->second->seconds;
 }
 
 void Proposals::reset() {
-  if (answer_.valid()) answer_.get();
   answers_.clear();
   model_.reset();
 }

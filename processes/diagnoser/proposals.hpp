@@ -1,8 +1,6 @@
-// What to fly when the diagnoser cannot tell two candidates apart. Flying segments in advance takes seconds, so that it
-// is done beside the trial; the answer belongs to the ranking that follows, whenever it came.
+// What to fly when the diagnoser cannot tell two candidates apart: asked once for each pair, a tenth of a second.
 #pragma once
 
-#include <future>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,7 +19,7 @@ class Proposals {
   explicit Proposals(planning::LiveSeparation separation) : separation_{std::move(separation)} {}
 
   void hear(const ModelEstimate& model) { model_ = model; }
-  /// Names the segment in `ranking` once it is known for these rivals.
+  /// Names the segment that tells the rivals apart, if there is one.
   void complete(EffectRanking& ranking, const Rivals& rivals);
   void reset();
 
@@ -29,8 +27,6 @@ class Proposals {
   planning::LiveSeparation separation_;
   std::optional<ModelEstimate> model_;
   std::map<std::string, std::optional<planning::Answer>> answers_;
-  std::string asked_;
-  std::future<std::optional<planning::Answer>> answer_;
 };
 
 }  // namespace fathom::diagnoser

@@ -89,7 +89,7 @@ TEST_CASE("separation: while a trial runs, the identifier's parameters and two s
   const auto answer = live.between(weak, shifted, known);
   REQUIRE(answer);
   CHECK(excitation::segment_named(answer->segment, ahead.vehicle, ahead.settings.supervisor.largest));
-  CHECK(answer->seconds >= 5.0);
+  CHECK(answer->seconds >= 20.0);
   CHECK_FALSE(live.between(weak, weak, known));
   // What is four times as large shows sooner, or as soon as anything can.
   const auto sooner = live.between(strong, shifted, known);
