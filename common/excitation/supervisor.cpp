@@ -179,6 +179,7 @@ void Supervisor::finish(const std::string& reason) {
   if (!proposal_ || flights_ >= settings_.flights) return;
   std::optional<Segment> segment = segment_named(proposal_->segment, vehicle_, settings_.largest);
   if (!segment) return;
+  ++flights_;
   flight_ = {std::move(*segment), proposal_->duration, proposal_->purpose, Phase::kDone};
   take_off();
 }

@@ -148,7 +148,7 @@ class Supervisor {
   double segment_since_{};
   std::optional<Flight> flight_;
   std::optional<Proposal> proposal_;  // of the newest EFFECTS
-  int flights_{};                     // since arming
+  int flights_{};                     // without an order, since arming
   std::string refused_;               // what could not be flown, and why
   Phase phase_{Phase::kDisarmed};
   std::string reason_{"waits for the operator to arm"};

@@ -156,7 +156,6 @@ void Supervisor::take_off() {
 void Supervisor::land(const std::string& how) {
   const Flight flown = std::move(*flight_);
   flight_.reset();
-  ++flights_;
   const std::string told = "'" + flown.segment.name + "' " + how;
   if (flown.before == Phase::kApproach || flown.before == Phase::kExcite) {
     begin();
