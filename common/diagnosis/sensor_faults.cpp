@@ -12,9 +12,12 @@ namespace {
 constexpr double kMostOdds = 200.0;    // log odds beyond which more evidence says nothing to anybody
 constexpr double kFindingsTried = 40;  // numbers that the sensor check looks at
 
+constexpr double kSame = 3.0;  // standard deviations by which two delays may differ
+
 /// The effect that a finding amounts to, and its number as that effect states it.
 struct Fault {
   std::string effect;
+  std::string signal, reference;
   NamedValue number;
   double deviations{};  ///< from no fault
 };
@@ -22,7 +25,11 @@ struct Fault {
 std::optional<Fault> fault_of(const ConsistencyFinding& finding) {
   if (finding.run != "all" || finding.std <= 0.0 || !finding.action.starts_with("corrected")) return std::nullopt;
   const auto fault = [&](const char* effect, const std::string& number, double value, double std) {
-    return Fault{effect, {finding.signal + "." + number, value, std, finding.unit}, std::abs(value) / std};
+    return Fault{effect,
+                 finding.signal,
+                 finding.reference,
+                 {finding.signal + "." + number, value, std, finding.unit},
+                 std::abs(value) / std};
   };
   if (finding.finding == "delay") return fault("sensor_latency", "delay", finding.size, finding.std);
   if (finding.finding == "scale") {
@@ -34,6 +41,32 @@ std::optional<Fault> fault_of(const ConsistencyFinding& finding) {
   return std::nullopt;
 }
 
+/// Nothing is measured before it happens: what seems early is right, and its reference late. The others are then
+/// counted from the earliest.
+void charge_the_late(std::vector<Fault>& faults) {
+  const auto is_delay = [](const Fault& f) { return f.effect == "sensor_latency"; };
+  std::optional<Fault> earliest;
+  for (const Fault& f : faults) {
+    if (is_delay(f) && (!earliest || f.number.value < earliest->number.value)) earliest = f;
+  }
+  if (!earliest || earliest->number.value >= 0.0) return;
+  for (Fault& f : faults) {
+    if (!is_delay(f) || f.reference != earliest->reference || f.signal == earliest->signal) continue;
+    f.number.value -= earliest->number.value;
+    f.number.std = std::hypot(f.number.std, earliest->number.std);
+    f.deviations = std::abs(f.number.value) / f.number.std;
+  }
+  std::erase_if(faults, [&](const Fault& f) {
+    return is_delay(f) && f.reference == earliest->reference && (f.signal == earliest->signal || f.deviations < kSame);
+  });
+  faults.push_back(
+      {earliest->effect,
+       earliest->reference,
+       earliest->signal,
+       {earliest->reference + ".delay", -earliest->number.value, earliest->number.std, earliest->number.unit},
+       earliest->deviations});
+}
+
 std::string listed(const std::vector<EffectFound>& effects) {
   std::string text;
   for (std::size_t i = 0; i < effects.size(); ++i) text += (i > 0 ? ", " : "") + effects[i].name;
@@ -43,24 +76,27 @@ std::string listed(const std::vector<EffectFound>& effects) {
 }  // namespace
 
 void adopt_sensor_faults(DiagnosisResult& result) {
-  std::vector<EffectFound> found;
+  std::vector<Fault> faults;
   for (const ConsistencyFinding& finding : result.consistency) {
-    const std::optional<Fault> fault = fault_of(finding);
-    if (!fault) continue;
-    const double odds = std::min(0.5 * fault->deviations * fault->deviations, kMostOdds) - std::log(kFindingsTried);
-    auto place = std::find_if(found.begin(), found.end(), [&](const auto& e) { return e.name == fault->effect; });
+    if (const std::optional<Fault> fault = fault_of(finding)) faults.push_back(*fault);
+  }
+  charge_the_late(faults);
+  std::vector<EffectFound> found;
+  for (const Fault& fault : faults) {
+    const double odds = std::min(0.5 * fault.deviations * fault.deviations, kMostOdds) - std::log(kFindingsTried);
+    auto place = std::find_if(found.begin(), found.end(), [&](const auto& e) { return e.name == fault.effect; });
     if (place == found.end()) {
-      const model::Effect* effect = model::find_effect(fault->effect);
-      found.push_back({.name = fault->effect,
-                       .variant = finding.signal,
+      const model::Effect* effect = model::find_effect(fault.effect);
+      found.push_back({.name = fault.effect,
+                       .variant = fault.signal,
                        .log_odds = odds,
                        .sentence = effect != nullptr ? std::string(effect->sentence()) : ""});
       place = found.end() - 1;
-    } else if (place->variant.find(finding.signal) == std::string::npos) {
-      place->variant += ", " + finding.signal;
+    } else if (place->variant.find(fault.signal) == std::string::npos) {
+      place->variant += ", " + fault.signal;
     }
     place->log_odds = std::max(place->log_odds, odds);
-    place->parameters.push_back(fault->number);
+    place->parameters.push_back(fault.number);
   }
   if (found.empty()) return;
   result.paragraph = "The sensors contradict each other (" + listed(found) +

@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <map>
+#include <string>
+
 using namespace fathom;
 
 namespace {
@@ -38,6 +41,23 @@ TEST_CASE("sensor faults: delay, scale and lever arm become effects, in the term
   CHECK(result.verdict == "effect");
   CHECK(result.candidates.size() == 3);
   CHECK(result.effects[0].log_odds > 3.0);
+}
+
+TEST_CASE("sensor faults: nothing is measured before it happens: what seems early has a late reference") {
+  const auto delays = [](double gyro, double dvl) {
+    DiagnosisResult result{.verdict = "adequate"};
+    result.consistency = {finding("gyro", "delay", gyro, 0.001), finding("dvl", "delay", dvl, 0.002)};
+    for (ConsistencyFinding& each : result.consistency) each.reference = "pose_capture";
+    diagnosis::adopt_sensor_faults(result);
+    REQUIRE(result.effects.size() == 1);
+    std::map<std::string, double> numbers;
+    for (const NamedValue& number : result.effects[0].parameters) numbers[number.name] = number.value;
+    return numbers;
+  };
+  using Numbers = std::map<std::string, double>;
+  CHECK(delays(0.07, 0.22) == Numbers{{"gyro.delay", 0.07}, {"dvl.delay", 0.22}});
+  CHECK(delays(-1.0, -0.998) == Numbers{{"pose_capture.delay", 1.0}});
+  CHECK(delays(-0.5, 0.25) == Numbers{{"pose_capture.delay", 0.5}, {"dvl.delay", 0.75}});
 }
 
 TEST_CASE("sensor faults: what was only reported, held in one run only, or is a count is no effect") {
