@@ -120,7 +120,7 @@ void add_operator(CLI::App& app) {
   with_token(fly);
   fly->add_option("segment", options->segment, "for instance 'full steps in surge'");
   fly->add_option("--seconds", options->seconds, "of it, again and again (as proposed, else once)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1.0, 600.0));
   fly->callback([options] { order(*options, true, "fly"); });
   CLI::App* abort = add(app, "abort", "thrusters to zero at once; needs no token", options);
   abort->callback([options] { abort_now(*options); });
