@@ -106,7 +106,8 @@ void list_candidates(const SearchResult& found, DiagnosisResult& result) {
     const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                     [&](const CandidateTried& c) { return c.name == name; });
     if (!listed)
-      result.candidates.push_back({name, "", 0.0, 0.0, {}, "not applicable: the data lacks the signals that it needs"});
+      result.candidates.push_back(
+          {name, "", 0.0, 0.0, {}, "not applicable: the base model has it, or the data lacks what it needs"});
   }
 }
 
