@@ -167,7 +167,8 @@ void Supervisor::finish_mode(bool left, const std::string& missing) {
   for (const Visit& visit : visits_) {
     if (!visit.left) open += (open.empty() ? "" : "; ") + visit.mode + ": " + visit.missing;
   }
-  finish(open.empty() ? "all modes are done" : "done, but not settled: " + open);
+  closing_ = open.empty() ? "all modes are done" : "done, but not settled: " + open;
+  finish(closing_);
 }
 
 // At the end it flies what it may without being asked.
@@ -252,7 +253,7 @@ void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
   said.bent = bent;
   said.frozen = frozen_;
   if (flight_) {
-    said.mode = "segment";
+    said.mode = kSegmentMode;
     said.signal = active ? flight_->segment.name : "";
     said.elapsed = active ? now() - phase_since_ : 0.0;
     said.duration = flight_->duration;

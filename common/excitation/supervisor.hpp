@@ -149,6 +149,7 @@ class Supervisor {
   std::optional<Flight> flight_;
   std::optional<Proposal> proposal_;  // of the newest EFFECTS
   int flights_{};                     // without an order, since arming
+  std::string closing_;               // the schedule's last words; empty: it did not come to its end
   std::string refused_;               // what could not be flown, and why
   Phase phase_{Phase::kDisarmed};
   std::string reason_{"waits for the operator to arm"};

@@ -97,6 +97,7 @@ bool Supervisor::arm() {
   frozen_.clear();
   hold_.reset();
   flights_ = 0;
+  closing_.clear();
   refused_.clear();
   return true;
 }
@@ -160,7 +161,7 @@ void Supervisor::land(const std::string& how) {
   if (flown.before == Phase::kApproach || flown.before == Phase::kExcite) {
     begin();
   } else if (flown.before == Phase::kDone) {
-    finish(told);
+    finish(closing_.empty() ? told : closing_ + "; " + told);
   } else {
     stay(told);
   }

@@ -56,6 +56,9 @@ std::string to_json(const LiveTrialResult& result) {
                              {"threshold", finite(visit.threshold)},
                              {"missing", visit.missing}});
   }
+  json["flights"] = Json::array();
+  for (const FlownSegment& flight : result.flights)
+    json["flights"].push_back({{"segment", flight.segment}, {"begun_s", flight.begun}, {"ended_s", flight.ended}});
   json["parameters"] = Json::object();
   for (const NamedValue& p : result.parameters) {
     json["parameters"][p.name] = {

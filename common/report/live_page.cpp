@@ -58,6 +58,10 @@ std::string mode_table(const LiveTrialResult& result) {
             cell(number(visit.threshold), "n") +
             cell(visit.left ? "settled" : "not settled; missing: " + escape(visit.missing)) + "</tr>\n";
   }
+  for (const FlownSegment& flight : result.flights) {
+    html += "<tr>" + cell(kSegmentMode, "k") + cell(number(flight.begun, 4), "n") + cell(number(flight.ended, 4), "n") +
+            cell("-", "n") + cell("-", "n") + cell("flown: " + escape(flight.segment)) + "</tr>\n";
+  }
   return html +
          "</table><p class=\"small soft\">A mode is left when the sum of its parameters' variances is below the "
          "threshold, and the residual and the numbers themselves agree.</p></section>\n";
@@ -161,6 +165,10 @@ std::string evolution(const Recording& recording, const LiveTrialResult& result,
   for (const ModeVisit& visit : result.visits) {
     if (std::ranges::find(drawn, visit.mode) != drawn.end()) continue;
     drawn.push_back(visit.mode);
+    const bool known = std::ranges::any_of(recording.model, [&](const ModelEstimate& model) {
+      return std::ranges::any_of(model.modes, [&](const ModeMetric& m) { return m.mode == visit.mode && m.sum > 0.0; });
+    });
+    if (!known) continue;  // a trial that was cut before the identifier said anything of this mode
     html += figure(album.place(draw_metric(recording, result, visit.mode)), "");
   }
   return html + "</div></section>\n";

@@ -29,6 +29,11 @@ std::string modes(const LiveTrialResult& result) {
     if (visit.left || visit.missing.empty()) continue;
     for (const std::string& line : wrap("missing: " + visit.missing, kColumns - 4)) text += "    " + line + "\n";
   }
+  for (const FlownSegment& flight : result.flights) {
+    text += pad_right(kSegmentMode, 10) + pad_left(number(flight.begun, 4) + " s", 8) +
+            pad_left(number(flight.ended, 4) + " s", 8) + pad_left("-", 11) + pad_left("-", 11) + "  " +
+            flight.segment + "\n";
+  }
   return text;
 }
 

@@ -11,8 +11,11 @@ std::vector<ModeVisit> visits_of(const std::vector<Excitation>& said, Utime orig
   std::vector<ModeVisit> visits;
   const Excitation* before = nullptr;
   std::size_t frozen_before = 0;
+  bool flown = false;  // afterwards the supervisor closes in the name of a mode that it may never have been in
   for (const Excitation& one : said) {
     const double t = seconds_between(origin, one.utime);
+    flown = flown || one.mode == kSegmentMode;
+    if (one.mode == kSegmentMode || (flown && one.phase == "done" && !one.mode.empty())) continue;
     const bool new_mode = !one.mode.empty() && (before == nullptr || before->mode != one.mode);
     const bool over = before != nullptr && !before->mode.empty() && before->mode != one.mode;
     if (over) {
@@ -39,6 +42,19 @@ std::vector<ModeVisit> visits_of(const std::vector<Excitation>& said, Utime orig
   return visits;
 }
 
+std::vector<FlownSegment> flights_of(const std::vector<Excitation>& said, Utime origin) {
+  std::vector<FlownSegment> flights;
+  bool flying = false;
+  for (const Excitation& one : said) {
+    const double t = seconds_between(origin, one.utime);
+    const bool flies = one.active && one.mode == kSegmentMode;
+    if (flies && !flying) flights.push_back({.segment = one.signal, .begun = t, .ended = t});
+    if (flies) flights.back().ended = t;
+    flying = flies;
+  }
+  return flights;
+}
+
 }  // namespace
 
 Utime trial_origin(const Recording& recording) { return recording.state.empty() ? 0 : recording.state.front().utime; }
@@ -61,6 +77,7 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
   result.phase = last.phase;
   result.reason = last.reason;
   result.visits = visits_of(recording.excitation, origin);
+  result.flights = flights_of(recording.excitation, origin);
   // The words of the end know better than what was said meanwhile: "done, but not settled: yaw: ...; total: ...".
   for (ModeVisit& visit : result.visits) {
     if (last.phase != "done") continue;

@@ -31,6 +31,9 @@ struct Operator {
   std::int64_t sequence{};         ///< rises with every order: one that was heard before is not obeyed again
 };
 
+/// Excitation::mode of a segment that is flown by its name: no mode of the schedule.
+inline constexpr char kSegmentMode[] = "segment";
+
 /// The experiment that the supervisor runs, and why.
 struct Excitation {
   Utime utime{};

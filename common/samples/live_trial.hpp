@@ -22,6 +22,13 @@ struct ModeVisit {
   std::string missing;  ///< what was missing at the end
 };
 
+/// A segment that was flown by its name.
+struct FlownSegment {
+  std::string segment;
+  double begun{};  ///< s after the log's first message
+  double ended{};
+};
+
 /// What the true values say, when a simulator has written them down. Nothing else is computed from them.
 struct TruthComparison {
   std::map<std::string, double> parameters;
@@ -40,6 +47,7 @@ struct LiveTrialResult {
   double seconds{};    ///< of the log
   std::string phase;   ///< the supervisor's last: "done", "aborted", "lost", ...
   std::string reason;  ///< its last words
+  std::vector<FlownSegment> flights;
   std::vector<ModeVisit> visits;
   std::vector<NamedValue> parameters;             ///< identified, the std honest
   std::vector<NamedValue> expected;               ///< of the vehicle file: what was known before, for reference

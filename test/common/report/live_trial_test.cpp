@@ -87,6 +87,32 @@ TEST_CASE("live trial: modes are told apart, and the supervisor's last words say
   CHECK_FALSE(result.truth.has_value());
 }
 
+TEST_CASE("live trial: a segment that was flown is no mode, and hides none that is not settled") {
+  for (const bool amid : {true, false}) {
+    CAPTURE(amid);
+    Recording flown = trial();
+    const int from = amid ? 250 : 590;  // within surge, or at the end, as total closes
+    for (int k = from; k < from + 8; ++k) {
+      Excitation& e = flown.excitation[static_cast<std::size_t>(k)];
+      e = {.utime = e.utime, .active = true, .signal = "full steps in surge", .mode = kSegmentMode, .phase = "excite"};
+    }
+    flown.excitation[599].phase = "done";
+    flown.excitation[599].mode = "yaw";
+    const LiveTrialResult result = summarise(flown, vehicle(), site());
+    REQUIRE(result.flights.size() == 1);
+    CHECK(result.flights[0].segment == "full steps in surge");
+    CHECK(result.flights[0].begun == doctest::Approx(kStep * from));
+    CHECK(result.flights[0].ended == doctest::Approx(kStep * (from + 7)));
+    REQUIRE(result.visits.size() == 3);
+    CHECK(result.visits[0].left);
+    CHECK_FALSE(result.visits[1].left);
+    CHECK(result.visits[2].mode == "total");
+    CHECK(to_table(result).find("full steps in surge") != std::string::npos);
+    CHECK(nlohmann::json::parse(to_json(result)).at("flights").size() == 1);
+    CHECK(to_html(result, flown, vehicle(), site()).find("flown: full steps in surge") != std::string::npos);
+  }
+}
+
 TEST_CASE("live trial: a run that was cut keeps as settled what had been left before") {
   Recording cut = trial();
   cut.excitation.resize(300);
@@ -95,6 +121,11 @@ TEST_CASE("live trial: a run that was cut keeps as settled what had been left be
   CHECK(result.visits[0].left);
   CHECK_FALSE(result.visits[1].left);
   CHECK(result.phase == "excite");
+  // Cut before the identifier said anything of surge: a page without that figure, not an error.
+  for (ModelEstimate& model : cut.model) std::erase_if(model.modes, [](const ModeMetric& m) { return m.mode == "surge"; });
+  const std::string page = to_html(result, cut, vehicle(), site());
+  CHECK(page.find("Trace of the covariance of yaw") != std::string::npos);
+  CHECK(page.find("Trace of the covariance of surge") == std::string::npos);
 }
 
 TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
