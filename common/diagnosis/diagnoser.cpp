@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/diagnosis/associations.hpp"
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/prediction.hpp"
@@ -92,6 +93,36 @@ double share_on(std::span<const Trial> unseen, const SearchResult& found, const 
   return share_explained(lasting_error(windows, found.before.model), lasting_error(windows, found.after.model));
 }
 
+/// What is left in the runs that were fitted, and in those that were not: what a model lacks shows in either, and
+/// something that grows with a run's time need not be the same in both. A free curve is believed when a residual goes
+/// with what it runs over, for noise with a memory goes a little with any curve; unless it took an effect's place.
+std::vector<Association> left_in(std::span<const Trial> train, std::span<const Trial> unseen, SearchResult& found,
+                                 const model::Vehicle& vehicle, const Settings& settings) {
+  std::vector<Trial> fitted;
+  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  const model::Model& model = found.after.model;
+  const LeftOver in_fitted{model, fitted, residuals_of(model, fitted)};
+  const LeftOver in_unseen{model, unseen, residuals_of(model, unseen)};
+  if (found.free_form && !found.free_form->in_place_of_effect) {
+    const auto curves = free_curves(model::scene_of(vehicle, train));
+    const auto same = std::ranges::find_if(curves, [&](const auto& curve) {
+      return model::kAxisNames[static_cast<std::size_t>(curve->axis())] == found.free_form->axis &&
+             name_of(curve->quantity()) == found.free_form->with;
+    });
+    if (same == curves.end() ||
+        std::max(in_fitted.log_odds(**same), in_unseen.log_odds(**same)) < settings.accept_log_odds)
+      found.free_form.reset();
+  }
+  std::vector<Association> left = in_unseen.associations(kSmallestAssociation, settings.accept_log_odds);
+  for (Association& other : in_fitted.associations(kSmallestAssociation, settings.accept_log_odds)) {
+    const auto same = std::ranges::find_if(
+        left, [&](const Association& one) { return one.axis == other.axis && one.with == other.with; });
+    if (same == left.end()) left.push_back(std::move(other));
+  }
+  std::ranges::stable_sort(left, std::greater{}, &Association::share);
+  return left;
+}
+
 /// Takes back everything that was accepted.
 void take_back(SearchResult& found) {
   for (Judged& judged : found.accepted) {
@@ -136,7 +167,7 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   result.parameters_after = found.after.parameters();
   result.residual_before = whiteness(found.before.model, unseen, residual_before);
   result.residual_after = whiteness(found.after.model, unseen, residual_after);
-  conclude(found, associations(found.after.model, unseen, residual_after, kSmallestAssociation), result);
+  conclude(found, left_in(train, unseen, found, vehicle, settings), result);
   for (std::size_t r = 0; r < unseen.size(); ++r) {
     report.traces.push_back(trace_of(unseen[r], found, residual_before[r], residual_after[r]));
   }

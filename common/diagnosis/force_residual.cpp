@@ -56,8 +56,12 @@ std::vector<double> weights_of(std::size_t half) {
 
 }  // namespace
 
+std::size_t residual_span(double dt) {
+  return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / dt))) + 1;
+}
+
 std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
-  const auto half = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / trial.dt)));
+  const std::size_t half = residual_span(trial.dt) / 2;
   double squares = 0.0;  // s^2, of the offsets
   for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
   const std::vector<double> weight = weights_of(half);

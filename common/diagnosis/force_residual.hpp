@@ -9,6 +9,9 @@
 
 namespace fathom::diagnosis {
 
+/// Samples, an odd number, over which a wrench residual is the mean: residuals that far apart share no measurement.
+[[nodiscard]] std::size_t residual_span(double dt);
+
 /// Wrench residual X..N [N, N m] per sample, the mean over half a second: inertia times the slope of a straight line
 /// through the measured velocity, less the model's load averaged as that slope averages acceleration (so that a step of
 /// thrust within the span leaves nothing). NaN where the span meets an edge or an invalid sample.

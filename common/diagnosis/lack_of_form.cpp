@@ -91,7 +91,7 @@ bool test_forms(SearchResult& result, const TrajectoryFit& problem, const FitRes
       if (overlap(with_none, accepted, with_curve, with_both) < kSameThing) return false;
       judged.reason = "imitates something of another form, which depends on " + form.with + " (on " + form.axis + ")";
       result.refused.push_back(judged);
-      result.free_form = FreeForm{form.axis, form.with, reduction(with_none.cost, with_curve.cost)};
+      result.free_form = FreeForm{form.axis, form.with, reduction(with_none.cost, with_curve.cost), true};
       return refused = true;
     });
   }

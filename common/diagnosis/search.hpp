@@ -31,9 +31,10 @@ struct Judged {
 
 /// What a force of no particular form would still explain.
 struct FreeForm {
-  std::string axis;  ///< "X" .. "N"
-  std::string with;  ///< the quantity that it runs over
-  double share{};    ///< of the error (RMS) that it would remove
+  std::string axis;                ///< "X" .. "N"
+  std::string with;                ///< the quantity that it runs over
+  double share{};                  ///< of the error (RMS) that it would remove
+  bool in_place_of_effect{false};  ///< an accepted effect imitated it
 };
 
 struct SearchResult {

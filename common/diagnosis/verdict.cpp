@@ -123,6 +123,22 @@ std::string improvement_sentence(const DiagnosisResult& result) {
   return text + ". ";
 }
 
+/// Of a residual that is no structure, and not white either.
+std::string memory_sentence(const DiagnosisResult& result) {
+  std::vector<std::string> axes;
+  double longest = 0.0;
+  for (const AxisWhiteness& axis : result.residual_after) {
+    if (!(axis.p_value < kNotRandom)) continue;
+    axes.push_back(axis.axis);
+    longest = std::max(longest, axis.autocorrelation_time_s);
+  }
+  if (axes.empty()) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g s", longest);
+  return "In " + joined(axes) + " it remembers itself, for up to " + text +
+         ": like a random force, as of turbulence or of a swinging tether, that no model foretells. ";
+}
+
 /// The accepted number that is known worst, relative to its size.
 struct WeakestNumber {
   const EffectFound* effect{};
@@ -171,6 +187,7 @@ std::string next_manoeuvre(const DiagnosisResult& result) {
 
 void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result) {
   result.explained = found.accepted.empty() ? 1.0 : found.explained;
+  result.goes_with.assign(left.begin(), left.end());
   list_effects(found, result);
   list_candidates(found, result);
   std::vector<std::string> names, open;
@@ -190,8 +207,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
 
   std::string& text = result.paragraph;
   if (names.empty() && !structure) {
-    text = "The base model explains these runs: none of the " + std::to_string(result.candidates.size()) +
-           " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. ";
+    text =
+        "The base model explains these runs: none of the " + std::to_string(result.candidates.size()) +
+        " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. " +
+        memory_sentence(result);
   } else if (names.empty()) {
     text = "The base model leaves structure in the residual that no known effect explains. ";
     if (found.taken_back) {

@@ -3,12 +3,12 @@
 
 #include <span>
 
+#include "common/diagnosis/associations.hpp"
 #include "common/diagnosis/search.hpp"
-#include "common/diagnosis/whiteness.hpp"
 
 namespace fathom::diagnosis {
 
-/// Share of the validation residual's variance that must go with something before structure is called unexplained.
+/// Share of the residual's variance that must go with something before structure is called unexplained.
 constexpr double kSmallestAssociation = 0.1;
 
 /// Fills effects, candidates, verdict and paragraph of `result`, whose errors and parameters are already there.

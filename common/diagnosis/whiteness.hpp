@@ -1,8 +1,7 @@
-// What structure is left in a residual: is it white, how long is its memory, and what does it go with.
+// Is a residual white, and how long is its memory?
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "common/base/spatial.hpp"
@@ -20,16 +19,5 @@ namespace fathom::diagnosis {
 /// Whiteness, memory and explained share of the wrench residual, per simulated axis.
 [[nodiscard]] std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,
                                                    std::span<const std::vector<Vector6d>> residuals);
-
-/// A quantity that the residual of one axis goes with, on blocks of data that did not set the relation.
-struct Association {
-  std::string axis;  ///< "X" .. "N"
-  std::string with;  ///< "position", "heading", "depth", "speed", "thrust", "voltage", "time"
-  double share{};    ///< of the residual's variance, out of block
-};
-
-/// Strongest associations of the residual, best first; empty when nothing exceeds `smallest`.
-[[nodiscard]] std::vector<Association> associations(const model::Model& model, std::span<const Trial> trials,
-                                                    std::span<const std::vector<Vector6d>> residuals, double smallest);
 
 }  // namespace fathom::diagnosis

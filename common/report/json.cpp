@@ -107,6 +107,14 @@ Json candidates(const std::vector<CandidateTried>& tried) {
   return array;
 }
 
+Json associations(const std::vector<Association>& left) {
+  Json array = Json::array();
+  for (const auto& a : left) {
+    array.push_back({{"axis", a.axis}, {"with", a.with}, {"share", finite(a.share)}, {"log_odds", finite(a.log_odds)}});
+  }
+  return array;
+}
+
 }  // namespace
 
 std::string to_json(const DiagnosisResult& result) {
@@ -131,6 +139,7 @@ std::string to_json(const DiagnosisResult& result) {
   file["explained"] = result.explained;
   file["residual"]["before"] = whiteness(result.residual_before);
   file["residual"]["after"] = whiteness(result.residual_after);
+  file["residual"]["goes_with"] = associations(result.goes_with);
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

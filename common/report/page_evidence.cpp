@@ -9,8 +9,6 @@
 namespace fathom::report {
 namespace {
 
-constexpr double kNotRandom = 0.05;  // p value below which a residual counts as not random
-
 // Odds run from fractions to e^500; asinh keeps sign and order and shows the small ones too.
 double compressed(double log_odds) { return std::asinh(log_odds); }
 
@@ -226,8 +224,9 @@ std::string certainty_section(const DiagnosisResult& result) {
     if (!(axis.p_value < kNotRandom)) continue;
     const auto named = std::ranges::find_if(kAxes, [&](const Axis& a) { return axis.axis == a.force; });
     open += "<li>What is left in <b>" + escape(named == kAxes.end() ? axis.axis : std::string(named->name)) +
-            "</b> is not random yet: it remembers itself for about " + escape(number(axis.autocorrelation_time_s, 2)) +
-            " s, so something small is still missing there.</li>\n";
+            "</b> remembers itself for about " + escape(number(axis.autocorrelation_time_s, 2)) +
+            " s: a random force does (turbulence, a swinging tether), and so does something small that is still "
+            "missing.</li>\n";
   }
   html += open.empty() ? "<p>Nothing is left open on this data.</p>\n" : "<h3>Still open</h3><ul>" + open + "</ul>\n";
   if (!result.manoeuvre.empty())

@@ -39,10 +39,20 @@ struct ModelError {
 /// Residual of one degree of freedom.
 struct AxisWhiteness {
   std::string axis;  ///< "X" .. "N"
-  double p_value{};  ///< of the whiteness test (Ljung-Box on the one-step residual)
+  double p_value{};  ///< of the whiteness test (Ljung-Box on residuals that share no measurement)
   double autocorrelation_time_s{};
   double explained{};  ///< share of variance explained, of the applied wrench's axis
 };
+
+/// Something that the residual of one axis goes with.
+struct Association {
+  std::string axis;   ///< "X" .. "N"
+  std::string with;   ///< "position", "heading", "a step at 30 s", ...
+  double share{};     ///< of the residual's variance that the base model's own numbers could not take up
+  double log_odds{};  ///< natural, that there is such a relation, all that was asked having been paid for
+};
+
+constexpr double kNotRandom = 0.01;  ///< p-value below which a residual counts as having a memory
 
 /// What to fly to tell an effect from another that explains the same.
 struct ToldApart {
@@ -97,6 +107,7 @@ struct DiagnosisResult {
   std::vector<NamedValue> parameters_after;
   std::vector<AxisWhiteness> residual_before;
   std::vector<AxisWhiteness> residual_after;
+  std::vector<Association> goes_with;  ///< what the residual after still goes with, largest share first
 };
 
 /// One stretch of validation data with the open-loop predictions laid over it, for the plots.

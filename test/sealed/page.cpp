@@ -79,7 +79,7 @@ void add_targets(std::span<const Score> scores, std::string& text) {
   add_row(text, "pair found whole, other sizes", "-",
           good_of(scores, [](const Score& s) { return s.kind == "pair" && s.size != "medium"; }));
   long strangers = 0, sets = 0, alarms = 0, quiet = 0, failed = 0, foreign = 0, named = 0, refused = 0, worse = 0,
-       compared = 0;
+       compared = 0, adequate = 0, unexplained = 0;
   for (const Score& s : scores) {
     failed += s.outcome == "failed" ? 1 : 0;
     if (s.kind == "single" || s.kind == "pair") {
@@ -89,10 +89,12 @@ void add_targets(std::span<const Score> scores, std::string& text) {
     if (s.kind == "clean" || s.kind == "noise") {
       ++quiet;
       alarms += s.outcome == "false alarm" ? 1 : 0;
+      adequate += s.verdict == "adequate" ? 1 : 0;
     }
     if (s.kind == "foreign") {
       ++foreign;
       named += s.outcome == "wrong name" ? 1 : 0;
+      unexplained += s.verdict == "unexplained" ? 1 : 0;
       refused += s.outcome == "refused" ? 1 : 0;
     }
     if (std::isfinite(s.after)) {
@@ -102,6 +104,8 @@ void add_targets(std::span<const Score> scores, std::string& text) {
   }
   add_row(text, "sets with an effect in which a wrong one is accepted too", "-", percent(strangers, sets));
   add_row(text, "false alarms: clean data, coloured noise alone", "at most 2 %", percent(alarms, quiet));
+  add_row(text, "clean data, coloured noise alone: the verdict is adequate", "-", percent(adequate, quiet));
+  add_row(text, "outside the catalogue: the verdict is unexplained", "-", percent(unexplained, foreign));
   add_row(text, "outside the catalogue: nothing accepted", "-", percent(refused, foreign));
   add_row(text, "outside the catalogue: nothing accepted, or no name above 90 % and the verdict unexplained", "80 %",
           good_of(scores, [](const Score& s) { return s.kind == "foreign"; }));

@@ -101,6 +101,19 @@ TEST_CASE("verdict: nothing found and nothing left is adequate, and there is not
   check_all_listed(result);
 }
 
+TEST_CASE("verdict: what is left may have a memory: adequate all the same, and said") {
+  MadeUp made;
+  DiagnosisResult result;
+  result.residual_after = {{"X", 0.3, 0.3, 0.9}, {"N", 1e-6, 2.0, 0.9}};
+  conclude(made.found, made.left, result);
+  CHECK(result.verdict == "adequate");
+  CHECK(says(result.paragraph, "In N it remembers itself, for up to 2 s"));
+  result = {};
+  result.residual_after = {{"X", 0.3, 0.3, 0.9}};
+  conclude(made.found, made.left, result);
+  CHECK_FALSE(says(result.paragraph, "remembers itself"));
+}
+
 TEST_CASE("verdict: nothing found but structure left is unexplained, says where, and asks for the nearest candidate") {
   MadeUp made;
   made.refuse("tether_tension", 2.5, "log odds 2.5, 3.0 needed");
@@ -108,6 +121,8 @@ TEST_CASE("verdict: nothing found but structure left is unexplained, says where,
   made.left = {{"X", "position", 0.42}};
   const DiagnosisResult result = made.concluded();
   CHECK(result.verdict == "unexplained");
+  REQUIRE(result.goes_with.size() == 1);
+  CHECK(result.goes_with[0].with == "position");
   CHECK(says(result.paragraph, "no known effect explains"));
   CHECK(says(result.paragraph, "X with position (42 %"));
   CHECK(says(result.manoeuvre, "tether_tension"));

@@ -1,4 +1,4 @@
-// Whiteness against theory: uniform p-values on noise, AR(1) memory, and structure that is put in and found.
+// Whiteness against theory: uniform p-values on noise, and the memory of an AR(1) residual.
 #include "common/diagnosis/whiteness.hpp"
 
 #include <doctest/doctest.h>
@@ -86,26 +86,4 @@ TEST_CASE("whiteness: an AR(1) residual has the memory that theory gives") {
   CHECK(rows[0].p_value < 1e-6);
   // Integral of phi^|lag|, trapezoidal from lag 0: dt (1/2 + phi / (1 - phi)).
   CHECK(rows[0].autocorrelation_time_s == doctest::Approx(0.1 * (0.5 + kPhi / (1.0 - kPhi))).epsilon(0.2));
-}
-
-TEST_CASE("whiteness: a residual that goes with position is associated with position, noise with nothing") {
-  model::Vehicle vehicle;
-  vehicle.dof[0] = true;
-  const model::Model model = model::nominal_model(vehicle, true);
-  std::mt19937 random{5};
-  std::normal_distribution<double> normal;
-  std::vector<Trial> trials{quiet_trial(6000)};
-  std::vector<std::vector<Vector6d>> noise(1), pulled(1);
-  for (std::size_t k = 0; k < 6000; ++k) {
-    Trial& trial = trials[0];
-    trial.p_WB[k].x() = std::sin(0.013 * static_cast<double>(k)) + 0.3 * normal(random);
-    trial.nu[k][0] = normal(random);
-    noise[0].push_back(Vector6d::Unit(0) * normal(random));
-    pulled[0].push_back(Vector6d::Unit(0) * (-trial.p_WB[k].x() + 0.3 * normal(random)));
-  }
-  CHECK(associations(model, trials, noise, 0.05).empty());
-  const auto found = associations(model, trials, pulled, 0.1);
-  REQUIRE_FALSE(found.empty());
-  CHECK(found.front().with == "position");
-  CHECK(found.front().share > 0.7);
 }

@@ -1,0 +1,256 @@
+#include "common/diagnosis/associations.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/oscillation.hpp"
+#include "common/diagnosis/prediction.hpp"
+#include "common/identification/lag_sums.hpp"
+
+namespace fathom::diagnosis {
+namespace {
+
+using identification::ColouredFit;
+using identification::LagSums;
+using Indices = std::vector<Eigen::Index>;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kSamplesPerColumn = 5;  // fewer tell nothing
+constexpr double kMargin = 8.0;       // s that a step has before and after it at least
+constexpr int kSteps = 40;            // moments that are asked, over all runs
+constexpr double kMoment = 1.0;       // parameters that the choice of a step's moment counts for
+
+bool always(const Trial&) { return true; }
+
+std::string words(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+Indices range(Eigen::Index from, Eigen::Index to) {
+  Indices indices;
+  for (Eigen::Index i = from; i < to; ++i) indices.push_back(i);
+  return indices;
+}
+
+/// Columns but the first and the last: mean removed and brought to the size of one, so that sums do not cancel.
+void standardise(std::vector<Eigen::MatrixXd>& runs) {
+  if (runs.empty()) return;
+  for (Eigen::Index c = 1; c + 1 < runs.front().cols(); ++c) {
+    double sum = 0.0, square = 0.0, count = 0.0;
+    for (const Eigen::MatrixXd& run : runs) {
+      for (Eigen::Index k = 0; k < run.rows(); ++k) {
+        if (!std::isfinite(run(k, c))) continue;
+        sum += run(k, c);
+        square += run(k, c) * run(k, c);
+        count += 1.0;
+      }
+    }
+    const double mean = count > 0.0 ? sum / count : 0.0;
+    const double spread = count > 0.0 ? std::sqrt(std::max(square / count - mean * mean, 0.0)) : 0.0;
+    const double scale = spread > 1e-9 * std::abs(mean) && spread > 0.0 ? 1.0 / spread : 0.0;
+    for (Eigen::MatrixXd& run : runs) run.col(c) = (run.col(c).array() - mean) * scale;
+  }
+}
+
+LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs) {
+  LagSums sums{runs.front().cols()};
+  for (const Eigen::MatrixXd& run : runs) sums.add(run);
+  return sums;
+}
+
+/// Least sum of squares of the target when the columns `free` may take up what they like, and the others keep `fixed`.
+double square_left(const Eigen::MatrixXd& products, const Indices& free, const Indices& held,
+                   const Eigen::VectorXd& fixed) {
+  const Eigen::Index target = products.cols() - 1;
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(products.cols());
+  c[target] = 1.0;
+  for (std::size_t i = 0; i < held.size(); ++i) c[held[i]] = -fixed[static_cast<Eigen::Index>(i)];
+  const Eigen::VectorXd with = products * c;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-9);
+  solver.compute(products(free, free));
+  return std::max(c.dot(with) - with(free).dot(solver.solve(Eigen::VectorXd(with(free)))), 0.0);
+}
+
+}  // namespace
+
+LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
+                   std::span<const std::vector<Vector6d>> residuals)
+    : model_{model} {
+  for (std::size_t r = 0; r < trials.size(); ++r) {
+    const Trial& trial = trials[r];
+    const std::size_t span = residual_span(trial.dt);
+    const auto nu = predict_anew(model, trial, restarts(trial));
+    Run run{.trial = &trial, .step = static_cast<double>(span) * trial.dt};
+    const Vector6d unknown = Vector6d::Constant(kNaN);
+    for (std::size_t k = span / 2; k < trial.size(); k += span) {
+      // What comes within the span may answer to the noise that is in the residual: asked is what there was before it.
+      const std::size_t before = k - span / 2;
+      Moment at{.trial = trial, .k = before, .tau = {model.allocation * trial.input[before], unknown, unknown}};
+      for (std::size_t ago = 1; ago < at.tau.size() && ago <= run.at.size(); ++ago)
+        at.tau[ago] = run.at[run.at.size() - ago].tau[0];
+      for (std::size_t axis = 0; axis < 6; ++axis)
+        at.nu[static_cast<Eigen::Index>(axis)] = model.vehicle->dof[axis] ? nu[before][axis] : 0.0;
+      at.dof = model.vehicle->dof;
+      run.at.push_back(at);
+      run.wrench.push_back(residuals[r][k]);
+    }
+    runs_.push_back(std::move(run));
+  }
+  const auto axes = static_cast<double>(std::ranges::count(model.vehicle->dof, true));
+  tried_ = axes * static_cast<double>(suspects().size() + 2);
+}
+
+std::vector<Eigen::MatrixXd> LeftOver::rows(int axis, bool (*seen)(const Trial&), const Asked& asked) const {
+  std::vector<Eigen::MatrixXd> all;
+  Columns row;
+  for (const Run& run : runs_) {
+    if (!seen(*run.trial) || run.at.empty()) continue;
+    Eigen::MatrixXd& of = all.emplace_back();
+    for (std::size_t i = 0; i < run.at.size(); ++i) {
+      row.clear();
+      base_columns(run.at[i], axis, row);
+      asked(run.at[i], row);
+      row.push_back(run.wrench[i][axis]);
+      if (i == 0) of.resize(static_cast<Eigen::Index>(run.at.size()), static_cast<Eigen::Index>(row.size()));
+      of.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), of.cols());
+    }
+  }
+  standardise(all);
+  return all;
+}
+
+LeftOver::Answer LeftOver::answer(const LagSums& sums, const Indices& asked, double hidden) const {
+  const Eigen::Index target = sums.columns() - 1;
+  const Indices base = range(0, kBaseColumns);
+  Indices both = base;
+  both.insert(both.end(), asked.begin(), asked.end());
+  const double n = sums.samples();
+  if (n < kSamplesPerColumn * static_cast<double>(both.size())) return {};
+  const ColouredFit without = identification::fit_coloured(sums, base, target);
+  const ColouredFit with = identification::fit_coloured(sums, both, target);
+  if (with.rank <= without.rank || !(with.sse > 0.0) || !(without.sse > 0.0)) return {};
+  const double price = 0.5 * (with.rank - without.rank + hidden) * std::log(n) + std::log(tried_);
+  const Eigen::MatrixXd products = sums.product(0, 0);
+  const double before = square_left(products, base, {}, {});
+  const double after = square_left(products, base, asked, with.x.tail(static_cast<Eigen::Index>(asked.size())));
+  const double of_variance = before > 0.0 ? 1.0 - after / before : 0.0;
+  return {std::max(of_variance, 1.0 - with.sse / without.sse), 0.5 * n * std::log(without.sse / with.sse) - price};
+}
+
+LeftOver::Answer LeftOver::answer(int axis, bool (*seen)(const Trial&), const Asked& asked) const {
+  const std::vector<Eigen::MatrixXd> runs = rows(axis, seen, asked);
+  if (runs.empty() || runs.front().cols() == kBaseColumns + 1) return {};
+  return answer(sums_of(runs), range(kBaseColumns, runs.front().cols() - 1), 0.0);
+}
+
+std::vector<Association> LeftOver::of_suspects(int axis) const {
+  std::vector<Association> found;
+  for (const Suspect& suspect : suspects()) {
+    const Answer told =
+        answer(axis, suspect.seen, [&](const Moment& at, Columns& row) { suspect.columns(at, axis, row); });
+    found.push_back({model::kAxisNames[static_cast<std::size_t>(axis)], suspect.name, told.share, told.log_odds});
+  }
+  return found;
+}
+
+Association LeftOver::step(int axis) const {
+  struct Candidate {
+    const Trial* trial;
+    double t;
+  };
+  std::vector<Candidate> candidates;
+  double duration = 0.0;
+  for (const Run& run : runs_) duration += run.trial->t.back() - run.trial->t.front();
+  const double apart = std::max(duration / kSteps, kMargin);
+  for (const Run& run : runs_) {
+    for (double t = run.trial->t.front() + kMargin; t < run.trial->t.back() - kMargin; t += apart)
+      candidates.push_back({run.trial, t});
+  }
+  Association best{.axis = model::kAxisNames[static_cast<std::size_t>(axis)], .log_odds = -1.0};
+  if (candidates.empty()) return best;
+  const LagSums sums = sums_of(rows(axis, always, [&](const Moment& at, Columns& row) {
+    for (const Candidate& one : candidates)
+      row.push_back(&at.trial == one.trial && at.trial.t[at.k] >= one.t ? 1.0 : 0.0);
+  }));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Answer told = answer(sums, {kBaseColumns + static_cast<Eigen::Index>(i)}, kMoment);
+    if (told.log_odds <= best.log_odds) continue;
+    best.with =
+        words("a step at %.0f s", candidates[i].t) + (runs_.size() > 1 ? " of " + candidates[i].trial->name : "");
+    best.share = told.share;
+    best.log_odds = told.log_odds;
+  }
+  return best;
+}
+
+Association LeftOver::oscillation(int axis) const {
+  Association best{.axis = model::kAxisNames[static_cast<std::size_t>(axis)], .log_odds = -1.0};
+  const std::vector<Eigen::MatrixXd> runs = rows(axis, always, [](const Moment&, Columns&) {});
+  if (runs.empty()) return best;
+  const LagSums sums = sums_of(runs);
+  if (sums.samples() < kSamplesPerColumn * kBaseColumns) return best;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-9);
+  const Eigen::MatrixXd products = sums.product(0, 0);
+  const Indices base = range(0, kBaseColumns);
+  solver.compute(products(base, base));
+  const Eigen::VectorXd x = solver.solve(Eigen::VectorXd(products.col(kBaseColumns)(base)));
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<double> series;
+    for (Eigen::Index k = 0; k < runs[r].rows(); ++k) {
+      const double left = runs[r](k, kBaseColumns) - runs[r].row(k).head(kBaseColumns).dot(x);
+      series.push_back(std::isfinite(left) ? left : 0.0);
+    }
+    const Line line = strongest_line(series, runs_[r].step);
+    const double log_odds = line.log_odds - std::log(tried_ * static_cast<double>(runs.size()));
+    if (log_odds <= best.log_odds) continue;
+    best.with = words("an oscillation of %.2g Hz", line.frequency);
+    best.share = line.share;
+    best.log_odds = log_odds;
+  }
+  return best;
+}
+
+std::vector<Association> LeftOver::associations(double share, double log_odds) const {
+  std::vector<Association> found;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!model_.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
+    std::vector<Association> of_axis = of_suspects(axis);
+    of_axis.push_back(step(axis));
+    of_axis.push_back(oscillation(axis));
+    std::erase_if(of_axis, [&](const Association& a) { return !(a.share >= share && a.log_odds >= log_odds); });
+    found.insert(found.end(), of_axis.begin(), of_axis.end());
+  }
+  std::ranges::stable_sort(found, std::greater{}, &Association::share);
+  return found;
+}
+
+double LeftOver::log_odds(const FreeCurve& curve) const {
+  return answer(curve.axis(), always,
+                [&](const Moment& at, Columns& row) {
+                  model::Motion motion{.t = at.trial.t[at.k],
+                                       .p_WB = at.trial.p_WB[at.k],
+                                       .R_WB = at.trial.q_WB[at.k].toRotationMatrix(),
+                                       .nu = at.nu};
+                  motion.force = at.trial.input[at.k];
+                  motion.vehicle = model_.vehicle;
+                  std::array<double, FreeCurve::kKnots> knots{};
+                  for (std::size_t i = 0; i < knots.size(); ++i) {
+                    knots.fill(0.0);
+                    knots[i] = 1.0;
+                    model::Load load;
+                    curve.load(motion, knots, 0, load);
+                    row.push_back(load.wrench[curve.axis()]);
+                  }
+                })
+      .log_odds;
+}
+
+}  // namespace fathom::diagnosis

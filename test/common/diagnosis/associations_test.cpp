@@ -1,0 +1,165 @@
+// What a residual goes with: structure that is put in is named, noise with a memory is not, although a pilot answers
+// it.
+#include "common/diagnosis/associations.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "common/diagnosis/force_residual.hpp"
+
+using namespace fathom;
+using namespace fathom::diagnosis;
+
+namespace {
+
+constexpr double kDt = 0.05;          // s
+constexpr std::size_t kCount = 6600;  // samples
+constexpr double kShare = 0.1, kOdds = 5.0;
+
+model::Vehicle one_axis() {
+  model::Vehicle vehicle;
+  vehicle.dof[0] = true;
+  return vehicle;
+}
+
+/// A craft of 10 kg that surges, turning slowly; `memory`: of the noise, s; `answer`: of a pilot to its speed,
+/// N/(m/s); `effort`: what is wanted of the thrusters, N (RMS). What the model lacks is noise of 1 N, and the
+/// structure.
+struct Dive {
+  model::Vehicle vehicle = one_axis();
+  model::Model model = model::nominal_model(vehicle, true);
+  std::vector<Trial> trials{1};
+  std::vector<std::vector<Vector6d>> residuals{1};
+
+  using Structure = std::function<double(const Trial&, std::size_t)>;
+  explicit Dive(unsigned seed, double memory = 0.0, double answer = 0.0, const Structure& structure = {},
+                double effort = 20.0) {
+    model.theta[model::index(*model::parameter_from_name("m_X"))] = 10.0;
+    model.theta[model::index(*model::parameter_from_name("X_u"))] = -8.0;
+    std::mt19937 random{seed};
+    std::normal_distribution<double> normal;
+    Trial& trial = trials[0];
+    trial.name = "dive";
+    trial.dt = kDt;
+    trial.observed = {true, true, true, true};
+    const double keep = memory > 0.0 ? std::exp(-kDt / memory) : 0.0;
+    double noise = 0.0, u = 0.0, x = 0.0, wanted = 0.0;
+    std::vector<double> sum{0.0};  // of what the model lacks
+    for (std::size_t k = 0; k < kCount; ++k) {
+      const double t = kDt * static_cast<double>(k);
+      if (k % 80 == 0) wanted = effort * normal(random);
+      noise = keep * noise + std::sqrt(1.0 - keep * keep) * normal(random);
+      trial.t.push_back(t);
+      trial.p_WB.emplace_back(x, std::sin(0.11 * t), 2.0 + 0.5 * std::sin(0.07 * t));
+      trial.q_WB.emplace_back(Eigen::AngleAxisd(0.05 * t + std::sin(0.2 * t), Eigen::Vector3d::UnitZ()));
+      trial.nu.emplace_back(u * Vector6d::Unit(0));
+      trial.pose_valid.push_back(1);
+      trial.velocity_valid.push_back(1);
+      trial.rates_valid.push_back(1);
+      trial.input.emplace_back(Eigen::VectorXd::Unit(6, 0) * (wanted - answer * u - 0.5 * x));
+      const double lacking = noise + (structure ? structure(trial, k) : 0.0);
+      sum.push_back(sum.back() + lacking);
+      u += kDt / 10.0 * (trial.input.back()[0] - 8.0 * u + lacking);
+      x += kDt * u;
+    }
+    const std::size_t span = residual_span(kDt), half = span / 2;  // a residual is a mean
+    residuals[0].assign(kCount, Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    for (std::size_t k = half; k + half < kCount; ++k)
+      residuals[0][k] = (sum[k + half + 1] - sum[k - half]) / static_cast<double>(span) * Vector6d::Unit(0);
+  }
+  [[nodiscard]] std::vector<Association> left() const {
+    return LeftOver{model, trials, residuals}.associations(kShare, kOdds);
+  }
+};
+
+double heading(const Trial& trial, std::size_t k) { return euler_from_rotation(trial.q_WB[k].toRotationMatrix()).z(); }
+
+bool among(const std::vector<Association>& left, const std::string& with) {
+  return std::ranges::any_of(left, [&](const Association& a) { return a.with.starts_with(with); });
+}
+
+}  // namespace
+
+TEST_CASE("associations: noise goes with nothing, whatever its memory and however a pilot answers it") {
+  int found = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const double memory = std::array{0.0, 0.5, 2.0, 5.0}[seed % 4];
+    const double answer = seed % 8 < 4 ? 0.0 : 40.0;
+    const auto left = Dive{seed, memory, answer, {}, seed % 16 < 8 ? 4.0 : 20.0}.left();
+    for (const Association& one : left) MESSAGE(seed << ": " << one.with << " " << one.share << " " << one.log_odds);
+    found += left.empty() ? 0 : 1;
+  }
+  CHECK(found == 0);
+}
+
+TEST_CASE("associations: what is put in is named, in noise with a memory, and with the share that it has") {
+  struct Case {
+    const char* with;
+    Dive::Structure structure;
+  };
+  const std::vector<Case> cases{
+      {"position", [](const Trial& t, std::size_t k) { return 4.0 * t.p_WB[k].y(); }},
+      {"depth", [](const Trial& t, std::size_t k) { return 8.0 * t.p_WB[k].z(); }},
+      {"heading, like a force that is steady in the world",
+       [](const Trial& t, std::size_t k) { return 3.0 * std::cos(heading(t, k)); }},
+      {"heading", [](const Trial& t, std::size_t k) { return 3.0 * std::cos(2.0 * heading(t, k)); }},
+      {"speed", [](const Trial& t, std::size_t k) { return 4.0 * std::abs(t.nu[k][0]); }},
+      {"thrust", [](const Trial& t, std::size_t k) { return 0.2 * std::abs(t.input[k][0]); }},
+      {"thrust a moment ago", [](const Trial& t, std::size_t k) { return k < 14 ? 0.0 : 0.2 * t.input[k - 14][0]; }},
+      {"time, as a drift", [](const Trial& t, std::size_t k) { return 0.03 * t.t[k]; }},
+      {"time, as thrust or drag that changes",
+       [](const Trial& t, std::size_t k) { return 0.001 * t.t[k] * t.input[k][0]; }},
+      {"a step at 1", [](const Trial& t, std::size_t k) { return t.t[k] > 140.0 ? 4.0 : 0.0; }},
+      {"an oscillation of 0.2",
+       [](const Trial& t, std::size_t k) { return 2.0 * std::sin(2.0 * std::numbers::pi * 0.2 * t.t[k]); }}};
+  for (const Case& each : cases) {
+    const auto left = Dive{7, 0.5, 10.0, each.structure}.left();
+    CHECK_MESSAGE(among(left, each.with), std::string{each.with} << " is not among " << left.size()
+                                                                 << (left.empty() ? "" : ": " + left[0].with));
+    for (const Association& one : left) {
+      CHECK(one.axis == "X");
+      CHECK(one.share <= 1.0);
+    }
+  }
+  const auto left = Dive{8, 0.5, 10.0, cases[0].structure}.left();
+  REQUIRE_FALSE(left.empty());
+  CHECK(left.front().with == "position");
+  CHECK(left.front().share == doctest::Approx(8.0 / 9.0).epsilon(0.1));  // variances 4^2 / 2 of it, 1 of the noise
+}
+
+TEST_CASE("associations: a run without the quantity is left out, a run too short tells nothing") {
+  Dive dive{3, 0.5, 10.0, [](const Trial& t, std::size_t k) { return 4.0 * t.p_WB[k].y(); }};
+  dive.trials[0].observed.position = false;
+  CHECK_FALSE(among(dive.left(), "position"));
+  Dive brief{3};
+  Trial& trial = brief.trials[0];
+  for (auto* flags : {&trial.pose_valid, &trial.velocity_valid, &trial.rates_valid}) flags->resize(60);
+  trial.t.resize(60);
+  trial.p_WB.resize(60);
+  trial.q_WB.resize(60);
+  trial.nu.resize(60);
+  trial.input.resize(60);
+  brief.residuals[0].resize(60);
+  CHECK(brief.left().empty());
+}
+
+TEST_CASE("associations: a free curve is believed when the residual goes with it, and not for noise with a memory") {
+  const FreeCurve north{0, Quantity::kNorth, -2.0, 2.0, 1.0, true}, depth{0, Quantity::kDepth, 1.5, 2.5, 1.0, true};
+  const auto bump = [](const Trial& t, std::size_t k) {
+    return 4.0 * std::exp(-std::pow((t.p_WB[k].z() - 2.2) / 0.1, 2));
+  };
+  const Dive bumped{4, 0.5, 10.0, bump}, noisy{5, 3.0, 40.0};
+  const LeftOver of_bump{bumped.model, bumped.trials, bumped.residuals},
+      of_noise{noisy.model, noisy.trials, noisy.residuals};
+  CHECK(of_bump.log_odds(depth) > 20.0);
+  CHECK(of_bump.log_odds(north) < 5.0);
+  CHECK(of_noise.log_odds(depth) < 0.0);
+  CHECK(of_noise.log_odds(north) < 0.0);
+}
