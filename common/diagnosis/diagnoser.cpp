@@ -90,7 +90,9 @@ double share_on(std::span<const Trial> unseen, const SearchResult& found, const 
   identification::FitSettings fits = settings.fit;
   fits.window = found.window;
   const identification::TrajectoryFit windows{vehicle, unseen, fits};
-  return share_explained(lasting_error(windows, found.before.model), lasting_error(windows, found.after.model));
+  const double lead = lead_of(found.after.model);
+  return share_explained(lasting_error(windows, found.before.model, lead),
+                         lasting_error(windows, found.after.model, lead));
 }
 
 /// What is left in the runs that were fitted, and in those that were not: what a model lacks shows in either, and
@@ -149,7 +151,7 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   for (const Trial& trial : unseen) result.validate.push_back(trial.name);
 
   progress("predicting the validation runs", 0.97);
-  const std::vector<model::Window> windows = prediction_windows(unseen);
+  const std::vector<model::Window> windows = prediction_windows(unseen, lead_of(found.after.model));
   const Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction

@@ -26,10 +26,13 @@ double robust_log_likelihood_ratio(std::span<const double> cost_without, std::sp
   return std::min(std::max(0.5 * n * std::log1p(statistic / n), single), sum);
 }
 
+double price(int parameters, double windows, int tried) {
+  return 0.5 * parameters * std::log(std::max(windows, 2.0)) + std::log(static_cast<double>(std::max(tried, 1)));
+}
+
 double log_odds(std::span<const double> cost_without, std::span<const double> cost_with, int parameters, int tried) {
-  const auto n = static_cast<double>(cost_without.size());
-  return robust_log_likelihood_ratio(cost_without, cost_with) - 0.5 * parameters * std::log(std::max(n, 2.0)) -
-         std::log(static_cast<double>(std::max(tried, 1)));
+  return robust_log_likelihood_ratio(cost_without, cost_with) -
+         price(parameters, static_cast<double>(cost_without.size()), tried);
 }
 
 }  // namespace fathom::diagnosis

@@ -12,8 +12,10 @@ namespace fathom::diagnosis {
 [[nodiscard]] double robust_log_likelihood_ratio(std::span<const double> cost_without,
                                                  std::span<const double> cost_with);
 
-/// Natural log odds for the larger model: the ratio above, less the price of `parameters` (BIC with the number of
-/// windows) and of having tried `tried` candidates (Bonferroni prior).
+/// What `parameters` cost (BIC with the number of windows), and having tried `tried` candidates (Bonferroni prior).
+[[nodiscard]] double price(int parameters, double windows, int tried);
+
+/// Natural log odds for the larger model: the ratio above, less its price.
 [[nodiscard]] double log_odds(std::span<const double> cost_without, std::span<const double> cost_with, int parameters,
                               int tried);
 

@@ -61,7 +61,7 @@ double CrossValidation::Window::after(const Eigen::VectorXd& step) const {
 CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& fit) {
   const identification::ParameterMap map{fit.model};
   const auto n = static_cast<Eigen::Index>(map.size());
-  const Eigen::VectorXd x = map.pack(fit.model);
+  x_ = map.pack(fit.model);
   all_ = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   for (identification::ProjectedWindow& window : problem.linearise(fit)) {
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -80,7 +80,7 @@ CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& 
     const auto& free = map[static_cast<std::size_t>(i)];
     const double prior = inflation * std::pow(free.scale / free.prior_sigma, 2);
     all_.information(i, i) += prior;
-    if (!keeps_its_value(free, fit.model)) all_.gradient[i] += prior * (x[i] - free.prior_mean / free.scale);
+    if (!keeps_its_value(free, fit.model)) all_.gradient[i] += prior * (x_[i] - free.prior_mean / free.scale);
   }
 }
 
@@ -124,6 +124,40 @@ double CrossValidation::error(std::span<const int> folds, std::span<const Eigen:
     error += out.after(step);
   }
   return error;
+}
+
+double CrossValidation::log_likelihood_ratio(std::span<const Eigen::Index> places) const {
+  std::vector<Eigen::Index> known;  // without what keeps its value: no window says anything of it
+  for (const Eigen::Index place : places) {
+    double information = 0.0;
+    for (const Window& window : windows_) information += window.information(place, place);
+    if (information > 0.0) known.push_back(place);
+  }
+  if (known.empty()) return 0.0;
+  const Eigen::Index n = all_.gradient.size();
+  const Eigen::LDLT<Eigen::MatrixXd> all{all_.information};
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
+  for (const Window& window : windows_) {
+    const Eigen::VectorXd moved = (all_.information - window.information).ldlt().solve(window.gradient);
+    scatter += moved * moved.transpose();  // how far the parameters move when this window is left out
+  }
+  const Eigen::MatrixXd covariance = scatter(known, known);
+  const Eigen::VectorXd x = x_(known);
+  const Eigen::LDLT<Eigen::MatrixXd> solver{covariance};
+  if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0.0)) return 0.0;
+  const Eigen::VectorXd weighted = solver.solve(x);
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
+  for (std::size_t i = 0; i < known.size(); ++i) direction[known[i]] = weighted[static_cast<Eigen::Index>(i)];
+  const Eigen::VectorXd influence = all.solve(direction);
+  double sum = 0.0, square = 0.0;
+  for (const Window& window : windows_) {
+    const double share = influence.dot(window.information * influence);
+    sum += share;
+    square += share * share;
+  }
+  const double informative = square > 0.0 ? sum * sum / square : 0.0;
+  const double wald = x.dot(weighted);
+  return informative > 1.0 && wald > 0.0 ? 0.5 * informative * std::log1p(wald / informative) : 0.0;
 }
 
 double error_left_out(const TrajectoryFit& problem, const FitResult& fit) {

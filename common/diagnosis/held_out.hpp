@@ -23,6 +23,11 @@ class CrossValidation {
   [[nodiscard]] double error(std::span<const int> folds, std::span<const Eigen::Index> places) const;
   /// The same at the fit of all windows.
   [[nodiscard]] double error() const;
+  /// Log-likelihood ratio of the numbers at `places` against zero, by what is left in the windows once they are there:
+  /// Wald's statistic W with the covariance that comes of leaving one window out at a time (MacKinnon and White 1985,
+  /// HC3, by windows), and m/2 ln(1 + W/m) with m the number of windows that say something of them. What acts in a few
+  /// windows only, but there beyond doubt, is not refused for acting seldom.
+  [[nodiscard]] double log_likelihood_ratio(std::span<const Eigen::Index> places) const;
 
  private:
   struct Window {
@@ -38,7 +43,8 @@ class CrossValidation {
   [[nodiscard]] Window sum(std::span<const int> folds, int fold) const;
 
   std::vector<Window> windows_;
-  Window all_;  ///< sum over all windows and the prior; its square without the prior
+  Window all_;         ///< sum over all windows and the prior; its square without the prior
+  Eigen::VectorXd x_;  ///< the parameters, scaled
 };
 
 /// Share of the error (RMS) that the effect saves on windows left out.

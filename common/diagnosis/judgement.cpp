@@ -169,6 +169,15 @@ void judge_by_odds(Judged& judged, const FitResult& without, const FitResult& wi
   judged.error_reduction = reduction(without.cost, with.cost);
 }
 
+void judge_by_few_windows(Judged& judged, const TrajectoryFit& problem, const FitResult& with, int tried,
+                          const Settings& settings) {
+  if (evident(judged, settings) || judged.error_reduction < settings.convincing) return;
+  const double ratio = CrossValidation{problem, with}.log_likelihood_ratio(places_of(with.model, judged));
+  const auto n = static_cast<double>(problem.windows().size());
+  judged.log_odds = std::max(
+      judged.log_odds, ratio - price(judged.effect->numbers(judged.variant), n, tried) - surprise(with.model, judged));
+}
+
 void judge_by_data_left_out(Judged& judged, const TrajectoryFit& problem, const FitResult& without,
                             const CrossValidation& without_checked, const FitResult& with) {
   judged.change = prediction_change(problem, without, with);

@@ -26,6 +26,9 @@ inline constexpr const char* kWeaker = "weaker than the accepted effects";
 /// Odds and share of the error, by a fit of it against the fit without it.
 void judge_by_odds(Judged& judged, const identification::FitResult& without, const identification::FitResult& with,
                    int tried);
+/// Where odds do not suffice for what explains much: better odds if the windows that it acts in leave no doubt of it.
+void judge_by_few_windows(Judged& judged, const identification::TrajectoryFit& problem,
+                          const identification::FitResult& with, int tried, const Settings& settings);
 /// Whether it moves predictions, and whether it carries over to data left out of its estimate.
 void judge_by_data_left_out(Judged& judged, const identification::TrajectoryFit& problem,
                             const identification::FitResult& without, const CrossValidation& without_checked,

@@ -32,15 +32,20 @@ Products products(const identification::WindowResidual& window, const identifica
 
 }  // namespace
 
-LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model) {
+LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model, double lead) {
   identification::FitResult fit;
   fit.model = model;
   for (const identification::WindowResidual& window : problem.windows())
     fit.nu0.push_back(window.window().trial->nu[window.window().start]);
   const std::vector<identification::ProjectedWindow> projected = problem.linearise(fit);
   Vector6d sum = Vector6d::Zero(), count = Vector6d::Zero(), square = Vector6d::Zero();
+  const auto early = [&](const identification::WindowResidual& window) {
+    return static_cast<double>(window.window().start) * window.window().trial->dt < lead;
+  };
+  const bool all = std::ranges::all_of(problem.windows(), early);
   for (std::size_t w = 0; w < problem.windows().size(); ++w) {
     const identification::WindowResidual& window = problem.windows()[w];
+    if (!all && early(window)) continue;
     for (const identification::AxisRows& rows : window.axes()) {
       if (rows.count == 0) continue;
       const Products of_window = products(window, rows, projected[w].residual);

@@ -17,7 +17,9 @@ struct LastingError {
   Vector6d error{Vector6d::Zero()};
   Vector6d all{Vector6d::Zero()};  ///< mean square of the whole residual, noise included
 };
-[[nodiscard]] LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model);
+/// Windows that begin less than `lead` s after their run are left out, if others remain.
+[[nodiscard]] LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model,
+                                         double lead = 0.0);
 
 /// Share (0..1) of the lasting error of `before` that is gone in `after`, over the axes where something is gone, each
 /// with the weight of what is gone from it over what is left there in all. What is left counts only as far as noise

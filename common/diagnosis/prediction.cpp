@@ -48,12 +48,23 @@ bool is_measured(const Trial& trial, std::size_t k, std::size_t axis) {
                   : trial.observed.rates && trial.rates_valid[k] != 0;
 }
 
-std::vector<model::Window> prediction_windows(std::span<const Trial> trials) {
+double lead_of(const model::Model& model) {
+  double lead = 0.0;
+  for (const model::ActiveEffect& active : model.effects) {
+    const int actuators = static_cast<int>(model.allocation.cols());
+    if (active.effect->state_size(*model.vehicle, actuators) > 0) lead = std::max(lead, active.effect->run_in());
+  }
+  return lead;
+}
+
+std::vector<model::Window> prediction_windows(std::span<const Trial> trials, double lead) {
   std::vector<model::Window> windows;
   for (const Trial& trial : trials) {
     const std::size_t count = longest_prediction(trial) + 1;
     const auto stride = static_cast<std::size_t>(std::lround(kStride / trial.dt));
-    for (std::size_t start = 0; start + count <= trial.size(); start += stride) {
+    auto first = static_cast<std::size_t>(std::ceil(lead / trial.dt));
+    if (first + stride + count > trial.size()) first = 0;
+    for (std::size_t start = first; start + count <= trial.size(); start += stride) {
       // The start may slip to the next sample at which everything observed is valid.
       std::size_t begin = start;
       while (begin < start + stride && begin + count <= trial.size() && !can_start(trial, begin)) ++begin;

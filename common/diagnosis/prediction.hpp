@@ -29,8 +29,12 @@ struct Predictions {
 /// True where the velocity of an axis at sample `k` is a measurement, not a guess across a gap.
 [[nodiscard]] bool is_measured(const Trial& trial, std::size_t k, std::size_t axis);
 
-/// Windows of 10 s whose starts follow one another every 5 s, each beginning at a valid sample.
-[[nodiscard]] std::vector<model::Window> prediction_windows(std::span<const Trial> trials);
+/// Windows of 10 s whose starts follow one another every 5 s, each beginning at a valid sample, `lead` s or more after
+/// its run's beginning, where that leaves a run a window.
+[[nodiscard]] std::vector<model::Window> prediction_windows(std::span<const Trial> trials, double lead = 0.0);
+/// How long before a window a model must have seen the motion to remember what it should, s: what was cut out of a
+/// longer run does not begin at rest.
+[[nodiscard]] double lead_of(const model::Model& model);
 [[nodiscard]] Predictions predict(const model::Model& model, std::span<const model::Window> windows);
 
 /// Starts of predictions of 10 s, one after the other; each waits for a sample at which all that is observed is valid.

@@ -63,6 +63,7 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
     again.log_odds = log_odds(fit.window_cost, result.after.window_cost, again.effect->numbers(again.variant), tried) -
                      surprise(result.after.model, again);
     again.error_reduction = reduction(fit.cost, result.after.cost);
+    judge_by_few_windows(again, problem, result.after, tried, settings);
     if (evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
       result.accepted[i] = again;
       ++i;

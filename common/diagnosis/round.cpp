@@ -109,6 +109,7 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
   FitResult fit = at_its_moment(problem_, fit_with(problem_, reference_, start, screened), screened);
   promises_.kept(answers_, i, reduction(reference_.cost, fit.cost));
   judge_by_odds(judged, reference_, fit, tried_);
+  judge_by_few_windows(judged, problem_, fit, tried_, settings_);
   judged.reason = refusal(judged, settings_, &fit.model);
   if (judged.reason.empty() || doubtful(judged, settings_)) {
     if (!checked_) checked_.emplace(problem_, reference_);

@@ -2,7 +2,8 @@
 // a, turned by x about a body axis e at its own place, or its place p becomes p + x e:
 //   w = f_i [R a - a; p x (R a - a)]   or   w = f_i [0; x e x a]      (columns of the allocation, Fossen 2011,
 //   sec. 12.3)
-// Where the vehicle file gives the allocation alone, p is the shortest arm with that moment. Ignores: that the jet then
+// Where the vehicle file gives the allocation alone, p is the shortest arm with that moment: how far along its own axis
+// the thruster sits is then unknown, and a turn may be told with a shift that it has not. Ignores: that the jet then
 // meets the hull elsewhere. Revealed by driving that thruster alone, on each side of its command. Confused with
 // thruster_gain (same axes, when the thruster already turns the vehicle) and cross_coupling (follows speed, not
 // thrust).
@@ -24,8 +25,9 @@ constexpr std::array<const char*, kForms> kFormNames{"turned about x",  "turned 
 constexpr double kSmallestChange = 0.05;  // of a unit of force, per unit of error: less moves nothing
 constexpr double kParallel = 0.999;       // cosine between two changes that nothing can tell apart
 
-/// Change of the thruster's column of the allocation.
-Vector6d change(const Vector6d& column, int form, double error) {
+/// Change of the column of the allocation of thruster `i`.
+Vector6d change(const Vehicle& vehicle, Eigen::Index i, int form, double error) {
+  const Vector6d column = vehicle.allocation.col(i);
   const Eigen::Vector3d axis_B = column.head<3>();
   const Eigen::Vector3d e = Eigen::Vector3d::Unit(form % 3);
   Vector6d moved = Vector6d::Zero();
@@ -33,7 +35,10 @@ Vector6d change(const Vector6d& column, int form, double error) {
     moved.tail<3>() = error * e.cross(axis_B);
     return moved;
   }
-  const Eigen::Vector3d arm = axis_B.cross(column.tail<3>()) / std::max(axis_B.squaredNorm(), 1e-9);
+  // The allocation gives the arm across the axis, the place how far along it: of no account before the turn, but after.
+  const Eigen::Vector3d& p_BJ = vehicle.thrusters[static_cast<std::size_t>(i)].p_BJ;
+  const Eigen::Vector3d arm =
+      (axis_B.cross(column.tail<3>()) + axis_B.dot(p_BJ) * axis_B) / std::max(axis_B.squaredNorm(), 1e-9);
   moved.head<3>() = Eigen::AngleAxisd{error, e} * axis_B - axis_B;
   moved.tail<3>() = arm.cross(moved.head<3>());
   return moved;
@@ -55,7 +60,7 @@ class ThrusterMisalignment final : public Effect {
     for (std::size_t i = 0; i < scene.vehicle->thrusters.size(); ++i) {
       std::vector<Vector6d> seen;
       for (int form = 0; form < kForms; ++form) {
-        Vector6d direction = change(scene.vehicle->allocation.col(static_cast<Eigen::Index>(i)), form, 1e-3) / 1e-3;
+        Vector6d direction = change(*scene.vehicle, static_cast<Eigen::Index>(i), form, 1e-3) / 1e-3;
         for (Eigen::Index axis = 0; axis < 6; ++axis) {
           if (!dof[static_cast<std::size_t>(axis)]) direction[axis] = 0.0;
         }
@@ -79,7 +84,7 @@ class ThrusterMisalignment final : public Effect {
     const Eigen::Index thruster = variant / kForms;
     const auto& allocation = motion.vehicle->allocation;
     if (theta[0] == 0.0 || motion.force.size() != allocation.cols() || thruster >= allocation.cols()) return;
-    load.wrench += motion.force[thruster] * change(allocation.col(thruster), variant % kForms, theta[0]);
+    load.wrench += motion.force[thruster] * change(*motion.vehicle, thruster, variant % kForms, theta[0]);
   }
 };
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/model/effect.hpp"
 #include "common/model/vehicle.hpp"
@@ -63,7 +64,10 @@ class Wave final : public Effect {
         starts.push_back({c, s, bearing, tone.omega});
       } else {  // the force is mostly inertia times the water's acceleration
         const double mass = scene.vehicle->mass > 0.0 ? 1.5 * scene.vehicle->mass : kFallbackInertia;
-        starts.push_back({-s / (mass * tone.omega), c / (mass * tone.omega), bearing, tone.omega});
+        const double cosine_v = -s / (mass * tone.omega), sine_v = c / (mass * tone.omega);
+        starts.push_back({cosine_v, sine_v, bearing, tone.omega});
+        // The same to and fro, travelling the other way: the water turns the other way, and no slope leads there.
+        starts.push_back({-cosine_v, -sine_v, bearing + std::numbers::pi, tone.omega});
       }
     }
     return starts;

@@ -81,20 +81,24 @@ TEST_CASE("onset: rises from nothing to all within its duration, with two contin
 }
 
 TEST_CASE("thruster_misalignment: a turned thruster pushes along its new axis at its old place") {
-  const Fixture fixture;
+  Fixture fixture;
   const model::Effect& effect = *model::find_effect("thruster_misalignment");
   constexpr double kAngle = 0.2;
   constexpr int kStarboardAboutZ = 6 + 2;
+  const Eigen::Vector3d before = -16.0 * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d after = -16.0 * Eigen::Vector3d{std::cos(kAngle), std::sin(kAngle), 0.0};
   model::Load load;
   effect.load(fixture.motion, std::vector{kAngle}, kStarboardAboutZ, load);
   const Eigen::Vector3d p{-0.135, 0.0475, 0.0};
-  const Eigen::Vector3d before = -16.0 * Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d after = -16.0 * Eigen::Vector3d{std::cos(kAngle), std::sin(kAngle), 0.0};
-  // The allocation knows moments, not places: along its own axis a thruster may be moved freely.
-  const Eigen::Vector3d shortest{0.0, 0.0475, 0.0};
   CHECK((load.wrench.head<3>() - (after - before)).norm() < kRounding);
-  CHECK((load.wrench.tail<3>() - shortest.cross(after - before)).norm() < kRounding);
-  CHECK(std::abs((p - shortest).dot(Eigen::Vector3d::UnitY())) < kRounding);
+  CHECK((load.wrench.tail<3>() - p.cross(after - before)).norm() < kRounding);
+  // An allocation knows moments, not places: without one, a thruster sits where its arm is shortest.
+  for (model::Thruster& thruster : fixture.vehicle.thrusters) thruster.p_BJ.setZero();
+  model::Load unplaced;
+  effect.load(fixture.motion, std::vector{kAngle}, kStarboardAboutZ, unplaced);
+  const Eigen::Vector3d shortest{0.0, 0.0475, 0.0};
+  CHECK((unplaced.wrench.head<3>() - (after - before)).norm() < kRounding);
+  CHECK((unplaced.wrench.tail<3>() - shortest.cross(after - before)).norm() < kRounding);
 }
 
 TEST_CASE("thruster_misalignment: a shifted thruster turns the vehicle by force times shift") {

@@ -119,3 +119,17 @@ TEST_CASE("tones: a hidden wave is the strongest, at its frequency and bearing")
   blind.observed.attitude = false;
   CHECK(model::find_effect("wave")->variants(model::scene_of(vehicle, {&blind, 1})).empty());
 }
+
+TEST_CASE("wave: a search for orbits begins with both ways that the same to and fro may travel") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Scene scene{.vehicle = &vehicle, .position = true};
+  scene.tones_horizontal = {{.omega = 1.2, .cosine = {2.0, 1.0, 0.0}, .sine = {-1.0, -0.5, 0.0}}};
+  const auto starts = model::find_effect("wave")->starts(scene, kOrbital);
+  REQUIRE(starts.size() == 2);
+  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d one = felt(starts[0], 0.4, origin).v_WF_B, other = felt(starts[1], 0.4, origin).v_WF_B;
+  const Eigen::Matrix3d R_WB = felt(starts[0], 0.4, origin).R_WB;
+  CHECK((R_WB * (one - other)).head<2>().norm() < kRounding);
+  CHECK(std::abs((R_WB * (one + other)).z()) < kRounding);
+  CHECK(std::abs((R_WB * one).z()) > 1e-3);
+}
