@@ -28,6 +28,7 @@ class FreeCurve final : public model::Effect {
   [[nodiscard]] std::string_view sentence() const override { return "Something depends on a measured quantity."; }
   [[nodiscard]] std::string_view revealed_by() const override { return "motion that covers the quantity evenly"; }
   [[nodiscard]] std::span<const model::EffectParameter> parameters() const override { return parameters_; }
+  [[nodiscard]] bool knows_size() const override { return true; }
   [[nodiscard]] bool feels_place() const override { return true; }
   void load(const model::Motion& motion, model::EffectTheta theta, int variant, model::Load& load) const override;
 

@@ -7,6 +7,7 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/places.hpp"
+#include "common/model/effect_size.hpp"
 #include "common/model/onset.hpp"
 
 namespace fathom::diagnosis {
@@ -24,11 +25,11 @@ constexpr double kAtLimit = 0.05;   // of a limit: nearer than that, the number 
 std::string limited_number(const model::Model& model, const Judged& judged) {
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;
-    const auto parameters = active.effect->parameters();
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      for (const double limit : {parameters[i].low, parameters[i].high}) {
+    for (std::size_t i = 0; i < active.theta.size(); ++i) {
+      const model::EffectParameter number = model::parameter_of(*active.effect, active.variant, i, *model.vehicle);
+      for (const double limit : {number.low, number.high}) {
         if (limit != 0.0 && std::abs(active.theta[i] - limit) < kAtLimit * std::abs(limit))
-          return std::string(parameters[i].name);
+          return std::string(number.name);
       }
     }
   }
@@ -111,7 +112,8 @@ double surprise(const model::Model& model, const Judged& judged) {
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;
     for (std::size_t i = 0; i < active.theta.size(); ++i) {
-      const double size = active.theta[i] / active.effect->parameters()[i].sigma;
+      const double size =
+          active.theta[i] / model::parameter_of(*active.effect, active.variant, i, *model.vehicle).sigma;
       cost += std::max(std::log(0.5 * (1.0 + size * size)), 0.0);
     }
   }

@@ -52,7 +52,7 @@ double lead_of(const model::Model& model) {
   double lead = 0.0;
   for (const model::ActiveEffect& active : model.effects) {
     const int actuators = static_cast<int>(model.allocation.cols());
-    if (active.effect->state_size(*model.vehicle, actuators) > 0) lead = std::max(lead, active.effect->run_in());
+    if (active.effect->state_size(*model.vehicle, actuators) > 0) lead = std::max(lead, active.effect->run_in(active.theta));
   }
   return lead;
 }

@@ -8,6 +8,7 @@
 
 #include "common/diagnosis/judgement.hpp"
 #include "common/identification/outlier.hpp"
+#include "common/model/effect_size.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -102,8 +103,9 @@ void step_base(const Linearisation& base, const Eigen::VectorXd& residual, model
   map.unpack(next, model);
 }
 
-std::vector<double> clamped(const model::Effect& effect, std::vector<double> theta) {
-  const auto parameters = effect.parameters();
+using EffectParameters = std::span<const model::EffectParameter>;
+
+std::vector<double> clamped(EffectParameters parameters, std::vector<double> theta) {
   for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = std::clamp(theta[i], parameters[i].low, parameters[i].high);
   return theta;
 }
@@ -183,24 +185,25 @@ struct Start {
 
 /// The start with its amplitudes where the linear picture wants them, inside their limits. `bottom`: squared norm of
 /// what the start changes; `top`: its product with what is unexplained.
-Start with_best_amplitude(const model::Effect& effect, std::vector<double> theta, double bottom, double top) {
+Start with_best_amplitude(EffectParameters parameters, int amplitudes, std::vector<double> theta, double bottom,
+                          double top) {
   if (bottom <= 0.0) return {0.0, theta};
-  double share = effect.amplitudes() > 0 ? -top / bottom : 1.0;
-  for (int i = 0; i < effect.amplitudes(); ++i) {
+  double share = amplitudes > 0 ? -top / bottom : 1.0;
+  for (int i = 0; i < amplitudes; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double wanted = share * theta[k];
-    if (wanted != 0.0) share *= std::clamp(wanted, effect.parameters()[k].low, effect.parameters()[k].high) / wanted;
+    if (wanted != 0.0) share *= std::clamp(wanted, parameters[k].low, parameters[k].high) / wanted;
   }
-  for (int i = 0; i < effect.amplitudes(); ++i) theta[static_cast<std::size_t>(i)] *= share;
+  for (int i = 0; i < amplitudes; ++i) theta[static_cast<std::size_t>(i)] *= share;
   return {-(share * top + 0.5 * share * share * bottom), theta};
 }
 
 /// How `residual` at theta changes with each number, in units of its prior sigma; what base parameters can imitate is
 /// taken out. Numbers that are zero move by the whole of `first` where it is not zero, the others by a little.
 Eigen::MatrixXd derivatives(const Linearisation& base, CandidateModel& candidate, const Eigen::VectorXd& residual,
-                            const std::vector<double>& theta, const std::vector<double>& first) {
+                            EffectParameters parameters, const std::vector<double>& theta,
+                            const std::vector<double>& first) {
   const model::ActiveEffect& active = candidate.active();
-  const auto parameters = active.effect->parameters();
   Eigen::MatrixXd columns(residual.size(), static_cast<Eigen::Index>(theta.size()));
   std::vector<double> sizes(theta.size());
   for (std::size_t i = 0; i < theta.size(); ++i) {
@@ -225,7 +228,8 @@ Eigen::MatrixXd derivatives(const Linearisation& base, CandidateModel& candidate
 Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
                      const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining) {
   CandidateModel candidate{base, effect, variant, variant_name};
-  const auto parameters = effect.parameters();
+  const std::vector<model::EffectParameter> parameters =
+      model::parameters_of(effect, variant, *base.fit().model.vehicle);
   const std::size_t k = parameters.size();
   const std::vector<double> none(k, 0.0);
 
@@ -242,7 +246,8 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     }
     Eigen::MatrixXd direction = candidate.residual(start) - unfitted;
     remove_base(base, direction);
-    ranked.push_back(with_best_amplitude(effect, start, direction.squaredNorm(), direction.col(0).dot(without.col(0))));
+    ranked.push_back(with_best_amplitude(parameters, effect.amplitudes(), start, direction.squaredNorm(),
+                                         direction.col(0).dot(without.col(0))));
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Start& a, const Start& b) { return a.gain > b.gain; });
   if (ranked.size() > kBestStarts) ranked.resize(kBestStarts);
@@ -259,7 +264,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     // With a single start the effect is near enough to linear for the search to begin at nothing, whose residual is
     // known.
     const bool from_zero = starts.size() == 1 && !refining;
-    std::vector<double> theta = from_zero ? std::vector<double>(k, 0.0) : clamped(effect, start.theta);
+    std::vector<double> theta = from_zero ? std::vector<double>(k, 0.0) : clamped(parameters, start.theta);
     Eigen::MatrixXd residual = without;
     if (!from_zero) {
       residual = candidate.residual(theta);
@@ -271,7 +276,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
     bool moved = true;
     for (int step = 0; step < kNewtonSteps; ++step) {
       if (std::exchange(moved, false))
-        columns = derivatives(base, candidate, residual.col(0), theta, from_zero ? start.theta : none);
+        columns = derivatives(base, candidate, residual.col(0), parameters, theta, from_zero ? start.theta : none);
       // Unknowns in units of their prior sigma, which is also their prior.
       Eigen::MatrixXd normal = columns.transpose() * columns;
       Eigen::VectorXd gradient = columns.transpose() * residual.col(0);
@@ -285,7 +290,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       if (foretold < kNothing * cost_without) break;
       std::vector<double> next = theta;
       for (std::size_t i = 0; i < k; ++i) next[i] += move[static_cast<Eigen::Index>(i)] * parameters[i].sigma;
-      next = clamped(effect, next);
+      next = clamped(parameters, next);
       Eigen::MatrixXd next_residual = candidate.residual(next);
       remove_base(base, next_residual);
       const double next_cost = total(window_costs(base, next_residual.col(0)));

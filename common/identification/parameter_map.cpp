@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/model/effect_size.hpp"
+
 namespace fathom::identification {
 namespace {
 
@@ -33,17 +35,18 @@ ParameterMap::ParameterMap(const model::Model& model) {
   }
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const model::ActiveEffect& active = model.effects[e];
-    const auto parameters = active.effect->parameters();
-    for (std::size_t c = 0; c < parameters.size(); ++c) {
+    const std::size_t count = active.effect->parameters().size();
+    for (std::size_t c = 0; c < count; ++c) {
+      const model::EffectParameter parameter = model::parameter_of(*active.effect, active.variant, c, vehicle);
       FreeParameter free{.effect = static_cast<int>(e), .component = static_cast<int>(c)};
-      free.name = std::string(active.effect->name()) + "." + std::string(parameters[c].name);
+      free.name = std::string(active.effect->name()) + "." + std::string(parameter.name);
       free.unit = std::string(active.effect->unit(active.variant, c));
-      free.prior_sigma = std::max(parameters[c].sigma, kPriorOpen * std::abs(active.theta[c]));
-      free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameters[c].sigma);
-      free.low = parameters[c].low;
-      free.high = parameters[c].high;
-      free.form_sigma = parameters[c].form_sigma;
-      free.after_command = parameters[c].after_command;
+      free.prior_sigma = std::max(parameter.sigma, kPriorOpen * std::abs(active.theta[c]));
+      free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameter.sigma);
+      free.low = parameter.low;
+      free.high = parameter.high;
+      free.form_sigma = parameter.form_sigma;
+      free.after_command = parameter.after_command;
       free_.push_back(std::move(free));
     }
   }

@@ -1,6 +1,7 @@
 #include "common/model/effect.hpp"
 
 #include <array>
+#include <numbers>
 
 namespace fathom::model {
 
@@ -36,6 +37,13 @@ std::vector<std::vector<double>> Effect::starts(const Scene&, int) const {
   std::vector<double> start;
   for (const EffectParameter& parameter : parameters()) start.push_back(0.1 * parameter.sigma);
   return {start};
+}
+
+double run_in_for(double time_constant) {
+  constexpr double kShortest = 3.0, kLongest = 48.0, kConstants = 4.5;  // s, s; 1 % is forgotten at most
+  double seconds = kShortest;
+  while (seconds < kConstants * time_constant && seconds < kLongest) seconds *= std::numbers::sqrt2;
+  return seconds;
 }
 
 }  // namespace fathom::model

@@ -42,7 +42,7 @@ struct Scene {
   std::vector<Tone> tones_horizontal{}, tones_vertical{};
 };
 
-/// One number of an effect. Zero means: the effect is absent.
+/// One number of an effect, as it is on a small craft (effect_size.hpp). Zero means: the effect is absent.
 struct EffectParameter {
   std::string_view name;
   std::string_view unit;
@@ -78,6 +78,8 @@ class Effect {
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
 
+  /// True when its numbers' sigmas are already those of the data at hand.
+  [[nodiscard]] virtual bool knows_size() const { return false; }
   /// How many leading numbers the effect is proportional to; the others say where, when or how fast.
   [[nodiscard]] virtual int amplitudes() const { return 0; }
   /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
@@ -102,8 +104,9 @@ class Effect {
   virtual void settle(const Motion&, EffectTheta, std::span<double> /*z*/) const {}
   /// Memory after dt, exact for constant input. Sees the motion as felt before this effect.
   virtual void advance(const Motion&, EffectTheta, double /*dt*/, std::span<double> /*z*/) const {}
-  /// Seconds of measured motion before a window that fill the memory: twenty time constants of an ordinary thruster.
-  [[nodiscard]] virtual double run_in() const { return 3.0; }
+  /// Seconds of measured motion before a window that fill the memory. Of the time constants' size, but no smooth
+  /// function of them: see run_in_for().
+  [[nodiscard]] virtual double run_in(EffectTheta) const { return 3.0; }
   /// True when it alters what the sensors say, not what the vehicle does.
   [[nodiscard]] virtual bool measures() const { return false; }
   /// True velocities, `dt` apart, become measured ones, in place. Linear in the velocities, so that derivatives go the
@@ -112,6 +115,10 @@ class Effect {
   /// The way back; at the ends of the stretch as well as it can be done.
   virtual void unmeasure(VelocityView& /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
 };
+
+/// Three to six time constants, 3 s at least and 48 at most, by doubling: what a search moves a little leaves it as it
+/// is.
+[[nodiscard]] double run_in_for(double time_constant);
 
 /// All effects, in the order in which they act: from the command to the water.
 [[nodiscard]] std::span<const Effect* const> all_effects();

@@ -186,7 +186,7 @@ class Rollout {
   void run_in(std::size_t start, double h) {
     if (memory_size_ == 0) return;
     double seconds = 0.0;
-    for (const ActiveEffect& active : model_.effects) seconds = std::max(seconds, active.effect->run_in());
+    for (const ActiveEffect& active : model_.effects) seconds = std::max(seconds, active.effect->run_in(active.theta));
     const auto back = static_cast<std::size_t>(seconds / trial_.dt);
     const std::size_t first = start > back ? start - back : 0;
     set_motion(first, 0.0, trial_.p_WB[first], trial_.q_WB[first], trial_.nu[first]);

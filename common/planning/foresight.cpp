@@ -11,6 +11,7 @@
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/questions.hpp"
 #include "common/identification/parameter_map.hpp"
+#include "common/model/effect_size.hpp"
 #include "common/planning/energies.hpp"
 
 namespace fathom::planning {
@@ -94,7 +95,8 @@ Suspect smallest(const View& view, const Base& base, const Judge& judge, const d
   suspect.ordinary = 0.0;
   const auto sizes = static_cast<std::size_t>(std::max(candidate.effect->amplitudes(), 1));
   for (std::size_t i = 0; i < sizes; ++i) {
-    const double size = std::abs(suspect.active.theta[i]) / candidate.effect->parameters()[i].sigma;
+    const double size = std::abs(suspect.active.theta[i]) /
+                        model::parameter_of(*candidate.effect, candidate.variant, i, *view.model().vehicle).sigma;
     if (candidate.effect->takes_part(candidate.variant, i)) suspect.ordinary = std::max(suspect.ordinary, size);
   }
   return suspect;

@@ -68,7 +68,7 @@ class FluidMemory final : public Effect {
     return {{coefficient, 0.4}, {coefficient, 1.5}, {coefficient, 6.0}};
   }
   int state_size(const Vehicle&, int) const override { return 3 * static_cast<int>(kAxes); }
-  double run_in() const override { return 15.0; }
+  double run_in(EffectTheta theta) const override { return run_in_for(theta[1]); }
 
   void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
     const Vector6d nu_r = motion.nu_r(), share = shares(*motion.vehicle);

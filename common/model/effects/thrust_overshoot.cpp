@@ -47,6 +47,7 @@ class ThrustOvershoot final : public Effect {
   }
   std::vector<std::vector<double>> far_starts(const Scene&, int) const override { return {{0.6, 0.8}}; }
   int state_size(const Vehicle&, int actuators) const override { return actuators; }
+  double run_in(EffectTheta theta) const override { return run_in_for(theta[1]); }
 
   void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = motion.force[static_cast<Eigen::Index>(i)];

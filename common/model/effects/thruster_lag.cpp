@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/model/effect.hpp"
+#include "common/model/effect_size.hpp"
 
 namespace fathom::model::effects {
 namespace {
@@ -18,8 +19,12 @@ class ThrusterLag final : public Effect {
   std::string_view revealed_by() const override { return "steps and a sweep of thrust up to about 2 Hz"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
-  std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.08}, {0.3}, {0.9}}; }
+  std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
+    const double slower = size_factor(*scene.vehicle, "s");
+    return {{0.08 * slower}, {0.3 * slower}, {0.9 * slower}};
+  }
   int state_size(const Vehicle&, int actuators) const override { return actuators; }
+  double run_in(EffectTheta theta) const override { return run_in_for(theta[0]); }
 
   void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = motion.force[static_cast<Eigen::Index>(i)];
