@@ -52,7 +52,7 @@ std::vector<model::Window> prediction_windows(std::span<const Trial> trials) {
   std::vector<model::Window> windows;
   for (const Trial& trial : trials) {
     const std::size_t count = longest_prediction(trial) + 1;
-    const auto stride = static_cast<std::size_t>(std::lround(kStride / trial.dt));
+    const auto stride = static_cast<std::size_t>(std::max(1L, std::lround(kStride / trial.dt)));
     for (std::size_t start = 0; start + count <= trial.size(); start += stride) {
       // The start may slip to the next sample at which everything observed is valid.
       std::size_t begin = start;

@@ -197,8 +197,7 @@ Imported import_table(const CsvTable& table, const ColumnMap& map) {
   out.source = map.source;
   out.licence = map.licence;
   Resolver resolve(table);
-  const Group time(resolve, map.time);
-  const Rows rows = read_time(table, time, out.notes);
+  const Rows rows = read_time(table, resolve, map.time, out.notes);
   if (map.pose_capture) import_pose(resolve, *map.pose_capture, rows, table, out);
   if (map.ahrs) import_ahrs(resolve, *map.ahrs, rows, table, out);
   if (map.dvl) import_dvl(resolve, *map.dvl, rows, table, out);

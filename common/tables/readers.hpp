@@ -92,8 +92,10 @@ struct Rows {
   std::vector<Utime> utime;
 };
 
-/// Drops rows without a rising time, counts them and names the longest gap in `notes`.
-[[nodiscard]] Rows read_time(const CsvTable& table, const Group& time, std::vector<std::string>& notes);
+/// Drops rows without a rising time, counts them and names the longest gap in `notes`. InputError when rows are so far
+/// apart that the unit must be another.
+[[nodiscard]] Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnGroup& column,
+                             std::vector<std::string>& notes);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);
 
