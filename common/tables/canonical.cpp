@@ -33,6 +33,14 @@ class Shelf {
     return group;
   }
 
+  /// Those of `names` that are there, the others marked absent; nothing when none is.
+  std::optional<ColumnGroup> take_some(const std::vector<std::string>& names) {
+    ColumnGroup group;
+    for (const std::string& name : names) group.columns.push_back({name, "", left_.erase(name) == 0});
+    if (std::ranges::all_of(group.columns, &Column::absent)) return std::nullopt;
+    return group;
+  }
+
   /// prefix1, prefix2, ... as far as they go.
   std::optional<ColumnGroup> take_numbered(const std::string& prefix) {
     ColumnGroup group;
@@ -76,20 +84,20 @@ ColumnMap canonical_map(const CsvTable& table) {
                      ":1: column 't' (time in seconds) is missing; describe other columns with a map (--map)");
   }
   map.time = *time;
-  const auto position = shelf.take({"x", "y", "z"});
-  const auto attitude = as_euler(shelf.take({"phi", "theta", "psi"}));
+  const auto position = shelf.take_some({"x", "y", "z"});
+  const auto attitude = as_euler(shelf.take_some({"phi", "theta", "psi"}));
   // With a position the attitude belongs to the pose; alone it is what an attitude sensor says.
   if (position) map.pose_capture = PoseColumns{position, attitude, {}, {}};
   AhrsColumns ahrs;
-  ahrs.rates = shelf.take({"p", "q", "r"});
+  ahrs.rates = shelf.take_some({"p", "q", "r"});
   ahrs.specific_force = shelf.take({"ax", "ay", "az"});
   if (!position) ahrs.attitude = attitude;
   if (ahrs.rates || ahrs.specific_force || ahrs.attitude) map.ahrs = ahrs;
-  if (const auto velocity = shelf.take({"u", "v", "w"})) map.dvl = DvlColumns{*velocity, {}, {}, {}};
+  if (const auto velocity = shelf.take_some({"u", "v", "w"})) map.dvl = DvlColumns{*velocity, {}, {}, {}};
   ThrusterColumns thrusters;
   thrusters.pwm = shelf.take_numbered("pwm");
   thrusters.force = shelf.take_numbered("f");
-  if (const auto wrench = shelf.take({"X", "Y", "Z", "K", "M", "N"})) {
+  if (const auto wrench = shelf.take_some({"X", "Y", "Z", "K", "M", "N"})) {
     thrusters.wrench_force = ColumnGroup{{wrench->columns.begin(), wrench->columns.begin() + 3}};
     thrusters.wrench_moment = ColumnGroup{{wrench->columns.begin() + 3, wrench->columns.end()}};
   }

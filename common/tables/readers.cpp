@@ -63,6 +63,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 ColumnData Resolver::operator()(const Column& column) {
+  if (column.absent) return nullptr;
   const ColumnData data = table_.find(column.name);
   if (data == nullptr) {
     throw InputError((column.where.empty() ? "" : column.where + ": ") + "column '" + column.name + "' is not in " +
@@ -95,12 +96,12 @@ Group::Group(Resolver& resolve, const ColumnGroup& group)
 
 bool Group::complete(std::size_t row) const {
   return std::all_of(data_.begin(), data_.end(),
-                     [&](ColumnData column) { return std::isfinite(factor_ * (*column)[row]); });
+                     [&](ColumnData column) { return column == nullptr || std::isfinite(factor_ * (*column)[row]); });
 }
 
 bool Group::repeats(std::size_t row, std::size_t before) const {
   return std::all_of(data_.begin(), data_.end(),
-                     [&](ColumnData column) { return (*column)[row] == (*column)[before]; });
+                     [&](ColumnData column) { return column == nullptr || (*column)[row] == (*column)[before]; });
 }
 
 Eigen::Vector3d Group::vector(std::size_t row) const {

@@ -20,7 +20,7 @@ using ColumnData = const std::vector<double>*;
 class Resolver {
  public:
   explicit Resolver(const CsvTable& table) : table_(table) {}
-  /// InputError when there is no such column, or not one number in it.
+  /// InputError when there is no such column, or not one number in it; nullptr for one that is marked absent.
   ColumnData operator()(const Column& column);
   std::vector<ColumnData> operator()(const std::vector<Column>& columns);
   /// Columns that nobody asked for.
@@ -37,7 +37,9 @@ class Group {
   Group(Resolver& resolve, const ColumnGroup& group);
   [[nodiscard]] bool complete(std::size_t row) const;
   [[nodiscard]] bool repeats(std::size_t row, std::size_t before) const;
-  [[nodiscard]] double raw(std::size_t i, std::size_t row) const { return (*data_[i])[row]; }
+  [[nodiscard]] double raw(std::size_t i, std::size_t row) const {
+    return data_[i] == nullptr ? 0.0 : (*data_[i])[row];
+  }
   [[nodiscard]] double scalar(std::size_t row) const { return factor_ * raw(0, row); }
   [[nodiscard]] Eigen::Vector3d vector(std::size_t row) const;  ///< SI, in the house's frame
   [[nodiscard]] std::vector<double> values(std::size_t row) const;

@@ -48,7 +48,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   progress.show("reading recordings", 0.0);
-  std::vector<Recording> recordings = read_recordings(paths, options.map, notes);
+  std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
   for (Recording& recording : recordings) {
     if (!estimation::take_state_as_measured(recording)) continue;
     notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
