@@ -167,7 +167,8 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   result.parameters_after = found.after.parameters();
   result.residual_before = whiteness(found.before.model, unseen, residual_before);
   result.residual_after = whiteness(found.after.model, unseen, residual_after);
-  conclude(found, left_in(train, unseen, found, vehicle, settings), result);
+  const std::vector<Association> left = left_in(train, unseen, found, vehicle, settings);
+  conclude(found, left, model::scene_of(vehicle, train), result);
   for (std::size_t r = 0; r < unseen.size(); ++r) {
     report.traces.push_back(trace_of(unseen[r], found, residual_before[r], residual_after[r]));
   }

@@ -11,7 +11,9 @@ namespace fathom::diagnosis {
 /// Share of the residual's variance that must go with something before structure is called unexplained.
 constexpr double kSmallestAssociation = 0.1;
 
-/// Fills effects, candidates, verdict and paragraph of `result`, whose errors and parameters are already there.
-void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result);
+/// Fills effects, candidates, what was not measured, verdict and paragraph of `result`, whose errors and parameters are
+/// already there. `scene` is that of the training runs.
+void conclude(const SearchResult& found, std::span<const Association> left, const model::Scene& scene,
+              DiagnosisResult& result);
 
 }  // namespace fathom::diagnosis
