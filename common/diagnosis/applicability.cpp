@@ -27,10 +27,15 @@ bool has_form(const Effect& effect, const Scene& scene) {
   return std::ranges::any_of(effect.variants(scene), [](const std::string& form) { return form != "-"; });
 }
 
-/// The vehicle in runs that leave nothing to wish for: everything measured, every axis moved, long and far.
-Scene everything(const Scene& scene) {
+/// The vehicle in runs that leave nothing to wish for: everything measured, every axis moved, long and far. Forces are
+/// asked about a sensor only where no pose checks it, so for those effects the pose stays as it is.
+Scene everything(const Effect& effect, const Scene& scene) {
   Scene full = scene;
   for (const Group& group : kGroups) full.*group.measured = true;
+  if (effect.measures()) {
+    full.position = scene.position;
+    full.attitude = scene.attitude;
+  }
   full.voltage = true;
   full.mean_voltage = 15.0;  // V
   full.voltage_range = 5.0;
@@ -50,12 +55,14 @@ Scene without(Scene scene, const Group& group) {
   scene.*group.measured = false;
   if (group.measured == &Scene::position) scene.p_high = scene.p_low;
   if (group.measured == &Scene::attitude) scene.tilt_rms = 0.0;
+  if (group.measured == &Scene::velocity) scene.nu_rms.head<3>().setZero();
+  if (group.measured == &Scene::rates) scene.nu_rms.tail<3>().setZero();
   return scene;
 }
 
 /// Groups that were not measured, and without which the effect has no form.
 std::vector<const Group*> needed_groups(const Effect& effect, const Scene& scene) {
-  const Scene full = everything(scene);
+  const Scene full = everything(effect, scene);
   std::vector<const Group*> needed;
   if (has_form(effect, scene) || !has_form(effect, full)) return needed;
   for (const Group& group : kGroups) {
@@ -76,9 +83,9 @@ std::string why_not_asked(const Effect& effect, const Scene& scene) {
   std::vector<std::string> missing;
   for (const Group* group : needed_groups(effect, scene)) missing.emplace_back(group->name);
   if (!missing.empty()) return "not applicable: not measured: " + joined(missing);
-  const Scene full = everything(scene);
+  const Scene full = everything(effect, scene);
   if (has_form(effect, full)) return "not applicable: nothing in these runs could show it";
-  if (effect.measures() && has_form(effect, without(full, kGroups[0])))
+  if (effect.measures() && has_form(effect, without(without(full, kGroups[0]), kGroups[1])))
     return "not applicable: sensors are compared with each other";
   model::Vehicle vehicle = *scene.vehicle;
   Scene other = full;

@@ -53,6 +53,11 @@ TEST_CASE("applicability: what the data lacks, what the base model has, what the
   MadeUp made;
   CHECK(made.why("thruster_gain") == "not applicable: needs forces of single thrusters");
   CHECK(made.why("sensor_scale") == "not applicable: sensors are compared with each other");
+  CHECK(made.why("lever_arm") == "not applicable: sensors are compared with each other");
+  made.scene.position = made.scene.attitude = made.scene.rates = false;  // nothing to compare with
+  made.scene.nu_rms.tail<3>().setZero();
+  CHECK(made.why("lever_arm") == "not applicable: not measured: rates");
+  made.scene.position = made.scene.attitude = made.scene.rates = true;
   made.vehicle.parameters = {"G_x", "G_y", "G_z"};
   CHECK(made.why("restoring_moment") == "not applicable: the base model has it");
   made.scene.p_high.z() = made.scene.p_low.z();
