@@ -188,7 +188,7 @@ std::string next_manoeuvre(const DiagnosisResult& result) {
 }  // namespace
 
 void conclude(const SearchResult& found, std::span<const Association> left, const model::Scene& scene,
-              DiagnosisResult& result) {
+              DiagnosisResult& result, const std::string& unjudged) {
   result.explained = found.accepted.empty() ? 1.0 : found.explained;
   result.goes_with.assign(left.begin(), left.end());
   list_effects(found, result);
@@ -202,7 +202,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const bool structure = !left.empty() || found.free_form || found.taken_back;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
-    result.verdict = structure ? "unexplained" : "adequate";
+    result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
   } else if (stand_ins) {
     result.verdict = "unexplained";
   } else {
@@ -210,7 +210,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
 
   std::string& text = result.paragraph;
-  if (names.empty() && !structure) {
+  if (result.verdict == "unjudged") {
+    text = "None of the " + std::to_string(asked) +
+           " effects that were tried has evidence worth adding, which says little on so short a run. " + unjudged;
+  } else if (names.empty() && !structure) {
     text =
         "The base model explains these runs: none of the " + std::to_string(asked) +
         " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. " +
@@ -220,6 +223,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     if (found.taken_back) {
       text += "What helped the training runs did not help the validation run; it is listed among the refused. ";
     }
+    text += unjudged;
   } else {
     text = "The motion shows what the base model lacks: " + joined(names) + ". ";
     for (const EffectFound& effect : result.effects) {
@@ -227,7 +231,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
       if (!effect.other_forms.empty())
         text += "Which form of " + effect.name + " it is remains open: " + joined(effect.other_forms, "; ") + ". ";
     }
-    text += improvement_sentence(result);
+    text += unjudged.empty() ? improvement_sentence(result) : unjudged;
   }
   if (stand_ins) {
     text += "Where " + joined(names) + " act" + (names.size() > 1 ? "" : "s") + ", only " + percent(found.explained) +

@@ -100,7 +100,7 @@ struct DiagnosisResult {
   std::vector<std::string> train;
   std::vector<std::string> validate;
   std::vector<ConsistencyFinding> consistency;
-  std::string verdict;    ///< "adequate", "effect", "ambiguous", "unexplained"
+  std::string verdict;    ///< "adequate", "effect", "ambiguous", "unexplained"; "unjudged": too short to say "adequate"
   std::string paragraph;  ///< verdict in plain words: how sure, and which manoeuvre would settle what is open
   std::string manoeuvre;  ///< the motion that would settle what is open; empty when nothing is (report only)
   std::vector<EffectFound> effects;

@@ -81,6 +81,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
 
   diagnosis::Settings settings;
   settings.threads = options.threads;
+  if (options.validate.empty()) settings.held_out = kHeldOut;
   identification::FitResult fitted;
   DiagnosisReport report = diagnosis::diagnose(
       vehicle, train, validate, settings,

@@ -107,6 +107,21 @@ TEST_CASE("verdict: nothing found and nothing left is adequate, and there is not
   check_all_listed(result);
 }
 
+TEST_CASE("verdict: nothing found where nothing could be judged is not adequate") {
+  MadeUp made;
+  DiagnosisResult result;
+  conclude(made.found, made.left, made.scene(), result, "Too short. ");
+  CHECK(result.verdict == "unjudged");
+  CHECK(says(result.paragraph, "Too short."));
+  CHECK_FALSE(says(result.paragraph, "explains these runs"));
+  made.accept("current", {0.1, 0.0});
+  result = {};
+  conclude(made.found, made.left, made.scene(), result, "Too short. ");
+  CHECK(result.verdict == "effect");
+  CHECK(says(result.paragraph, "Too short."));
+  CHECK_FALSE(says(result.paragraph, "prediction error"));
+}
+
 TEST_CASE("verdict: what was not measured is said, with what could not be asked; only what was asked counts as tried") {
   MadeUp made;
   made.refuse("thruster_lag", 1.0, "log odds 1.0, 3.0 needed");
