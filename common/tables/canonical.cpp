@@ -1,8 +1,10 @@
 // The canonical columns: a table that needs no map. docs/configuration.md lists them.
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "common/base/error.hpp"
+#include "common/base/near_name.hpp"
 #include "common/tables/import.hpp"
 
 namespace fathom::tables {
@@ -10,6 +12,9 @@ namespace {
 
 constexpr const char* kCanonical =
     "t; x y z; phi theta psi; u v w; p q r; ax ay az; f1..fN or X Y Z K M N; pwm1..pwmN; depth; voltage";
+
+constexpr std::array kNames{"t",  "x",  "y",  "z", "phi", "theta", "psi", "u", "v", "w",     "p",       "q",  "r",
+                            "ax", "ay", "az", "X", "Y",   "Z",     "K",   "M", "N", "depth", "voltage", "f1", "pwm1"};
 
 // Takes groups of columns out of the table until only strangers are left.
 class Shelf {
@@ -50,10 +55,19 @@ class Shelf {
     return group.columns.empty() ? std::nullopt : std::optional<ColumnGroup>(group);
   }
 
+  /// " (did you mean 'phi'?)" for "Phi", unless there is a "phi" too.
+  [[nodiscard]] std::string meant(const std::string& name) const {
+    for (const char* known : kNames) {
+      if (table_.find(known) == nullptr && looks_like(name, known))
+        return std::string(" (did you mean '") + known + "'?)";
+    }
+    return "";
+  }
+
   void must_be_empty() const {
     std::string strangers;
     for (const std::string& name : table_.names) {
-      if (left_.contains(name)) strangers += (strangers.empty() ? "'" : ", '") + name + "'";
+      if (left_.contains(name)) strangers += (strangers.empty() ? "'" : ", '") + name + "'" + meant(name);
     }
     if (strangers.empty()) return;
     throw InputError(table_.path + ":1: unknown columns " + strangers +
@@ -80,8 +94,9 @@ ColumnMap canonical_map(const CsvTable& table) {
   ColumnMap map;
   const auto time = shelf.take({"t"});
   if (!time) {
-    throw InputError(table.path +
-                     ":1: column 't' (time in seconds) is missing; describe other columns with a map (--map)");
+    throw InputError(table.path + ":1: column 't' (time in seconds) is missing" +
+                     (table.find("T") != nullptr ? " (is it 'T'?)" : "") +
+                     "; describe other columns with a map (--map)");
   }
   map.time = *time;
   const auto position = shelf.take_some({"x", "y", "z"});

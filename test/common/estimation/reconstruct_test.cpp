@@ -194,8 +194,8 @@ TEST_CASE("reconstruct: without motion or without input it says what is missing"
   CHECK(try_it(still) == "synthetic: no motion is recorded (neither pose, nor rates, nor velocity)");
   Recording idle = test::synthetic_recording({.seed = 9, .duration = kDuration});
   idle.thrusters.clear();
-  CHECK(try_it(idle) ==
-        "synthetic: no thruster forces, no wrench, and no commands that the vehicle's curve could turn into forces");
+  CHECK(try_it(idle).rfind("synthetic: nothing says what drove the vehicle: no thruster forces (f1 ...), no wrench",
+                           0) == 0);
 }
 
 }  // namespace fathom

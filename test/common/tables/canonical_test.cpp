@@ -75,6 +75,13 @@ TEST_CASE("canonical: unknown and incomplete columns are named") {
   CHECK(complaint("t,u,v,w\n0,1,2,\n1,1,2,nan\n") == "run.csv: column 'w' holds no number at all");
 }
 
+TEST_CASE("canonical: a column that differs by capitals or a slip is told its name") {
+  CHECK(complaint("t,Phi,theta,psi\n0,1,2,3\n").rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?);", 0) ==
+        0);
+  CHECK(complaint("t,u,v,w,U\n0,1,2,3,4\n").rfind("run.csv:1: unknown columns 'U';", 0) == 0);  // there is a 'u'
+  CHECK(complaint("T,u,v,w\n0,1,2,3\n").find("(is it 'T'?)") != std::string::npos);
+}
+
 TEST_CASE("canonical: time in milliseconds is told by its step, with the remedy") {
   CHECK(
       complaint("t,u,v,w\n100000,1,2,3\n100020,1,2,4\n100040,1,2,5\n") ==
