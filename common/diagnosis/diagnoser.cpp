@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
+#include "common/base/error.hpp"
 #include "common/diagnosis/associations.hpp"
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/left_over.hpp"
@@ -19,6 +21,7 @@ namespace {
 constexpr double kMostHarm = 0.02;  // growth of the validation error: what predicts worse is not what the model lacked
 constexpr double kPromised = 0.1;   // of the training error: so much must show elsewhere
 constexpr double kKept = 0.25;      // of what was promised
+constexpr double kStill = 1e-9;     // m/s, rad/s: rounding of what never changes
 constexpr double kStep = 0.04;      // s between the velocities that are predicted: short of it there is only noise
 
 using Residuals = std::vector<std::vector<Vector6d>>;
@@ -125,6 +128,46 @@ std::vector<Association> left_in(std::span<const Trial> train, std::span<const T
   return left;
 }
 
+/// A table whose columns repeat one number says nothing, however long it is.
+void check_moves(const model::Vehicle& vehicle, std::span<const Trial> trials) {
+  std::string names;
+  for (const Trial& trial : trials) {
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      for (std::size_t k = 1; vehicle.dof[axis] && k < trial.size(); ++k) {
+        if (std::abs(trial.nu[k][a] - trial.nu[0][a]) > kStill) return;
+      }
+    }
+    names += (names.empty() ? "" : ", ") + trial.name;
+  }
+  throw InputError(names +
+                   ": nothing moves: every velocity and rate that the vehicle simulates is constant there; do "
+                   "the columns hold what their names say?");
+}
+
+/// Why no prediction could be judged, and how much data would do.
+std::string too_short(std::span<const Trial> unseen, const Settings& settings) {
+  double longest = 0.0, dt = 0.0;
+  for (const Trial& trial : unseen) {
+    longest = std::max(longest, static_cast<double>(trial.size()) * trial.dt);
+    dt = std::max(dt, trial.dt);
+  }
+  const double needed = kHorizons.back() + dt;
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "Nothing was judged on data that no fit has seen: that needs %.3g s on end without a gap, and its "
+                "longest run has %.3g s. ",
+                kHorizons.back(), longest);
+  std::string words = text;
+  if (settings.held_out > 0.0) {
+    std::snprintf(text, sizeof text, "Record at least %.0f s, or give a run of its own to judge by. ",
+                  std::ceil(needed / settings.held_out));
+  } else {
+    std::snprintf(text, sizeof text, "Give a longer run to judge by. ");
+  }
+  return words + text;
+}
+
 /// Takes back everything that was accepted.
 void take_back(SearchResult& found) {
   for (Judged& judged : found.accepted) {
@@ -141,6 +184,7 @@ void take_back(SearchResult& found) {
 
 DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
                          const Settings& settings, const Progress& progress, identification::FitResult* fitted) {
+  check_moves(vehicle, train);
   std::vector<Trial> unseen;
   for (const Trial& trial : validate) unseen.push_back(identification::sparse(trial, kStep));
   SearchResult found = search(vehicle, train, settings, progress);
@@ -165,11 +209,18 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   result.error_before = {force_rmse(vehicle, residual_before), before.summary(vehicle)};
   result.error_after = {force_rmse(vehicle, residual_after), after.summary(vehicle)};
   result.improvement = improvement(before, after, vehicle);
+  if (!judged) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    result.error_before.prediction.clear();
+    result.error_after.prediction.clear();
+    result.improvement = {kNaN, kNaN, kNaN};
+  }
   result.parameters_before = found.before.parameters();
   result.parameters_after = found.after.parameters();
   result.residual_before = whiteness(found.before.model, unseen, residual_before);
   result.residual_after = whiteness(found.after.model, unseen, residual_after);
-  conclude(found, left_in(train, unseen, found, vehicle, settings), result);
+  const std::vector<Association> left = left_in(train, unseen, found, vehicle, settings);
+  conclude(found, left, model::scene_of(vehicle, train), result, judged ? "" : too_short(unseen, settings));
   for (std::size_t r = 0; r < unseen.size(); ++r) {
     report.traces.push_back(trace_of(unseen[r], found, residual_before[r], residual_after[r]));
   }

@@ -21,6 +21,7 @@ struct Settings {
   double smallest_reduction{0.005};  ///< of the training error (RMS): less changes no prediction worth the name
   double smallest_change{0.005};     ///< of the predicted velocity, share of the measured one: nobody would notice less
   double alias_correlation{0.9};     ///< of two effects' predictions, what the base parameters can imitate taken out
+  double held_out{0.0};              ///< share of every run that is kept to judge by; 0: runs of their own do that
   int most_effects{8};
   int threads{2};
 };

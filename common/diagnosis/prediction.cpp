@@ -52,7 +52,8 @@ double lead_of(const model::Model& model) {
   double lead = 0.0;
   for (const model::ActiveEffect& active : model.effects) {
     const int actuators = static_cast<int>(model.allocation.cols());
-    if (active.effect->state_size(*model.vehicle, actuators) > 0) lead = std::max(lead, active.effect->run_in(active.theta));
+    if (active.effect->state_size(*model.vehicle, actuators) > 0)
+      lead = std::max(lead, active.effect->run_in(active.theta));
   }
   return lead;
 }
@@ -61,8 +62,8 @@ std::vector<model::Window> prediction_windows(std::span<const Trial> trials, dou
   std::vector<model::Window> windows;
   for (const Trial& trial : trials) {
     const std::size_t count = longest_prediction(trial) + 1;
-    const auto stride = static_cast<std::size_t>(std::lround(kStride / trial.dt));
-    auto first = static_cast<std::size_t>(std::ceil(lead / trial.dt));
+    const auto stride = static_cast<std::size_t>(std::max(1L, std::lround(kStride / trial.dt)));
+    auto first = static_cast<std::size_t>(std::ceil(lead / trial.dt - 1e-6));
     if (first + stride + count > trial.size()) first = 0;
     for (std::size_t start = first; start + count <= trial.size(); start += stride) {
       // The start may slip to the next sample at which everything observed is valid.

@@ -101,7 +101,7 @@ void adopt_sensor_faults(DiagnosisResult& result) {
   if (found.empty()) return;
   result.paragraph = "The sensors contradict each other (" + listed(found) +
                      "); that is corrected in everything that follows. " + result.paragraph;
-  if (result.verdict == "adequate") result.verdict = "effect";
+  if (result.verdict == "adequate" || result.verdict == "unjudged") result.verdict = "effect";
   for (auto effect = found.rbegin(); effect != found.rend(); ++effect) {
     std::erase_if(result.candidates, [&](const CandidateTried& c) { return c.name == effect->name; });
     result.candidates.insert(

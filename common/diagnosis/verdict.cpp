@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
 
@@ -81,7 +82,8 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
   }
 }
 
-void list_candidates(const SearchResult& found, DiagnosisResult& result) {
+/// How many effects were asked.
+std::size_t list_candidates(const SearchResult& found, const model::Scene& scene, DiagnosisResult& result) {
   for (const EffectFound& effect : result.effects) {
     std::vector<std::string> aliases;
     for (const Judged& judged : found.accepted) {
@@ -101,14 +103,14 @@ void list_candidates(const SearchResult& found, DiagnosisResult& result) {
     result.candidates.push_back(
         {name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, reason});
   }
+  const std::size_t asked = result.candidates.size();
   for (const model::Effect* effect : model::all_effects()) {
     const std::string name{effect->name()};
     const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
                                     [&](const CandidateTried& c) { return c.name == name; });
-    if (!listed)
-      result.candidates.push_back(
-          {name, "", 0.0, 0.0, {}, "not applicable: the base model has it, or the data lacks what it needs"});
+    if (!listed) result.candidates.push_back({name, "", 0.0, 0.0, {}, why_not_asked(*effect, scene)});
   }
+  return asked;
 }
 
 std::string improvement_sentence(const DiagnosisResult& result) {
@@ -185,11 +187,13 @@ std::string next_manoeuvre(const DiagnosisResult& result) {
 
 }  // namespace
 
-void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result) {
+void conclude(const SearchResult& found, std::span<const Association> left, const model::Scene& scene,
+              DiagnosisResult& result, const std::string& unjudged) {
   result.explained = found.accepted.empty() ? 1.0 : found.explained;
   result.goes_with.assign(left.begin(), left.end());
   list_effects(found, result);
-  list_candidates(found, result);
+  const std::size_t asked = list_candidates(found, scene, result);
+  result.not_measured = not_measured(scene);
   std::vector<std::string> names, open;
   for (const EffectFound& effect : result.effects) {
     names.push_back(effect.name);
@@ -198,7 +202,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
   const bool structure = !left.empty() || found.free_form || found.taken_back;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
-    result.verdict = structure ? "unexplained" : "adequate";
+    result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
   } else if (stand_ins) {
     result.verdict = "unexplained";
   } else {
@@ -206,9 +210,12 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
   }
 
   std::string& text = result.paragraph;
-  if (names.empty() && !structure) {
+  if (result.verdict == "unjudged") {
+    text = "None of the " + std::to_string(asked) +
+           " effects that were tried has evidence worth adding, which says little on so short a run. " + unjudged;
+  } else if (names.empty() && !structure) {
     text =
-        "The base model explains these runs: none of the " + std::to_string(result.candidates.size()) +
+        "The base model explains these runs: none of the " + std::to_string(asked) +
         " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. " +
         memory_sentence(result);
   } else if (names.empty()) {
@@ -216,6 +223,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
     if (found.taken_back) {
       text += "What helped the training runs did not help the validation run; it is listed among the refused. ";
     }
+    text += unjudged;
   } else {
     text = "The motion shows what the base model lacks: " + joined(names) + ". ";
     for (const EffectFound& effect : result.effects) {
@@ -223,7 +231,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
       if (!effect.other_forms.empty())
         text += "Which form of " + effect.name + " it is remains open: " + joined(effect.other_forms, "; ") + ". ";
     }
-    text += improvement_sentence(result);
+    text += unjudged.empty() ? improvement_sentence(result) : unjudged;
   }
   if (stand_ins) {
     text += "Where " + joined(names) + " act" + (names.size() > 1 ? "" : "s") + ", only " + percent(found.explained) +
@@ -251,8 +259,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, Diag
       words.push_back(association.axis + " with " + association.with + " (" + percent(association.share) +
                       " of its variance)");
     }
-    text += "What is still left in the residual goes with: " + joined(words) + ".";
+    text += "What is still left in the residual goes with: " + joined(words) + ". ";
   }
+  text += not_measured_sentences(result.not_measured, *scene.vehicle);
+  while (!text.empty() && text.back() == ' ') text.pop_back();
   result.manoeuvre = next_manoeuvre(result);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "common/diagnosis/associations.hpp"
 #include "common/diagnosis/search.hpp"
@@ -11,7 +12,9 @@ namespace fathom::diagnosis {
 /// Share of the residual's variance that must go with something before structure is called unexplained.
 constexpr double kSmallestAssociation = 0.1;
 
-/// Fills effects, candidates, verdict and paragraph of `result`, whose errors and parameters are already there.
-void conclude(const SearchResult& found, std::span<const Association> left, DiagnosisResult& result);
+/// Fills effects, candidates, what was not measured, verdict and paragraph of `result`, whose errors and parameters are
+/// already there. `scene` is that of the training runs; `unjudged` says why no prediction was judged, if none was.
+void conclude(const SearchResult& found, std::span<const Association> left, const model::Scene& scene,
+              DiagnosisResult& result, const std::string& unjudged = "");
 
 }  // namespace fathom::diagnosis

@@ -9,6 +9,7 @@
 #include "common/estimation/smoothing_derivative.hpp"
 #include "common/estimation/steady_attitude.hpp"
 #include "common/estimation/trial_input.hpp"
+#include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kHighestRate = 50.0;  // Hz: at half of it, steps of 40 ms put 
 constexpr double kBandwidth = 1.0;     // Hz: underwater vehicles of this size answer slower
 constexpr double kDoubt = 0.4;         // s: half the window in which gyro and pose were compared
 constexpr double kGainTolerance = 0.03;
+constexpr double kMostlyThere = 0.05;  // least share of the grid that samples fill: else a clock has leapt
 
 /// One of two sources of three components, with its white noise.
 struct Source {
@@ -182,6 +184,21 @@ Choice choose(const Source& sensor, const Source& derivative, const std::vector<
   return choice;
 }
 
+/// A grid over a clock that leaps (set by a network after a start at 1970, say) would fill all memory with nothing.
+void check_span(const std::string& name, const std::vector<double>& t, double dt) {
+  if (dt <= 0.0) throw InputError(name + ": its samples share one time stamp");
+  const double span = t.back() - t.front();
+  if (kMostlyThere * span <= static_cast<double>(t.size()) * dt) return;
+  std::size_t longest = 1;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    if (t[i] - t[i - 1] > t[longest] - t[longest - 1]) longest = i;
+  }
+  throw InputError(name + ": " + std::to_string(t.size()) + " samples " + text("%.3g", dt) +
+                   " s apart lie spread over " + text("%.4g", span) + " s; the longest gap is " +
+                   text("%.4g", t[longest] - t[longest - 1]) + " s, after " + text("%.4g", t[longest - 1]) +
+                   " s. Does its clock leap there? Give what is before and after as recordings of their own");
+}
+
 void shift(std::vector<double>& t, double by) {
   for (double& one : t) one += by;
 }
@@ -238,6 +255,7 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
   Trial trial;
   trial.name = recording.name;
   trial.dt = std::round(block * step * 1e6) * 1e-6;  // stamps are whole microseconds
+  check_span(recording.name, *main, trial.dt);
   const double begin = main->front() + shifted + 0.5 * (block - 1.0) * step;
   const auto count = static_cast<std::size_t>((main->back() + shifted - begin) / trial.dt + 1e-3) + 1;
   for (std::size_t i = 0; i < count; ++i) trial.t.push_back(begin + static_cast<double>(i) * trial.dt);

@@ -7,6 +7,7 @@
 
 #include "common/base/statistics.hpp"
 #include "common/base/units.hpp"
+#include "common/estimation/held_values.hpp"
 #include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
@@ -36,19 +37,6 @@ std::vector<std::uint8_t> spikes(const std::vector<T>& x, double floor) {
   std::vector<std::uint8_t> bad(x.size(), 0);
   for (std::size_t i = 0; i < x.size(); ++i) bad[i] = misfit[i] > limit ? 1 : 0;
   return bad;
-}
-
-/// Length of the run of exact repeats that each sample belongs to (1: it differs from both neighbours).
-template <class T>
-std::vector<std::size_t> repeat_lengths(const std::vector<T>& x) {
-  std::vector<std::size_t> length(x.size(), 1);
-  for (std::size_t first = 0, end = 0; first < x.size(); first = end) {
-    end = first + 1;
-    while (end < x.size() && x[end] == x[first]) ++end;
-    std::fill(length.begin() + static_cast<std::ptrdiff_t>(first), length.begin() + static_cast<std::ptrdiff_t>(end),
-              end - first);
-  }
-  return length;
 }
 
 /// Freezes: repeats of at least `least` samples after which the value leaps. Rest without noise does not leap.
@@ -93,6 +81,19 @@ class Reader {
                          .evidence = evidence,
                          .action = action});
   }
+  void report_held(const std::string& signal, std::size_t repeats, std::size_t samples) {
+    const double share = static_cast<double>(repeats) / static_cast<double>(samples);
+    report(signal, "held", share, "", number(100.0 * share) + " % of the samples repeat the one before",
+           "repeats are not used");
+  }
+  /// Repeats would look like freezes, and the steps between them like glitches.
+  template <class Samples>
+  void drop_held(const std::string& signal, Samples& samples) {
+    Samples fresh = without_held(samples);
+    if (fresh.empty()) return;
+    report_held(signal, samples.size() - fresh.size(), samples.size());
+    samples = std::move(fresh);
+  }
   void gaps(const std::string& signal, const std::vector<double>& t) {
     const double limit = std::max(kLongGap, 4.0 * typical_step(t));
     double longest = 0.0, lost = 0.0;
@@ -136,6 +137,7 @@ void Reader::read_pose(PoseSeries& pose) {
   }
   if (pose.empty()) return;
   make_continuous(pose.q_WB);
+  drop_held("pose_capture", pose);
   for (const Eigen::Quaterniond& one : pose.q_WB) q.push_back(one.coeffs());
   for (std::size_t i = 1; i < pose.size(); ++i) {
     pose.has_position = pose.has_position || pose.p_WB[i] != pose.p_WB[0];
@@ -192,6 +194,7 @@ void Reader::read_pose(PoseSeries& pose) {
 
 void Reader::clean(const std::string& signal, Series& series, double spike_floor, bool may_hold) {
   if (series.size() < 20) return;
+  if (may_hold) drop_held(signal, series);
   const double step = typical_step(series.t);
   const std::vector<std::size_t> length = repeat_lengths(series.x);
   std::size_t repeats = 0;
@@ -207,10 +210,7 @@ void Reader::clean(const std::string& signal, Series& series, double spike_floor
            "not used while frozen");
   }
   if (may_hold && repeats > series.size() / 20) {
-    report(signal, "held", static_cast<double>(repeats) / static_cast<double>(series.size()), "",
-           number(100.0 * static_cast<double>(repeats) / static_cast<double>(series.size())) +
-               " % of the samples repeat the one before",
-           "repeats are not used");
+    report_held(signal, repeats, series.size());
     for (std::size_t i = 1; i < series.size(); ++i) bad[i] = series.x[i] == series.x[i - 1] ? 1 : 0;
   }
   const std::vector<std::uint8_t> spike = spikes(series.x, spike_floor);
@@ -257,6 +257,7 @@ RunSignals Reader::read() {
     }
   }
   make_continuous(run.attitude.q_WB);
+  drop_held("ahrs_attitude", run.attitude);
   run.attitude.has_attitude = !run.attitude.empty();
   for (const Dvl& sample : recording_.dvl) {
     if (sample.valid && !sample.held) push(run.dvl, seconds(sample.utime), sample.v_WB_B);

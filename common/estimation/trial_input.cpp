@@ -45,9 +45,10 @@ Input read_input(const Recording& recording, Utime origin, const ThrusterCorrect
     input.x.push_back(std::move(x));
   }
   if (input.t.empty()) {
-    throw InputError(
-        recording.name +
-        ": no thruster forces, no wrench, and no commands that the vehicle's curve could turn into forces");
+    throw InputError(recording.name +
+                     ": nothing says what drove the vehicle: no thruster forces (f1 ...), no wrench (X ... N), and no "
+                     "commands (pwm1 "
+                     "...) that the vehicle file's thrust curve could turn into forces");
   }
   return input;
 }

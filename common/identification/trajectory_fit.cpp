@@ -50,6 +50,24 @@ bool let_go(ceres::Problem& problem, const ParameterMap& map, const std::vector<
   return any;
 }
 
+/// "RUN is 12 s long, its pose valid for 40 %, its velocity for 98 %; ..."
+std::string valid_shares(std::span<const Trial> trials) {
+  std::string text;
+  for (const Trial& trial : trials) {
+    const auto size = static_cast<double>(trial.size());
+    text += (text.empty() ? "" : "; ") + trial.name + " is " + std::to_string(std::lround(size * trial.dt)) + " s long";
+    const auto share = [&](bool observed, const char* group, const std::vector<std::uint8_t>& valid) {
+      if (!observed || trial.size() == 0) return;
+      const auto count = static_cast<double>(valid.size()) - static_cast<double>(std::ranges::count(valid, 0));
+      text += std::string(", its ") + group + " valid for " + std::to_string(std::lround(100.0 * count / size)) + " %";
+    };
+    share(trial.observed.position || trial.observed.attitude, "pose", trial.pose_valid);
+    share(trial.observed.velocity, "velocity", trial.velocity_valid);
+    share(trial.observed.rates, "rates", trial.rates_valid);
+  }
+  return text;
+}
+
 }  // namespace
 
 double FitResult::t95() const { return std::sqrt(f_quantile(0.05, freedom)); }
@@ -88,9 +106,9 @@ TrajectoryFit::TrajectoryFit(const model::Vehicle& vehicle, std::span<const Tria
     if (residual.rows() > 0) windows_.push_back(std::move(residual));
   }
   if (windows_.empty()) {
-    throw InputError(
-        "no stretch of " + std::to_string(static_cast<int>(settings.window)) +
-        " s with valid velocity or rates in the training runs; check the flags in the map or record longer");
+    throw InputError("no stretch of " + std::to_string(std::lround(settings.window)) +
+                     " s in which all that was measured is valid: " + valid_shares(trials) +
+                     "; record longer, or see fathom check for what is not believed");
   }
 }
 

@@ -21,7 +21,7 @@ bool all_valid(const Trial& trial, std::size_t k) {
 std::vector<model::Window> cut_windows(std::span<const Trial> trials, double length) {
   std::vector<model::Window> windows;
   for (const Trial& trial : trials) {
-    const auto count = static_cast<std::size_t>(std::lround(length / trial.dt)) + 1;
+    const auto count = static_cast<std::size_t>(std::max(1L, std::lround(length / trial.dt))) + 1;
     std::size_t start = 0;
     while (start + count <= trial.size()) {
       if (!all_valid(trial, start)) {

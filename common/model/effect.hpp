@@ -116,8 +116,8 @@ class Effect {
   virtual void unmeasure(VelocityView& /*nu*/, double /*dt*/, EffectTheta, int /*variant*/) const {}
 };
 
-/// Three to six time constants, 3 s at least and 48 at most, by doubling: what a search moves a little leaves it as it
-/// is.
+/// Four and a half time constants or somewhat more, 3 s at least and 48 at most, in steps: what a search moves a little
+/// leaves it as it is.
 [[nodiscard]] double run_in_for(double time_constant);
 
 /// All effects, in the order in which they act: from the command to the water.

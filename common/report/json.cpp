@@ -107,6 +107,12 @@ Json candidates(const std::vector<CandidateTried>& tried) {
   return array;
 }
 
+Json not_measured(const std::vector<NotMeasured>& groups) {
+  Json array = Json::array();
+  for (const auto& g : groups) array.push_back({{"group", g.group}, {"cannot_be_asked", g.cannot_be_asked}});
+  return array;
+}
+
 Json associations(const std::vector<Association>& left) {
   Json array = Json::array();
   for (const auto& a : left) {
@@ -131,6 +137,7 @@ std::string to_json(const DiagnosisResult& result) {
   file["verdict"] = result.verdict;
   file["effects"] = effects(result.effects);
   file["candidates"] = candidates(result.candidates);
+  file["not_measured"] = not_measured(result.not_measured);
   file["error"]["before"] = error(result.error_before);
   file["error"]["after"] = error(result.error_after);
   file["error"]["improvement"] = improvement;

@@ -24,6 +24,8 @@ Meaning meaning(const std::string& verdict, bool partly) {
   if (verdict == "unexplained" && partly)
     return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
+  if (verdict == "unjudged")
+    return {"ambiguous", "Too little data: nothing could be judged on motion that no fit has seen"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
 }
 
@@ -84,7 +86,8 @@ std::string verdict_section(const DiagnosisReport& report) {
   html += tile(std::to_string(found.size()), (found.size() == 1 ? "effect accepted" : "effects accepted") +
                                                  std::string(found.empty() ? "" : ": ") + join(found, ", "));
   html += tile(std::to_string(doubts), doubts == 1 ? "doubt about a sensor" : "doubts about sensors");
-  html += tile(join(result.validate, ", "), "judged on, not used in the fit");
+  const bool judged = !result.error_after.prediction.empty();
+  html += tile(join(result.validate, ", "), judged ? "judged on, not used in the fit" : "too short to judge on");
   return html + "</div></header>\n";
 }
 

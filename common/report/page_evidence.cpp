@@ -228,7 +228,9 @@ std::string certainty_section(const DiagnosisResult& result) {
             " s: a random force does (turbulence, a swinging tether), and so does something small that is still "
             "missing.</li>\n";
   }
-  html += open.empty() ? "<p>Nothing is left open on this data.</p>\n" : "<h3>Still open</h3><ul>" + open + "</ul>\n";
+  const bool judged = result.verdict != "unjudged";
+  if (judged || !open.empty())
+    html += open.empty() ? "<p>Nothing is left open on this data.</p>\n" : "<h3>Still open</h3><ul>" + open + "</ul>\n";
   if (!result.manoeuvre.empty())
     html += "<h3>What to drive next</h3><p class=\"lead\">" + escape(result.manoeuvre) + "</p>\n";
   return html + "</section>\n";

@@ -46,6 +46,14 @@ std::string range(const char* axis, double low, double high) {
   return std::string("set ") + axis + "range [" + text(low) + ":" + text(high) + "]\n";
 }
 
+// Height of a picture from `low` to `high`; of what is constant but for rounding, a height that numbers can be written
+// at.
+double span_of(double low, double high) {
+  constexpr double kRounding = 1e-4;
+  const double size = std::fmax(std::fmax(std::abs(low), std::abs(high)), 1e-6);
+  return high - low > kRounding * size ? high - low : std::fmax(size, 1.0);
+}
+
 // A round step that divides `span` into three to six parts.
 double tick_step(double span) {
   const double raw = span / 5.0;
@@ -260,7 +268,7 @@ Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t m
   double high = quantile(measured, 1.0);
   if (!std::isfinite(low)) low = std::fmin(quantile(before, 0.0), quantile(after, 0.0));
   if (!std::isfinite(high)) high = std::fmax(quantile(before, 1.0), quantile(after, 1.0));
-  const double span = high - low > 0.0 ? high - low : 1.0;
+  const double span = span_of(low, high);
   const double lowest = std::fmin(low, std::fmin(quantile(before, 0.0), quantile(after, 0.0)));
   const double highest = std::fmax(high, std::fmax(quantile(before, 1.0), quantile(after, 1.0)));
   const double floor = std::fmax(low - 0.5 * span, lowest) - 0.05 * span;
@@ -298,10 +306,10 @@ Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::
   const double right = quantile(quantity.values, 0.998);
   const double low = std::fmin(quantile(leftover.before, 0.04), quantile(leftover.after, 0.04));
   const double high = std::fmax(quantile(leftover.before, 0.96), quantile(leftover.after, 0.96));
-  const double span = high > low ? high - low : 1.0;
+  const double span = span_of(low, high);
   const double floor = low - 0.1 * span;
   const double ceiling = high + 0.1 * span;
-  const double width = right - left;
+  const double width = span_of(left, right);
   std::string data;
   const std::vector<double>* series[2] = {&leftover.before, &leftover.after};
   for (std::size_t k = 0; k < 2; ++k) {

@@ -83,6 +83,12 @@ struct CandidateTried {
   std::string reason;
 };
 
+/// A group of signals that the data lacks: "position", "attitude", "velocity" or "rates".
+struct NotMeasured {
+  std::string group;
+  std::vector<std::string> cannot_be_asked;  ///< effects that have no form without it
+};
+
 struct Interval {
   double value{};
   double low{};  ///< 95 %
@@ -94,11 +100,12 @@ struct DiagnosisResult {
   std::vector<std::string> train;
   std::vector<std::string> validate;
   std::vector<ConsistencyFinding> consistency;
-  std::string verdict;    ///< "adequate", "effect", "ambiguous", "unexplained"
+  std::string verdict;    ///< "adequate", "effect", "ambiguous", "unexplained"; "unjudged": too short to say "adequate"
   std::string paragraph;  ///< verdict in plain words: how sure, and which manoeuvre would settle what is open
   std::string manoeuvre;  ///< the motion that would settle what is open; empty when nothing is (report only)
   std::vector<EffectFound> effects;
   std::vector<CandidateTried> candidates;
+  std::vector<NotMeasured> not_measured;
   ModelError error_before;
   ModelError error_after;
   double explained{1.0};  ///< by the accepted effects, of the lasting error on validation; 1 when there are none

@@ -1,8 +1,10 @@
 // The canonical columns: a table that needs no map. docs/configuration.md lists them.
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "common/base/error.hpp"
+#include "common/base/near_name.hpp"
 #include "common/tables/import.hpp"
 
 namespace fathom::tables {
@@ -10,6 +12,9 @@ namespace {
 
 constexpr const char* kCanonical =
     "t; x y z; phi theta psi; u v w; p q r; ax ay az; f1..fN or X Y Z K M N; pwm1..pwmN; depth; voltage";
+
+constexpr std::array kNames{"t",  "x",  "y",  "z", "phi", "theta", "psi", "u", "v", "w",     "p",       "q",  "r",
+                            "ax", "ay", "az", "X", "Y",   "Z",     "K",   "M", "N", "depth", "voltage", "f1", "pwm1"};
 
 // Takes groups of columns out of the table until only strangers are left.
 class Shelf {
@@ -33,6 +38,14 @@ class Shelf {
     return group;
   }
 
+  /// Those of `names` that are there, the others marked absent; nothing when none is.
+  std::optional<ColumnGroup> take_some(const std::vector<std::string>& names) {
+    ColumnGroup group;
+    for (const std::string& name : names) group.columns.push_back({name, "", left_.erase(name) == 0});
+    if (std::ranges::all_of(group.columns, &Column::absent)) return std::nullopt;
+    return group;
+  }
+
   /// prefix1, prefix2, ... as far as they go.
   std::optional<ColumnGroup> take_numbered(const std::string& prefix) {
     ColumnGroup group;
@@ -42,10 +55,19 @@ class Shelf {
     return group.columns.empty() ? std::nullopt : std::optional<ColumnGroup>(group);
   }
 
+  /// " (did you mean 'phi'?)" for "Phi", unless there is a "phi" too.
+  [[nodiscard]] std::string meant(const std::string& name) const {
+    for (const char* known : kNames) {
+      if (table_.find(known) == nullptr && looks_like(name, known))
+        return std::string(" (did you mean '") + known + "'?)";
+    }
+    return "";
+  }
+
   void must_be_empty() const {
     std::string strangers;
     for (const std::string& name : table_.names) {
-      if (left_.contains(name)) strangers += (strangers.empty() ? "'" : ", '") + name + "'";
+      if (left_.contains(name)) strangers += (strangers.empty() ? "'" : ", '") + name + "'" + meant(name);
     }
     if (strangers.empty()) return;
     throw InputError(table_.path + ":1: unknown columns " + strangers +
@@ -72,24 +94,25 @@ ColumnMap canonical_map(const CsvTable& table) {
   ColumnMap map;
   const auto time = shelf.take({"t"});
   if (!time) {
-    throw InputError(table.path +
-                     ":1: column 't' (time in seconds) is missing; describe other columns with a map (--map)");
+    throw InputError(table.path + ":1: column 't' (time in seconds) is missing" +
+                     (table.find("T") != nullptr ? " (is it 'T'?)" : "") +
+                     "; describe other columns with a map (--map)");
   }
   map.time = *time;
-  const auto position = shelf.take({"x", "y", "z"});
-  const auto attitude = as_euler(shelf.take({"phi", "theta", "psi"}));
+  const auto position = shelf.take_some({"x", "y", "z"});
+  const auto attitude = as_euler(shelf.take_some({"phi", "theta", "psi"}));
   // With a position the attitude belongs to the pose; alone it is what an attitude sensor says.
   if (position) map.pose_capture = PoseColumns{position, attitude, {}, {}};
   AhrsColumns ahrs;
-  ahrs.rates = shelf.take({"p", "q", "r"});
+  ahrs.rates = shelf.take_some({"p", "q", "r"});
   ahrs.specific_force = shelf.take({"ax", "ay", "az"});
   if (!position) ahrs.attitude = attitude;
   if (ahrs.rates || ahrs.specific_force || ahrs.attitude) map.ahrs = ahrs;
-  if (const auto velocity = shelf.take({"u", "v", "w"})) map.dvl = DvlColumns{*velocity, {}, {}, {}};
+  if (const auto velocity = shelf.take_some({"u", "v", "w"})) map.dvl = DvlColumns{*velocity, {}, {}, {}};
   ThrusterColumns thrusters;
   thrusters.pwm = shelf.take_numbered("pwm");
   thrusters.force = shelf.take_numbered("f");
-  if (const auto wrench = shelf.take({"X", "Y", "Z", "K", "M", "N"})) {
+  if (const auto wrench = shelf.take_some({"X", "Y", "Z", "K", "M", "N"})) {
     thrusters.wrench_force = ColumnGroup{{wrench->columns.begin(), wrench->columns.begin() + 3}};
     thrusters.wrench_moment = ColumnGroup{{wrench->columns.begin() + 3, wrench->columns.end()}};
   }

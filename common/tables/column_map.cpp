@@ -9,6 +9,8 @@
 namespace fathom::tables {
 namespace {
 
+constexpr const char* kNone = "none";  // in a list of columns: this component was not measured
+
 double factor_to(const Config& config, const std::string& key, const std::string& unit) {
   try {
     return unit_factor(config.text(key), unit);
@@ -19,10 +21,27 @@ double factor_to(const Config& config, const std::string& key, const std::string
   }
 }
 
+void need_count(const Config& config, const std::string& key, const std::vector<Column>& columns, std::size_t count) {
+  if (columns.size() == count) return;
+  config.fail(key, "'" + key + "' needs " + std::to_string(count) + " columns, not " + std::to_string(columns.size()));
+}
+
 std::vector<Column> columns_of(const Config& config, const std::string& key) {
   std::vector<Column> columns;
   for (const std::string& name : config.texts(key)) columns.push_back({name, config.where(key)});
   if (columns.empty()) config.fail(key, "'" + key + "' names no column");
+  return columns;
+}
+
+/// Components of a group, one column each, 'none' where there is none; fewer when the vehicle file tells which.
+std::vector<Column> components_of(const Config& config, const std::string& key, std::size_t count) {
+  std::vector<Column> columns = columns_of(config, key);
+  if (columns.size() > count) need_count(config, key, columns, count);
+  for (Column& column : columns) {
+    if (column.name == kNone) column = {"", column.where, true};
+  }
+  if (std::ranges::all_of(columns, &Column::absent)) config.fail(key, "'" + key + "' names no column");
+  if (columns.size() < count && std::ranges::any_of(columns, &Column::absent)) need_count(config, key, columns, count);
   return columns;
 }
 
@@ -41,11 +60,6 @@ Eigen::Matrix3d world_frame(const Config& config, const std::string& key) {
   config.fail(key, "'" + name + "' is no world frame: NED, NWU (z up, y to the left of x) or ENU");
 }
 
-void need_count(const Config& config, const std::string& key, const std::vector<Column>& columns, std::size_t count) {
-  if (columns.size() == count) return;
-  config.fail(key, "'" + key + "' needs " + std::to_string(count) + " columns, not " + std::to_string(columns.size()));
-}
-
 ColumnGroup group_of(const Config& config, const std::string& unit) {
   ColumnGroup group;
   group.columns = columns_of(config, "columns");
@@ -53,9 +67,12 @@ ColumnGroup group_of(const Config& config, const std::string& unit) {
   return group;
 }
 
+ColumnGroup vector_of(const Config& config, const std::string& unit) {
+  return {components_of(config, "columns", 3), factor_to(config, "unit", unit)};
+}
+
 ColumnGroup body_vector(const Config& config, const std::string& unit) {
-  ColumnGroup group = group_of(config, unit);
-  need_count(config, "columns", group.columns, 3);
+  ColumnGroup group = vector_of(config, unit);
   group.to_house = body_frame(config, "frame");
   return group;
 }
@@ -77,8 +94,7 @@ std::optional<AttitudeColumns> attitude_of(const Config& config) {
   AttitudeColumns attitude;
   attitude.euler = euler;
   if (euler) {
-    attitude.group = group_of(section, "rad");
-    need_count(section, "columns", attitude.group.columns, 3);
+    attitude.group = vector_of(section, "rad");
   } else {
     std::vector<Column> columns = columns_of(section, "columns");
     need_count(section, "columns", columns, 4);
@@ -116,11 +132,11 @@ ThrusterColumns thrusters_of(const Config& config) {
   if (config.has("force")) thrusters.force = group_of(config.section("force"), "N");
   if (config.has("wrench")) {
     const Config wrench = config.section("wrench");
-    std::vector<Column> columns = columns_of(wrench, "columns");
-    need_count(wrench, "columns", columns, 6);
+    const std::vector<Column> columns = components_of(wrench, "columns", 6);
+    const auto split = columns.begin() + (columns.size() == 6 ? 3 : static_cast<std::ptrdiff_t>(columns.size()));
     const Eigen::Matrix3d frame = body_frame(wrench, "frame");
-    thrusters.wrench_force = {{columns.begin(), columns.begin() + 3}, factor_to(wrench, "force_unit", "N"), frame};
-    thrusters.wrench_moment = {{columns.begin() + 3, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
+    thrusters.wrench_force = {{columns.begin(), split}, factor_to(wrench, "force_unit", "N"), frame};
+    thrusters.wrench_moment = {{split, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
   }
   if (!thrusters.pwm && !thrusters.force && !thrusters.wrench_force) {
     config.fail("", "'thrusters' needs pwm, force or wrench");
@@ -139,8 +155,7 @@ ColumnMap read(const Config& config) {
     PoseColumns pose;
     if (section.has("position")) {
       const Config position = section.section("position");
-      pose.position = group_of(position, "m");
-      need_count(position, "columns", pose.position->columns, 3);
+      pose.position = vector_of(position, "m");
       pose.position->to_house = world_frame(position, "frame");
     }
     pose.attitude = attitude_of(section);
@@ -153,7 +168,13 @@ ColumnMap read(const Config& config) {
     const Config section = config.section("ahrs");
     AhrsColumns ahrs;
     if (section.has("rates")) ahrs.rates = body_vector(section.section("rates"), "rad/s");
-    if (section.has("specific_force")) ahrs.specific_force = body_vector(section.section("specific_force"), "m/s^2");
+    if (section.has("specific_force")) {
+      const Config force = section.section("specific_force");
+      ahrs.specific_force = body_vector(force, "m/s^2");
+      need_count(force, "columns", ahrs.specific_force->columns, 3);  // gravity is felt along every axis
+      if (std::ranges::any_of(ahrs.specific_force->columns, &Column::absent))
+        force.fail("columns", "'columns' of a specific force cannot be 'none'");
+    }
     ahrs.attitude = attitude_of(section);
     if (!ahrs.rates && !ahrs.specific_force && !ahrs.attitude) {
       section.fail("", "'ahrs' needs rates, specific_force, quaternion or euler");

@@ -13,10 +13,11 @@ namespace fathom::tables {
 struct Column {
   std::string name;
   std::string where;  ///< "map.yaml:12", or empty when no map was used
+  bool absent{};      ///< there is no such column: zero
 };
 
-/// Three or more columns with one factor to SI; `to_house` turns a vector's frame into W (NED) or B
-/// (forward-right-down).
+/// Columns with one factor to SI; `to_house` turns a vector's frame into W (NED) or B (forward-right-down). A map may
+/// name fewer than the group has components: complete_groups (absent.hpp) finds their places.
 struct ColumnGroup {
   std::vector<Column> columns;
   double factor{1.0};
@@ -60,9 +61,9 @@ struct DvlColumns {
 };
 
 struct ThrusterColumns {
-  std::optional<ColumnGroup> pwm;    ///< factor to us
-  std::optional<ColumnGroup> force;  ///< order of the vehicle file
-  std::optional<ColumnGroup> wrench_force;
+  std::optional<ColumnGroup> pwm;           ///< factor to us
+  std::optional<ColumnGroup> force;         ///< order of the vehicle file
+  std::optional<ColumnGroup> wrench_force;  ///< until it is completed: all columns of a short list
   std::optional<ColumnGroup> wrench_moment;
   std::vector<Column> invalid_where;
 };

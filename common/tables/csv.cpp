@@ -41,7 +41,18 @@ bool read_number(std::string_view cell, double& value) {
   return true;
 }
 
+/// A table whose columns are parted by something else is one column to us, and its first row no number.
+void check_separator(std::string_view line, const std::string& where) {
+  if (line.find(',') != std::string_view::npos) return;
+  const auto other = trim(line).find_first_of(";\t|");
+  if (other == std::string_view::npos) return;
+  const char separator = trim(line)[other];
+  throw InputError(where + ": separator " + (separator == '\t' ? "tab" : std::string("'") + separator + "'") +
+                   ": save the table with commas between its columns, and with points in its numbers");
+}
+
 std::vector<std::string> read_names(std::string_view line, const std::string& where) {
+  check_separator(line, where);
   std::vector<std::string> names;
   for (bool more = true; more;) {
     const auto comma = line.find(',');

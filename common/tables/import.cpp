@@ -191,14 +191,14 @@ void import_scalar(Resolver& resolve, const ScalarColumn& column, double Sample:
 
 }  // namespace
 
-Imported import_table(const CsvTable& table, const ColumnMap& map) {
+Imported import_table(const CsvTable& table, ColumnMap map, const std::optional<SimulatedAxes>& simulated) {
   Imported out;
+  if (const std::string note = complete_groups(map, table.path, simulated); !note.empty()) out.notes.push_back(note);
   out.recording.name = std::filesystem::path(table.path).stem().string();
   out.source = map.source;
   out.licence = map.licence;
   Resolver resolve(table);
-  const Group time(resolve, map.time);
-  const Rows rows = read_time(table, time, out.notes);
+  const Rows rows = read_time(table, resolve, map.time, out.notes);
   if (map.pose_capture) import_pose(resolve, *map.pose_capture, rows, table, out);
   if (map.ahrs) import_ahrs(resolve, *map.ahrs, rows, table, out);
   if (map.dvl) import_dvl(resolve, *map.dvl, rows, table, out);
@@ -211,13 +211,14 @@ Imported import_table(const CsvTable& table, const ColumnMap& map) {
   return out;
 }
 
-Imported import_csv(const std::string& csv_path, const std::string& map_path) {
+Imported import_csv(const std::string& csv_path, const std::string& map_path,
+                    const std::optional<SimulatedAxes>& simulated) {
   if (map_path.empty()) {
     const CsvTable table = read_csv(csv_path);
-    return import_table(table, canonical_map(table));
+    return import_table(table, canonical_map(table), simulated);
   }
   const ColumnMap map = ColumnMap::load(map_path);
-  return import_table(read_csv(csv_path), map);
+  return import_table(read_csv(csv_path), map, simulated);
 }
 
 }  // namespace fathom::tables

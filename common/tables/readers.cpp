@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/spatial.hpp"
@@ -13,14 +14,32 @@ constexpr double kMaxSeconds = 9e9;      // beyond, a double no longer resolves 
 constexpr double kNormTolerance = 0.01;  // a quaternion interpolated across a sign flip is shorter than this
 constexpr double kSmallestNorm = 1e-3;   // below, the direction of a quaternion means nothing
 constexpr double kGapPeriods = 5.0;      // a step of this many median periods is reported as a gap
+constexpr double kSlowestStep = 2.0;     // s between rows: slower, hardly any vehicle's motion is seen
 
 std::string in_seconds(double seconds) {
   const std::string text = std::to_string(std::round(seconds * 1e3) * 1e-3);
   return text.substr(0, text.size() - 3) + " s";
 }
 
-void report_longest_gap(const std::vector<Utime>& utime, std::vector<std::string>& notes) {
-  if (utime.size() < 3) return;
+/// Refuses rows too far apart to be seconds, before anything is laid on a grid that long.
+void check_step(const CsvTable& table, const ColumnGroup& time, double median_step) {
+  if (median_step <= kSlowestStep) return;
+  const Column& column = time.columns.front();
+  std::string remedy = "is its unit right?";
+  for (const auto& [unit, factor] : {std::pair{"ms", 1e-3}, {"us", 1e-6}}) {
+    if (time.factor != 1.0 || factor * median_step > kSlowestStep) continue;
+    remedy = std::string("is it in ") + unit + "? Say so in the map" + (column.where.empty() ? " (--map)" : "") +
+             ": time: {column: " + column.name + ", unit: " + unit + "}";
+    break;
+  }
+  throw InputError((column.where.empty() ? "" : column.where + ": ") + table.path + ": column '" + column.name +
+                   "': the median step between rows is " + in_seconds(median_step) +
+                   ", too slow for the motion of any vehicle; " + remedy);
+}
+
+/// Notes the longest gap; the median step, in s.
+double report_longest_gap(const std::vector<Utime>& utime, std::vector<std::string>& notes) {
+  if (utime.size() < 3) return 0.0;
   std::vector<Utime> steps(utime.size() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = utime[i + 1] - utime[i];
   const auto longest = std::max_element(steps.begin(), steps.end());
@@ -28,9 +47,11 @@ void report_longest_gap(const std::vector<Utime>& utime, std::vector<std::string
   const double begin = seconds_between(0, utime[static_cast<std::size_t>(longest - steps.begin())]);
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  if (gap > kGapPeriods * static_cast<double>(*middle) * 1e-6) {
+  const double typical = static_cast<double>(*middle) * 1e-6;
+  if (gap > kGapPeriods * typical) {
     notes.push_back("time: the longest gap is " + in_seconds(gap) + ", after " + in_seconds(begin));
   }
+  return typical;
 }
 
 }  // namespace
@@ -42,6 +63,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 ColumnData Resolver::operator()(const Column& column) {
+  if (column.absent) return nullptr;
   const ColumnData data = table_.find(column.name);
   if (data == nullptr) {
     throw InputError((column.where.empty() ? "" : column.where + ": ") + "column '" + column.name + "' is not in " +
@@ -74,12 +96,12 @@ Group::Group(Resolver& resolve, const ColumnGroup& group)
 
 bool Group::complete(std::size_t row) const {
   return std::all_of(data_.begin(), data_.end(),
-                     [&](ColumnData column) { return std::isfinite(factor_ * (*column)[row]); });
+                     [&](ColumnData column) { return column == nullptr || std::isfinite(factor_ * (*column)[row]); });
 }
 
 bool Group::repeats(std::size_t row, std::size_t before) const {
   return std::all_of(data_.begin(), data_.end(),
-                     [&](ColumnData column) { return (*column)[row] == (*column)[before]; });
+                     [&](ColumnData column) { return column == nullptr || (*column)[row] == (*column)[before]; });
 }
 
 Eigen::Vector3d Group::vector(std::size_t row) const {
@@ -128,7 +150,8 @@ bool HeldReader::held(std::size_t row, const std::vector<const Group*>& groups) 
   return repeats || flags_.set(row);
 }
 
-Rows read_time(const CsvTable& table, const Group& time, std::vector<std::string>& notes) {
+Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnGroup& column, std::vector<std::string>& notes) {
+  const Group time(resolve, column);
   Rows rows;
   std::size_t missing = 0;
   std::size_t falling = 0;
@@ -160,7 +183,7 @@ Rows read_time(const CsvTable& table, const Group& time, std::vector<std::string
     notes.push_back("time: " + std::to_string(falling) + " rows dropped because time did not rise, first at " +
                     table.where(first_falling));
   }
-  report_longest_gap(rows.utime, notes);
+  check_step(table, column, report_longest_gap(rows.utime, notes));
   return rows;
 }
 

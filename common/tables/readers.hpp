@@ -20,7 +20,7 @@ using ColumnData = const std::vector<double>*;
 class Resolver {
  public:
   explicit Resolver(const CsvTable& table) : table_(table) {}
-  /// InputError when there is no such column, or not one number in it.
+  /// InputError when there is no such column, or not one number in it; nullptr for one that is marked absent.
   ColumnData operator()(const Column& column);
   std::vector<ColumnData> operator()(const std::vector<Column>& columns);
   /// Columns that nobody asked for.
@@ -37,7 +37,9 @@ class Group {
   Group(Resolver& resolve, const ColumnGroup& group);
   [[nodiscard]] bool complete(std::size_t row) const;
   [[nodiscard]] bool repeats(std::size_t row, std::size_t before) const;
-  [[nodiscard]] double raw(std::size_t i, std::size_t row) const { return (*data_[i])[row]; }
+  [[nodiscard]] double raw(std::size_t i, std::size_t row) const {
+    return data_[i] == nullptr ? 0.0 : (*data_[i])[row];
+  }
   [[nodiscard]] double scalar(std::size_t row) const { return factor_ * raw(0, row); }
   [[nodiscard]] Eigen::Vector3d vector(std::size_t row) const;  ///< SI, in the house's frame
   [[nodiscard]] std::vector<double> values(std::size_t row) const;
@@ -92,8 +94,10 @@ struct Rows {
   std::vector<Utime> utime;
 };
 
-/// Drops rows without a rising time, counts them and names the longest gap in `notes`.
-[[nodiscard]] Rows read_time(const CsvTable& table, const Group& time, std::vector<std::string>& notes);
+/// Drops rows without a rising time, counts them and names the longest gap in `notes`. InputError when rows are so far
+/// apart that the unit must be another.
+[[nodiscard]] Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnGroup& column,
+                             std::vector<std::string>& notes);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);
 

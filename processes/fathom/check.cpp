@@ -34,7 +34,7 @@ void print(const std::vector<ConsistencyFinding>& findings) {
 void run(const Options& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
-  const std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes);
+  const std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   estimation::ConsistencyResult result = estimation::check_consistency(recordings);
   estimation::check_thrusters(recordings, vehicle, result);

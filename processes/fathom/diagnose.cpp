@@ -40,6 +40,17 @@ void make_folder(const std::string& path) {  // before the long work, so that a 
   if (error) throw InputError(path + ": cannot make this folder: " + error.message() + "; give another --out");
 }
 
+/// Complaints about a recording begin with its name; people look for the file.
+Trial reconstruct(const std::string& path, const Recording& recording, const estimation::Corrections& corrections,
+                  const model::Vehicle& vehicle) {
+  try {
+    return estimation::reconstruct(recording, corrections, vehicle);
+  } catch (const InputError& error) {
+    const std::string what = error.what(), name = recording.name + ": ";
+    throw InputError(path + ": " + (what.starts_with(name) ? what.substr(name.size()) : what));
+  }
+}
+
 DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
@@ -48,7 +59,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   progress.show("reading recordings", 0.0);
-  std::vector<Recording> recordings = read_recordings(paths, options.map, notes);
+  std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
   for (Recording& recording : recordings) {
     if (!estimation::take_state_as_measured(recording)) continue;
     notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
@@ -61,7 +72,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     progress.show("reconstructing " + recordings[i].name, kCheckShare);
-    trials.push_back(estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle));
+    trials.push_back(reconstruct(paths[i], recordings[i], consistency.corrections[i], vehicle));
   }
   if (estimation::share_clock(recordings, trials))
     notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
@@ -81,6 +92,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
 
   diagnosis::Settings settings;
   settings.threads = options.threads;
+  if (options.validate.empty()) settings.held_out = kHeldOut;
   identification::FitResult fitted;
   DiagnosisReport report = diagnosis::diagnose(
       vehicle, train, validate, settings,

@@ -123,7 +123,7 @@ void run(const Options& options) {
   std::vector<std::string> notes;
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
-  std::vector<Recording> recordings = read_recordings(paths, options.map, notes);
+  std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
   auto consistency = estimation::check_consistency(recordings);
   estimation::check_thrusters(recordings, vehicle, consistency);
 

@@ -13,13 +13,14 @@
 namespace fathom::tool {
 
 std::vector<Recording> read_recordings(const std::vector<std::string>& paths, const std::string& map,
-                                       std::vector<std::string>& notes) {
+                                       std::vector<std::string>& notes,
+                                       const std::optional<tables::SimulatedAxes>& simulated) {
   std::vector<Recording> recordings;
   std::set<std::string> names;
   for (const std::string& path : paths) {
     const std::string extension = std::filesystem::path{path}.extension().string();
     if (extension == ".csv") {
-      tables::Imported imported = tables::import_csv(path, map);
+      tables::Imported imported = tables::import_csv(path, map, simulated);
       for (const std::string& note : imported.notes) notes.push_back(path + ": " + note);
       recordings.push_back(std::move(imported.recording));
     } else if (extension == ".lcmlog" || extension == ".lcm") {

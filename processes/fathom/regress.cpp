@@ -99,7 +99,7 @@ void run(const Options& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
   std::vector<identification::ManoeuvreRows> runs;
-  for (const Recording& recording : read_recordings(options.runs, "", notes)) {
+  for (const Recording& recording : read_recordings(options.runs, "", notes, vehicle.dof)) {
     runs.push_back(identification::rows_of(recording, vehicle, options.rate));
     if (runs.back().stretches.size() > 1) {
       notes.push_back(recording.name + ": cut at gaps into " + std::to_string(runs.back().stretches.size()) +

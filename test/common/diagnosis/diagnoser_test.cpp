@@ -140,10 +140,19 @@ TEST_CASE("diagnoser: too little data is one line that says what to do") {
   }
 }
 
+TEST_CASE("diagnoser: a run in which nothing moves is one line") {
+  Laggard laggard;
+  for (Vector6d& nu : laggard.train[0].nu) nu.setConstant(0.3);
+  CHECK_THROWS_WITH_AS((void)laggard.report(), doctest::Contains("first part: nothing moves"), InputError);
+}
+
 TEST_CASE("diagnoser: a validation run of a few seconds judges nothing, and stops nothing") {
   Laggard laggard;
   laggard.validate = {test::cut_trial(laggard.validate[0], 0, 60)};  // 6 s: not one window
   const DiagnosisReport report = laggard.report();
+  CHECK(report.result.paragraph.find("that needs 10 s on end without a gap, and its longest run has 6 s") !=
+        std::string::npos);
+  CHECK(report.result.verdict != "adequate");
   CHECK_FALSE(report.result.effects.empty());
   CHECK(report.result.explained == 1.0);
 }

@@ -18,6 +18,7 @@ struct MadeUp {
   model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   SearchResult found;
   std::vector<Association> left;
+  bool measured_attitude = true;
 
   MadeUp() {
     found.before.model = model::nominal_model(vehicle, false);
@@ -51,10 +52,15 @@ struct MadeUp {
       found.after.covariance(i, i) = std * std;
     }
   }
+  [[nodiscard]] model::Scene scene() const {
+    model::Scene scene{.vehicle = &vehicle, .position = true, .attitude = measured_attitude, .velocity = true};
+    scene.rates = true;
+    return scene;
+  }
   [[nodiscard]] DiagnosisResult concluded() const {
     DiagnosisResult result;
     result.improvement = {0.4, 0.3, 0.5};
-    conclude(found, left, result);
+    conclude(found, left, scene(), result);
     return result;
   }
 };
@@ -101,16 +107,44 @@ TEST_CASE("verdict: nothing found and nothing left is adequate, and there is not
   check_all_listed(result);
 }
 
+TEST_CASE("verdict: nothing found where nothing could be judged is not adequate") {
+  MadeUp made;
+  DiagnosisResult result;
+  conclude(made.found, made.left, made.scene(), result, "Too short. ");
+  CHECK(result.verdict == "unjudged");
+  CHECK(says(result.paragraph, "Too short."));
+  CHECK_FALSE(says(result.paragraph, "explains these runs"));
+  made.accept("current", {0.1, 0.0});
+  result = {};
+  conclude(made.found, made.left, made.scene(), result, "Too short. ");
+  CHECK(result.verdict == "effect");
+  CHECK(says(result.paragraph, "Too short."));
+  CHECK_FALSE(says(result.paragraph, "prediction error"));
+}
+
+TEST_CASE("verdict: what was not measured is said, with what could not be asked; only what was asked counts as tried") {
+  MadeUp made;
+  made.refuse("thruster_lag", 1.0, "log odds 1.0, 3.0 needed");
+  CHECK_FALSE(says(made.concluded().paragraph, "not measured"));
+  made.measured_attitude = false;
+  const DiagnosisResult result = made.concluded();
+  CHECK(says(result.paragraph, "none of the 1 effects"));
+  CHECK(says(result.paragraph, "Attitude was not measured: current, "));
+  CHECK(says(result.paragraph, " could not be asked, and what tilts the vehicle is not known."));
+  REQUIRE(result.not_measured.size() == 1);
+  CHECK(result.not_measured[0].group == "attitude");
+}
+
 TEST_CASE("verdict: what is left may have a memory: adequate all the same, and said") {
   MadeUp made;
   DiagnosisResult result;
   result.residual_after = {{"X", 0.3, 0.3, 0.9}, {"N", 1e-6, 2.0, 0.9}};
-  conclude(made.found, made.left, result);
+  conclude(made.found, made.left, made.scene(), result);
   CHECK(result.verdict == "adequate");
   CHECK(says(result.paragraph, "In N it remembers itself, for up to 2 s"));
   result = {};
   result.residual_after = {{"X", 0.3, 0.3, 0.9}};
-  conclude(made.found, made.left, result);
+  conclude(made.found, made.left, made.scene(), result);
   CHECK_FALSE(says(result.paragraph, "remembers itself"));
 }
 

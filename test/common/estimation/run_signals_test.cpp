@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -64,6 +65,27 @@ TEST_CASE("run signals: a clean recording is kept whole, in seconds from its fir
   CHECK(clean.signals.depth.x[0].z() == recording.depth[0].z);
   for (const auto valid : clean.signals.pose.valid) CHECK(valid == 1);
   CHECK(read(Recording{}).signals.pose.empty());
+}
+
+TEST_CASE("run signals: slow sensors held in a faster table are taken at their own rate, and nothing looks frozen") {
+  Recording recording = test::synthetic_recording(
+      {.seed = 1, .duration = kDuration, .pose_rate = 50.0, .gyro_rate = 50.0, .dvl_rate = 50.0});
+  const auto hold = [](auto& stream, std::size_t every, const auto& copy) {
+    for (std::size_t i = 0; i < stream.size(); ++i) copy(stream[i - i % every], stream[i]);
+  };
+  hold(recording.pose_capture, 5, [](const PoseCapture& from, PoseCapture& to) {
+    to.p_WB = from.p_WB;
+    to.q_WB = from.q_WB;
+  });
+  hold(recording.dvl, 10, [](const Dvl& from, Dvl& to) { to.v_WB_B = from.v_WB_B; });
+  const Read read_back = read(recording);
+  CHECK(read_back.signals.pose.size() == (recording.pose_capture.size() + 4) / 5);
+  CHECK(std::ranges::count(read_back.signals.pose.valid, 0) == 0);
+  CHECK(read_back.signals.dvl.size() == (recording.dvl.size() + 9) / 10);
+  CHECK(read_back.signals.gyro.size() == recording.ahrs.size());
+  REQUIRE(find(read_back.findings, "pose_capture", "held") != nullptr);
+  CHECK(find(read_back.findings, "pose_capture", "held")->size == doctest::Approx(0.8).epsilon(0.01));
+  CHECK(read_back.findings.size() == 2);
 }
 
 TEST_CASE("run signals: leaps of the pose are counted and masked with their neighbours") {

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -115,7 +116,11 @@ TEST_CASE("trajectory fit: the derivatives are those of the residual, and costs 
 TEST_CASE("trajectory fit: no usable stretch is an error that says what to do") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   test::VirtualDive dive = test::make_dive(vehicle, {.duration = 3.0});
-  CHECK_THROWS_AS((TrajectoryFit{vehicle, {&dive.trial, 1}, quick()}), InputError);
+  dive.trial.name = "dive-1";
+  std::fill(dive.trial.pose_valid.begin(), dive.trial.pose_valid.end(), std::uint8_t{0});
+  CHECK_THROWS_WITH_AS((TrajectoryFit{vehicle, {&dive.trial, 1}, quick()}),
+                       doctest::Contains("dive-1 is 3 s long, its pose valid for 0 %, its velocity valid for 100 %"),
+                       InputError);
 }
 
 TEST_CASE("trajectory fit: an effect fifty times what is ordinary for it comes back whole") {

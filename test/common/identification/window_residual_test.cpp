@@ -71,6 +71,12 @@ TEST_CASE("windows: none in a run that is too short or never valid") {
   CHECK(fixture.cut().empty());
 }
 
+TEST_CASE("windows: samples further apart than a window end too") {
+  Fixture fixture;
+  fixture.dive.trial.dt = 8.0 * kLength;
+  CHECK(cut_windows({&fixture.dive.trial, 1}, kLength).front().count == 2);
+}
+
 TEST_CASE("residual: rows are the valid samples of observed, simulated axes") {
   Fixture fixture;
   fixture.invalidate(2.0, 3.0);

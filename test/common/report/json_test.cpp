@@ -24,8 +24,8 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("result.json holds exactly the promised names") {
   const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
-  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "explained", "parameters", "residual",
-                            "schema", "train", "validate", "vehicle", "verdict"});
+  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "explained", "not_measured", "parameters",
+                            "residual", "schema", "train", "validate", "vehicle", "verdict"});
   CHECK(file["schema"] == 1);
   CHECK(file["vehicle"] == "Beluga <test>");
   CHECK(file["verdict"] == "effect");
@@ -44,6 +44,15 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(keys(file["residual"]) == Names{"after", "before", "goes_with"});
   CHECK(keys(file["residual"]["goes_with"][0]) == Names{"axis", "log_odds", "share", "with"});
   CHECK(keys(file["residual"]["after"]["X"]) == Names{"autocorrelation_time_s", "explained", "p_value"});
+}
+
+TEST_CASE("What was not measured stands with the effects that could not be asked for it") {
+  auto report = fathom::test::made_up_report({.samples = 0});
+  report.result.not_measured = {{"attitude", {"current"}}, {"position", {}}};
+  const json file = json::parse(to_json(report.result));
+  REQUIRE(file["not_measured"].size() == 2);
+  CHECK(file["not_measured"][0] == json({{"group", "attitude"}, {"cannot_be_asked", {"current"}}}));
+  CHECK(file["not_measured"][1]["cannot_be_asked"].empty());
 }
 
 TEST_CASE("Named values become objects with value, std and unit, and arrive unchanged") {

@@ -132,6 +132,28 @@ TEST_CASE("A page without effects, candidates, findings or traces is whole") {
   CHECK(has(page, "</html>"));
 }
 
+TEST_CASE("Too little data to judge on does not look like a model that is adequate") {
+  fathom::DiagnosisReport report;
+  report.result.verdict = "unjudged";
+  const std::string page = to_html(report);
+  CHECK(has(page, "Too little data: nothing could be judged"));
+  CHECK_FALSE(has(page, "badge adequate"));
+  CHECK_FALSE(has(page, "Nothing is left open"));
+}
+
+TEST_CASE("What is constant but for rounding is drawn too") {
+  fathom::DiagnosisReport report = made_up_report({.samples = 600});
+  for (auto& trace : report.traces) {
+    for (std::size_t i = 0; i < trace.t.size(); ++i) {
+      const double rounding = i % 2 == 0 ? 1e-16 : 0.0;
+      for (auto* rows : {&trace.measured, &trace.before, &trace.after, &trace.tau}) (*rows)[i].fill(0.3 + rounding);
+      for (auto* rows : {&trace.residual_before, &trace.residual_after}) (*rows)[i].fill(-14.67 + 40.0 * rounding);
+      trace.heading[i] = 0.2 + rounding;
+    }
+  }
+  CHECK(has(to_html(report), "</html>"));
+}
+
 TEST_CASE("What is explained in part is not called explained, nor called foreign to all known causes") {
   fathom::DiagnosisReport report = made_up_report({.samples = 0});
   report.result.verdict = "unexplained";

@@ -75,6 +75,22 @@ TEST_CASE("canonical: unknown and incomplete columns are named") {
   CHECK(complaint("t,u,v,w\n0,1,2,\n1,1,2,nan\n") == "run.csv: column 'w' holds no number at all");
 }
 
+TEST_CASE("canonical: a column that differs by capitals or a slip is told its name") {
+  CHECK(complaint("t,Phi,theta,psi\n0,1,2,3\n").rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?);", 0) ==
+        0);
+  CHECK(complaint("t,u,v,w,U\n0,1,2,3,4\n").rfind("run.csv:1: unknown columns 'U';", 0) == 0);  // there is a 'u'
+  CHECK(complaint("T,u,v,w\n0,1,2,3\n").find("(is it 'T'?)") != std::string::npos);
+}
+
+TEST_CASE("canonical: time in milliseconds is told by its step, with the remedy") {
+  CHECK(
+      complaint("t,u,v,w\n100000,1,2,3\n100020,1,2,4\n100040,1,2,5\n") ==
+      "run.csv: column 't': the median step between rows is 20.000 s, too slow for the motion of any vehicle; is it in "
+      "ms? Say so in the map (--map): time: {column: t, unit: ms}");
+  CHECK(complaint("t,u,v,w\n0,1,2,3\n20000,1,2,4\n40000,1,2,5\n").find("unit: us}") != std::string::npos);
+  CHECK(complaint("t,u,v,w\n0,1,2,3\n1,1,2,4\n2,1,2,5\n100,1,2,5\n") == "no complaint");  // slow, and a gap
+}
+
 TEST_CASE("canonical: a recording survives writing and reading, stream by stream, each on its own clock") {
   Recording run;
   run.pose_capture.push_back(

@@ -27,6 +27,13 @@ std::string complaint(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("csv: another separator is named, with the remedy") {
+  CHECK(complaint("t;u\n0,5;1\n") ==
+        "run.csv:1: separator ';': save the table with commas between its columns, and with points in its numbers");
+  CHECK(complaint("t\tu\r\n0\t1\r\n").rfind("run.csv:1: separator tab: save", 0) == 0);
+  CHECK(complaint("t\t\n0\n") == "no complaint");
+}
+
 TEST_CASE("csv: names, numbers, Windows line ends, comments, blank lines and a byte order mark are read") {
   const CsvTable table =
       parse_csv("\xEF\xBB\xBF# a comment\r\nt, \"u\" ,v\r\n0, 1.5,-2e-3\r\n\r\n0.1,+3,4\r\n", "run.csv");

@@ -59,6 +59,17 @@ TEST_CASE("import: forward-left-up body vectors and wrenches turn over in y and 
   CHECK(tau == std::array<double, 6>{1000, -2000, -3000, 4, -5, -6});
 }
 
+TEST_CASE("import: a time that the map calls seconds, and that is not, is told with the line of the map") {
+  const std::string csv = "stamp,u,v,w\n0,1,2,3\n20,1,2,4\n40,1,2,5\n";
+  const std::string rest = "}\ndvl:\n  velocity: {columns: [u, v, w], unit: m/s, frame: FRD}\n";
+  const std::string about = "source: nobody\nlicence: none\n";
+  CHECK(complaint(csv, about + "time: {column: stamp, unit: s" + rest)
+            .rfind("map.yaml:3: run.csv: column 'stamp': the median step between rows is 20.000 s", 0) == 0);
+  CHECK(complaint(csv, about + "time: {column: stamp, unit: ms" + rest) == "no complaint");
+  CHECK(complaint(csv, about + "time: {column: stamp, unit: min" + rest).find("is its unit right?") !=
+        std::string::npos);
+}
+
 TEST_CASE("import: a pose in z-up worlds becomes NED, by hand") {
   // NWU, nose turned 90 degrees to the left (counter-clockwise from above): in NED that is yaw -90, pointing west.
   const Imported nwu =
