@@ -15,7 +15,8 @@ namespace fathom::estimation {
 /// R(t + L) - R(t) against the integral of R [w]x: gyro against attitude. Fixed columns: bias (3).
 [[nodiscard]] IncrementProblem rate_problem(const PoseSeries& pose);
 /// p(t + L) - p(t) against the integral of R v. Fixed columns: bias (3), lever (3), heading (1); with `rates` also the
-/// six numbers of a symmetric coupling to the rates, which no lever arm can make.
+/// six numbers of a symmetric coupling to the rates, which no lever arm can make: its column is zero unless the vehicle
+/// truly turns about both axes, for about one alone a lever arm does the same.
 [[nodiscard]] IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates);
 /// Rows and columns of those six.
 inline constexpr std::array<std::array<int, 2>, 6> kSymmetric{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};

@@ -14,6 +14,10 @@ constexpr double kWindow = 0.8;  // s: long enough to beat noise, short enough t
 constexpr double kStride = 0.2;  // s
 constexpr double kGravity = 9.81;
 
+constexpr double kRateAgreed =
+    0.9;  // squared correlation of turns by rates and by attitude: the rest is noise in either
+constexpr double kRateSeen = 30.0;  // variance of a window's turn over that of white noise: as for lever arms
+
 /// Mean variance of the attitude's white noise about one axis, rad^2.
 double attitude_variance(const PoseSeries& pose) {
   double variance = 0.0;
@@ -65,30 +69,78 @@ struct Frame {
   }
 };
 
+/// Turn of a window in the body frame of its middle: the antisymmetric part of its change of attitude.
+Eigen::Vector3d turn_of(const Eigen::Matrix3d& change) {
+  return 0.5 * Eigen::Vector3d(change(2, 1) - change(1, 2), change(0, 2) - change(2, 0), change(1, 0) - change(0, 1));
+}
+
+/// What a rate contributes to that turn: the antisymmetric part of A [u]x is [B u]x with this B.
+Eigen::Matrix3d turn_basis(const Eigen::Matrix3d& A) {
+  return 0.5 * (A.trace() * Eigen::Matrix3d::Identity() - A.transpose());
+}
+
+/// About which axes the vehicle truly turns. Where an axis shows noise alone, a lever arm and a symmetric coupling act
+/// on the other axes alike, and that noise would choose between them.
+class TurnsSeen {
+ public:
+  /// One window's turn by the attitude and by the rates, rad.
+  void add(const Eigen::Vector3d& attitude, const Eigen::Vector3d& rates) {
+    sum_ += (Eigen::Matrix<double, 3, 5>() << attitude, rates, attitude.cwiseAbs2(), rates.cwiseAbs2(),
+             attitude.cwiseProduct(rates))
+                .finished();
+    count_ += 1.0;
+  }
+  /// Variances of a window's turn from white noise alone, rad^2.
+  [[nodiscard]] std::array<bool, 3> axes(double attitude_noise, const Eigen::Vector3d& rate_noise) const {
+    std::array<bool, 3> seen{};
+    if (count_ == 0.0) return seen;
+    const Eigen::Matrix<double, 3, 5> mean = sum_ / count_;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const double attitude = mean(k, 2) - mean(k, 0) * mean(k, 0), rates = mean(k, 3) - mean(k, 1) * mean(k, 1);
+      const double both = mean(k, 4) - mean(k, 0) * mean(k, 1);
+      seen[static_cast<std::size_t>(k)] = both > 0.0 && both * both > kRateAgreed * attitude * rates &&
+                                          attitude > kRateSeen * attitude_noise && rates > kRateSeen * rate_noise[k];
+    }
+    return seen;
+  }
+
+ private:
+  Eigen::Matrix<double, 3, 5> sum_{Eigen::Matrix<double, 3, 5>::Zero()};
+  double count_{};
+};
+
+/// Variance of one sample's white noise per axis, by its step: times the squared weights, that of a window's integral.
+Eigen::Vector3d noise_density(const Series& rates, double step) {
+  Eigen::Vector3d density;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> part;
+    for (const Eigen::Vector3d& x : rates.x) part.push_back(x[k]);
+    density[k] = std::pow(white_noise_sigma(part), 2) * std::max(typical_step(rates.t), step);
+  }
+  return density;
+}
+
 }  // namespace
 
 IncrementProblem rate_problem(const PoseSeries& pose) {
   Frame frame;
   frame.begin(pose);
-  frame.windows(
-      pose, kWindow, [&](int first, int count, const std::vector<double>& weight, const Eigen::Matrix3d& R_BW) {
-        Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-        for (int s = 0; s < count; ++s) {
-          const Eigen::Matrix3d A = R_BW * pose.q_WB[static_cast<std::size_t>(first + s)].toRotationMatrix();
-          const double w = weight[static_cast<std::size_t>(s)];
-          // The antisymmetric part of A [u]x is [B u]x with this B.
-          const Eigen::Matrix3d B = 0.5 * w * (A.trace() * Eigen::Matrix3d::Identity() - A.transpose());
-          frame.problem.basis.push_back(B);
-          frame.squared += w * w;
-          sum += B;
-        }
-        const Eigen::Matrix3d change =
-            R_BW * (pose.q_WB[static_cast<std::size_t>(first + count - 1)].toRotationMatrix() -
-                    pose.q_WB[static_cast<std::size_t>(first)].toRotationMatrix());
-        const Eigen::Vector3d y = 0.5 * Eigen::Vector3d(change(2, 1) - change(1, 2), change(0, 2) - change(2, 0),
-                                                        change(1, 0) - change(0, 1));
-        frame.add(first, count, y, sum);
-      });
+  frame.windows(pose, kWindow,
+                [&](int first, int count, const std::vector<double>& weight, const Eigen::Matrix3d& R_BW) {
+                  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+                  for (int s = 0; s < count; ++s) {
+                    const Eigen::Matrix3d A = R_BW * pose.q_WB[static_cast<std::size_t>(first + s)].toRotationMatrix();
+                    const double w = weight[static_cast<std::size_t>(s)];
+                    const Eigen::Matrix3d B = w * turn_basis(A);
+                    frame.problem.basis.push_back(B);
+                    frame.squared += w * w;
+                    sum += B;
+                  }
+                  const Eigen::Matrix3d change =
+                      R_BW * (pose.q_WB[static_cast<std::size_t>(first + count - 1)].toRotationMatrix() -
+                              pose.q_WB[static_cast<std::size_t>(first)].toRotationMatrix());
+                  frame.add(first, count, turn_of(change), sum);
+                });
   return std::move(frame.problem);
 }
 
@@ -97,11 +149,14 @@ IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates) {
   frame.begin(pose);
   const Spline spline(rates != nullptr ? *rates : Series{});
   const int columns = rates != nullptr ? 13 : 7;
+  const double noise = attitude_variance(pose);
+  TurnsSeen turns;
   frame.windows(
       pose, kWindow, [&](int first, int count, const std::vector<double>& weight, const Eigen::Matrix3d& R_BW) {
         Eigen::Matrix<double, 3, Eigen::Dynamic> fixed = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, columns);
         const std::size_t basis_before = frame.problem.basis.size();
         double squared = 0.0;
+        Eigen::Vector3d turned = Eigen::Vector3d::Zero();
         for (int s = 0; s < count; ++s) {
           const auto i = static_cast<std::size_t>(first + s);
           const double w = weight[static_cast<std::size_t>(s)];
@@ -115,6 +170,7 @@ IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates) {
             frame.problem.basis.resize(basis_before);
             return;
           }
+          turned += turn_basis(A) * omega;
           for (std::size_t k = 0; k < kSymmetric.size(); ++k) {
             const auto [a, b] = kSymmetric[k];
             fixed.col(7 + static_cast<int>(k)) += A.col(a) * omega[b];
@@ -124,14 +180,25 @@ IncrementProblem velocity_problem(const PoseSeries& pose, const Series* rates) {
         const auto i0 = static_cast<std::size_t>(first);
         const auto i1 = static_cast<std::size_t>(first + count - 1);
         // A lever arm's share is exact: the sensor's point moved by the change of R r more than the origin.
-        fixed.middleCols<3>(3) = -R_BW * (pose.q_WB[i1].toRotationMatrix() - pose.q_WB[i0].toRotationMatrix());
+        const Eigen::Matrix3d change = R_BW * (pose.q_WB[i1].toRotationMatrix() - pose.q_WB[i0].toRotationMatrix());
+        fixed.middleCols<3>(3) = -change;
+        if (rates != nullptr) turns.add(turn_of(change), turned);
         const Eigen::Vector3d y = R_BW * (pose.p_WB[i1] - pose.p_WB[i0]);
         fixed.col(6) = R_BW.col(2).cross(y);
         frame.squared += squared;
         frame.add(first, count, y, fixed);
       });
   frame.problem.lever = 3;
-  frame.problem.lever_noise = 4.0 * attitude_variance(pose);  // two attitudes, two axes across each column
+  frame.problem.lever_noise = 4.0 * noise;  // two attitudes, two axes across each column
+  if (rates != nullptr) {
+    const Eigen::Vector3d density = noise_density(*rates, frame.problem.step);
+    const std::array<bool, 3> seen = turns.axes(2.0 * noise, density * frame.problem.squared_weight);
+    for (std::size_t k = 0; k < kSymmetric.size(); ++k) {
+      const auto [a, b] = kSymmetric[k];
+      if (seen[static_cast<std::size_t>(a)] && seen[static_cast<std::size_t>(b)]) continue;
+      for (auto& fixed : frame.problem.fixed) fixed.col(7 + static_cast<int>(k)).setZero();
+    }
+  }
   return std::move(frame.problem);
 }
 

@@ -34,8 +34,9 @@ void Comparison::find_offsets() {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (!fit(r).ok || fit(r).explained < kLeastExplained || column >= columns(r)) continue;
       if (lever_axis >= 0 && !fit(r).lever_seen[lever_axis]) continue;
+      // What the sensor's noise takes off its scale, the arm takes on: both are bracketed alike.
       estimates[r] = estimate(
-          r, [&](const Eigen::VectorXd& theta) { return theta[column]; }, false);
+          r, [&](const Eigen::VectorXd& theta) { return theta[column]; }, lever_axis >= 0);
       estimates[r].informative = estimates[r].sigma < limit;
     }
     return decide(estimates, 0.0, floor);
@@ -58,6 +59,14 @@ void Comparison::find_offsets() {
     const auto [a, b] = kSymmetric[static_cast<std::size_t>(k)];
     coupling(a, b) = coupling(b, a) = decision.pooled.value;
   }
+  std::string unknown;
+  for (int a = 0; a < 3; ++a) {
+    bool seen = false;
+    for (std::size_t r = 0; r < runs_.size(); ++r) seen = seen || (fit(r).ok && fit(r).lever_seen[a]);
+    if (!seen)
+      unknown +=
+          std::string(unknown.empty() ? "; unknown, for the vehicle hardly turned across it: " : ", ") + "xyz"[a];
+  }
   const bool rigid = largest_coupling < 0.2 * largest_lever || largest_coupling == 0.0;
   static constexpr std::array<const char*, 3> kAxis{"x", "y", "z"};
   for (int a = 0; a < 3; ++a) {
@@ -65,7 +74,7 @@ void Comparison::find_offsets() {
     for (std::size_t r = 0; r < runs_.size(); ++r) result_.faults[r].lever[a] = decision.applied[r];
     if (rigid) {
       report(decision, names_.signal, std::string("lever_arm_") + kAxis[static_cast<std::size_t>(a)], "m", 0.0,
-             "corrected: moved to the body origin");
+             "corrected: moved to the body origin", unknown);
     }
   }
   if (!rigid) {

@@ -17,10 +17,10 @@ struct Window {
 };
 
 /// Simulates the window from the measured pose at its start and `nu0`, with the trial's inputs only. Degrees of freedom
-/// that the vehicle file leaves out follow the measurement. Second-order steps of at most 50 ms, shorter where the
-/// priors' drag is stiff; effects with memory are run in over the seconds before the window. `nu` is what the sensors
-/// say: the effects that measure have been applied to it, while `nu0` is true. Returns false when the motion diverged
-/// (the rest is held).
+/// that the vehicle file leaves out follow the measurement. Second-order steps of at most 50 ms, in which drag decays
+/// exactly, shorter where the priors' drag is stiff; effects with memory are run in over the seconds before the window.
+/// `nu` is what the sensors say: the effects that measure have been applied to it, while `nu0` is true. Returns false
+/// when the motion diverged (the rest is held).
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
 
 /// Derivatives of a rollout's velocities: row 6 k + axis is sample k's. Columns: the base parameters in their order

@@ -11,8 +11,8 @@
 
 namespace fathom::model {
 
-constexpr double kLargestStep = 0.05;   // s: midpoint error below 1e-3 of nu for time constants above 0.2 s
-constexpr double kExplicitShare = 1.5;  // damping times step that the plain rule may keep: it turns unstable at 2
+constexpr double kLargestStep = 0.05;   // s: an oscillation or a turn of 1 rad/s is followed to 1e-3
+constexpr double kMostDamping = 1.5;    // of one step, by which the base drag's own change within it stays small
 constexpr double kShortestStep = 0.02;  // s: what is faster decays exactly anyway
 constexpr double kTypicalSpeed = 0.5;   // m/s, rad/s, where quadratic drag is taken to choose the step
 constexpr double kAbsurd = 50.0;        // m/s or rad/s: no vehicle of ours moves like that
@@ -26,16 +26,33 @@ inline double largest_step(const Vehicle& vehicle) {
   for (int i = 0; i < 6; ++i) {
     const double damping =
         -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
-    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kExplicitShare * theta[i] && theta[i] > 0.0) {
-      step = kExplicitShare * theta[i] / damping;
+    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kMostDamping * theta[i] && theta[i] > 0.0) {
+      step = kMostDamping * theta[i] / damping;
     }
   }
   return std::max(step, kShortestStep);
 }
 
-/// (1 - exp(-z)) / z, elementwise, for z >= 0: what a step of length 1 with decay z makes of a constant slope.
+/// What a step of length 1 with decay z >= 0 makes of a constant slope, elementwise: (1 - exp(-z)) / z.
 inline Vector6d decay_share(const Vector6d& z) {
   return z.unaryExpr([](double x) { return x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x; });
+}
+
+/// And of a slope that grows from 0 to 1 over the step: (exp(-z) - 1 + z) / z^2.
+inline Vector6d growth_share(const Vector6d& z) {
+  return z.unaryExpr(
+      [](double x) { return x < 1e-2 ? 0.5 - x / 6.0 + x * x / 24.0 : (std::exp(-x) - 1.0 + x) / (x * x); });
+}
+
+/// Derivatives of both with respect to z.
+inline Vector6d decay_share_slope(const Vector6d& z) {
+  return z.unaryExpr(
+      [](double x) { return x < 1e-2 ? -0.5 + x / 3.0 - x * x / 8.0 : (std::exp(-x) * (1.0 + x) - 1.0) / (x * x); });
+}
+inline Vector6d growth_share_slope(const Vector6d& z) {
+  return z.unaryExpr([](double x) {
+    return x < 1e-2 ? -1.0 / 6.0 + x / 12.0 - x * x / 40.0 : (2.0 - x - std::exp(-x) * (2.0 + x)) / (x * x * x);
+  });
 }
 
 /// Rotation about the world's down axis by psi, then the tilt of q.
@@ -154,23 +171,24 @@ class Rollout {
   }
 
   void step(std::size_t from, double offset, double h) {
-    // Midpoint rule. Damping too fast for it is taken out and decays exactly (exponential midpoint, Hochbruck and
-    // Ostermann 2010, sec. 2.3), so that no time constant is too short for the step; second order throughout.
+    // Midpoint rule with exact decay (exponential time differencing of second order, Cox and Matthews 2002, sec. 2.2):
+    // the drag's slope at the step's start decays exactly, and the rest runs on a straight line through start and
+    // middle, so that no time constant is too short for the step. The plain rule's decay is slow by a sixth of the
+    // square of damping times step, and a fit would make the inertia that much too small.
     const double half = 0.5 * h;
-    const Vector6d decay = (damping(nu_).array() - kExplicitShare / h).cwiseMax(0.0);
-    const bool stiff = !decay.isZero(0.0);
-    Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
+    const Vector6d decay = damping(nu_);
+    const Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
     const Eigen::Vector3d p_half = p_ + half * (motion_.R_WB * nu_.head<3>());
-    if (stiff) k1 = decay_share(half * decay).cwiseProduct(k1);
-    const Vector6d nu_half = measured_where_fixed(from, offset + half, nu_ + half * k1);
+    const Vector6d nu_half =
+        measured_where_fixed(from, offset + half, nu_ + half * decay_share(half * decay).cwiseProduct(k1));
     const Eigen::Quaterniond q_half = q_ * quaternion_from_rotation_vector(half * nu_.tail<3>());
     const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);
     if (sensitivity_ != nullptr)
-      sensitivity_->advance(*this, {from, offset + half, p_half, q_half, nu_half, k2, decay}, h);
+      sensitivity_->advance(*this, {from, offset + half, p_half, q_half, nu_half, k2, decay, nu_, k1}, h);
     p_ += h * (q_half * nu_half.head<3>());
     q_ = (q_ * quaternion_from_rotation_vector(h * nu_half.tail<3>())).normalized();
-    Vector6d slope = k2;
-    if (stiff) slope = decay_share(h * decay).cwiseProduct(k2 + decay.cwiseProduct(nu_half - nu_));
+    const Vector6d change = k2 + decay.cwiseProduct(nu_half - nu_) - k1;
+    const Vector6d slope = decay_share(h * decay).cwiseProduct(k1) + 2.0 * growth_share(h * decay).cwiseProduct(change);
     nu_ = measured_where_fixed(from, offset + h, nu_ + h * slope);
     follow_measured_attitude(from, offset + h);
   }

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "common/model/regressor.hpp"
 #include "common/model/rollout_steps.hpp"
@@ -127,6 +128,22 @@ void Sensitivity::slope(const Dynamics& A, const Input& B, const State& state, S
   }
 }
 
+/// How the step's rates of decay move with the parameters and with the velocity at its start.
+Eigen::Matrix<double, 6, Sensitivity::kColumns> Sensitivity::decay_rows(const Model& model,
+                                                                        const StepMiddle& at) const {
+  Eigen::Matrix<double, 6, kColumns> rows = Eigen::Matrix<double, 6, kColumns>::Zero();
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const double mass = model.theta[i], speed = at.nu_begin[i];
+    if (!(at.decay[i] > 0.0) || !model.vehicle->dof[static_cast<std::size_t>(i)]) continue;
+    rows.row(i) =
+        -2.0 * model.theta[index(BaseParameter::X_uu) + i] * std::copysign(1.0, speed) / mass * state_.row(6 + i);
+    rows(i, i) -= at.decay[i] / mass;
+    rows(i, index(BaseParameter::X_u) + i) -= 1.0 / mass;
+    rows(i, index(BaseParameter::X_uu) + i) -= 2.0 * std::abs(speed) / mass;
+  }
+  return rows;
+}
+
 void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
   const Model& model = rollout.model();
   const Motion motion = rollout.motion();
@@ -143,20 +160,27 @@ void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
     velocity_rows(model, motion, at.nu_dot, A);
   }
 
-  // The rollout's own rule: velocity rows decay exactly, the others take the plain midpoint.
+  // The rollout's own rule: velocity rows decay exactly, at rates that move too; the others take the plain midpoint.
+  const double half = 0.5 * h;
+  const auto decay = decay_rows(model, at);
   State rate, middle;
   slope(A, B, state_, rate);
-  middle = (0.5 * h) * rate;
-  if (at.decay.isZero(0.0)) {
-    slope(A, B, state_ + middle, rate);
-    state_ += h * rate;
-  } else {
-    middle.bottomRows<6>() = decay_share(0.5 * h * at.decay).asDiagonal() * middle.bottomRows<6>();
-    slope(A, B, state_ + middle, rate);
-    rate.bottomRows<6>() += at.decay.asDiagonal() * middle.bottomRows<6>();
-    rate.bottomRows<6>() = decay_share(h * at.decay).asDiagonal() * rate.bottomRows<6>();
-    state_ += h * rate;
-  }
+  middle = half * rate;
+  middle.bottomRows<6>() = decay_share(half * at.decay).asDiagonal() * middle.bottomRows<6>();
+  middle.bottomRows<6>() +=
+      (half * half * decay_share_slope(half * at.decay)).cwiseProduct(at.nu_dot_begin).asDiagonal() * decay;
+  State rate_middle;
+  slope(A, B, state_ + middle, rate_middle);
+  state_.topRows<6>() += h * rate_middle.topRows<6>();
+  const Vector6d moved = at.nu - at.nu_begin;
+  const Vector6d change = at.nu_dot + at.decay.cwiseProduct(moved) - at.nu_dot_begin;
+  const Vector6d by_decay = h * (decay_share_slope(h * at.decay).cwiseProduct(at.nu_dot_begin) +
+                                 2.0 * growth_share_slope(h * at.decay).cwiseProduct(change));
+  const Vector6d growth = 2.0 * growth_share(h * at.decay);
+  state_.bottomRows<6>() += h * ((decay_share(h * at.decay) - growth).asDiagonal() * rate.bottomRows<6>() +
+                                 growth.asDiagonal() * rate_middle.bottomRows<6>() +
+                                 growth.cwiseProduct(at.decay).asDiagonal() * middle.bottomRows<6>() +
+                                 (by_decay + growth.cwiseProduct(moved)).asDiagonal() * decay);
 
   // A trajectory that diverges has no useful derivative; the solver will turn back from it.
   if (!(state_.squaredNorm() < kAbsurdDerivative * kAbsurdDerivative)) state_.setZero();

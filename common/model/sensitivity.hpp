@@ -15,7 +15,9 @@ struct StepMiddle {
   const Eigen::Quaterniond& q;
   const Vector6d& nu;
   const Vector6d& nu_dot;
-  const Vector6d& decay;  ///< rates of decay that the step itself uses, 1/s
+  const Vector6d& decay;     ///< rates of decay that the step itself uses, 1/s
+  const Vector6d& nu_begin;  ///< at the step's start, where the decay was taken
+  const Vector6d& nu_dot_begin;
 };
 
 /// S = d(state)/d(columns), state error = [position 3 in W; rotation 3 in B; velocity 6], S_dot = A S + B.
@@ -40,6 +42,7 @@ class Sensitivity {
   [[nodiscard]] Input input(const Model& model, const Motion& motion, const Vector6d& nu_dot) const;
   void velocity_rows_by_differences(Rollout& rollout, const StepMiddle& middle, Dynamics& A) const;
   void velocity_rows(const Model& model, const Motion& motion, const Vector6d& nu_dot, Dynamics& A) const;
+  [[nodiscard]] Eigen::Matrix<double, 6, kColumns> decay_rows(const Model& model, const StepMiddle& middle) const;
   void slope(const Dynamics& A, const Input& B, const State& state, State& out) const;
 
   VelocityDerivatives& out_;

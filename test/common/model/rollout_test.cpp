@@ -12,7 +12,9 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kMidpoint = 2e-3;  // of nu: midpoint steps of 50 ms against the exact solution
+constexpr double kMidpoint = 2e-3;     // of nu: midpoint steps of 50 ms against the exact solution
+constexpr double kExact = 1e-9;        // of the terminal speed
+constexpr double kQuickSquare = 1e-2;  // of the terminal speed: its slope changes by a third within a step
 
 model::Vehicle surge_only() {
   model::Vehicle vehicle;
@@ -58,6 +60,43 @@ TEST_CASE("rollout: constant thrust approaches the terminal speed as the hyperbo
     CHECK(std::abs(nu(0, k) - expected) < kMidpoint * terminal);
   }
   CHECK(nu(0, nu.cols() - 1) == doctest::Approx(terminal).epsilon(1e-3));
+}
+
+TEST_CASE("rollout: an axis that settles within a few steps follows the exponential and the hyperbolic tangent") {
+  const model::Vehicle vehicle = surge_only();
+  model::Model model = surge_model(vehicle);
+  const Trial trial = run_with(1.0, 0.02, [](double) { return 10.0; });
+  model::VelocityTrace nu;
+  SUBCASE("linear drag") {
+    for (const double settles : {0.2, 0.1, 0.05, 0.02}) {  // s
+      model.theta[model::index(model::BaseParameter::X_u)] = -20.0 / settles;
+      REQUIRE(model::rollout(model, {&trial, 0, trial.size()}, Vector6d::Zero(), nu));
+      for (Eigen::Index k = 0; k < nu.cols(); ++k) {
+        const double expected = 1.0 - std::exp(-trial.t[static_cast<std::size_t>(k)] / settles);
+        CHECK(std::abs(nu(0, k) / (10.0 * settles / 20.0) - expected) < kExact);
+      }
+    }
+  }
+  SUBCASE("linear drag, thrust that grows") {
+    constexpr double kSettles = 0.1;  // s
+    model.theta[model::index(model::BaseParameter::X_u)] = -20.0 / kSettles;
+    const Trial growing = run_with(1.0, 0.02, [](double t) { return 10.0 * t; });
+    REQUIRE(model::rollout(model, {&growing, 0, growing.size()}, Vector6d::Zero(), nu));
+    for (Eigen::Index k = 0; k < nu.cols(); ++k) {
+      const double t = growing.t[static_cast<std::size_t>(k)];
+      const double expected = t - kSettles * (1.0 - std::exp(-t / kSettles));
+      CHECK(std::abs(nu(0, k) / (10.0 * kSettles / 20.0) - expected) < kExact);
+    }
+  }
+  SUBCASE("quadratic drag") {
+    constexpr double kTerminal = 0.05, kSettles = 0.1;  // m/s, s: 2 m / F times the terminal speed is twice that
+    model.theta[model::index(model::BaseParameter::X_uu)] = -10.0 / (kTerminal * kTerminal);
+    REQUIRE(model::rollout(model, {&trial, 0, trial.size()}, Vector6d::Zero(), nu));
+    for (Eigen::Index k = 0; k < nu.cols(); ++k) {
+      const double expected = std::tanh(trial.t[static_cast<std::size_t>(k)] / kSettles);
+      CHECK(std::abs(nu(0, k) / kTerminal - expected) < kQuickSquare);
+    }
+  }
 }
 
 TEST_CASE("rollout: six axes agree with integration at a fifth of the step") {
