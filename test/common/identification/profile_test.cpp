@@ -59,7 +59,7 @@ TEST_CASE("profile: where the cost is a parabola it ends where the standard devi
 
 TEST_CASE("profile: a time constant that the data hardly shows may be far longer, not far shorter") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
-  test::DiveSettings settings{.duration = 120.0, .seed = 4, .velocity_noise = 0.03, .rate_noise = 0.03};
+  test::DiveSettings settings{.duration = 120.0, .seed = 4, .velocity_noise = 0.06, .rate_noise = 0.06};
   settings.effects = {test::active("fluid_memory", {12.0, 4.0}, 0)};
   const auto [fit, memory] = profiled(vehicle, settings, "fluid_memory.time_constant");
   const auto [low, high] = memory.range95();
