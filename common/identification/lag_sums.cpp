@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 namespace fathom::identification {
@@ -42,34 +43,43 @@ Eigen::MatrixXd LagSums::product(Eigen::Index i, Eigen::Index j) const {
   return a <= b ? products_[a][b] : Eigen::MatrixXd(products_[b][a].transpose());
 }
 
-Eigen::MatrixXd LagSums::whitened(const Eigen::Vector3d& phi) const {
+Eigen::MatrixXd LagSums::whitened(const Eigen::Vector3d& phi, const std::vector<Eigen::Index>& columns) const {
   const Eigen::Vector4d c(1.0, -phi[0], -phi[1], -phi[2]);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns_, columns_);
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i <= kMemory; ++i) {
-    for (Eigen::Index j = 0; j <= kMemory; ++j) {
-      if (c[i] * c[j] != 0.0) sum += c[i] * c[j] * product(i, j);
+    for (Eigen::Index j = i; j <= kMemory; ++j) {
+      if (c[i] * c[j] == 0.0) continue;
+      const Eigen::MatrixXd product =
+          products_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)](columns, columns);
+      sum += c[i] * c[j] * product;
+      if (i != j) sum += c[i] * c[j] * product.transpose();
     }
   }
   return sum;
+}
+
+Eigen::Vector3d LagSums::memory_of(const Eigen::VectorXd& c, const std::vector<Eigen::Index>& columns) const {
+  const auto lagged = [&](std::size_t i, std::size_t j) {
+    return c.dot(products_[std::min(i, j)][std::max(i, j)](columns, columns) * c);
+  };
+  Eigen::Matrix3d R;
+  Eigen::Vector3d r;
+  for (std::size_t i = 1; i <= kMemory; ++i) {
+    const auto a = static_cast<Eigen::Index>(i) - 1;
+    r[a] = lagged(0, i);
+    for (std::size_t j = 1; j <= kMemory; ++j) R(a, static_cast<Eigen::Index>(j) - 1) = lagged(i, j);
+  }
+  return R.trace() > 0.0 ? Eigen::Vector3d(R.ldlt().solve(r)) : Eigen::Vector3d::Zero();  // zero: nothing is left
 }
 
 ColouredFit fit_coloured(const LagSums& sums, const std::vector<Eigen::Index>& columns, Eigen::Index target) {
   const auto p = static_cast<Eigen::Index>(columns.size());
   std::vector<Eigen::Index> chosen = columns;
   chosen.push_back(target);
-  std::array<std::array<Eigen::MatrixXd, LagSums::kMemory + 1>, LagSums::kMemory + 1> product;
-  for (Eigen::Index i = 0; i <= LagSums::kMemory; ++i) {
-    for (Eigen::Index j = 0; j <= LagSums::kMemory; ++j)
-      product[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = sums.product(i, j)(chosen, chosen);
-  }
   ColouredFit fit;
   for (int turn = 0; turn < kTurns; ++turn) {
-    const Eigen::Vector4d c(1.0, -fit.phi[0], -fit.phi[1], -fit.phi[2]);
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(p + 1, p + 1);
-    for (std::size_t i = 0; i <= LagSums::kMemory; ++i) {
-      for (std::size_t j = 0; j <= LagSums::kMemory; ++j)
-        gram += c[static_cast<Eigen::Index>(i)] * c[static_cast<Eigen::Index>(j)] * product[i][j];
-    }
+    const Eigen::MatrixXd gram = sums.whitened(fit.phi, chosen);
     const Eigen::VectorXd scale =
         gram.diagonal().head(p).unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
@@ -80,17 +90,7 @@ ColouredFit fit_coloured(const LagSums& sums, const std::vector<Eigen::Index>& c
     Eigen::VectorXd combination(p + 1);
     combination << -fit.x, 1.0;
     fit.sse = std::max(combination.dot(gram * combination), 0.0);
-    if (turn + 1 == kTurns) break;
-    Eigen::Matrix3d R;
-    Eigen::Vector3d r;
-    for (Eigen::Index i = 1; i <= LagSums::kMemory; ++i) {
-      const auto a = static_cast<std::size_t>(i);
-      r[i - 1] = combination.dot(product[0][a] * combination);
-      for (Eigen::Index j = 1; j <= LagSums::kMemory; ++j)
-        R(i - 1, j - 1) = combination.dot(product[a][static_cast<std::size_t>(j)] * combination);
-    }
-    if (!(R.trace() > 0.0)) break;  // nothing is left
-    fit.phi = R.ldlt().solve(r);
+    if (turn + 1 < kTurns) fit.phi = sums.memory_of(combination, chosen);
   }
   return fit;
 }

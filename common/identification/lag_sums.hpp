@@ -1,7 +1,8 @@
 // Least squares under a residual with a memory of several samples (autoregressive of third order), from sums of
 // products that are taken once: every subset of columns follows from them. Unlike plain least squares it is not
 // deceived when the regressors answer to the residual's past, as thrust does that a pilot or an autopilot gives (Ljung,
-// System Identification, 1999, ch. 13.4).
+// System Identification, 1999, ch. 13.4). autoregression.hpp does the same for a memory of one sample, with standard
+// errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +24,10 @@ class LagSums {
   [[nodiscard]] Eigen::Index columns() const { return columns_; }
   /// sum z_n-i z_n-j', i and j up to kMemory.
   [[nodiscard]] Eigen::MatrixXd product(Eigen::Index i, Eigen::Index j) const;
-  /// sum w w' of the whitened rows w_n = z_n - phi_1 z_n-1 - phi_2 z_n-2 - phi_3 z_n-3.
-  [[nodiscard]] Eigen::MatrixXd whitened(const Eigen::Vector3d& phi) const;
+  /// sum w w' over the chosen columns of the whitened rows w_n = z_n - phi_1 z_n-1 - phi_2 z_n-2 - phi_3 z_n-3.
+  [[nodiscard]] Eigen::MatrixXd whitened(const Eigen::Vector3d& phi, const std::vector<Eigen::Index>& columns) const;
+  /// phi that foretells the combination z c best from its own past.
+  [[nodiscard]] Eigen::Vector3d memory_of(const Eigen::VectorXd& c, const std::vector<Eigen::Index>& columns) const;
 
  private:
   Eigen::Index columns_;
