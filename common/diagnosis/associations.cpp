@@ -64,6 +64,15 @@ LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs) {
   return sums;
 }
 
+/// Least squares by sums of products: what the columns `free` take up of `right`. Collinear columns share.
+Eigen::VectorXd taken_up(const Eigen::MatrixXd& products, const Indices& free, const Eigen::VectorXd& right) {
+  constexpr double kCollinear = 1e-9;  // relative pivot
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
+  solver.setThreshold(kCollinear);
+  solver.compute(products(free, free));
+  return solver.solve(Eigen::VectorXd(right(free)));
+}
+
 /// Least sum of squares of the target when the columns `free` may take up what they like, and the others keep `fixed`.
 double square_left(const Eigen::MatrixXd& products, const Indices& free, const Indices& held,
                    const Eigen::VectorXd& fixed) {
@@ -72,10 +81,7 @@ double square_left(const Eigen::MatrixXd& products, const Indices& free, const I
   c[target] = 1.0;
   for (std::size_t i = 0; i < held.size(); ++i) c[held[i]] = -fixed[static_cast<Eigen::Index>(i)];
   const Eigen::VectorXd with = products * c;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-9);
-  solver.compute(products(free, free));
-  return std::max(c.dot(with) - with(free).dot(solver.solve(Eigen::VectorXd(with(free)))), 0.0);
+  return std::max(c.dot(with) - with(free).dot(taken_up(products, free, with)), 0.0);
 }
 
 }  // namespace
@@ -101,7 +107,7 @@ LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
       run.at.push_back(at);
       run.wrench.push_back(residuals[r][k]);
     }
-    runs_.push_back(std::move(run));
+    if (!run.at.empty()) runs_.push_back(std::move(run));
   }
   const auto axes = static_cast<double>(std::ranges::count(model.vehicle->dof, true));
   tried_ = axes * static_cast<double>(suspects().size() + 2);
@@ -111,7 +117,7 @@ std::vector<Eigen::MatrixXd> LeftOver::rows(int axis, bool (*seen)(const Trial&)
   std::vector<Eigen::MatrixXd> all;
   Columns row;
   for (const Run& run : runs_) {
-    if (!seen(*run.trial) || run.at.empty()) continue;
+    if (!seen(*run.trial)) continue;
     Eigen::MatrixXd& of = all.emplace_back();
     for (std::size_t i = 0; i < run.at.size(); ++i) {
       row.clear();
@@ -196,12 +202,8 @@ Association LeftOver::oscillation(int axis) const {
   if (runs.empty()) return best;
   const LagSums sums = sums_of(runs);
   if (sums.samples() < kSamplesPerColumn * kBaseColumns) return best;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-9);
   const Eigen::MatrixXd products = sums.product(0, 0);
-  const Indices base = range(0, kBaseColumns);
-  solver.compute(products(base, base));
-  const Eigen::VectorXd x = solver.solve(Eigen::VectorXd(products.col(kBaseColumns)(base)));
+  const Eigen::VectorXd x = taken_up(products, range(0, kBaseColumns), products.col(kBaseColumns));
   for (std::size_t r = 0; r < runs.size(); ++r) {
     std::vector<double> series;
     for (Eigen::Index k = 0; k < runs[r].rows(); ++k) {

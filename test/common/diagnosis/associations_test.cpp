@@ -148,6 +148,11 @@ TEST_CASE("associations: a run without the quantity is left out, a run too short
   trial.input.resize(60);
   brief.residuals[0].resize(60);
   CHECK(brief.left().empty());
+  // Runs of nothing beside a good one: left out.
+  Dive whole{9, 0.5, 10.0, [](const Trial& t, std::size_t k) { return 4.0 * t.p_WB[k].y(); }};
+  whole.trials.insert(whole.trials.begin(), Trial{.dt = kDt});
+  whole.residuals.insert(whole.residuals.begin(), std::vector<Vector6d>{});
+  CHECK(among(whole.left(), "position"));
 }
 
 TEST_CASE("associations: a free curve is believed when the residual goes with it, and not for noise with a memory") {
