@@ -153,7 +153,11 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
   if (judged.in_the_way) return "has the vehicle on the wrong side of what it would be near to";
   if (judged.held_out_blocks < 0.0) return "does not help on blocks of data left out of its estimate";
   if (judged.held_out_runs < 0.0) return "does not carry over from run to run";
-  const std::string limited = model != nullptr ? limited_number(*model, judged) : "";
+  return model != nullptr ? at_limit(judged, *model) : "";
+}
+
+std::string at_limit(const Judged& judged, const model::Model& model) {
+  const std::string limited = limited_number(model, judged);
   return limited.empty() ? "" : "fits only with " + limited + " at its physical limit";
 }
 

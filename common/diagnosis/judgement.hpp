@@ -42,6 +42,8 @@ void judge_by_data_left_out(Judged& judged, const identification::TrajectoryFit&
 [[nodiscard]] bool evident(const Judged& judged, const Settings& settings);
 /// Whether data left out might still decide.
 [[nodiscard]] bool doubtful(const Judged& judged, const Settings& settings);
+/// "fits only with ... at its physical limit", or empty.
+[[nodiscard]] std::string at_limit(const Judged& judged, const model::Model& model);
 /// Why it must be refused; empty when nothing speaks against it. With the fitted `model`, limits are looked at too.
 [[nodiscard]] std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model = nullptr);
 /// Names the look-alikes of the winner, and which of them the data cannot rule out.

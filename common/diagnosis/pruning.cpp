@@ -64,12 +64,15 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
                      surprise(result.after.model, again);
     again.error_reduction = reduction(fit.cost, result.after.cost);
     judge_by_few_windows(again, problem, result.after, tried, settings);
-    if (evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
+    const std::string limited = at_limit(again, result.after.model);  // on everything it may have gone where it had not
+    if (limited.empty() && evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
       result.accepted[i] = again;
       ++i;
       continue;
     }
-    again.reason = result.accepted.size() > 1 ? "made superfluous by the other effects" : refusal(again, settings);
+    again.reason = !limited.empty()             ? limited
+                   : result.accepted.size() > 1 ? "made superfluous by the other effects"
+                                                : refusal(again, settings);
     result.refused.push_back(again);
     result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
     fits.drop(i, again);
