@@ -160,6 +160,34 @@ WeakestNumber weakest_number(const DiagnosisResult& result) {
   return weakest;
 }
 
+struct Foretold {
+  std::string axis;
+  double share{};  // R2, 5 s ahead
+};
+
+/// Axes of which the final model foretells less than half of the motion although what is left there is not random.
+std::vector<Foretold> badly_foretold(const DiagnosisResult& result) {
+  constexpr double kHorizon = 5.0, kLeast = 0.5;  // s
+  std::vector<Foretold> axes;
+  for (const PredictionError& error : result.error_after.prediction) {
+    if (error.horizon_s != kHorizon) continue;
+    for (const AxisWhiteness& axis : result.residual_after) {
+      const auto i =
+          static_cast<std::size_t>(std::ranges::find(model::kAxisNames, axis.axis) - model::kAxisNames.begin());
+      if (axis.p_value < kNotRandom && error.r2[i] < kLeast) axes.push_back({axis.axis, error.r2[i]});
+    }
+  }
+  return axes;
+}
+
+std::string foretold_sentence(const std::vector<Foretold>& axes) {
+  if (axes.empty()) return "";
+  std::vector<std::string> words;
+  for (const Foretold& one : axes)
+    words.push_back((one.share > 0.0 ? percent(one.share) : "nothing") + " of the motion along " + one.axis);
+  return "5 s ahead the model foretells " + joined(words) + ". ";
+}
+
 std::string motion_for(const std::string& name) { return std::string(model::find_effect(name)->revealed_by()); }
 
 /// What to drive next: what tells look-alikes apart, else what sharpens the weakest number, else what would confirm
@@ -199,7 +227,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     names.push_back(effect.name);
     if (!effect.alternatives.empty()) open.push_back(effect.name + " (or " + joined(effect.alternatives, " or ") + ")");
   }
-  const bool structure = !left.empty() || found.free_form || found.taken_back;
+  const std::vector<Foretold> foretold = badly_foretold(result);
+  // Worse than to assume the average: whatever is at work, the model does not explain it.
+  const bool blind = std::ranges::any_of(foretold, [](const Foretold& one) { return one.share < 0.0; });
+  const bool structure = !left.empty() || found.free_form || found.taken_back || blind;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
@@ -217,13 +248,13 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     text =
         "The base model explains these runs: none of the " + std::to_string(asked) +
         " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. " +
-        memory_sentence(result);
+        memory_sentence(result) + foretold_sentence(foretold);
   } else if (names.empty()) {
     text = "The base model leaves structure in the residual that no known effect explains. ";
     if (found.taken_back) {
       text += "What helped the training runs did not help the validation run; it is listed among the refused. ";
     }
-    text += unjudged;
+    text += foretold_sentence(foretold) + unjudged;
   } else {
     text = "The motion shows what the base model lacks: " + joined(names) + ". ";
     for (const EffectFound& effect : result.effects) {

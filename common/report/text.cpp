@@ -75,7 +75,7 @@ std::string r_squared(double value) {
 
 std::string percent(double share) {
   if (!std::isfinite(share)) return "-";
-  const double value = 100.0 * share;
+  const double value = 100.0 * share + 0.0;  // no sign before nothing
   const bool small = value != 0.0 && std::abs(value) < 0.95;
   return printed("%.*f", small ? 1 : 0, value) + " %";
 }

@@ -148,6 +148,24 @@ TEST_CASE("verdict: what is left may have a memory: adequate all the same, and s
   CHECK_FALSE(says(result.paragraph, "remembers itself"));
 }
 
+TEST_CASE(
+    "verdict: a model that foretells worse than the average explains nothing, one that foretells little says so") {
+  const MadeUp made;
+  const auto concluded = [&](double r2, double p_value) {
+    DiagnosisResult result;
+    result.error_after.prediction = {{.horizon_s = 5.0, .r2 = {0.9, r2, 0.9, 0.9, 0.9, 0.9}}};
+    result.residual_after = {{"X", 0.3, 0.3, 0.9}, {"Y", p_value, 2.0, 0.9}};
+    conclude(made.found, made.left, made.scene(), result);
+    return result;
+  };
+  CHECK(concluded(-0.5, 1e-6).verdict == "unexplained");
+  CHECK(says(concluded(-0.5, 1e-6).paragraph, "foretells nothing of the motion along Y"));
+  CHECK(concluded(0.3, 1e-6).verdict == "adequate");
+  CHECK(says(concluded(0.3, 1e-6).paragraph, "foretells 30 % of the motion along Y"));
+  CHECK(concluded(-0.5, 0.4).verdict == "adequate");  // an axis that nothing moves: noise is all that there is
+  CHECK_FALSE(says(concluded(0.9, 1e-6).paragraph, "5 s ahead"));
+}
+
 TEST_CASE("verdict: nothing found but structure left is unexplained, says where, and asks for the nearest candidate") {
   MadeUp made;
   made.refuse("tether_tension", 2.5, "log odds 2.5, 3.0 needed");
