@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/effect_size.hpp"
+
 namespace fathom::diagnosis {
 namespace {
 
@@ -28,7 +30,7 @@ LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& sce
     for (std::size_t v = 0; v < names.size(); ++v) {
       if (names[v] == "-") continue;
       const auto variant = static_cast<int>(v);
-      forms_.push_back({effect, variant, names[v]});
+      forms_.push_back({effect, variant, names[v], model::parameters_of(*effect, variant, *base_.vehicle)});
       for (const auto& theta : effect->starts(scene, variant)) add(static_cast<int>(forms_.size()) - 1, theta);
     }
   }
@@ -36,7 +38,7 @@ LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& sce
 
 void LiveCandidates::add(int form, const std::vector<double>& theta) {
   const LiveForm& f = forms_[static_cast<std::size_t>(form)];
-  const auto parameters = f.effect->parameters();
+  const auto& parameters = f.parameters;
   const auto memory =
       static_cast<std::size_t>(f.effect->state_size(*base_.vehicle, static_cast<int>(base_.allocation.cols())));
   const LiveStart start{.form = form, .theta = theta, .column = columns_};

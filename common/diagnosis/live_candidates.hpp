@@ -14,6 +14,7 @@ struct LiveForm {
   const model::Effect* effect{};
   int variant{};
   std::string variant_name;
+  std::vector<model::EffectParameter> parameters{};  ///< as they are on this vehicle
 };
 
 /// A form with the numbers around which it is linearised. Its columns follow one another: the wrench at `theta`, then

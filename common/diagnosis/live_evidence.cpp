@@ -129,7 +129,7 @@ double LiveEvidence::block_cost(const Block& block, const LiveStart* start, cons
 // Ridge regression inside bounds: a number that would leave its bounds is put there, and the others are found anew.
 LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
   const LiveForm& form = candidates_.forms()[static_cast<std::size_t>(start.form)];
-  const auto parameters = form.effect->parameters();
+  const auto& parameters = form.parameters;
   const Eigen::Index k = start.columns() - 1;
   const Eigen::Index at = 1 + start.column;
   const Eigen::MatrixXd J = projected_.block(at + 1, at + 1, k, k);

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "common/base/error.hpp"
+#include "common/model/effect_size.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -241,7 +242,7 @@ RecursiveSettings Identifier::estimator_settings(const model::ActiveEffect* effe
   RecursiveSettings s = recursive_settings(settings_, *vehicle_);
   if (effect == nullptr) return s;
   const Eigen::Index base = s.mean.size();
-  const auto parameters = effect->effect->parameters();
+  const auto parameters = model::parameters_of(*effect->effect, effect->variant, *vehicle_);
   s.mean.conservativeResize(base + static_cast<Eigen::Index>(parameters.size()));
   s.sigma.conservativeResize(s.mean.size());
   for (std::size_t i = 0; i < parameters.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/identification/identifier.hpp"
+#include "common/model/effect_size.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -35,8 +36,8 @@ model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
   return scene;
 }
 
-void keep_inside(model::ActiveEffect& effect) {
-  const auto parameters = effect.effect->parameters();
+void keep_inside(model::ActiveEffect& effect, const model::Vehicle& vehicle) {
+  const auto parameters = model::parameters_of(*effect.effect, effect.variant, vehicle);
   for (std::size_t i = 0; i < effect.theta.size(); ++i)
     effect.theta[i] = std::clamp(effect.theta[i], parameters[i].low, parameters[i].high);
 }
@@ -95,7 +96,7 @@ void Identifier::adopt(const EffectEvidence& found) {
     return;
   }
   model::ActiveEffect first{.effect = effect, .variant = number, .variant_name = found.variant, .theta = found.numbers};
-  keep_inside(first);
+  keep_inside(first, *vehicle_);
   follow(std::move(first), estimator_.projected().head(static_cast<Eigen::Index>(parameters_.size())));
   learn_anew();
   for (int round = 1; round < kRounds && relearn(); ++round) continue;
@@ -131,7 +132,7 @@ bool Identifier::relearn() {
     model::ActiveEffect next = at;
     for (std::size_t i = 0; i < next.theta.size(); ++i)
       next.theta[i] += share * (estimate(base + static_cast<Eigen::Index>(i)) - at.theta[i]);
-    keep_inside(next);
+    keep_inside(next, *vehicle_);
     if (cost_with(next, estimate.head(base)) > cost - kGain) continue;
     follow(std::move(next), estimate.head(base));
     learn_anew();
