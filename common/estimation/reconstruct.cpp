@@ -293,7 +293,7 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
 
   if (trial.observed.attitude && (angular.share.array() == 1.0).all()) steady_attitude(trial);
 
-  add_input(recording, run.origin, corrections.thrusters, vehicle, trial);
+  add_input(recording, run.origin, corrections.thrusters, vehicle, {static_cast<int>(block), step}, trial);
   const double start = trial.t.front();
   for (double& t : trial.t) t -= start;
   return trial;

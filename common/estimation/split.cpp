@@ -9,10 +9,11 @@ namespace fathom::estimation {
 namespace {
 
 Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::string& name) {
-  const auto cut = [&](const auto& all) {
+  const auto cut = [&](const auto& all, std::size_t each = 1) {
     using Vector = std::decay_t<decltype(all)>;
     if (all.empty()) return Vector{};
-    return Vector(all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(to));
+    return Vector(all.begin() + static_cast<std::ptrdiff_t>(each * from),
+                  all.begin() + static_cast<std::ptrdiff_t>(each * to));
   };
   Trial result = trial;
   result.name = name;
@@ -24,8 +25,8 @@ Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::stri
   result.velocity_valid = cut(trial.velocity_valid);
   result.rates_valid = cut(trial.rates_valid);
   result.input = cut(trial.input);
-  result.held = cut(trial.held);
-  result.told = cut(trial.told);
+  result.held = cut(trial.held, trial.parts());
+  result.told = cut(trial.told, trial.parts());
   result.voltage = cut(trial.voltage);
   return result;
 }

@@ -1,15 +1,19 @@
 #include "common/estimation/trial_input.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/base/error.hpp"
 #include "common/estimation/thruster_forces.hpp"
 #include "common/estimation/timeline.hpp"
+#include "common/model/rollout.hpp"
 
 namespace fathom::estimation {
 namespace {
 
-constexpr double kFaster = 0.75;    // of the grid's step: inputs closer than that are averaged over it
+constexpr double kFaster = 0.75;       // of the grid's step: inputs closer than that are averaged over it
+constexpr double kPartOfDecay = 0.25;  // spread evenly over a part, inputs take 0.3 % off the quickest inertia
+constexpr int kMostParts = 8;
 constexpr double kSameTime = 1e-6;  // s: stamps are whole microseconds
 
 /// Input over time: thruster forces or the wrench, one row per sample of the stream.
@@ -67,51 +71,56 @@ Eigen::VectorXd mean_around(const Input& input, double t, double dt) {
   return (1.0 - share) * input.x[i - 1] + share * input.x[i];
 }
 
-/// Inputs that come faster than the grid are averaged as the velocities are, around each of its times and, for what
-/// they do from one to the next, over each step of it (Simpson's rule).
-void average(const Input& input, Trial& trial) {
-  const double half = 0.5 * trial.dt;
-  for (const double t : trial.t) {
-    trial.input.push_back(mean_around(input, t, trial.dt));
-    trial.held.emplace_back((trial.input.back() + 4.0 * mean_around(input, t + half, trial.dt) +
-                             mean_around(input, t + trial.dt, trial.dt)) /
-                            6.0);
+/// Mean over [from, end) if every input holds until the next one, or `ahead`, from the one before on.
+Eigen::VectorXd mean_held(const Input& input, double from, double end, bool ahead) {
+  const std::size_t last = input.t.size() - 1;
+  const double length = end - from;
+  const auto after = std::upper_bound(input.t.begin(), input.t.end(), from + kSameTime);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
+  for (auto j = static_cast<std::size_t>(after - input.t.begin()); from < end - kSameTime; ++j) {  // rows j - 1 and j
+    const double to = j > last || input.t[j] >= end - kSameTime ? end : input.t[j];
+    sum += (to - from) * input.x[std::min(ahead || j == 0 ? j : j - 1, last)];
+    from = to;
   }
+  return sum / length;
 }
 
-/// Mean over each [t, t + dt) if every input holds until the next one, or `ahead`, from the one before on.
-void sample_held(const Input& input, const Trial& trial, bool ahead, std::vector<Eigen::VectorXd>& out) {
-  const std::size_t last = input.t.size() - 1;
-  std::size_t i = 0;  // of the first row after t
+/// Parts of a step, each with a mean of its own: no more than there are inputs to tell of, nor than the vehicle's
+/// quickest axis can tell apart. A mean over a part acts as if spread over it, and a fit takes that off the inertia.
+int parts_of(const Trial& trial) {
+  const double needed = std::ceil(trial.dt / trial.input_part - 1e-9);
+  const double told = std::ceil(trial.dt / trial.input_step - 0.05);  // stamps may jitter
+  return static_cast<int>(std::clamp(std::min(needed, told), 1.0, static_cast<double>(kMostParts)));
+}
+
+void sample_held(const Input& input, const Averaging& averaging, bool ahead, int parts, const Trial& trial,
+                 std::vector<Eigen::VectorXd>& out) {
+  const double length = trial.dt / parts;
   for (const double t : trial.t) {
-    const double end = t + trial.dt;
-    while (i <= last && input.t[i] <= t + kSameTime) ++i;
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
-    double from = t;
-    for (std::size_t j = i; from < end - kSameTime; ++j) {  // between rows j - 1 and j
-      const double to = j > last || input.t[j] >= end - kSameTime ? end : input.t[j];
-      sum += (to - from) * input.x[std::min(ahead || j == 0 ? j : j - 1, last)];
-      from = to;
+    for (int part = 0; part < parts; ++part) {
+      Eigen::VectorXd sum = Eigen::VectorXd::Zero(input.x.front().size());
+      for (int k = 0; k < averaging.samples; ++k) {
+        const double from = t + part * length + (k - 0.5 * (averaging.samples - 1)) * averaging.step;
+        sum += mean_held(input, from, from + length, ahead);
+      }
+      out.emplace_back(sum / averaging.samples);
     }
-    out.emplace_back(sum / trial.dt);
   }
 }
 
 }  // namespace
 
 void add_input(const Recording& recording, Utime origin, const ThrusterCorrection& correction,
-               const model::Vehicle& vehicle, Trial& trial) {
+               const model::Vehicle& vehicle, const Averaging& averaging, Trial& trial) {
   const Input input = read_input(recording, origin, correction, vehicle);
   trial.input_is_wrench = input.is_wrench;
   trial.input_step = typical_step(input.t);
-  if (trial.input_step < kFaster * trial.dt) {
-    trial.input_averaged = true;
-    average(input, trial);
-  } else {
-    for (const double t : trial.t) trial.input.push_back(mean_around(input, t, 0.0));
-    sample_held(input, trial, false, trial.held);
-    sample_held(input, trial, true, trial.told);
-  }
+  trial.input_part = kPartOfDecay * model::quickest_decay(vehicle);
+  trial.input_averaged = trial.input_step < kFaster * trial.dt;
+  for (const double t : trial.t) trial.input.push_back(mean_around(input, t, trial.input_averaged ? trial.dt : 0.0));
+  const int parts = parts_of(trial);
+  sample_held(input, averaging, false, parts, trial, trial.held);
+  sample_held(input, averaging, true, parts, trial, trial.told);
   for (std::size_t i = 0; i < trial.t.size() && !recording.battery.empty(); ++i) {
     trial.voltage.push_back(voltage_at(recording.battery, utime_after(origin, trial.t[i])));
   }

@@ -30,20 +30,34 @@ Eigen::VectorXd mean_input(const Trial& trial, std::size_t centre, std::size_t h
   return sum / count;
 }
 
-/// Mean over the next `step` samples' steps, and of that what the velocities near `centre` felt of it.
-Eigen::VectorXd mean_step(const std::vector<Eigen::VectorXd>& held, std::size_t centre, std::size_t half,
-                          std::size_t step) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(held[centre].size());
-  double count = 0.0;
-  const auto add = [&](std::size_t from) {
-    for (std::size_t i = from; i < std::min(from + step, held.size()); ++i, count += 1.0) sum += held[i];
-  };
-  add(centre);
-  for (std::size_t i = 1; i <= half && i <= centre && centre + i < held.size(); ++i) {
-    add(centre - i);
-    add(centre + i);
+/// Of the parts of the next `step` samples' steps, `together` at a time, what the velocities near `centre` felt of
+/// them.
+void add_parts(const std::vector<Eigen::VectorXd>& held, std::size_t parts, std::size_t centre, std::size_t half,
+               std::size_t step, std::size_t together, std::vector<Eigen::VectorXd>& out) {
+  const std::size_t samples = held.size() / parts;
+  for (std::size_t part = 0; part < parts * step; part += together) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(held[centre].size());
+    double count = 0.0;
+    const auto add = [&](std::size_t from) {
+      const std::size_t begin = parts * from + part;
+      for (std::size_t i = begin; i < std::min(begin + together, held.size()); ++i, count += 1.0) sum += held[i];
+    };
+    add(centre);
+    for (std::size_t i = 1; i <= half && i <= centre && centre + i < samples; ++i) {
+      add(centre - i);
+      add(centre + i);
+    }
+    out.emplace_back(count > 0.0 ? Eigen::VectorXd(sum / count) : held.back());
   }
-  return sum / count;
+}
+
+/// How many of `parts` to take together: as many as the vehicle lets be averaged, and the same everywhere.
+std::size_t parts_together(std::size_t parts, double length, double longest) {
+  std::size_t together = longest > 0.0 ? 1 : parts;
+  for (std::size_t n = 2; n <= parts && longest > 0.0; ++n) {
+    if (parts % n == 0 && static_cast<double>(n) * length < longest * (1.0 + 1e-9)) together = n;
+  }
+  return together;
 }
 
 std::vector<Eigen::VectorXd> next_of(const std::vector<Eigen::VectorXd>& input) {
@@ -61,9 +75,12 @@ Trial sparse(const Trial& trial, double dt) {
   out.input_is_wrench = trial.input_is_wrench;
   out.input_step = trial.input_step;
   out.input_averaged = trial.input_averaged;
+  out.input_part = trial.input_part;
   out.nu_sigma = trial.nu_sigma;
   const auto& held = trial.held.empty() ? trial.input : trial.held;
-  const auto& told = trial.told.empty() && !trial.input_averaged ? next_of(trial.input) : trial.told;
+  const auto& told = trial.told.empty() ? next_of(trial.input) : trial.told;
+  const std::size_t parts = trial.parts();
+  const std::size_t together = parts_together(parts * step, trial.dt / static_cast<double>(parts), trial.input_part);
   for (std::size_t k = 0; k < trial.size(); k += step) {
     out.t.push_back(trial.t[k]);
     out.p_WB.push_back(trial.p_WB[k]);
@@ -75,8 +92,8 @@ Trial sparse(const Trial& trial, double dt) {
     out.velocity_valid.push_back(trial.velocity_valid[k]);
     out.rates_valid.push_back(trial.rates_valid[k]);
     out.input.push_back(mean_input(trial, k, step / 2));
-    out.held.push_back(mean_step(held, k, step / 2, step));
-    if (!told.empty()) out.told.push_back(mean_step(told, k, step / 2, step));
+    add_parts(held, parts, k, step / 2, step, together, out.held);
+    add_parts(told, parts, k, step / 2, step, together, out.told);
     if (!trial.voltage.empty()) out.voltage.push_back(trial.voltage[k]);
   }
   return out;

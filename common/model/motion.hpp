@@ -27,17 +27,18 @@ struct InputTiming {
   /// until the next one, -1/2 where each tells of the time since the one before.
   double hold{0.0};
   double step{0.0};      ///< s between inputs
-  bool averaged{false};  ///< inputs came faster than the grid; what is told of each step follows their course
+  bool averaged{false};  ///< inputs came faster than the grid: what lies between held and told is a mixture of both
 };
 
 /// The actuators' commanded forces over time; those of the first sample before it, of the last one after it.
 class InputSignal {
  public:
   InputSignal() = default;
-  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`: Trial::held, or told where the hold is
-  /// negative; made of the samples when empty.
+  /// `samples` on a uniform grid: samples[k] holds at `t0 + k dt` [s]. `held`, `told`: those of a Trial, made of the
+  /// samples when empty.
   InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
-              std::span<const Eigen::VectorXd> held = {}, const InputTiming& timing = {});
+              std::span<const Eigen::VectorXd> held = {}, std::span<const Eigen::VectorXd> told = {},
+              const InputTiming& timing = {});
   /// Straight lines, early or late as the timing says: continuous in time.
   void at(double t, ActuatorForces& force) const;
   /// With the jumps of inputs that are held.
@@ -50,9 +51,11 @@ class InputSignal {
   double dt_{1.0};
   double later_{0.0};       // s
   double ahead_{0.0};       // steps of the grid from the time that is asked for to the step that tells of it
-  double held_share_{0.0};  // the rest goes along straight lines
+  double held_share_{0.0};  // the rest goes along straight lines, or as told where both are mixed
+  double part_{1.0};        // s
+  bool mixed_{false};
   std::span<const Eigen::VectorXd> samples_;
-  std::span<const Eigen::VectorXd> held_;
+  std::span<const Eigen::VectorXd> held_, told_;
 };
 
 /// State, environment and forces at time `t`, as felt.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/model/rollout_steps.hpp"
 
@@ -49,8 +50,21 @@ InputSignal input_of(const Model& model, const Trial& trial) {
   return {trial.t.empty() ? 0.0 : trial.t.front(),
           trial.dt,
           trial.input,
-          model.input_hold < 0.0 && !trial.input_averaged ? trial.told : trial.held,
+          trial.held,
+          trial.told,
           {model.input_hold, trial.input_step, trial.input_averaged}};
+}
+
+double quickest_decay(const Vehicle& vehicle) {
+  const BaseTheta theta = nominal_model(vehicle, true).theta;
+  double quickest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 6; ++i) {
+    const double damping =
+        -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
+    if (vehicle.dof[static_cast<std::size_t>(i)] && theta[i] > 0.0 && damping > 0.0)
+      quickest = std::min(quickest, theta[i] / damping);
+  }
+  return quickest;
 }
 
 VelocityTrace true_velocities(const Model& model, const Trial& trial, std::size_t from, std::size_t count) {

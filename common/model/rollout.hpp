@@ -34,6 +34,9 @@ using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameter
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives);
 
+/// Time in which the priors' drag, at the speed of ordinary motion, slows the quickest axis to 1/e [s].
+[[nodiscard]] double quickest_decay(const Vehicle& vehicle);
+
 /// What drove the trial, as the model says that commands act between their samples. The trial must outlive it.
 [[nodiscard]] InputSignal input_of(const Model& model, const Trial& trial);
 

@@ -21,16 +21,7 @@ constexpr int kMaxMemory = 256;
 /// Step that follows the fastest motion of the priors: the same for every theta, so that derivatives see no change of
 /// it.
 inline double largest_step(const Vehicle& vehicle) {
-  const BaseTheta theta = nominal_model(vehicle, true).theta;
-  double step = kLargestStep;
-  for (int i = 0; i < 6; ++i) {
-    const double damping =
-        -theta[index(BaseParameter::X_u) + i] - 2.0 * kTypicalSpeed * theta[index(BaseParameter::X_uu) + i];
-    if (vehicle.dof[static_cast<std::size_t>(i)] && damping * step > kMostDamping * theta[i] && theta[i] > 0.0) {
-      step = kMostDamping * theta[i] / damping;
-    }
-  }
-  return std::max(step, kShortestStep);
+  return std::clamp(kMostDamping * quickest_decay(vehicle), kShortestStep, kLargestStep);
 }
 
 /// What a step of length 1 with decay z >= 0 makes of a constant slope, elementwise: (1 - exp(-z)) / z.
@@ -85,7 +76,10 @@ class Rollout {
   }
 
   bool run(const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
-    const int substeps = std::max(1, static_cast<int>(std::ceil(trial_.dt / largest_step(*model_.vehicle) - 1e-9)));
+    // Each part of a step has a mean input of its own, which only whole substeps can follow.
+    const auto parts = static_cast<int>(trial_.parts());
+    const double part = trial_.dt / parts;
+    const int substeps = parts * std::max(1, static_cast<int>(std::ceil(part / largest_step(*model_.vehicle) - 1e-9)));
     const double h = trial_.dt / substeps;
     run_in(window.start, h);
     nu_ = measured_where_fixed(window.start, 0.0, nu0);

@@ -34,16 +34,17 @@ struct Trial {
   std::vector<Eigen::VectorXd> input;  ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
   bool input_is_wrench{false};         ///< true: input has 6 entries, the wrench at the body origin in body axes
   double input_step{};                 ///< s between inputs as they were recorded
-  bool input_averaged{false};          ///< they came faster than the grid: `input` and `held` are means
-  /// Mean over each step if inputs are held until the next one, or, where they came faster than the grid and are
-  /// averages, along their course; empty: `input` itself.
+  bool input_averaged{false};          ///< they came faster than the grid: `input` are means around each time
+  double input_part{};                 ///< s over which inputs may be averaged for what the vehicle does; 0: any time
+  /// Mean over each of parts() equal parts of each step if inputs are held until the next one; empty: `input` itself.
+  /// Inputs around a time count as the velocities there were averaged.
   std::vector<Eigen::VectorXd> held;
-  /// The same if inputs act from the one before on; empty with averages, or: the next of `input`.
-  std::vector<Eigen::VectorXd> told;
+  std::vector<Eigen::VectorXd> told;    ///< the same if inputs act from the one before on; empty: the next of `input`
   std::vector<double> voltage;          ///< V; empty when not logged
   Vector6d nu_sigma{Vector6d::Zero()};  ///< noise of nu, m/s and rad/s, as estimated from the data
 
   [[nodiscard]] std::size_t size() const { return t.size(); }
+  [[nodiscard]] std::size_t parts() const { return held.size() > t.size() ? held.size() / t.size() : 1; }
 };
 
 }  // namespace fathom

@@ -26,10 +26,11 @@ Recording rows(double first, double step, int count) {
   return recording;
 }
 
-Trial on_grid(const Recording& recording, double dt, int count) {
+Trial on_grid(const Recording& recording, double dt, int count, const Averaging& averaging = {},
+              const model::Vehicle& vehicle = {}) {
   Trial trial{.name = recording.name, .dt = dt};
   for (int k = 0; k < count; ++k) trial.t.push_back(dt * k);
-  add_input(recording, 0, {}, {}, trial);
+  add_input(recording, 0, {}, vehicle, averaging, trial);
   return trial;
 }
 
@@ -57,10 +58,10 @@ TEST_CASE("trial input: a step of the grid that a row falls into holds the mean 
   CHECK(std::abs(trial.told[2][0] - 1.5) < kRounding);
 }
 
-TEST_CASE("trial input: rows faster than the grid are averaged, steadily growing ones without delay") {
+TEST_CASE("trial input: rows faster than the grid are averaged, held and told each in their place") {
   const Trial trial = on_grid(rows(0.0, 0.01, 101), 0.1, 10);
   CHECK(trial.input_averaged);
-  CHECK(trial.told.empty());
+  CHECK(trial.parts() == 1);
   CHECK(trial.input_step == doctest::Approx(0.01));
   for (std::size_t k = 1; k + 1 < trial.t.size(); ++k) {
     CAPTURE(k);
@@ -68,6 +69,29 @@ TEST_CASE("trial input: rows faster than the grid are averaged, steadily growing
     // A mean over [t - dt/2, t + dt/2) of rows that lead by half of their own step.
     CHECK(std::abs(trial.input[k][0] - (at - 0.5)) < kRounding);
     CHECK(std::abs(trial.held[k][0] - (at + 4.5)) < kRounding);
+    CHECK(std::abs(trial.told[k][0] - (at + 5.5)) < kRounding);
+  }
+}
+
+TEST_CASE("trial input: a quick vehicle gets the parts of a step, averaged as its velocities were") {
+  model::Vehicle quick;
+  quick.dof[0] = true;
+  quick.parameters = {"m_X", "X_u"};
+  quick.priors = {{.mean = 1.0, .sigma = 1.0}, {.mean = -20.0, .sigma = 1.0}};  // settles in 50 ms
+  // Two rows to a velocity, on either side of it.
+  Recording recording = rows(-0.005, 0.01, 12);
+  for (auto& one : recording.thrusters) one.force[0] = std::pow(one.force[0], 2);
+  const Trial trial = on_grid(recording, 0.02, 5, {2, 0.01}, quick);
+  REQUIRE(trial.parts() == 2);
+  REQUIRE(trial.told.size() == trial.held.size());
+  const auto row = [](std::size_t k) { return static_cast<double>(k * k); };
+  for (std::size_t k = 1; k + 1 < trial.t.size(); ++k) {
+    CAPTURE(k);
+    for (const std::size_t part : {0, 1}) {
+      const std::size_t first = 2 * k + part;  // the row in force from half a row before the part on
+      CHECK(std::abs(trial.held[first][0] - 0.5 * (row(first) + row(first + 1))) < kRounding);
+      CHECK(std::abs(trial.told[first][0] - 0.5 * (row(first + 1) + row(first + 2))) < kRounding);
+    }
   }
 }
 
@@ -80,5 +104,5 @@ TEST_CASE("trial input: rows that go back in time or are no numbers have no part
   CHECK(std::abs(trial.input[3][0] - 3.0) < kRounding);  // between rows 1 and 4
   recording.thrusters.clear();
   Trial none{.name = "rows", .dt = 0.1, .t = {0.0}};
-  CHECK_THROWS_AS(add_input(recording, 0, {}, {}, none), InputError);
+  CHECK_THROWS_AS(add_input(recording, 0, {}, {}, {}, none), InputError);
 }

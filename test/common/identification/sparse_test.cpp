@@ -52,6 +52,25 @@ TEST_CASE("sparse: commands that are held, or told of afterwards, are half a com
   }
 }
 
+TEST_CASE("sparse: for a quick vehicle, as many parts of a step as it can tell apart stay apart") {
+  Trial trial = ramp(0.02, 101);
+  for (std::size_t k = 0; k < 2 * trial.size(); ++k) {
+    trial.held.push_back(Eigen::VectorXd::Constant(2, 0.01 * static_cast<double>(k)));
+    trial.told.push_back(Eigen::VectorXd::Constant(2, 0.01 * static_cast<double>(k + 1)));
+  }
+  for (const auto& [longest, parts] : {std::pair{0.005, 4}, {0.02, 2}, {0.03, 2}, {0.0, 1}}) {
+    trial.input_part = longest;
+    const Trial coarse = sparse(trial, 0.04);
+    REQUIRE(coarse.parts() == static_cast<std::size_t>(parts));
+    REQUIRE(coarse.told.size() == coarse.held.size());
+    for (std::size_t k = coarse.parts(); k + 2 * coarse.parts() < coarse.held.size(); ++k) {
+      const double length = 0.04 / parts, begin = length * static_cast<double>(k);
+      CHECK(std::abs(coarse.held[k][0] - (begin + 0.5 * (length - 0.01))) < kRounding);
+      CHECK(std::abs(coarse.told[k][1] - (begin + 0.5 * (length + 0.01))) < kRounding);
+    }
+  }
+}
+
 TEST_CASE("sparse: noise falls, and an invalid neighbour has no part in a mean") {
   Trial trial = ramp(0.01, 101);
   for (std::size_t k = 0; k < trial.size(); ++k) trial.nu[k][3] = k % 2 == 0 ? 1.0 : -1.0;

@@ -39,7 +39,7 @@ TEST_CASE("input signal: commands that are held jump at their samples") {
   const auto samples = ramp();
   constexpr double kStep = 0.5;
   const auto now = [&](double hold, double t) {
-    const model::InputSignal input{100.0, kStep, samples, {}, {.hold = hold, .step = kStep}};
+    const model::InputSignal input{100.0, kStep, samples, {}, {}, {.hold = hold, .step = kStep}};
     model::ActuatorForces force;
     input.now(100.0 + t, force);
     return Eigen::Vector2d(force);
@@ -52,19 +52,27 @@ TEST_CASE("input signal: commands that are held jump at their samples") {
   CHECK(now(-0.5, 9.0) == samples.back());
 }
 
-TEST_CASE("input signal: means over steps count for their step, shifted by what acts earlier") {
+TEST_CASE("input signal: means over parts of a step count for their part, between held and told") {
   const auto samples = ramp();
   constexpr double kStep = 0.5;
+  std::vector<Eigen::VectorXd> held, told;  // two parts a step
+  for (int k = 0; k < 8; ++k) {
+    held.emplace_back(Eigen::Vector2d(k, -k));
+    told.emplace_back(Eigen::Vector2d(k + 1, -k - 1));
+  }
   const auto now = [&](double hold, double t) {
-    const model::InputSignal input{0.0, kStep, samples, {}, {.hold = hold, .step = 0.4 * kStep, .averaged = true}};
+    const model::InputSignal input{3.0,  kStep, samples,
+                                   held, told,  {.hold = hold, .step = 0.4 * kStep, .averaged = true}};
     model::ActuatorForces force;
-    input.now(t, force);
+    input.now(3.0 + t, force);
     return Eigen::Vector2d(force);
   };
-  for (const double t : {0.5, 0.99}) CHECK((now(0.0, t) - samples[1]).norm() < kRounding);
-  // Half a step of 0.4 grid steps earlier: a fifth of the next mean is felt.
-  CHECK((now(-0.5, 0.5) - (0.8 * samples[1] + 0.2 * samples[2])).norm() < kRounding);
-  CHECK((now(0.5, 0.5) - (0.2 * samples[0] + 0.8 * samples[1])).norm() < kRounding);
+  for (const double t : {0.5, 0.6, 0.74}) CHECK((now(0.5, t) - held[2]).norm() < kRounding);
+  for (const double t : {0.75, 0.99}) CHECK((now(-0.5, t) - told[3]).norm() < kRounding);
+  CHECK((now(0.0, 0.3) - Eigen::Vector2d(1.5, -1.5)).norm() < kRounding);
+  CHECK((now(0.25, 0.3) - (0.75 * held[1] + 0.25 * told[1])).norm() < kRounding);
+  CHECK((now(0.5, -1.0) - held.front()).norm() < kRounding);
+  CHECK((now(0.5, 9.0) - held.back()).norm() < kRounding);
 }
 
 TEST_CASE("input signal: a single sample holds for ever") {
