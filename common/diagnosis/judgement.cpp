@@ -26,6 +26,7 @@ std::string limited_number(const model::Model& model, const Judged& judged) {
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;
     for (std::size_t i = 0; i < active.theta.size(); ++i) {
+      if (!active.effect->takes_part(active.variant, i)) continue;
       const model::EffectParameter number = model::parameter_of(*active.effect, active.variant, i, *model.vehicle);
       for (const double limit : {number.low, number.high}) {
         if (limit != 0.0 && std::abs(active.theta[i] - limit) < kAtLimit * std::abs(limit))

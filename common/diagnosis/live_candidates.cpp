@@ -53,7 +53,7 @@ void LiveCandidates::add(int form, const std::vector<double>& theta) {
     double step = kStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
     if (theta[i] + step > parameters[i].high) step = -step;
     probe.theta = theta;
-    probe.theta[i] += step;
+    if (f.effect->takes_part(f.variant, i)) probe.theta[i] += step;
     probe.per_step = parameters[i].sigma / step;
     probe.column = columns_ + 1 + static_cast<Eigen::Index>(i);
     probes_.push_back(probe);

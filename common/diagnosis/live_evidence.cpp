@@ -138,7 +138,8 @@ LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
   for (Eigen::Index i = 0; i < k; ++i)
     theta[i] = start.theta[static_cast<std::size_t>(i)] / parameters[static_cast<std::size_t>(i)].sigma;
   Eigen::VectorXd delta = Eigen::VectorXd::Zero(k);
-  std::vector<bool> fixed(static_cast<std::size_t>(k), false);
+  std::vector<bool> fixed(static_cast<std::size_t>(k));
+  for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = !form.effect->takes_part(form.variant, i);
   for (Eigen::Index round = 0; round <= k; ++round) {
     Eigen::MatrixXd normal = J + Eigen::MatrixXd::Identity(k, k);
     Eigen::VectorXd right = -(slope + theta);

@@ -283,7 +283,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       for (std::size_t i = 0; i < k; ++i) {
         const auto c = static_cast<Eigen::Index>(i);
         normal(c, c) += 1.0 + damping * normal(c, c);
-        gradient[c] += theta[i] / parameters[i].sigma;
+        if (effect.takes_part(variant, i)) gradient[c] += theta[i] / parameters[i].sigma;
       }
       const Eigen::VectorXd move = -normal.ldlt().solve(gradient);
       const double foretold = -0.5 * gradient.dot(move);

@@ -35,7 +35,7 @@ std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& fou
     place -= effect->theta.size();
     if (effect->effect != judged.effect || effect->variant != judged.variant) continue;
     for (std::size_t i = 0; i < effect->theta.size(); ++i) {
-      if (!judged.effect->takes_part(judged.variant, i)) continue;
+      if (!judged.effect->is_told(judged.variant, i)) continue;
       NamedValue value = all[place + i];
       const std::string own{judged.effect->parameters()[i].name};
       value.name = judged.variant_name.empty() || !several ? own : judged.variant_name + "." + own;

@@ -219,7 +219,7 @@ void Identifier::add_effect(ModelEstimate& estimate, const RecursiveReport& repo
   estimate.effects.push_back(name);
   const auto parameters = effect.effect->parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (!effect.effect->takes_part(effect.variant, i)) continue;
+    if (!effect.effect->is_told(effect.variant, i)) continue;
     const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
     estimate.effect_numbers.push_back({.name = name + "." + std::string{parameters[i].name},
                                        .value = report.estimate(k),

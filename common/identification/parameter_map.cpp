@@ -47,6 +47,8 @@ ParameterMap::ParameterMap(const model::Model& model) {
       free.high = parameter.high;
       free.form_sigma = parameter.form_sigma;
       free.after_command = parameter.after_command;
+      free.sought = active.effect->takes_part(active.variant, c);
+      if (!free.sought) free.prior_mean = active.theta[c];
       free_.push_back(std::move(free));
     }
   }

@@ -22,6 +22,7 @@ struct FreeParameter {
   double high{};
   double form_sigma{};   ///< what an effect's assumed form leaves open, not seen by the fit
   bool after_command{};  ///< EffectParameter::after_command
+  bool sought{true};     ///< false: keeps its value (Effect::takes_part)
 
   /// Whether a scaled value lies on a bound, to within rounding.
   [[nodiscard]] bool at_low(double x) const { return x * scale <= low + kBoundMargin * scale; }

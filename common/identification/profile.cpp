@@ -147,7 +147,7 @@ void add_profiles(const TrajectoryFit& problem, FitResult& fit) {
   for (std::size_t k = 0; k < map.size(); ++k) {
     const FreeParameter& free = map[k];
     const auto i = static_cast<Eigen::Index>(k);
-    if (free.effect < 0 || free.at_bound(profile.best(i))) continue;
+    if (free.effect < 0 || !free.sought || free.at_bound(profile.best(i))) continue;
     if (free.component < fit.model.effects[static_cast<std::size_t>(free.effect)].effect->amplitudes()) continue;
     const double variance = fit.covariance(i, i) / (free.scale * free.scale), plain = profile.plain_variance(i);
     if (!(variance > 0.0) || !(plain > 0.0)) continue;

@@ -78,7 +78,7 @@ std::vector<NamedValue> FitResult::parameters() const {
   std::vector<NamedValue> values;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const double variance = covariance.rows() == x.size() ? std::max(covariance(k, k), 0.0) : 0.0;
+    const double variance = map[i].sought && covariance.rows() == x.size() ? std::max(covariance(k, k), 0.0) : 0.0;
     // Between straight lines and inputs that are held lies half a step: even odds over twice that, either way.
     const double held = map[i].after_command ? input_step / std::sqrt(12.0) : 0.0;
     const double std = variance > 0.0 ? std::hypot(std::sqrt(variance), map[i].form_sigma, held) : 0.0;

@@ -88,6 +88,10 @@ void WindowResidual::jacobians(const model::Model& model, const ParameterMap& ma
   for (std::size_t j = 0; j < map.size(); ++j) {
     if (map[j].base >= 0) continue;
     const auto k = static_cast<Eigen::Index>(j);
+    if (!map[j].sought) {
+      by_parameter.col(k).setZero();
+      continue;
+    }
     // Step away from a bound.
     const double step = (x[k] + kParameterStep) * map[j].scale > map[j].high ? -kParameterStep : kParameterStep;
     Eigen::VectorXd x_shifted = x;

@@ -69,9 +69,15 @@ class Effect {
   [[nodiscard]] virtual std::string_view unit(int /*variant*/, std::size_t number) const {
     return parameters()[number].unit;
   }
-  /// False when that form of the effect has no use for the number.
+  /// False when that form of the effect has no use for the number, or when it is given: no fit moves it.
   [[nodiscard]] virtual bool takes_part(int /*variant*/, std::size_t /*number*/) const { return true; }
-  /// How many numbers that form has.
+  /// True when the start sets the number for others to refer to: the place at which a strength is meant, say.
+  [[nodiscard]] virtual bool is_given(int /*variant*/, std::size_t /*number*/) const { return false; }
+  /// Whether results name the number.
+  [[nodiscard]] bool is_told(int variant, std::size_t number) const {
+    return takes_part(variant, number) || is_given(variant, number);
+  }
+  /// How many numbers a fit seeks in that form.
   [[nodiscard]] int numbers(int variant) const;
   /// True when several forms can act at once, so that results must say which one a number belongs to.
   [[nodiscard]] virtual bool variants_matter() const { return false; }

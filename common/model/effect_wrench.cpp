@@ -27,8 +27,8 @@ EffectWrench::EffectWrench(const Model& base, ActiveEffect effect, std::span<con
   for (std::size_t i = 0; i < effect_.theta.size(); ++i) {
     double step = kStep * std::max(std::abs(effect_.theta[i]), 0.1 * numbers[i].sigma);
     if (effect_.theta[i] + step > numbers[i].high) step = -step;
-    probes_[i + 1].theta[i] += step;
     probes_[i + 1].step = step;
+    if (effect_.effect->takes_part(effect_.variant, i)) probes_[i + 1].theta[i] += step;
   }
 }
 

@@ -180,7 +180,7 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
     if (!out.found) continue;
     const auto parameters = suspect.active.effect->parameters();
     for (std::size_t p = 0; p < parameters.size(); ++p) {
-      if (!suspect.active.effect->takes_part(suspect.active.variant, p)) continue;
+      if (!suspect.active.effect->is_told(suspect.active.variant, p)) continue;
       out.size.push_back({.name = std::string{parameters[p].name},
                           .value = suspect.active.theta[p],
                           .unit = std::string{suspect.active.effect->unit(suspect.active.variant, p)}});

@@ -105,9 +105,9 @@ double drawn(const model::Effect& effect, const model::EffectParameter& paramete
   if (name == "anchor_D") return anchor.z();
   if (name == "slack_length") return (0.6 + 0.2 * share) * (anchor - occasion.start).norm();
   if (name == "onset") return (0.5 * share) * occasion.duration;
-  if (name == "bottom_depth") return site.floor;
+  if (name == "bottom_depth" || name == "at_depth") return site.floor;
   if (name == "bearing") return effect.name() == "wave" ? 2.0 * std::numbers::pi * side : wall_bearing;
-  if (name == "distance") return wall_distance;
+  if (name == "distance" || name == "at_distance") return wall_distance;
   if (name == "frequency") return scene.tones_horizontal.front().omega;
   double size = share * parameter.sigma;
   if (effect.name() == "wave" && variant == "orbital") size *= kOrbitalShare;
@@ -161,7 +161,7 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
   active.variant_name = variants[static_cast<std::size_t>(active.variant)];
   std::vector<std::string_view> names;
   for (const model::EffectParameter& parameter : effect->parameters()) {
-    if (!effect->takes_part(active.variant, active.theta.size())) {
+    if (!effect->is_told(active.variant, active.theta.size())) {
       active.theta.push_back(0.0);
       continue;
     }

@@ -27,7 +27,7 @@ void write_truth(const Options& options, const model::Vehicle& vehicle, const mo
   for (const model::ActiveEffect& effect : secrets.effects) {
     nlohmann::ordered_json one{{"name", effect.effect->name()}, {"variant", effect.variant_name}};
     for (std::size_t i = 0; i < effect.theta.size(); ++i) {
-      if (!effect.effect->takes_part(effect.variant, i)) continue;
+      if (!effect.effect->is_told(effect.variant, i)) continue;
       const model::EffectParameter& parameter = effect.effect->parameters()[i];
       one["parameters"][std::string{parameter.name}] = {{"value", effect.theta[i]},
                                                         {"unit", effect.effect->unit(effect.variant, i)}};

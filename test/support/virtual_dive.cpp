@@ -151,7 +151,9 @@ model::Vehicle vehicle_from_repository(const std::string& name) {
 }
 
 model::ActiveEffect active(const std::string& name, std::vector<double> theta, int variant) {
-  return {model::find_effect(name), variant, "", std::move(theta)};
+  const model::Effect* effect = model::find_effect(name);
+  theta.resize(effect->parameters().size());
+  return {effect, variant, "", std::move(theta)};
 }
 
 }  // namespace fathom::test

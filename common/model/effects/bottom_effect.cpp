@@ -1,7 +1,8 @@
-// Physics: near the bottom the water between hull and floor cannot escape freely. Two forms, both falling with the
-// inverse square of the gap h = z_b - z (boundary.hpp): `force`, a steady push up (cushion of the thrusters' wash, a >
-// 0) or pull down (suction, a < 0), w = -a / h^2 down_B; and `drag`, more of it in all directions, w = -c / h^2 |v_r|
-// v_r. The bottom's depth z_b is a number to be found. Ignores: growth of the added mass, slope of the bottom, which
+// Physics: near the bottom the water between hull and floor cannot escape freely. `force` is a steady push up (cushion
+// of the thrusters' wash, a > 0) or pull down (suction, a < 0), w = -a f down_B; `drag` is more of it in all
+// directions, w = -c f |v_r| v_r. Each falls with the inverse square of the gap to the bottom, f = 1 / (z_b - z)^2, or
+// exponentially, f = exp((z - z_d) / s), told for the deepest place z_d that was visited (boundary.hpp). The bottom's
+// depth z_b or the reach s is a number to be found. Ignores: growth of the added mass, slope of the bottom, which
 // thruster blows. Revealed by hovering and moving at several heights, one within a hull's length of the floor. Confused
 // with compressibility (linear in depth), which it becomes when the floor is far.
 #include <algorithm>
@@ -15,10 +16,17 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
-                                 EffectParameter{"bottom_depth", "m", 20.0}};
-constexpr int kForce = 0;
-constexpr double kSmallestRange = 0.05;           // m of depth
-constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};  // m below the deepest place
+                                 EffectParameter{"bottom_depth", "m", 20.0},
+                                 EffectParameter{"reach", "m", 1.0, kSmallestReach}, EffectParameter{"at_depth", "m"}};
+constexpr std::size_t kBottomDepth = 1, kReach = 2, kAtDepth = 3;
+enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
+constexpr std::array kUnits{"N m^2", "N m^2/(m/s)^2", "N", "N/(m/s)^2"};  // of the strength
+constexpr double kSmallestRange = 0.05;                                   // m of depth
+constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};                          // m below the deepest place
+constexpr std::array kReaches{0.1, 0.3, 0.9};                             // of the range of depth
+
+bool presses(int variant) { return variant == kForce || variant == kExponentialForce; }
+bool exponential(int variant) { return variant >= kExponentialForce; }
 
 class BottomEffect final : public Effect {
  public:
@@ -27,36 +35,50 @@ class BottomEffect final : public Effect {
   std::string_view revealed_by() const override { return "hovering and moving at several heights above the floor"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   int amplitudes() const override { return 1; }
+  bool takes_part(int variant, std::size_t number) const override {
+    return number == 0 || number == (exponential(variant) ? kReach : kBottomDepth);
+  }
+  bool is_given(int variant, std::size_t number) const override { return exponential(variant) && number == kAtDepth; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   /// A floor that takes drag away is none.
   bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const override {
-    return theta[1] > p_WB.z() && (variant == kForce || theta[0] >= 0.0);
+    if (!presses(variant) && theta[0] < 0.0) return false;
+    return exponential(variant) || theta[kBottomDepth] > p_WB.z();
   }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
-    return number == 0 && variant != kForce ? "N m^2/(m/s)^2" : kParameters[number].unit;
+    return number == 0 ? kUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     if (!scene.position || scene.p_high.z() - scene.p_low.z() <= kSmallestRange) return {};
-    return {dof[2] ? "force" : "-", dof[0] || dof[1] || dof[2] ? "drag" : "-"};
+    const bool moves = dof[0] || dof[1] || dof[2];
+    return {dof[2] ? "force" : "-", moves ? "drag" : "-", dof[2] ? "exponential force" : "-",
+            moves ? "exponential drag" : "-"};
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
-    const double range = scene.p_high.z() - scene.p_low.z();
+    const double range = scene.p_high.z() - scene.p_low.z(), deepest = scene.p_high.z();
     const double speed = std::max(scene.nu_rms.head<3>().norm(), 1e-2);
-    const double force = 0.1 * std::max(scene.tau_rms.head<3>().norm(), 1e-2);
+    double size = 0.1 * std::max(scene.tau_rms.head<3>().norm(), 1e-2);
+    if (!presses(variant)) size /= speed * speed;
     std::vector<std::vector<double>> starts;
+    if (exponential(variant)) {
+      for (const double share : kReaches) starts.push_back({size, 0.0, share * range, deepest});
+      return starts;
+    }
     for (const double gap : kGaps) {
       const double height = gap + 0.25 * range;  // where it should be worth a tenth of the thrust
-      starts.push_back({force * height * height / (variant == kForce ? 1.0 : speed * speed), scene.p_high.z() + gap});
+      starts.push_back({size * height * height, deepest + gap, 0.0, 0.0});
     }
     return starts;
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
-    const double near = theta[0] * proximity(theta[1] - motion.p_WB.z());
-    if (variant == kForce) {
+    const double z = motion.p_WB.z();
+    const double near = theta[0] * (exponential(variant) ? proximity_at(z - theta[kAtDepth], theta[kReach])
+                                                         : proximity(theta[kBottomDepth] - z));
+    if (presses(variant)) {
       load.wrench.head<3>() -= near * motion.R_WB.row(2).transpose();
     } else {
       const Eigen::Vector3d v_r = motion.nu_r().head<3>();

@@ -95,3 +95,17 @@ TEST_CASE("parameter map: masses stay positive and drag takes power") {
     if (map[i].name == "thruster_lag.time_constant") CHECK(map[i].low == 0.0);
   }
 }
+
+TEST_CASE("parameter map: a number that takes no part keeps its value, and no prior pulls at it") {
+  Fixture fixture;
+  constexpr int kExponential = 2;
+  fixture.model.add(test::active("bottom_effect", {2.0, 0.0, 0.3, 1.25}, kExponential));
+  const ParameterMap map{fixture.model};
+  const std::size_t own = map.size() - 4;
+  CHECK(map[own].sought);
+  CHECK_FALSE(map[own + 1].sought);
+  CHECK(map[own + 2].sought);
+  CHECK(map[own + 2].prior_mean == 0.0);
+  CHECK_FALSE(map[own + 3].sought);
+  CHECK(map[own + 3].prior_mean == 1.25);
+}

@@ -63,6 +63,27 @@ TEST_CASE("wall_effect: pushes away from the wall, whatever the heading") {
   CHECK((load.wrench.head<3>() - Eigen::Vector3d(-2.0, 0.0, 0.0)).norm() < kRounding);
 }
 
+TEST_CASE(
+    "bottom and wall: the exponential law has its strength at the place it is told for, and stays finite beyond") {
+  constexpr int kForce = 2, kDrag = 3;
+  constexpr double kReach = 0.5;  // m
+  model::Motion motion;
+  motion.p_WB = {0.0, 1.0, 2.0};
+  const std::vector<double> floor{3.0, 0.0, kReach, 2.0};
+  CHECK(load_of("bottom_effect", floor, kForce, motion).wrench.head<3>().isApprox(Eigen::Vector3d(0.0, 0.0, -3.0)));
+  motion.p_WB.z() = 2.0 - kReach;
+  CHECK(load_of("bottom_effect", floor, kForce, motion).wrench[2] == doctest::Approx(-3.0 / std::numbers::e));
+  motion.nu << 0.6, 0.0, 0.8, 0.0, 0.0, 0.0;
+  const Vector6d drag = load_of("bottom_effect", floor, kDrag, motion).wrench;
+  CHECK((drag.head<3>() + 3.0 / std::numbers::e * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  motion.p_WB.z() = 1e3;
+  CHECK(std::abs(load_of("bottom_effect", floor, kForce, motion).wrench[2]) < 100.0);
+
+  const std::vector<double> wall{-2.0, 0.5 * std::numbers::pi, 0.0, kReach, 1.0 + kReach};  // sucks toward the east
+  const model::Load load = load_of("wall_effect", wall, kForce, motion);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(0.0, 2.0 / std::numbers::e, 0.0)).norm() < kRounding);
+}
+
 TEST_CASE("tether_drag: proportional to the way to the fixed end, and to the square of speed") {
   model::Motion motion;
   motion.p_WB = {3.0, 4.0, 0.0};
@@ -83,6 +104,12 @@ TEST_CASE("effects of place: starts surround the water worked in, and nothing is
     for (const double x : {-2.0, 2.0}) {
       for (const double y : {-1.0, 1.0}) CHECK(n.dot(Eigen::Vector3d(x, y, 0.0)) < start[2]);
     }
+  }
+  // The exponential law is told for the very edge of that water.
+  for (const auto& start : model::find_effect("bottom_effect")->starts(scene, 2)) CHECK(start[3] == scene.p_high.z());
+  for (const auto& start : model::find_effect("wall_effect")->starts(scene, 2)) {
+    const Eigen::Vector2d n{std::cos(start[1]), std::sin(start[1])};
+    CHECK(start[4] == doctest::Approx(n.cwiseAbs().dot(Eigen::Vector2d(2.0, 1.0))));
   }
   constexpr std::size_t kMost = 24;  // each start costs a rollout over all data
   for (const char* name : {"bottom_effect", "wall_effect", "tether_drag", "compressibility"}) {
