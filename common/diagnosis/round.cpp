@@ -1,7 +1,9 @@
 #include "common/diagnosis/round.hpp"
 
+#include <cmath>
 #include <utility>
 
+#include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/moments.hpp"
 
 namespace fathom::diagnosis {
@@ -16,14 +18,36 @@ constexpr double kClearlyLess = 0.6;      // of the best gain so far, on a sprea
 constexpr double kRestart = 0.1;          // of the screened size: where a fit that went astray begins again
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
-/// More gain wins, but hardly more gain with more numbers does not.
-bool better(const Answers& answers, std::size_t place, const FitResult& fit, const Winner& best, double reference) {
-  const double gain = reference - fit.cost;
-  const double other = reference - best.fit.cost;
+/// Log odds for the fit with more numbers when the noise of each axis is not known, each window a single observation
+/// of it: what little is left of a cost tells much where it is most of what is left on an axis.
+double odds_by_what_is_left(const FitResult& fewer, const FitResult& more, int numbers) {
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    double with_fewer = 0.0, with_more = 0.0, windows = 0.0;
+    for (std::size_t w = 0; w < more.window_square.size(); ++w) {
+      if (!(more.window_count[w][axis] > 0.0)) continue;
+      with_fewer += fewer.window_square[w][axis];
+      with_more += more.window_square[w][axis];
+      ++windows;
+    }
+    if (with_fewer > 0.0 && with_more > 0.0) sum += 0.5 * windows * std::log(with_fewer / with_more);
+  }
+  return sum - price(numbers, static_cast<double>(more.window_square.size()), 1);
+}
+
+/// More gain wins, but hardly more gain with more numbers does not, unless those numbers are evident.
+bool better(const Answers& answers, std::size_t place, const FitResult& fit, const Winner& best, double reference,
+            double evident) {
   const Screened &own = answers.near[place], &its = answers.near[best.place];
   const int numbers = own.effect->numbers(own.variant), others = its.effect->numbers(its.variant);
+  const double gain = reference - fit.cost, other = reference - best.fit.cost;
   if (numbers == others) return gain > other;
-  return numbers < others ? gain > kAsGood * other : kAsGood * gain > other;
+  const bool richer = numbers > others;
+  const FitResult &fewer = richer ? best.fit : fit, &more = richer ? fit : best.fit;
+  const bool worth =
+      kAsGood * (reference - more.cost) > reference - fewer.cost ||
+      (more.cost < fewer.cost && odds_by_what_is_left(fewer, more, std::abs(numbers - others)) > evident);
+  return richer ? worth : !worth;
 }
 
 /// A model with the effect never explains less than the same model without it; a fit that says so has gone astray, and
@@ -74,7 +98,8 @@ std::optional<Winner> Round::fit_best(Which first, std::size_t few, std::size_t 
     const double best_share = best ? reduction(reference_.cost, best->fit.cost) : 0.0;
     if (promises_.expected(answers_, next) < kHopeless * best_share) break;
     std::optional<FitResult> fit = fit_in_full(next, best_share);
-    if (fit && answers_.judged[next].reason.empty() && (!best || better(answers_, next, *fit, *best, reference_.cost)))
+    if (fit && answers_.judged[next].reason.empty() &&
+        (!best || better(answers_, next, *fit, *best, reference_.cost, settings_.accept_log_odds)))
       best = Winner{next, std::move(*fit)};
   }
   return best;
