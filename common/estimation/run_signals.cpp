@@ -7,6 +7,7 @@
 
 #include "common/base/statistics.hpp"
 #include "common/base/units.hpp"
+#include "common/estimation/freezes.hpp"
 #include "common/estimation/held_values.hpp"
 #include "common/estimation/wording.hpp"
 
@@ -36,30 +37,6 @@ std::vector<std::uint8_t> spikes(const std::vector<T>& x, double floor) {
   const double limit = std::max(kSpike * median(misfit) / 1.5, floor);  // median of a 3-norm is about 1.5 sigma
   std::vector<std::uint8_t> bad(x.size(), 0);
   for (std::size_t i = 0; i < x.size(); ++i) bad[i] = misfit[i] > limit ? 1 : 0;
-  return bad;
-}
-
-/// Freezes: repeats of at least `least` samples after which the value leaps. Rest without noise does not leap.
-template <class T>
-std::vector<std::uint8_t> freezes(const std::vector<T>& x, std::size_t least, double& longest, double step) {
-  std::vector<std::uint8_t> bad(x.size(), 0);
-  const std::vector<std::size_t> length = repeat_lengths(x);
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    const double size = (x[i] - x[i - 1]).norm();
-    if (size > 0.0) steps.push_back(size);
-  }
-  const double typical = median(std::move(steps));
-  for (std::size_t first = 0, end = 0; first < x.size(); first = end) {
-    end = first + length[first];
-    if (length[first] < least) continue;
-    const double leap = end < x.size() ? (x[end] - x[first]).norm() : std::numeric_limits<double>::infinity();
-    const double entry = first > 0 ? (x[first] - x[first - 1]).norm() : 0.0;
-    // Noise alone makes an ordinary step; a value that never moves again while others do is frozen as well.
-    if (leap < 0.3 * typical || (end == x.size() && entry == 0.0)) continue;
-    std::fill(bad.begin() + static_cast<std::ptrdiff_t>(first), bad.begin() + static_cast<std::ptrdiff_t>(end), 1);
-    longest = std::max(longest, static_cast<double>(length[first]) * step);
-  }
   return bad;
 }
 
@@ -203,11 +180,20 @@ void Reader::clean(const std::string& signal, Series& series, double spike_floor
   std::vector<std::uint8_t> bad(series.size(), 0);
   double longest = 0.0;
   const auto least = std::max<std::size_t>(5, static_cast<std::size_t>(1.0 / step));
-  const std::vector<std::uint8_t> frozen = freezes(series.x, least, longest, step);
+  std::vector<std::uint8_t> frozen = freezes(series.x, least, longest, step);
   if (longest > 0.0) {
     report(signal, "frozen", longest, "s",
            "all three axes repeat themselves exactly for up to " + number(longest) + " s, then leap",
            "not used while frozen");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const FrozenAxis alone = frozen_axis(series, axis, frozen);
+    if (alone.longest <= 0.0) continue;
+    report(signal, "frozen", alone.longest, "s",
+           std::string("one axis (") + "xyz"[axis] + ") repeats itself exactly for " + number(alone.longest) +
+               " s, from " + text("%.1f s", alone.begin) + ", while another moves",
+           "none of the axes used while it does");
+    for (std::size_t i = 0; i < frozen.size(); ++i) frozen[i] = frozen[i] | alone.samples[i];
   }
   if (may_hold && repeats > series.size() / 20) {
     report_held(signal, repeats, series.size());
