@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/base/error.hpp"
+#include "common/tables/angle_unit.hpp"
 #include "common/tables/readers.hpp"
 
 namespace fathom::tables {
@@ -199,6 +200,7 @@ Imported import_table(const CsvTable& table, ColumnMap map, const std::optional<
   out.licence = map.licence;
   Resolver resolve(table);
   const Rows rows = read_time(table, resolve, map.time, out.notes);
+  check_angle_unit(resolve, map, rows, table);
   if (map.pose_capture) import_pose(resolve, *map.pose_capture, rows, table, out);
   if (map.ahrs) import_ahrs(resolve, *map.ahrs, rows, table, out);
   if (map.dvl) import_dvl(resolve, *map.dvl, rows, table, out);

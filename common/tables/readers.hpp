@@ -40,7 +40,8 @@ class Group {
   [[nodiscard]] double raw(std::size_t i, std::size_t row) const {
     return data_[i] == nullptr ? 0.0 : (*data_[i])[row];
   }
-  [[nodiscard]] double scalar(std::size_t row) const { return factor_ * raw(0, row); }
+  [[nodiscard]] double scalar(std::size_t row) const { return scalar_of(0, row); }
+  [[nodiscard]] double scalar_of(std::size_t i, std::size_t row) const { return factor_ * raw(i, row); }
   [[nodiscard]] Eigen::Vector3d vector(std::size_t row) const;  ///< SI, in the house's frame
   [[nodiscard]] std::vector<double> values(std::size_t row) const;
 

@@ -217,3 +217,33 @@ TEST_CASE("beluga: the first row of surge-1 arrives in NED and forward-right-dow
   CHECK(run.thrusters[0].force.empty());
   CHECK(run.battery[0].voltage == 15.301);
 }
+
+TEST_CASE("import: angles in another unit than said are named by what carries the velocities along the track") {
+  // A vehicle that swings its heading by half a turn and drives ahead.
+  const auto table = [](double unit) {
+    std::string csv = "t,x,y,z,phi,theta,psi,u,v,w\n";
+    double x = 0.0, y = 0.0;
+    for (int k = 0; k < 1200; ++k) {
+      const double t = 0.05 * k, heading = 0.5 + 1.5 * std::sin(0.2 * t);
+      for (const double number : {t, x, y, 1.0, 0.0, 0.0, heading * unit, 0.4, 0.0})
+        csv += std::to_string(number) + ",";
+      csv += "0.0\n";
+      x += 0.05 * 0.4 * std::cos(heading);
+      y += 0.05 * 0.4 * std::sin(heading);
+    }
+    return csv;
+  };
+  const auto complaint_about = [&](const std::string& csv, const std::string& unit) -> std::string {
+    const std::string map = kAbout +
+                            "pose_capture:\n  position: {columns: [x, y, z], unit: m, frame: NED}\n"
+                            "  euler: {columns: [phi, theta, psi], unit: " +
+                            unit + ", world: NED, body: FRD}\n" +
+                            "dvl:\n  velocity: {columns: [u, v, w], unit: m/s, frame: FRD}\n";
+    return complaint(csv, map);
+  };
+  constexpr double kInDegrees = 180.0 / kPi;
+  CHECK(complaint_about(table(1.0), "rad") == "no complaint");
+  CHECK(complaint_about(table(kInDegrees), "deg") == "no complaint");
+  CHECK(complaint_about(table(kInDegrees), "rad").find("only with headings in deg (100 % of it") != std::string::npos);
+  CHECK(complaint_about(table(1.0), "deg").find("only with headings in rad") != std::string::npos);
+}
