@@ -9,6 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/diagnoser.hpp"
+#include "common/diagnosis/force_unit.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
@@ -103,6 +104,8 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   if (room) separate(vehicle, *room, train, fitted, report.result);
   report.result.consistency = std::move(consistency.findings);
   diagnosis::adopt_sensor_faults(report.result);
+  if (auto finding = diagnosis::compare_inertia(vehicle, report.result.parameters_after))
+    report.result.consistency.push_back(*std::move(finding));
   return report;
 }
 
