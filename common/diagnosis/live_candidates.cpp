@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/model/effect_size.hpp"
 
@@ -30,7 +31,11 @@ LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& sce
     for (std::size_t v = 0; v < names.size(); ++v) {
       if (names[v] == "-") continue;
       const auto variant = static_cast<int>(v);
-      forms_.push_back({effect, variant, names[v], model::parameters_of(*effect, variant, *base_.vehicle)});
+      LiveForm form{effect, variant, names[v], model::parameters_of(*effect, variant, *base_.vehicle)};
+      for (std::size_t i = 0; i < form.parameters.size(); ++i) {
+        if (effect->takes_part(variant, i)) form.sought.push_back(i);
+      }
+      forms_.push_back(std::move(form));
       for (const auto& theta : effect->starts(scene, variant)) add(static_cast<int>(forms_.size()) - 1, theta);
     }
   }
@@ -41,7 +46,8 @@ void LiveCandidates::add(int form, const std::vector<double>& theta) {
   const auto& parameters = f.parameters;
   const auto memory =
       static_cast<std::size_t>(f.effect->state_size(*base_.vehicle, static_cast<int>(base_.allocation.cols())));
-  const LiveStart start{.form = form, .theta = theta, .column = columns_};
+  const LiveStart start{
+      .form = form, .theta = theta, .column = columns_, .sought = static_cast<Eigen::Index>(f.sought.size())};
   Probe probe{.effect = f.effect,
               .variant = f.variant,
               .column = columns_,
@@ -49,13 +55,13 @@ void LiveCandidates::add(int form, const std::vector<double>& theta) {
               .theta = theta,
               .memory = std::vector<double>(memory, 0.0)};
   probes_.push_back(probe);
-  for (std::size_t i = 0; i < theta.size(); ++i) {
+  for (const std::size_t i : f.sought) {
     double step = kStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
     if (theta[i] + step > parameters[i].high) step = -step;
     probe.theta = theta;
-    if (f.effect->takes_part(f.variant, i)) probe.theta[i] += step;
+    probe.theta[i] += step;
     probe.per_step = parameters[i].sigma / step;
-    probe.column = columns_ + 1 + static_cast<Eigen::Index>(i);
+    ++probe.column;
     probes_.push_back(probe);
   }
   const bool inertia = adds_inertia(*f.effect, f.variant, theta, base_);

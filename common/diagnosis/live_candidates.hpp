@@ -15,15 +15,17 @@ struct LiveForm {
   int variant{};
   std::string variant_name;
   std::vector<model::EffectParameter> parameters{};  ///< as they are on this vehicle
+  std::vector<std::size_t> sought{};                 ///< which of them have columns: those that take part
 };
 
 /// A form with the numbers around which it is linearised. Its columns follow one another: the wrench at `theta`, then
-/// one per number, in units of that number's prior sigma.
+/// one per number sought, in units of that number's prior sigma.
 struct LiveStart {
   int form{};
   std::vector<double> theta;
   Eigen::Index column{};
-  [[nodiscard]] Eigen::Index columns() const { return 1 + static_cast<Eigen::Index>(theta.size()); }
+  Eigen::Index sought{};
+  [[nodiscard]] Eigen::Index columns() const { return 1 + sought; }
 };
 
 using WrenchColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;

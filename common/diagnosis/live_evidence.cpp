@@ -135,11 +135,10 @@ LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
   const Eigen::MatrixXd J = projected_.block(at + 1, at + 1, k, k);
   const Eigen::VectorXd slope = projected_.block(at + 1, 0, k, 1) + projected_.block(at + 1, at, k, 1);
   Eigen::VectorXd theta(k);  // at the start, in sigmas
-  for (Eigen::Index i = 0; i < k; ++i)
-    theta[i] = start.theta[static_cast<std::size_t>(i)] / parameters[static_cast<std::size_t>(i)].sigma;
+  const auto number = [&](Eigen::Index i) { return form.sought[static_cast<std::size_t>(i)]; };
+  for (Eigen::Index i = 0; i < k; ++i) theta[i] = start.theta[number(i)] / parameters[number(i)].sigma;
   Eigen::VectorXd delta = Eigen::VectorXd::Zero(k);
-  std::vector<bool> fixed(static_cast<std::size_t>(k));
-  for (std::size_t i = 0; i < fixed.size(); ++i) fixed[i] = !form.effect->takes_part(form.variant, i);
+  std::vector<bool> fixed(static_cast<std::size_t>(k), false);
   for (Eigen::Index round = 0; round <= k; ++round) {
     Eigen::MatrixXd normal = J + Eigen::MatrixXd::Identity(k, k);
     Eigen::VectorXd right = -(slope + theta);
@@ -158,8 +157,9 @@ LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
     bool inside = true;
     for (Eigen::Index i = 0; i < k; ++i) {
       const auto j = static_cast<std::size_t>(i);
-      const double low = parameters[j].low / parameters[j].sigma - theta[i];
-      const double high = parameters[j].high / parameters[j].sigma - theta[i];
+      const model::EffectParameter& own = parameters[number(i)];
+      const double low = own.low / own.sigma - theta[i];
+      const double high = own.high / own.sigma - theta[i];
       if (fixed[j] || (delta[i] >= low && delta[i] <= high)) continue;
       delta[i] = std::clamp(delta[i], low, high);
       fixed[j] = true;
@@ -168,9 +168,7 @@ LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
     if (inside) break;
   }
   LiveSuspicion found{.form = start.form, .theta = start.theta, .coefficients = Eigen::VectorXd::Zero(size_ - base_)};
-  for (Eigen::Index i = 0; i < k; ++i) {
-    found.theta[static_cast<std::size_t>(i)] += delta[i] * parameters[static_cast<std::size_t>(i)].sigma;
-  }
+  for (Eigen::Index i = 0; i < k; ++i) found.theta[number(i)] += delta[i] * parameters[number(i)].sigma;
   found.coefficients[at] = 1.0;
   found.coefficients.segment(at + 1, k) = delta;
   const Eigen::VectorXd own = found.coefficients.segment(at, k + 1);

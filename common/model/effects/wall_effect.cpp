@@ -26,9 +26,9 @@ constexpr std::size_t kBearing = 1, kDistance = 2, kReach = 3, kAtDistance = 4;
 enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
 constexpr std::array kUnits{"N m^2", "N m^2/(m/s)^2", "N", "N/(m/s)^2"};  // of the strength
 constexpr int kBearings = 8;
-constexpr std::array kGaps{0.3, 1.0};     // m beyond the box of positions
-constexpr std::array kReaches{0.1, 0.4};  // of the width of that box
-constexpr double kSmallestRange = 0.05;   // m
+constexpr std::array kGaps{0.3, 1.0};    // m beyond the box of positions
+constexpr double kReachShare = 0.2;      // of the width of that box, where a search begins
+constexpr double kSmallestRange = 0.05;  // m
 
 bool presses(int variant) { return variant == kForce || variant == kExponentialForce; }
 bool exponential(int variant) { return variant >= kExponentialForce; }
@@ -78,7 +78,7 @@ class WallEffect final : public Effect {
       const Eigen::Vector2d n{std::cos(bearing), std::sin(bearing)};
       const double width = n.cwiseAbs().dot(half), edge = n.dot(middle) + width;
       if (exponential(variant)) {
-        for (const double share : kReaches) starts.push_back({size, bearing, 0.0, 2.0 * share * width, edge});
+        starts.push_back({size, bearing, 0.0, 2.0 * kReachShare * width, edge});
         continue;
       }
       for (const double gap : kGaps) {

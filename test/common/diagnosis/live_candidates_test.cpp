@@ -120,13 +120,15 @@ TEST_CASE("live candidates: columns are the effect at its start and its change p
     CAPTURE(form.variant_name);
     const Vector6d at_start = instant.added(form, start.theta);
     CHECK((instant.wrench.col(start.column) - at_start).norm() < kRounding);
-    for (std::size_t i = 0; i < start.theta.size(); ++i) {
+    CHECK(start.columns() == 1 + form.effect->numbers(form.variant));
+    for (std::size_t c = 0; c < form.sought.size(); ++c) {
+      const std::size_t i = form.sought[c];
       const model::EffectParameter& parameter = form.effect->parameters()[i];
       std::vector<double> moved = start.theta;
       const double step = 1e-5 * std::max(std::abs(start.theta[i]), 0.1 * parameter.sigma);
       moved[i] += start.theta[i] + step > parameter.high ? -step : step;
       const Vector6d slope = (instant.added(form, moved) - at_start) / (moved[i] - start.theta[i]) * parameter.sigma;
-      const Vector6d column = instant.wrench.col(start.column + 1 + static_cast<Eigen::Index>(i));
+      const Vector6d column = instant.wrench.col(start.column + 1 + static_cast<Eigen::Index>(c));
       CAPTURE(parameter.name);
       CHECK((column - slope).norm() < kCurvature * (slope.norm() + at_start.norm()) + 1e-6);
       ++compared;
