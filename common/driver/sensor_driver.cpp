@@ -46,7 +46,7 @@ class SensorDriver final : public devices::Output {
       : process_{process},
         parser_{protocol.make(devices::read_settings(config, protocol))},
         dialogue_{devices::make_dialogue(protocol.name, devices::read_settings(config, protocol))},
-        clock_{config.quantity("latency", "s"), protocol.tick},
+        clock_{config.quantity("latency", "s"), protocol.tick, protocol.turn},
         watch_{positive(config, "period", "s"), std::string{protocol.name}},
         arm_{place(config, protocol.kind)},
         record_{process, config},
