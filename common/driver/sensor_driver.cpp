@@ -1,5 +1,6 @@
 #include "common/driver/sensor_driver.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
@@ -84,13 +85,22 @@ class SensorDriver final : public devices::Output {
   void wait(std::span<const int> descriptors, int milliseconds) {
     link_.wait(descriptors, milliseconds);
     const double now = steady_seconds();
-    if (dialogue_ && link_.up()) link_.send(dialogue_->tick(now));
+    if (dialogue_ && link_.up()) link_.send(speak(now));
     if (link_.finished()) {
       parser_->finish(*this);
       process_.stop();
       return;
     }
     say(condition().unhealthy);
+  }
+
+  // Whoever was configured and says nothing more may have been switched off and on: it is told anew.
+  std::string speak(double now) {
+    constexpr double kSilence = 1.0;  // s
+    const bool forgot = dialogue_->done() && watch_.since_sample(now) > std::max(kSilence, watch_.patience());
+    if (!forgot || now - told_ < kSilence) return dialogue_->tick(now);
+    told_ = now;
+    return dialogue_->begin(now);
   }
 
   void received(std::span<const std::uint8_t> bytes, Utime arrival) {
@@ -173,6 +183,7 @@ class SensorDriver final : public devices::Output {
   LeverArm arm_;
   LineRecord record_;
   Utime arrival_{};
+  double told_{};  ///< when the instrument was told anew
   std::string said_;
   link::Link link_;  // last: its handlers use the others
 };
