@@ -29,6 +29,7 @@ constexpr std::array kMessages{
     Message{147, "BATTERY_STATUS", 154, "iihHHHHHHHHHHhBBBb"},
     Message{173, "RANGEFINDER", 83, "ff"},
     Message{178, "AHRS2", 47, "ffffii"},
+    Message{253, "STATUSTEXT", 83, "B"},  // and fifty letters
     // What ArduSub and its ground station say besides: only to be told from damage. The bytes are those of a recorded
     // vehicle.
     Message{2, "SYSTEM_TIME", 137, ""},
@@ -57,7 +58,6 @@ constexpr std::array kMessages{
     Message{241, "VIBRATION", 90, ""},
     Message{242, "HOME_POSITION", 104, ""},
     Message{251, "NAMED_VALUE_FLOAT", 170, ""},
-    Message{253, "STATUSTEXT", 83, ""},
     Message{261, "STORAGE_INFORMATION", 179, ""},
     Message{270, "VIDEO_STREAM_STATUS", 59, ""},
     Message{321, "PARAM_EXT_REQUEST_LIST", 88, ""},
@@ -130,6 +130,13 @@ std::string Writer::motor_test(std::size_t motor, double pwm, double seconds, st
   put(payload, 1, 1);
   put(payload, 0, 1);
   return packet(76, payload);
+}
+
+std::string Writer::command_ack(std::uint16_t command, std::uint8_t result) {
+  std::string payload;
+  put(payload, command, 2);
+  put(payload, result, 1);
+  return packet(77, payload);
 }
 
 }  // namespace mavlink
@@ -213,6 +220,15 @@ double Mavlink::value(std::size_t field) const {
     default:
       return b[at];
   }
+}
+
+std::string Mavlink::text() const {
+  constexpr std::size_t kMostText = 50;
+  std::string text;
+  for (std::size_t i = 1; i <= kMostText && payload_[i] != 0; ++i) {
+    if (payload_[i] >= ' ' && payload_[i] <= '~') text += static_cast<char>(payload_[i]);
+  }
+  return text;
 }
 
 void Mavlink::take(Frame& frame) {
