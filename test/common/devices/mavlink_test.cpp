@@ -135,6 +135,30 @@ TEST_CASE("MAVLink version 1 packets are read, too") {
   CHECK(rows[0].at("f1") == "209");
 }
 
+TEST_CASE("MAVLink: an emulated vehicle acknowledges motor tests and keeps the pilot's sticks for three seconds") {
+  devices::mavlink::Writer station{255, 190};
+  devices::EmulatedAnswers vehicle{"mavlink"};
+  vehicle.at(0.0);
+  CHECK(vehicle.sticks() == nullptr);
+  const auto answers =
+      decode("mavlink", vehicle.hear(station.motor_test(3, 1620.4, 0.5, 1) + station.motor_test(99, 1620.0, 0.5, 1)));
+  REQUIRE(answers.size() == 2);
+  CHECK(answers[0].at("name") == "COMMAND_ACK");
+  CHECK(answers[0].at("f1") == "209");
+  CHECK(answers[0].at("f2") == "0");
+  CHECK(answers[1].at("f2") == "4");  // there is no such motor
+  CHECK(vehicle.applied()[3] == 1620.0);
+  CHECK(vehicle.hear(station.rc_override({1500, 1510, 1460, 1300, 1700, 2000, 65535, 65535}, 1)).empty());
+  REQUIRE(vehicle.sticks() != nullptr);
+  CHECK(*vehicle.sticks() == std::array<double, 6>{0.0, 0.025, -0.1, -0.5, 0.5, 1.0});
+  (void)vehicle.hear(station.rc_override({1500, 1510, 1460, 1300, 65535, 1500, 65535, 65535}, 1));
+  CHECK((*vehicle.sticks())[4] == 0.5);  // left alone
+  vehicle.at(2.9);
+  CHECK(vehicle.sticks() != nullptr);
+  vehicle.at(3.1);
+  CHECK(vehicle.sticks() == nullptr);
+}
+
 TEST_CASE("thrusters' text: what is sent, what a rig applies and what it says") {
   const std::vector<double> pwm{1500, 1612.4, 1388};
   const std::string sentence = devices::thruster_sentence(pwm);
