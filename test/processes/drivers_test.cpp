@@ -169,6 +169,30 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
     CHECK(is_tail(told.values, twice.values));
     if (chain.protocol != "ig500") CHECK(twice.times == told.times);
   }
+
+  // An instrument away from the origin needs the attitude of that time: from the log, while its bytes are parsed again.
+  const auto again = [&](const std::string& position, const std::string& in) {
+    Chain away = chain_of("pd0");
+    away.keys += position;
+    configure(away, "file://" + scratch.path("pd0.raw"), scratch.path("away.yaml"), "");
+    const std::string log = scratch.path("away" + std::to_string(position.size()) + ".lcmlog");
+    const auto ran = shell(program("dvl_driver") + " --log-level warning --config " + scratch.path("away.yaml") + in +
+                           " --out file://" + log);
+    CHECK_MESSAGE(ran.code == 0, ran.text);
+    return wire::read_log(log).recording.dvl;
+  };
+  const auto at_origin = again("", "");
+  const auto ahead = again("  position: 0.5 0 0 m\n", " --in file://" + scratch.path("ig500.lcmlog"));
+  REQUIRE(ahead.size() == at_origin.size());
+  std::size_t corrected = 0;
+  for (std::size_t i = 0; i < ahead.size(); ++i) {
+    CHECK(ahead[i].utime == at_origin[i].utime);
+    if (!ahead[i].valid) continue;  // before the attitude sensor was configured
+    ++corrected;
+    // The emulated vehicle turns at 0.1 rad/s: half a metre ahead the bow goes 5 cm/s to starboard.
+    CHECK(at_origin[i].v_WB_B.y() - ahead[i].v_WB_B.y() == doctest::Approx(0.05).epsilon(0.02));
+  }
+  CHECK(corrected + 3 > ahead.size());
 }
 
 TEST_CASE("drivers: with the example's configuration each hears and says what docs/messages.md tells, and starts") {
