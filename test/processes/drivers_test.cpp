@@ -195,6 +195,19 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
   CHECK(corrected + 3 > ahead.size());
 }
 
+TEST_CASE("drivers: a recording that is played waits for its driver, and arrives whole at the line's pace") {
+  const Scratch scratch;
+  const Chain chain = chain_of("pd0");
+  configure(chain, "serial://" + scratch.path("tty") + "?baud=115200", scratch.path("x.yaml"), "");
+  const auto ran =
+      shell("timeout -s INT 6 " + program(chain.driver) + " --log-level warning --config " + scratch.path("x.yaml") +
+            " --out file://" + scratch.path("x.lcmlog") + " 2> " + scratch.path("text") + " &\nsleep 0.3\n" +
+            program("fathom") + " emulate pd0 --to pty:" + scratch.path("tty") + " --file " +
+            test::file("test/data/wire/pd0_auv_dvl_short/") + "adcp_auv_51.pd0\nwait");
+  CHECK_MESSAGE(ran.code == 0, ran.text);
+  CHECK(wire::read_log(scratch.path("x.lcmlog")).recording.dvl.size() == 51);
+}
+
 TEST_CASE("drivers: with the example's configuration each hears and says what docs/messages.md tells, and starts") {
   const Scratch scratch;
   const std::string config = " --log-level error --config " + test::file("config/drivers/example.yaml") + " --config " +
