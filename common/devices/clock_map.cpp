@@ -78,9 +78,16 @@ void ClockMap::fit() {
   for (std::size_t i = 0; i < size; ++i) level_ = std::min(level_, at(hull[i]).offset);
 }
 
+// Half a turn back is taken for the next turn; a restart that looks like one does not fit the host's clock.
+double ClockMap::unrolled(double device_time) {
+  if (turn_ > 0.0 && started_ && device_time + turned_ < last_device_ - 0.5 * turn_) turned_ += turn_;
+  return device_time + turned_;
+}
+
 Utime ClockMap::map(std::optional<double> device_time, Utime arrival) {
   Utime utime = arrival;
   if (device_time) {
+    device_time = unrolled(*device_time);
     if (!started_) {
       started_ = true;
       origin_ = arrival;

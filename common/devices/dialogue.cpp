@@ -1,6 +1,7 @@
 #include "common/devices/dialogue.hpp"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "common/devices/checksum.hpp"
@@ -36,33 +37,34 @@ class Ig500Setup final : public Dialogue {
         Step{ig500::kGetContinuous, {}, ig500::kReturnContinuous, {1, 1}, "return the continuous mode"}};
   }
   std::string begin(double now) override {
-    at_ = 0;
-    tries_ = 0;
     failure_.clear();
-    return say(now);
+    return start(now);
   }
   std::string hear(const Parser& parser, const Frame&, double now) override {
     const auto* device = dynamic_cast<const SbgIg500*>(&parser);
-    if (device == nullptr || done() || !failure_.empty()) return {};
+    heard_ = true;
+    if (device == nullptr || done() || gave_up_) return {};
     const Step& step = steps_[at_];
     if (device->command() != step.answer) return {};
     const std::vector<std::uint8_t> data{device->data().begin(), device->data().end()};
     if (data != step.data_wanted) {
       if (step.answer == ig500::kAck && ++tries_ < kTries) return say(now);
-      failure_ = "the IG-500 did not " + std::string{step.what} + " as asked; is its firmware older than 2.1?";
+      give_up("the IG-500 did not " + std::string{step.what} + " as asked; is its firmware older than 2.1?");
       return {};
     }
     ++at_;
     tries_ = 0;
-    return done() ? std::string{} : say(now);
+    if (!done()) return say(now);
+    failure_.clear();
+    return {};
   }
   std::string tick(double now) override {
-    if (done() || now - said_ < kPatience) return {};
-    if (!failure_.empty() && now - said_ < 10.0 * kPatience) return {};
-    if (!failure_.empty()) return begin(now);  // it may have been restarted or exchanged
+    if (done() || now - said_ < (gave_up_ ? 10.0 * kPatience : kPatience)) return {};
+    if (gave_up_) return start(now);  // it may have been restarted or exchanged
     if (++tries_ < kTries) return say(now);
-    failure_ = "the IG-500 does not answer (asked it to " + std::string{steps_[at_].what} +
-               "); is the line to it connected, not only the one from it?";
+    if (!heard_) return begin(now);  // silence and rubbish are of the line, and said by who watches it
+    give_up("the IG-500 does not answer (asked it to " + std::string{steps_[at_].what} +
+            "); is the line to it connected, not only the one from it?");
     return {};
   }
   bool done() const override { return at_ == steps_.size(); }
@@ -76,6 +78,17 @@ class Ig500Setup final : public Dialogue {
     std::vector<std::uint8_t> data_wanted;
     std::string_view what;
   };
+  // A failure stays told until another attempt has come to its end.
+  std::string start(double now) {
+    at_ = 0;
+    tries_ = 0;
+    gave_up_ = heard_ = false;
+    return say(now);
+  }
+  void give_up(std::string why) {
+    failure_ = std::move(why);
+    gave_up_ = true;
+  }
   std::string say(double now) {
     said_ = now;
     return frame_text(steps_[at_].command, steps_[at_].data);
@@ -83,6 +96,7 @@ class Ig500Setup final : public Dialogue {
   std::vector<Step> steps_;
   std::size_t at_{};
   int tries_{};
+  bool gave_up_{false}, heard_{false};  ///< anything at all in this attempt
   double said_{};
   std::string failure_;
 };

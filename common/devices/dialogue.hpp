@@ -1,6 +1,7 @@
 // What has to be said to an instrument before its data can be trusted: configure, read back, refuse on a mismatch.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -41,6 +42,9 @@ class EmulatedAnswers {
   [[nodiscard]] const std::vector<double>& applied() const { return applied_; }
   /// The same of a rig that was told forces [N]; empty until it was.
   [[nodiscard]] const std::vector<double>& applied_force() const { return applied_force_; }
+  /// Deflections of the pilot's sticks that a vehicle was told, -1 to 1: pitch, roll, throttle, yaw, forward, lateral.
+  /// Null while nobody overrides them.
+  [[nodiscard]] const std::array<double, 6>* sticks() const { return overridden_ ? &sticks_ : nullptr; }
   /// Time goes on [s].
   void at(double now);
 
@@ -48,7 +52,7 @@ class EmulatedAnswers {
   [[nodiscard]] std::string answer_ig500(Bytes frame);
   [[nodiscard]] std::string answer_water_linked(std::string_view line);
   void hear_rig(std::string_view line);
-  void hear_mavlink(std::string_view bytes);
+  [[nodiscard]] std::string hear_mavlink(std::string_view bytes);
 
   std::string protocol_;
   std::string waiting_;
@@ -57,7 +61,9 @@ class EmulatedAnswers {
   std::uint8_t continuous_{0}, divider_{1};
   bool sends_;
   std::vector<double> applied_, applied_force_;
-  double now_{}, commanded_{};
+  std::array<double, 6> sticks_{};
+  bool overridden_{false};
+  double now_{}, commanded_{}, overridden_at_{};
   std::unique_ptr<Parser> commands_;  ///< of a ground station (MAVLink)
 };
 

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kNeutral = 1500.0;   // us
 constexpr double kRigPatience = 0.5;  // s without a command
+constexpr double kStickTime = 3.0;    // s without an override: RC_OVERRIDE_TIME of ArduSub as it comes
+constexpr double kThrow = 400.0;      // us from the middle to a full stick
 
 std::string reply(std::uint8_t command, const std::vector<std::uint8_t>& data) {
   return std::string{as_text(ig500::frame(command, data))};
@@ -28,6 +30,7 @@ EmulatedAnswers::EmulatedAnswers(std::string_view protocol)
 
 void EmulatedAnswers::at(double now) {
   now_ = now;
+  overridden_ = overridden_ && now_ - overridden_at_ <= kStickTime;
   if (now_ - commanded_ <= kRigPatience) return;
   std::fill(applied_.begin(), applied_.end(), kNeutral);
   std::fill(applied_force_.begin(), applied_force_.end(), 0.0);
@@ -46,32 +49,48 @@ void EmulatedAnswers::hear_rig(std::string_view line) {
   commanded_ = now_;
 }
 
-void EmulatedAnswers::hear_mavlink(std::string_view bytes) {
+// An ArduSub: motor tests are run and acknowledged, the pilot's sticks are kept for who allocates.
+std::string EmulatedAnswers::hear_mavlink(std::string_view bytes) {
   class Commands final : public Output {
    public:
-    explicit Commands(std::vector<double>& applied) : applied_{applied} {}
+    explicit Commands(EmulatedAnswers& vehicle) : vehicle_{vehicle} {}
     void frame(const Parser& parser, const Frame&) override {
-      constexpr std::uint32_t kCommandLong = 76;
-      constexpr double kDoMotorTest = 209.0;
+      constexpr std::uint32_t kCommandLong = 76, kRcOverride = 70;
+      constexpr std::uint16_t kDoMotorTest = 209;
+      constexpr std::uint8_t kFailed = 4;
       const auto& mavlink = dynamic_cast<const Mavlink&>(parser);
-      if (mavlink.id() != kCommandLong || mavlink.value(7) != kDoMotorTest) return;
-      const double motor = mavlink.value(0);
-      if (motor >= 0.0 && motor < static_cast<double>(applied_.size())) {
-        applied_[static_cast<std::size_t>(motor)] = std::round(mavlink.value(2));  // outputs are whole microseconds
-        heard = true;
+      if (mavlink.id() == kCommandLong && mavlink.value(7) == kDoMotorTest) {
+        answers += writer_.command_ack(kDoMotorTest, run(mavlink.value(0), mavlink.value(2)) ? 0 : kFailed);
       }
+      if (mavlink.id() == kRcOverride) move_sticks(mavlink);
     }
-    bool heard{false};
+    std::string answers;
 
    private:
-    std::vector<double>& applied_;
-  } commands{applied_};
+    bool run(double motor, double pwm) {
+      if (!(motor >= 0.0 && motor < static_cast<double>(vehicle_.applied_.size()))) return false;
+      vehicle_.applied_[static_cast<std::size_t>(motor)] = std::round(pwm);  // outputs are whole microseconds
+      vehicle_.commanded_ = vehicle_.now_;
+      return true;
+    }
+    void move_sticks(const Mavlink& mavlink) {
+      constexpr double kAlone = 65535.0;
+      for (std::size_t i = 0; i < vehicle_.sticks_.size(); ++i) {
+        const double pwm = mavlink.value(i);
+        if (pwm != kAlone) vehicle_.sticks_[i] = std::clamp((pwm - kNeutral) / kThrow, -1.0, 1.0);
+      }
+      vehicle_.overridden_ = true;
+      vehicle_.overridden_at_ = vehicle_.now_;
+    }
+    EmulatedAnswers& vehicle_;
+    mavlink::Writer writer_{1, 1};
+  } commands{*this};
   commands_->feed(as_bytes(bytes), commands);
-  if (commands.heard) commanded_ = now_;
+  return commands.answers;
 }
 
 std::string EmulatedAnswers::hear(std::string_view bytes) {
-  if (protocol_ == "mavlink") hear_mavlink(bytes);
+  if (protocol_ == "mavlink") return hear_mavlink(bytes);
   constexpr std::size_t kMostWaiting = 4096;
   waiting_ += bytes;
   if (waiting_.size() > kMostWaiting) waiting_.clear();

@@ -14,7 +14,8 @@ constexpr std::size_t kLong = 17;  // words of USBLLONG
 
 }  // namespace
 
-Evologics::Evologics(const Settings& settings) : Parser{kLongest}, from_{settings.transceiver} {}
+Evologics::Evologics(const Settings& settings)
+    : Parser{kLongest}, from_{settings.transceiver}, wanted_{settings.transceiver.beacon} {}
 
 Parser::Look Evologics::look(Bytes bytes) const {
   if (bytes[0] != '+') return skip_to(bytes, '+');
@@ -39,7 +40,9 @@ void Evologics::take(Frame& frame) {
   const auto east = words_.number_at(7);
   const auto north = words_.number_at(8);
   const auto up = words_.number_at(9);
-  if (!east || !north || !up || (!from_.beacon.empty() && words_[3] != from_.beacon)) return;
+  if (!east || !north || !up) return;
+  if (!wanted_.is(words_[3])) return complain(wanted_.complaint());
+  complain("");
   const double accuracy = words_.number_at(16).value_or(0.0);
   sample_ = Usbl{.p_WB = from_north_up(*north, *east, -*up, from_),
                  .sigma = Eigen::Vector3d::Constant(accuracy > 0.0 ? accuracy : from_.sigma)};

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/devices/parser.hpp"
+#include "common/devices/positions.hpp"
 #include "common/devices/settings.hpp"
 #include "common/devices/text.hpp"
 
@@ -20,6 +21,7 @@ class Evologics final : public Parser {
   void take(Frame& frame) override;
 
   Transceiver from_;
+  WantedBeacon wanted_;
   Words words_;
   Usbl sample_;
 };

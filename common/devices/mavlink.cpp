@@ -29,14 +29,22 @@ constexpr std::array kMessages{
     Message{147, "BATTERY_STATUS", 154, "iihHHHHHHHHHHhBBBb"},
     Message{173, "RANGEFINDER", 83, "ff"},
     Message{178, "AHRS2", 47, "ffffii"},
-    // What ArduSub says besides: only to be told from damage. The bytes are those of a recorded vehicle.
+    Message{253, "STATUSTEXT", 83, "B"},  // and fifty letters
+    // What ArduSub and its ground station say besides: only to be told from damage. The bytes are those of a recorded
+    // vehicle.
     Message{2, "SYSTEM_TIME", 137, ""},
+    Message{21, "PARAM_REQUEST_LIST", 159, ""},
     Message{22, "PARAM_VALUE", 220, ""},
     Message{24, "GPS_RAW_INT", 24, ""},
     Message{33, "GLOBAL_POSITION_INT", 104, ""},
     Message{42, "MISSION_CURRENT", 28, ""},
+    Message{43, "MISSION_REQUEST_LIST", 132, ""},
+    Message{44, "MISSION_COUNT", 221, ""},
+    Message{47, "MISSION_ACK", 153, ""},
+    Message{49, "GPS_GLOBAL_ORIGIN", 39, ""},
     Message{62, "NAV_CONTROLLER_OUTPUT", 183, ""},
     Message{66, "REQUEST_DATA_STREAM", 148, ""},
+    Message{69, "MANUAL_CONTROL", 243, ""},
     Message{111, "TIMESYNC", 34, ""},
     Message{125, "POWER_STATUS", 203, ""},
     Message{148, "AUTOPILOT_VERSION", 178, ""},
@@ -48,8 +56,11 @@ constexpr std::array kMessages{
     Message{193, "EKF_STATUS_REPORT", 71, ""},
     Message{232, "GPS_INPUT", 151, ""},
     Message{241, "VIBRATION", 90, ""},
+    Message{242, "HOME_POSITION", 104, ""},
     Message{251, "NAMED_VALUE_FLOAT", 170, ""},
-    Message{253, "STATUSTEXT", 83, ""},
+    Message{261, "STORAGE_INFORMATION", 179, ""},
+    Message{270, "VIDEO_STREAM_STATUS", 59, ""},
+    Message{321, "PARAM_EXT_REQUEST_LIST", 88, ""},
     Message{322, "PARAM_EXT_VALUE", 243, ""},
 };
 
@@ -119,6 +130,13 @@ std::string Writer::motor_test(std::size_t motor, double pwm, double seconds, st
   put(payload, 1, 1);
   put(payload, 0, 1);
   return packet(76, payload);
+}
+
+std::string Writer::command_ack(std::uint16_t command, std::uint8_t result) {
+  std::string payload;
+  put(payload, command, 2);
+  put(payload, result, 1);
+  return packet(77, payload);
 }
 
 }  // namespace mavlink
@@ -202,6 +220,15 @@ double Mavlink::value(std::size_t field) const {
     default:
       return b[at];
   }
+}
+
+std::string Mavlink::text() const {
+  constexpr std::size_t kMostText = 50;
+  std::string text;
+  for (std::size_t i = 1; i <= kMostText && payload_[i] != 0; ++i) {
+    if (payload_[i] >= ' ' && payload_[i] <= '~') text += static_cast<char>(payload_[i]);
+  }
+  return text;
 }
 
 void Mavlink::take(Frame& frame) {

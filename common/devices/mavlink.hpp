@@ -36,6 +36,8 @@ class Writer {
   [[nodiscard]] std::string rc_override(const std::array<std::uint16_t, 8>& channels, std::uint8_t target);
   /// One motor (from 0) to `pwm` [us] for `seconds`; ArduSub wants it again at 2 Hz at least.
   [[nodiscard]] std::string motor_test(std::size_t motor, double pwm, double seconds, std::uint8_t target);
+  /// What a vehicle answers to a command; for emulators.
+  [[nodiscard]] std::string command_ack(std::uint16_t command, std::uint8_t result);
 
  private:
   [[nodiscard]] std::string packet(std::uint32_t id, std::string payload);
@@ -57,6 +59,8 @@ class Mavlink final : public Parser {
   [[nodiscard]] int component() const;
   /// A field of the latest message, by its place in wire order.
   [[nodiscard]] double value(std::size_t field) const;
+  /// What STATUSTEXT says to the operator.
+  [[nodiscard]] std::string text() const;
 
  private:
   static constexpr std::size_t kMostPayload = 255;

@@ -9,12 +9,13 @@ NmeaAttitude::NmeaAttitude(const Settings& settings) : NmeaParser{settings.check
 void NmeaAttitude::sentence(const Words& words, Frame& frame) {
   roll_deg_ = pitch_deg_ = heading_deg_ = heave_m_ = std::nullopt;
   const std::string_view id = words[0];
-  if (id == "PSXN" && words[1] == "23") {
+  constexpr std::size_t kWhole = 6;  // words; with fewer, one was lost, and the others stand in its place
+  if (id == "PSXN" && words[1] == "23" && words.size() >= kWhole) {
     roll_deg_ = words.number_at(2);
     pitch_deg_ = words.number_at(3);
     heading_deg_ = words[4].empty() ? true_heading_deg_ : words.number_at(4);
     heave_m_ = words.number_at(5);
-  } else if (id == "SBG01") {
+  } else if (id == "SBG01" && words.size() >= kWhole) {
     roll_deg_ = words.number_at(2);
     pitch_deg_ = words.number_at(3);
     heading_deg_ = words.number_at(4);

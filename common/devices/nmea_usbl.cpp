@@ -24,7 +24,8 @@ std::optional<double> degrees_minutes(std::string_view text, std::string_view he
 
 }  // namespace
 
-NmeaUsbl::NmeaUsbl(const Settings& settings) : NmeaParser{settings.checksum_required}, from_{settings.transceiver} {}
+NmeaUsbl::NmeaUsbl(const Settings& settings)
+    : NmeaParser{settings.checksum_required}, from_{settings.transceiver}, wanted_{settings.transceiver.beacon} {}
 
 void NmeaUsbl::needs_origin(bool stated, std::string_view what) {
   if (!stated) complain("the system says " + std::string{what} + "; state those of the world's origin");
@@ -40,7 +41,9 @@ void NmeaUsbl::sentence(const Words& words, Frame& frame) {
   if (words[0] == "PSONLLD") read_psonlld(words);
   if (words[0] == "PSONALL") read_psonall(words);
   frame.device_time = time_;
-  if (!p_WB_ || (!from_.beacon.empty() && beacon_ != from_.beacon)) return;
+  if (!p_WB_) return;
+  if (!wanted_.is(beacon_)) return complain(wanted_.complaint());
+  complain("");
   // The accuracy is the root of the sum of both horizontal variances; zero or less is none.
   const bool stated = accuracy_ && *accuracy_ > 0.0;
   const double sigma = stated ? *accuracy_ / std::numbers::sqrt2 : from_.sigma;

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/devices/nmea.hpp"
+#include "common/devices/positions.hpp"
 #include "common/devices/settings.hpp"
 
 namespace fathom::devices {
@@ -24,6 +25,7 @@ class NmeaUsbl final : public NmeaParser {
   void needs_origin(bool stated, std::string_view what);
 
   Transceiver from_;
+  WantedBeacon wanted_;
   std::string_view beacon_, status_, error_;
   std::optional<double> time_, first_, second_, depth_, accuracy_;  ///< as told
   bool trusted_{};

@@ -32,4 +32,16 @@ std::optional<Eigen::Vector3d> from_grid(double northing, double easting, double
   return Eigen::Vector3d{northing - *from.northing, easting - *from.easting, depth + from.p_W.z()};
 }
 
+bool WantedBeacon::is(std::string_view heard) {
+  const bool ours = name_.empty() || heard == name_;
+  if (ours) {
+    met_ = true;
+    complaint_.clear();
+  } else if (!met_ && stranger_ != heard) {
+    stranger_ = heard;
+    complaint_ = "positions of transponder " + stranger_ + " come, none of " + name_ + "; is 'beacon' right?";
+  }
+  return ours;
+}
+
 }  // namespace fathom::devices

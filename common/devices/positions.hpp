@@ -3,6 +3,9 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "common/devices/settings.hpp"
 
@@ -18,5 +21,18 @@ namespace fathom::devices {
 /// From UTM northing and easting [m]; grid north is taken for north.
 [[nodiscard]] std::optional<Eigen::Vector3d> from_grid(double northing, double easting, double depth,
                                                        const Transceiver& from);
+
+/// Which transponder is the vehicle's. Others may be tracked besides; while it is never heard that is worth a word.
+class WantedBeacon {
+ public:
+  /// Empty: every one.
+  explicit WantedBeacon(std::string name) : name_{std::move(name)} {}
+  [[nodiscard]] bool is(std::string_view heard);
+  [[nodiscard]] const std::string& complaint() const { return complaint_; }
+
+ private:
+  std::string name_, stranger_, complaint_;
+  bool met_{false};
+};
 
 }  // namespace fathom::devices

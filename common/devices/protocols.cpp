@@ -32,20 +32,24 @@ std::unique_ptr<Parser> make(const Settings& settings) {
   return std::make_unique<P>(settings);
 }
 
+// Clocks that count from zero again [s]: times of day, and 32 bits of milliseconds, microseconds or GX3's ticks.
+constexpr double kDay = 86400.0;
+constexpr double kMilliseconds = 4294967.296, kMicroseconds = 4294.967296, kGx3Ticks = 4294967296.0 / 62500.0;
+
 constexpr std::array kProtocols{
-    Protocol{"ig500", Kind::kAhrs, "SBG IG-500A, sbgCom binary", 115200, make<SbgIg500>, 1e-3},
-    Protocol{"sbg_ecom", Kind::kAhrs, "SBG Ellipse, sbgECom binary", 115200, make<SbgEcom>},
+    Protocol{"ig500", Kind::kAhrs, "SBG IG-500A, sbgCom binary", 115200, make<SbgIg500>, 1e-3, kMilliseconds},
+    Protocol{"sbg_ecom", Kind::kAhrs, "SBG Ellipse, sbgECom binary", 115200, make<SbgEcom>, 0.0, kMicroseconds},
     Protocol{"vn100", Kind::kAhrs, "VectorNav VN-100, binary output", 115200, make<VectorNav>},
-    Protocol{"gx3", Kind::kAhrs, "MicroStrain 3DM-GX3", 115200, make<MicrostrainGx3>},
-    Protocol{"nmea_attitude", Kind::kAhrs, "$PSXN,23, $--HDT, $SBG01", 115200, make<NmeaAttitude>},
+    Protocol{"gx3", Kind::kAhrs, "MicroStrain 3DM-GX3", 115200, make<MicrostrainGx3>, 0.0, kGx3Ticks},
+    Protocol{"nmea_attitude", Kind::kAhrs, "$PSXN,23, $--HDT, $SBG01", 115200, make<NmeaAttitude>, 0.0, kDay},
     Protocol{"pd0", Kind::kDvl, "Teledyne PD0 ensembles", 115200, make<Pd0>, 0.01},
-    Protocol{"pd4", Kind::kDvl, "Teledyne PD4 and PD5", 115200, make<Pd4>, 0.01},
+    Protocol{"pd4", Kind::kDvl, "Teledyne PD4 and PD5", 115200, make<Pd4>, 0.01, kDay},
     Protocol{"pd6", Kind::kDvl, "Teledyne PD6 and PD13 text", 115200, make<Pd6>, 0.01},
     Protocol{"wl_serial", Kind::kDvl, "Water Linked A50, serial", 115200, make<WaterLinkedSerial>},
     Protocol{"wl_json", Kind::kDvl, "Water Linked A50, JSON over TCP (port 16171)", 0, make<WaterLinkedJson>},
-    Protocol{"nmea_usbl", Kind::kUsbl, "$PSIMSSB, $PSONLLD, $PSONALL, $PTSAG", 9600, make<NmeaUsbl>},
+    Protocol{"nmea_usbl", Kind::kUsbl, "$PSIMSSB, $PSONLLD, $PSONALL, $PTSAG", 9600, make<NmeaUsbl>, 0.0, kDay},
     Protocol{"evologics", Kind::kUsbl, "EvoLogics USBLLONG", 19200, make<Evologics>},
-    Protocol{"psimlbm", Kind::kRanges, "Kongsberg $PSIMLBM", 9600, make<NmeaRanges>},
+    Protocol{"psimlbm", Kind::kRanges, "Kongsberg $PSIMLBM", 9600, make<NmeaRanges>, 0.0, kDay},
     Protocol{"range_text", Kind::kRanges, "lines of NAME=METRES", 9600, make<TextRanges>},
     Protocol{"nmea_depth", Kind::kDepth, "$--DPT, $--DBT, $PRVAT", 9600, make<NmeaDepth>},
     Protocol{"load_text", Kind::kLoads, "lines of readings", 9600, make<LoadText>},

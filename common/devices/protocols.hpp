@@ -21,6 +21,7 @@ struct Protocol {
   int baud;                ///< usual rate of the line; 0: not a serial line
   std::unique_ptr<Parser> (*make)(const Settings& settings);
   double tick{0.0};  ///< s, steps in which its frames tell time, where they are not much finer than a millisecond
+  double turn{0.0};  ///< s, after which its clock counts from zero again; 0: never
 };
 
 [[nodiscard]] std::span<const Protocol> protocols();

@@ -1,5 +1,6 @@
 #include "common/driver/sensor_driver.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
@@ -7,6 +8,7 @@
 #include <fathom_lcm/loads_t.hpp>
 #include <fathom_lcm/ranges_t.hpp>
 #include <fathom_lcm/usbl_t.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -17,6 +19,7 @@
 #include "common/driver/pressure_sensor.hpp"
 #include "common/driver/watch.hpp"
 #include "common/link/link.hpp"
+#include "common/link/raw_log.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
@@ -46,25 +49,32 @@ class SensorDriver final : public devices::Output {
       : process_{process},
         parser_{protocol.make(devices::read_settings(config, protocol))},
         dialogue_{devices::make_dialogue(protocol.name, devices::read_settings(config, protocol))},
-        clock_{config.quantity("latency", "s"), protocol.tick},
+        clock_{config.quantity("latency", "s"), protocol.tick, protocol.turn},
         watch_{positive(config, "period", "s"), std::string{protocol.name}},
         arm_{place(config, protocol.kind)},
         record_{process, config},
         link_{link::Endpoint::parse(config.text("link"), config.where("link")),
               [this](std::span<const std::uint8_t> bytes, Utime arrival) { received(bytes, arrival); },
               [this](bool up, const std::string& why) { changed(up, why); }} {
-    if (link_.endpoint().kind == link::Endpoint::Kind::kFile) dialogue_.reset();  // nobody answers
+    if (link_.endpoint().kind == link::Endpoint::Kind::kFile) {
+      dialogue_.reset();  // nobody answers
+      if (process_.reads_logs()) open_beside_log();
+    }
     if (arm_.needed()) {
       process_.on<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
         const auto sample = wire::decode(message);
         if (!sample) return process_.reject(wire::kAhrs);
         arm_.hear(*sample);
+        replay(sample->utime);
       });
     }
     process_.waits_with(
         [this](std::span<const int> descriptors, int milliseconds) { wait(descriptors, milliseconds); });
     process_.on_health([this] { return condition(); });
-    process_.on_end([this] { process_.log_info(counts()); });
+    process_.on_end([this] {
+      replay(std::numeric_limits<Utime>::max());
+      process_.log_info(counts());
+    });
   }
 
   void frame(const devices::Parser& parser, const devices::Frame& frame) override {
@@ -84,13 +94,37 @@ class SensorDriver final : public devices::Output {
   void wait(std::span<const int> descriptors, int milliseconds) {
     link_.wait(descriptors, milliseconds);
     const double now = steady_seconds();
-    if (dialogue_ && link_.up()) link_.send(dialogue_->tick(now));
+    if (dialogue_ && link_.up()) link_.send(speak(now));
     if (link_.finished()) {
       parser_->finish(*this);
       process_.stop();
       return;
     }
     say(condition().unhealthy);
+  }
+
+  // Whoever was configured and says nothing more may have been switched off and on: it is told anew.
+  std::string speak(double now) {
+    constexpr double kSilence = 1.0;  // s
+    const bool forgot = dialogue_->done() && watch_.since_sample(now) > std::max(kSilence, watch_.patience());
+    if (!forgot || now - told_ < kSilence) return dialogue_->tick(now);
+    told_ = now;
+    return dialogue_->begin(now);
+  }
+
+  // Recorded bytes beside a recorded bus: what had come when an attitude was true is parsed after it was heard.
+  void open_beside_log() {
+    const link::Endpoint& file = link_.endpoint();
+    recording_.emplace(file.path, file.start, file.rate);
+    piece_ = recording_->next();
+    changed(true, "");
+  }
+  void replay(Utime until) {
+    while (piece_ && piece_->utime <= until) {
+      received(piece_->bytes, piece_->utime);
+      piece_ = recording_->next();
+    }
+    if (recording_ && !piece_) parser_->finish(*this);
   }
 
   void received(std::span<const std::uint8_t> bytes, Utime arrival) {
@@ -172,7 +206,10 @@ class SensorDriver final : public devices::Output {
   Watch watch_;
   LeverArm arm_;
   LineRecord record_;
+  std::optional<link::RawReader> recording_;  ///< in place of the link, where a log is read
+  std::optional<link::RawPiece> piece_;       ///< its next one
   Utime arrival_{};
+  double told_{};  ///< when the instrument was told anew
   std::string said_;
   link::Link link_;  // last: its handlers use the others
 };

@@ -22,8 +22,8 @@ class VehicleCheck {
 
  private:
   int system_;
-  std::optional<double> right_at_, wrong_at_, refused_at_;  ///< heartbeats, refusals
-  std::string wrong_;
+  std::optional<double> right_at_, wrong_at_, refused_at_, warned_at_;  ///< heartbeats, refusals, its own words
+  std::string wrong_, warning_;
   int result_{};
 };
 

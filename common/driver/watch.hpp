@@ -26,6 +26,8 @@ class Watch {
   /// measurement. `failure` and `complaint` are those of dialogue and parser.
   [[nodiscard]] std::string unhealthy(double now, const std::string& failure, const std::string& complaint) const;
   [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
+  /// s since the newest sample, or since the line came up.
+  [[nodiscard]] double since_sample(double now) const { return now - last_sample_; }
   /// Longest silence that is not said yet [s].
   [[nodiscard]] double patience() const;
 

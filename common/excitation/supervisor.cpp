@@ -81,11 +81,23 @@ void Supervisor::hear(const ModelEstimate& model) {
 
 void Supervisor::hear(const Health& health) {
   if (std::find(settings_.needs.begin(), settings_.needs.end(), health.process) == settings_.needs.end()) return;
+  last_words_[health.process] = health.utime;
   if (health.state == "running") {
     unhealthy_.erase(health.process);
   } else {
     unhealthy_[health.process] = health.state;
   }
+}
+
+// By the clock of HEALTH itself: states may come faster than the wall's time goes.
+std::string Supervisor::silent() const {
+  constexpr double kSilence = 3.0;  // s behind the others
+  Utime newest = 0;
+  for (const auto& [process, utime] : last_words_) newest = std::max(newest, utime);
+  for (const auto& [process, utime] : last_words_) {
+    if (seconds_between(utime, newest) > kSilence) return process;
+  }
+  return "the identifier";
 }
 
 void Supervisor::stop(Phase phase, const std::string& reason) {
@@ -300,7 +312,7 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
     stop(Phase::kLost, "the state was lost; arm again");
   } else if (usable && settings_.model_patience > 0.0 && phase_ == Phase::kExcite &&
              since_model_ > settings_.model_patience) {
-    stop(Phase::kAborted, "the identifier is silent: no MODEL came");
+    stop(Phase::kAborted, silent() + " is silent: no MODEL came");
   }
   since_model_ = state.valid && phase_ == Phase::kExcite ? since_model_ + dt : 0.0;
   if (!armed_ || !usable) {  // without thrust until it is, not forever

@@ -122,6 +122,8 @@ class Supervisor {
   void take_off();
   void land(const std::string& how);
   void finish(const std::string& reason);
+  /// Who keeps MODEL from coming.
+  [[nodiscard]] std::string silent() const;
   void stop(Phase phase, const std::string& reason);
   void enter(std::size_t mode);
   void begin();
@@ -157,6 +159,7 @@ class Supervisor {
   std::int64_t last_sequence_{};
   std::optional<Operator> pending_;  // an order to arm waits for the next state
   std::map<std::string, std::string> unhealthy_;
+  std::map<std::string, Utime> last_words_;  ///< HEALTH of those that are needed
   StateEstimate state_;
   bool has_state_{false};
   double turned_{}, last_heading_{};

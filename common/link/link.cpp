@@ -30,7 +30,8 @@ Utime wall_clock() {
 
 std::string remedy(const Endpoint& endpoint, const asio::error_code& error) {
   const std::string& what = endpoint.text;
-  if (error == asio::error::eof) return what + ": the other side closed the line; trying again";
+  if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe)
+    return what + ": the other side closed the line; trying again";
   if (error.value() == ENOENT || error.value() == ENODEV || error.value() == ENXIO) {
     return what + ": no such device; is it plugged in? (ls /dev/serial/by-id)";
   }

@@ -106,6 +106,8 @@ bool Process::has_config(const std::string& key) const {
                              [&](const std::string& path) { return Config::load(path).has(key); });
 }
 
+bool Process::reads_logs() const { return !state_->arguments.lockstep && !state_->arguments.in.front().live(); }
+
 void Process::send(const std::string& channel, const std::string& type, Utime utime) {
   const auto speech = find_channel(state_->speeches, channel);
   if (speech == state_->speeches.end() || speech->type != type) {

@@ -50,6 +50,8 @@ class Process {
     send(channel, Message::getTypeName(), message.utime);
   }
 
+  /// The input is recorded: nothing is waited for.
+  [[nodiscard]] bool reads_logs() const;
   /// Counts a message that was decoded but refused; HEALTH shows the counts.
   void reject(const std::string& channel);
 

@@ -84,9 +84,14 @@ void run(const Options& options) {
     const std::size_t written = server.send(bytes);
     sent.write(bytes.data(), static_cast<std::streamsize>(written));
   };
+  // A recording waits for who hears it, so that its beginning is not lost.
+  std::optional<double> start;
+  if (options.file.empty()) start = 0.0;
   while (options.seconds <= 0.0 || elapsed() < options.seconds) {
-    const auto due = source.due();
+    if (!start && server.connected() && answers.sends_data()) start = elapsed();
+    auto due = source.due();
     if (!due && options.seconds <= 0.0) break;
+    if (due) due = start ? std::optional{*start + *due} : std::nullopt;
     const double pause = due ? *due - elapsed() : 0.1;
     say(answers.hear(server.wait(std::max(0.0, std::min(pause, 0.1)))));
     answers.at(elapsed());

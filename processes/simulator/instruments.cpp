@@ -13,6 +13,7 @@
 #include "common/devices/protocols.hpp"
 #include "common/link/endpoint.hpp"
 #include "common/link/server.hpp"
+#include "common/model/thruster_allocation.hpp"
 
 namespace fathom::simulator {
 namespace {
@@ -35,11 +36,7 @@ constexpr std::array kCarried{Carried{"ahrs", "ahrs_driver"},   Carried{"dvl", "
 std::string protocol_of(const Config& section) {
   std::string name = section.text("protocol");
   if (name == "text") return "thruster_text";
-  if (name == "motor_test") return "mavlink";
-  if (name == "rc_override") {
-    section.fail("protocol",
-                 "rc_override leaves the allocation to a vehicle that is not simulated; use motor_test or text");
-  }
+  if (name == "motor_test" || name == "rc_override") return "mavlink";
   if (name == "dry_run") section.fail("protocol", "dry_run moves nothing; use motor_test or text");
   if (name == "ms5837") section.fail("protocol", "ms5837 sits on a bus, which cannot be played; use nmea_depth");
   return name;
@@ -94,6 +91,29 @@ struct Instruments::Line {
   devices::EmulatedAnswers answers;
   link::Server server;
   bool counts_from_start{};
+};
+
+// A simulated ArduSub: what the pilot's sticks ask for, to pulse widths, by the vehicle file and without its battery.
+class Instruments::Autopilot {
+ public:
+  Autopilot(const Config& section, const model::Vehicle& vehicle)
+      : allocation_{vehicle, section.quantity("largest_thrust", "N")} {
+    const Config full = section.section("full_stick");
+    constexpr std::array kAxes{"X", "Y", "Z", "K", "M", "N"};
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      full_stick_(i) = full.quantity(kAxes[static_cast<std::size_t>(i)], i < 3 ? "N" : "N m");
+    }
+  }
+  [[nodiscard]] std::vector<double> pulses(const std::array<double, 6>* sticks) const {
+    if (sticks == nullptr) return allocation_.neutral().pwm_us;
+    const auto [pitch, roll, throttle, yaw, forward, lateral] = *sticks;
+    const Vector6d parts = (Vector6d{} << forward, lateral, -throttle, roll, pitch, yaw).finished();
+    return allocation_.allocate(parts.cwiseProduct(full_stick_), 0.0).pwm_us;
+  }
+
+ private:
+  model::ThrusterAllocation allocation_;
+  Vector6d full_stick_{};
 };
 
 // One sample's way to its line.
@@ -155,6 +175,8 @@ Instruments::Instruments(const std::string& drivers, const model::Vehicle& vehic
     if (vehicle.curve.empty() && rig_->protocol != "thruster_text") {
       file.section(kThrusters).fail("protocol", "vehicle " + vehicle.name + " has no thrust curve; use text");
     }
+    const Config section = file.section(kThrusters);
+    if (section.text("protocol") == "rc_override") autopilot_ = std::make_unique<Autopilot>(section, vehicle);
   }
   if (lines_.empty()) throw InputError(drivers + ": no driver of an instrument that is carried here; see docs/live.md");
 }
@@ -186,6 +208,7 @@ void Instruments::serve(double now) {
 bool Instruments::say(const simulation::Sample& sample) { return std::visit(Speaker{*this}, sample); }
 
 std::vector<double> Instruments::told() const {
+  if (autopilot_) return autopilot_->pulses(rig_->answers.sticks());
   const bool pulses = !vehicle_->curve.empty();
   std::vector<double> told = pulses ? rig_->answers.applied() : rig_->answers.applied_force();
   told.resize(vehicle_->thrusters.size(), pulses ? vehicle_->curve.neutral_us : 0.0);

@@ -36,11 +36,13 @@ class Instruments {
  private:
   struct Line;
   struct Speaker;
+  class Autopilot;
   [[nodiscard]] Line* line(const char* section) const;
 
   const model::Vehicle* vehicle_;
   std::vector<std::unique_ptr<Line>> lines_;
   Line* rig_{};
+  std::unique_ptr<Autopilot> autopilot_;  ///< where the driver moves the pilot's sticks
   Utime origin_{};
   Ahrs attitude_;     ///< newest that was said: other instruments have compass and tilts of their own
   double voltage_{};  ///< V, told with the next report of the thrusters; 0: nothing new

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "common/devices/dialogue.hpp"
+#include "common/devices/emulation.hpp"
 #include "common/link/server.hpp"
 #include "common/wire/log_reader.hpp"
 #include "test/support/bus.hpp"
@@ -33,21 +35,33 @@ struct Chain {
 
 const std::vector<Chain>& chains() {
   static const std::string kMount = "  rotation: 0 0 0 deg\n";
+  static const std::string kAxes = "  axes: teledyne\n  ship_is_level: false\n";
   static const std::string kShip = "  beacon: ''\n  sigma: 1 m\n  transceiver: {position: 0 0 0 m, heading: 0 deg}\n";
   static const std::string kDepth =
       "  water_density: 1000 kg/m^3\n  gravity: 9.81 m/s^2\n  air_pressure: 101325 Pa\n  pressure: gauge\n";
   static const std::vector<Chain> kAll{
       {"ahrs_driver", "ig500", false, 0.01, kMount},
       {"ahrs_driver", "vn100", true, 0.01, kMount},
+      {"ahrs_driver", "sbg_ecom", false, 0.02, kMount},
+      {"ahrs_driver", "gx3", true, 0.02, kMount},
+      {"ahrs_driver", "nmea_attitude", false, 0.1, kMount},
       {"dvl_driver", "pd0", false, 0.125, kMount},
+      {"dvl_driver", "pd4", true, 0.125, kMount + kAxes},
+      {"dvl_driver", "pd6", false, 0.125, kMount + kAxes + "  velocity: ship\n"},
       {"dvl_driver", "wl_serial", false, 0.125, kMount},
       {"dvl_driver", "wl_json", true, 0.125, kMount},
       {"usbl_driver", "nmea_usbl", true, 0.1, kShip},
-      {"range_driver", "psimlbm", false, 0.1, "  transponders: [a, b, c, d, e]\n  sound_speed: 1500 m/s\n"},
+      {"usbl_driver", "evologics", false, 0.1, kShip},
+      {"range_driver", "psimlbm", false, 0.1, "  transponders: [r1, r2, r3, r4, r5]\n  sound_speed: 1500 m/s\n"},
+      {"range_driver", "range_text", true, 0.1, "  transponders: [r1, r2, r3, r4, r5]\n"},
       {"depth_driver", "nmea_depth", false, 0.1, kDepth},
       {"load_driver", "load_text", true, 0.1, "  cells: [{name: load, gain: 1 N, zero: 0}]\n"},
   };
   return kAll;
+}
+
+const Chain& chain_of(const std::string& protocol) {
+  return *std::find_if(chains().begin(), chains().end(), [&](const Chain& c) { return c.protocol == protocol; });
 }
 
 void configure(const Chain& chain, const std::string& link, const std::string& path, const std::string& record) {
@@ -78,8 +92,8 @@ Told read(const std::string& path) {
     told.times.push_back(utime);
   };
   for (const Ahrs& s : recording.ahrs) {
-    add(s.utime, {s.w_WB_B.x(), s.w_WB_B.y(), s.w_WB_B.z(), s.f_B.x(), s.f_B.y(), s.f_B.z(), s.q_WB.w(), s.q_WB.x(),
-                  s.q_WB.y(), s.q_WB.z()});
+    const Eigen::Vector4d q = s.has_attitude ? s.q_WB.coeffs() : Eigen::Vector4d::Zero().eval();  // scalar last
+    add(s.utime, {s.w_WB_B.x(), s.w_WB_B.y(), s.w_WB_B.z(), s.f_B.x(), s.f_B.y(), s.f_B.z(), q[3], q[0], q[1], q[2]});
   }
   for (const Dvl& s : recording.dvl) {
     add(s.utime, {s.v_WB_B.x(), s.v_WB_B.y(), s.v_WB_B.z(), s.altitude, s.valid ? 1.0 : 0.0});
@@ -97,7 +111,7 @@ Told read(const std::string& path) {
 std::vector<std::string> parsed(const Chain& chain, const std::string& bytes) {
   const devices::Protocol& protocol = devices::protocol(chain.protocol, "test");
   devices::Settings settings;
-  if (chain.protocol == "psimlbm") settings.transponders = {"a", "b", "c", "d", "e"};
+  if (chain.driver == "range_driver") settings.transponders = {"r1", "r2", "r3", "r4", "r5"};
   const auto parser = protocol.make(settings);
   std::vector<std::string> values;
   for (const test::WireRow& row : test::decode_wire(*parser, protocol, settings, bytes)) {
@@ -155,6 +169,43 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
     CHECK(is_tail(told.values, twice.values));
     if (chain.protocol != "ig500") CHECK(twice.times == told.times);
   }
+
+  // An instrument away from the origin needs the attitude of that time: from the log, while its bytes are parsed again.
+  const auto again = [&](const std::string& position, const std::string& in) {
+    Chain away = chain_of("pd0");
+    away.keys += position;
+    configure(away, "file://" + scratch.path("pd0.raw"), scratch.path("away.yaml"), "");
+    const std::string log = scratch.path("away" + std::to_string(position.size()) + ".lcmlog");
+    const auto ran = shell(program("dvl_driver") + " --log-level warning --config " + scratch.path("away.yaml") + in +
+                           " --out file://" + log);
+    CHECK_MESSAGE(ran.code == 0, ran.text);
+    return wire::read_log(log).recording.dvl;
+  };
+  const auto at_origin = again("", "");
+  const auto ahead = again("  position: 0.5 0 0 m\n", " --in file://" + scratch.path("ig500.lcmlog"));
+  REQUIRE(ahead.size() == at_origin.size());
+  std::size_t corrected = 0;
+  for (std::size_t i = 0; i < ahead.size(); ++i) {
+    CHECK(ahead[i].utime == at_origin[i].utime);
+    if (!ahead[i].valid) continue;  // before the attitude sensor was configured
+    ++corrected;
+    // The emulated vehicle turns at 0.1 rad/s: half a metre ahead the bow goes 5 cm/s to starboard.
+    CHECK(at_origin[i].v_WB_B.y() - ahead[i].v_WB_B.y() == doctest::Approx(0.05).epsilon(0.02));
+  }
+  CHECK(corrected + 3 > ahead.size());
+}
+
+TEST_CASE("drivers: a recording that is played waits for its driver, and arrives whole at the line's pace") {
+  const Scratch scratch;
+  const Chain chain = chain_of("pd0");
+  configure(chain, "serial://" + scratch.path("tty") + "?baud=115200", scratch.path("x.yaml"), "");
+  const auto ran =
+      shell("timeout -s INT 6 " + program(chain.driver) + " --log-level warning --config " + scratch.path("x.yaml") +
+            " --out file://" + scratch.path("x.lcmlog") + " 2> " + scratch.path("text") + " &\nsleep 0.3\n" +
+            program("fathom") + " emulate pd0 --to pty:" + scratch.path("tty") + " --file " +
+            test::file("test/data/wire/pd0_auv_dvl_short/") + "adcp_auv_51.pd0\nwait");
+  CHECK_MESSAGE(ran.code == 0, ran.text);
+  CHECK(wire::read_log(scratch.path("x.lcmlog")).recording.dvl.size() == 51);
 }
 
 TEST_CASE("drivers: with the example's configuration each hears and says what docs/messages.md tells, and starts") {
@@ -182,7 +233,7 @@ TEST_CASE("drivers: with the example's configuration each hears and says what do
 
 TEST_CASE("drivers: bad configuration is refused with one line") {
   const Scratch scratch;
-  Chain chain = chains()[2];
+  Chain chain = chain_of("pd0");
   const auto complain = [&](const std::string& link) {
     configure(chain, link, scratch.path("x.yaml"), "");
     auto ran = shell(program(chain.driver) + " --config " + scratch.path("x.yaml") + " --out file://" +
@@ -201,7 +252,7 @@ TEST_CASE(
     "drivers: rubbish, silence and a line that goes are said as HEALTH within a second, and the process stays up") {
   const Scratch scratch;
   Bus bus;
-  const Chain chain = chains()[2];
+  const Chain chain = chain_of("pd0");
   configure(chain, "serial://" + scratch.path("tty") + "?baud=9600", scratch.path("x.yaml"), "");
   const auto said = [&](const char* words) {
     return std::any_of(bus.health.begin(), bus.health.end(), [&](const auto& each) {
@@ -232,6 +283,33 @@ TEST_CASE(
   }
   bus.listen(1.0);
   CHECK(bus.health.back().state == "unhealthy");
+}
+
+TEST_CASE("drivers: an instrument that was switched off and on behind a line that stayed is configured anew") {
+  const Scratch scratch;
+  Bus bus;
+  const Chain chain = chain_of("ig500");  // it waits to be configured
+  link::Server line{"pty:" + scratch.path("tty")};
+  configure(chain, "serial://" + scratch.path("tty") + "?baud=115200", scratch.path("x.yaml"), "");
+  const Background driver{scratch, "driver",
+                          program(chain.driver) + " --config " + scratch.path("x.yaml") + " --in '" + bus.url + "'"};
+  const auto on_for = [&](double seconds) {
+    devices::EmulatedAnswers instrument{chain.protocol};
+    for (double t = 0.0; t < seconds; t += chain.period) {
+      line.send(instrument.hear(line.wait(0.0)));
+      if (instrument.sends_data()) {
+        line.send(devices::emulate(chain.protocol, devices::emulated_motion(1.7e9 + t, t, {}), {}));
+      }
+      bus.listen(chain.period);
+    }
+    REQUIRE_FALSE(bus.health.empty());
+    return bus.health.back();
+  };
+  CHECK(on_for(2.0).state == "running");
+  bus.listen(2.0);
+  CHECK(bus.health.back().detail.find("silent") != std::string::npos);
+  const auto again = on_for(2.5);
+  CHECK_MESSAGE(again.state == "running", again.detail);
 }
 
 }  // namespace fathom

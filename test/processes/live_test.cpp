@@ -147,7 +147,9 @@ TEST_CASE("live: what cannot be played is said in one line") {
   refused("depth_driver: {protocol: ms5837, link: 'i2c:///dev/i2c-1'}", "use nmea_depth");
   refused("ahrs_driver: {protocol: ig500, link: 'udp://:7000', rotation: 0 0 0 deg}", "serial:///PATH?baud=N");
   refused("ahrs_driver: {protocol: ig500, link: 'serial:///proc/x?baud=9600', rotation: 0 0 0 deg}", "/proc/x");
-  refused("thruster_driver: {protocol: rc_override}", "use motor_test or text");
+  refused("thruster_driver: {protocol: dry_run}", "use motor_test or text");
+  refused("thruster_driver: {protocol: rc_override, link: 'serial://" + scratch.path("tty") + "?baud=115200'}",
+          "has no thrust curve; use text");
   refused("thruster_driver: {protocol: motor_test, link: 'tcp://127.0.0.1:0'}", "");
   refused("{}", "no driver of an instrument");
 }

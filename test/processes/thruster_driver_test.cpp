@@ -32,17 +32,26 @@ void arm(Bus& bus, const std::string& token) {
 TEST_CASE(
     "thruster_driver: arms by token alone, obeys, goes to zero within half a second, hears an abort, and says what was "
     "applied") {
-  for (const std::string protocol : {"text", "motor_test", "dry_run"}) {
+  for (const std::string protocol : {"text", "motor_test", "rc_override", "dry_run"}) {
     CAPTURE(protocol);
     const Scratch scratch;
     Bus bus;
+    const bool sticks = protocol == "rc_override";
     std::ofstream{scratch.path("x.yaml")}
         << "thruster_driver:\n  protocol: " << protocol << "\n  rate: 20 Hz\n  largest_thrust: 30 N\n"
         << (protocol == "dry_run" ? "" : "  link: serial://" + scratch.path("tty") + "?baud=115200\n")
-        << (protocol == "motor_test" ? "  system: 1\n" : "");
-    const Background rig{scratch, "rig",
-                         program("fathom") + " emulate " + (protocol == "motor_test" ? "mavlink" : "thruster_text") +
-                             " --to pty:" + scratch.path("tty")};
+        << (sticks ? "  full_stick: {X: 40 N, Y: 40 N, Z: 40 N, K: 4 N m, M: 4 N m, N: 4 N m}\n" : "")
+        << (sticks || protocol == "motor_test" ? "  system: 1\n" : "");
+    // What the sticks give only a vehicle that allocates can tell.
+    const Background rig{
+        scratch, "rig",
+        sticks
+            ? program("simulator") + " --config " + test::file("config/vehicles/bluerov2.yaml") + " --config " +
+                  test::file("config/sites/tank.yaml") + " --config " + test::file("config/simulation/bluerov2.yaml") +
+                  " --config " + test::file("config/operators/simulated.yaml") + " --bytes " + scratch.path("x.yaml") +
+                  " --duration 30 --out-dir " + scratch.path("") + " --in '" + bus.url + "'"
+            : program("fathom") + " emulate " + (protocol == "motor_test" ? "mavlink" : "thruster_text") +
+                  " --to pty:" + scratch.path("tty")};
     const Background driver{
         scratch, "driver",
         program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +

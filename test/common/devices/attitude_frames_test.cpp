@@ -55,6 +55,16 @@ TEST_CASE("GX3: acceleration is specific force, up when at rest, in m/s^2") {
   }
 }
 
+TEST_CASE("NMEA attitude: a sentence that lacks a field gives no attitude, one whose heave is empty does") {
+  const auto row = [](const std::string& body) {
+    return decode("nmea_attitude", devices::detail::nmea_sentence(body)).at(0);
+  };
+  CHECK(row("PSXN,23,0.10,-0.42,18.62,-0.03").has_sample);
+  CHECK(row("PSXN,23,0.10,-0.42,18.62,").has_sample);
+  CHECK_FALSE(row("PSXN,23,0.10,18.62,-0.03").has_sample);  // the checksum lets one such loss in 256 pass
+  CHECK_FALSE(row("SBG01,120000.00,0.10,18.62,-0.03").has_sample);
+}
+
 TEST_CASE("attitude sensors: rates, force and attitude come back from the bytes of an emulated one") {
   const devices::Instant now = tilted();
   for (const char* protocol : {"ig500", "sbg_ecom", "vn100", "gx3", "nmea_attitude"}) {

@@ -87,6 +87,24 @@ TEST_CASE("clock map: an instrument that starts anew is counted and mapped anew"
   CHECK(map.restarts() == 1);
 }
 
+TEST_CASE("clock map: a counter that runs over and a time of day at midnight are no restart, and drift stays known") {
+  constexpr double kDay = 86400.0;
+  Line line{.origin = kDay - 50.0, .ppm = 40.0};
+  ClockMap map{kLatency, 0.0, kDay};
+  double worst = 0.0;
+  for (int i = 0; i < 10'000; ++i) {
+    const double t = 0.01 * i;
+    const Utime utime = map.map(std::fmod(line.device(t), kDay), line.arrival(t));
+    if (t > 40.0) worst = std::max(worst, std::abs(seconds_between(kStart, utime) - (t + 0.002 - kLatency)));
+    if (t > 40.0) CHECK(map.drift());
+  }
+  CHECK(worst < 0.001);
+  CHECK(map.restarts() == 0);
+  line.origin = -100.0;  // switched on anew
+  (void)map.map(line.device(100.0), line.arrival(100.0));
+  CHECK(map.restarts() == 1);
+}
+
 TEST_CASE("clock map: times rise, whatever the line does, and without device time the arrival counts") {
   Line line{.origin = 0.0, .ppm = 0.0};
   ClockMap map{kLatency};

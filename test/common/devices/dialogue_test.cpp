@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "common/devices/emulation.hpp"
 #include "common/devices/protocols.hpp"
 #include "common/devices/sbg_ig500.hpp"
 
@@ -19,13 +20,21 @@ class Talk final : public Output {
         dialogue{make_dialogue(protocol, settings)},
         device{protocol} {}
   void run(double now, const std::function<std::string(std::string)>& alter = {}) {
-    for (std::string said = dialogue->begin(now); !said.empty();) {
+    go_on(dialogue->begin(now), alter);
+  }
+  void go_on(std::string said, const std::function<std::string(std::string)>& alter = {}) {
+    while (!said.empty()) {
       said_.clear();
       std::string answer = device.hear(said);
       if (alter) answer = alter(answer);
       parser_->feed(as_bytes(answer), *this);
       said = said_;
     }
+  }
+  // The instrument speaks, whatever it is told.
+  void hears_only(const std::string& bytes) {
+    (void)dialogue->begin(0.0);
+    parser_->feed(as_bytes(bytes), *this);
   }
   void frame(const Parser& parser, const Frame& frame) override { said_ += dialogue->hear(parser, frame, 0.0); }
 
@@ -37,6 +46,11 @@ class Talk final : public Output {
   std::unique_ptr<Dialogue> dialogue;
   EmulatedAnswers device;
 };
+
+std::string refuse(const std::string&) {
+  constexpr std::array<std::uint8_t, 1> kBadParameter{9};
+  return std::string{as_text(ig500::frame(ig500::kAck, kBadParameter))};
+}
 
 }  // namespace
 
@@ -73,20 +87,46 @@ TEST_CASE("IG-500: one that returns another mask than it was told is refused wit
   CHECK(talk.dialogue->failure().find("firmware") != std::string::npos);
 }
 
-TEST_CASE("IG-500: silence is asked again, then said") {
-  const auto dialogue = make_dialogue("ig500", {});
-  CHECK_FALSE(dialogue->begin(0.0).empty());
-  CHECK(dialogue->tick(0.1).empty());
+TEST_CASE("IG-500: one that sends and does not answer is asked again, then told with what to look at") {
+  Talk talk{"ig500", {}};
+  talk.hears_only(devices::emulate("ig500", devices::emulated_motion(1.7e9, 1.0, {}), {}));
   double now = 0.0;
   int asked = 0;
-  while (dialogue->failure().empty() && now < 10.0) {
+  while (talk.dialogue->failure().empty() && now < 10.0) {
     now += 0.1;
-    if (!dialogue->tick(now).empty()) ++asked;
+    if (!talk.dialogue->tick(now).empty()) ++asked;
   }
   CHECK(asked == 4);
   CHECK(now < 2.0);
-  CHECK(dialogue->failure().find("does not answer") != std::string::npos);
-  CHECK_FALSE(dialogue->tick(now + 5.0).empty());  // it may have been switched on since
+  CHECK(talk.dialogue->failure().find("does not answer") != std::string::npos);
+  CHECK_FALSE(talk.dialogue->tick(now + 5.0).empty());  // the line may have been mended since
+}
+
+TEST_CASE("IG-500: silence and rubbish are left to those who watch the line, and asked into again and again") {
+  const auto dialogue = make_dialogue("ig500", {});
+  CHECK_FALSE(dialogue->begin(0.0).empty());
+  CHECK(dialogue->tick(0.1).empty());
+  int asked = 0;
+  for (int i = 1; i <= 60; ++i) asked += dialogue->tick(0.1 * i).empty() ? 0 : 1;
+  CHECK(dialogue->failure().empty());
+  CHECK(asked > 12);  // whenever it is switched on, it is configured within half a second
+}
+
+TEST_CASE("IG-500: while a refusal is tried anew it stays told, until the instrument agrees or is gone") {
+  Talk talk{"ig500", {}};
+  talk.run(0.0, refuse);
+  CHECK(talk.dialogue->failure().find("did not stop sending") != std::string::npos);
+  const std::string again = talk.dialogue->tick(4.0);
+  CHECK_FALSE(again.empty());
+  CHECK_FALSE(talk.dialogue->failure().empty());
+  talk.go_on(again);
+  CHECK(talk.dialogue->done());
+  CHECK(talk.dialogue->failure().empty());
+
+  Talk gone{"ig500", {}};
+  gone.run(0.0, refuse);
+  for (int i = 40; i < 80; ++i) (void)gone.dialogue->tick(0.1 * i);
+  CHECK(gone.dialogue->failure().empty());
 }
 
 TEST_CASE("Water Linked: the version of the protocol is asked, another one refused") {

@@ -57,6 +57,26 @@ TEST_CASE("Sonardyne, iXblue and EvoLogics: positions in the world") {
   CHECK_FALSE(modems[2].has_sample);
 }
 
+TEST_CASE("USBL: where only other transponders are heard that is said, beside the wanted one they are passed over") {
+  devices::Settings settings;
+  for (const std::string name : {"nmea_usbl", "evologics"}) {
+    CAPTURE(name);
+    const devices::Instant now = devices::emulated_motion(1.7e9, 1.0, {});
+    settings.transceiver.beacon = "7";
+    const std::string other = devices::emulate(name, now, settings);
+    settings.transceiver.beacon = "8";
+    const std::string ours = devices::emulate(name, now, settings);
+    const devices::Protocol& protocol = devices::protocol(name, "test");
+    const auto parser = protocol.make(settings);
+    CHECK_FALSE(decode_wire(*parser, protocol, settings, other).at(0).has_sample);
+    CHECK(parser->complaint() == "positions of transponder 7 come, none of 8; is 'beacon' right?");
+    CHECK(decode_wire(*parser, protocol, settings, ours).at(0).has_sample);
+    CHECK(parser->complaint().empty());
+    CHECK_FALSE(decode_wire(*parser, protocol, settings, other).at(0).has_sample);
+    CHECK(parser->complaint().empty());
+  }
+}
+
 TEST_CASE("PSIMLBM: ranges in order, gaps as gaps, times as metres") {
   devices::Settings settings;
   settings.transponders = {"a", "b", "c", "d", "e"};

@@ -111,6 +111,11 @@ TEST_CASE("vehicle check: another firmware, another vehicle, and one that refuse
   CHECK(hear(11.0, answer(0)).empty());
   CHECK(says(hear(11.5, heartbeat(1, 12, 3) + answer(4)), "refuses motor tests (result 4)"));
   CHECK(check.objection(15.0).empty());
+
+  // What the vehicle says itself is the remedy, unless it only chats.
+  const auto words = [&](char severity, const std::string& text) { return packet(1, 253, 83, severity + text); };
+  CHECK(says(hear(20.0, words(6, "EKF is using GPS") + answer(4)), "safety switch"));
+  CHECK(says(hear(21.0, words(4, "Arm motors first\n") + answer(4)), "(result 4); it says 'Arm motors first'"));
 }
 
 TEST_CASE("lever arm: turning about down moves an instrument ahead of the origin sideways") {

@@ -252,6 +252,23 @@ TEST_CASE("supervisor: a silent identifier stops the excitation, where that is w
   }
 }
 
+TEST_CASE("supervisor: where MODEL stays away since another process fell silent, that one is named") {
+  Loop loop;
+  loop.settings.supervisor.model_patience = 10.0;
+  loop.settings.supervisor.needs = {"identifier", "thruster_driver"};
+  loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+  loop.run(0.2);
+  loop.arm();
+  Utime wall = 1'700'000'000'000'000;
+  for (int second = 0; second < 40; ++second) {
+    wall += 1'000'000;
+    loop.supervisor.hear(Health{.utime = wall, .process = "identifier", .state = "running"});
+    if (second < 5) loop.supervisor.hear(Health{.utime = wall, .process = "thruster_driver", .state = "running"});
+    loop.run(1.0);
+  }
+  CHECK(loop.supervisor.reason() == "thruster_driver is silent: no MODEL came");
+}
+
 TEST_CASE("supervisor: hold stays, manual obeys inside the fence, identify goes on, retry begins the mode again") {
   Loop loop;
   loop.run(0.2);

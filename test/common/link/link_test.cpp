@@ -127,12 +127,18 @@ TEST_CASE("link: an instrument that goes and comes back is found again, and why 
   }
   CHECK(until(link, [&] { return !link.up(); }));
   CHECK(heard.changes.back().find("closed the line") != std::string::npos);
-  Server again{"tcp:" + port};
-  CHECK(until(link, [&] {
-    (void)again.wait(0.0);
-    return link.up();
-  }));
-  CHECK(link.openings() == 2);
+  {
+    Server again{"tcp:" + port};
+    CHECK(until(link, [&] {
+      (void)again.wait(0.0);
+      return link.up();
+    }));
+    CHECK(link.openings() == 2);
+    link.send(std::string{"nobody reads this, so that the end is a reset"});
+    link.wait({}, 50);
+  }
+  CHECK(until(link, [&] { return !link.up(); }));
+  CHECK(heard.changes.back().find("closed the line") != std::string::npos);
 }
 
 TEST_CASE("link: what cannot be opened is said with its remedy") {
