@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -65,6 +66,8 @@ void line(const char* name, double a, double b, const char* unit) {
   std::printf("%-28s %12.4g %12.4g  %s\n", name, a, b, unit);
 }
 
+std::string label(const std::string& path) { return std::filesystem::path{path}.filename().string(); }
+
 std::string block(const char* name, const Flight& flight) {
   std::string text = std::string{name} + " << EOD\n";
   for (const model::FlightMoment& m : flight) {
@@ -110,10 +113,11 @@ void compare_manoeuvre(const std::string& first, const std::string& second, cons
               (one.back().p_WB - two.back().p_WB).norm());
   if (plot.empty()) return;
   report::Figure figure{.alt = "Tracks of two sets of derivatives", .width = 560, .height = 420};
-  figure.script = block("$a", one) + block("$b", two) +
-                  "set size ratio -1\nset xlabel 'east [m]'\nset ylabel 'north [m]'\n"
-                  "plot $a with lines lw 2 lc rgb '#22262b', $b with lines lw 2 dt 2 lc rgb '#e07b00'\n";
-  tables::write_file(plot, report::render({figure}).front());
+  figure.script = block("$a", one) + block("$b", two) + "set size ratio -1\nset key top left\n" +
+                  "set xlabel 'east [m]'\nset ylabel 'north [m]'\nplot $a with lines lw 2 lc rgb '#22262b' title " +
+                  report::quoted(label(first)) + ", $b with lines lw 2 dt 2 lc rgb '#e07b00' title " +
+                  report::quoted(label(second)) + "\n";
+  tables::write_file(plot, report::svg_file(figure));
 }
 
 }  // namespace fathom::tool

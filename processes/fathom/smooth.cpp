@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "common/base/config.hpp"
@@ -20,7 +21,7 @@ namespace {
 constexpr double kConverged = 30.0;  // s after which filter and smoother are compared, as Pereira and Duncan did
 
 struct Options {
-  std::string run, out, config, model;
+  std::string run, out, config, model, map;
   bool stated{false};
 };
 
@@ -74,8 +75,12 @@ void run(const Options& options) {
     settings.model =
         options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
   }
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.run, options.out, ignored)) {
+    throw InputError(options.out + ": --out is the run itself; what was recorded is not written over");
+  }
   std::vector<std::string> notes;
-  Recording recording = std::move(read_recordings({options.run}, "", notes).front());
+  Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
   if (!recording.ranges.empty() && settings.transponders.empty()) {
     notes.push_back(options.run + ": RANGES are not used: no transponder's place is known; state them in --config");
   }
@@ -108,6 +113,7 @@ void add_smooth(CLI::App& app) {
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
   command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
   command->add_option("--config", options->config, "YAML file whose section estimator has `filter: ekf`");
+  command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
   command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
   command->callback([options] { run(*options); });
