@@ -110,6 +110,31 @@ TEST_CASE("fathom methods: both methods on the same recording, judged on another
   CHECK_MESSAGE(ran.says("m_X"), ran.text);
 }
 
+TEST_CASE("fathom methods: against a truth it tells what each estimate was worth, and what each set of parameters") {
+  const Scratch scratch;
+  const auto dive =
+      test::make_dive(test::vehicle_from_repository("seabotix_lbv150"), {.duration = 60.0, .dt = 0.05, .spread = 0.0});
+  Recording recording;
+  for (std::size_t k = 0; k < dive.trial.size(); ++k) {
+    const Utime utime = utime_after(1'700'000'000'000'000, dive.trial.t[k]);
+    const Vector6d& nu = dive.trial.nu[k];
+    recording.ahrs.push_back({.utime = utime, .w_WB_B = nu.tail<3>(), .has_rates = true});
+    recording.pose_capture.push_back({.utime = utime, .p_WB = dive.trial.p_WB[k], .q_WB = dive.trial.q_WB[k]});
+    recording.dvl.push_back({.utime = utime, .v_WB_B = nu.head<3>()});
+    const Eigen::VectorXd& f = dive.trial.input[k];
+    recording.thrusters.push_back({.utime = utime, .force = {f.data(), f.data() + f.size()}});
+    recording.truth.push_back({.utime = utime, .p_WB = dive.trial.p_WB[k], .q_WB = dive.trial.q_WB[k], .nu = nu});
+  }
+  wire::write_log(recording, scratch.path("dive.lcmlog"));
+  const auto ran =
+      shell(program("fathom") + " methods --vehicle " + file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
+            file("test/trials/dives.yaml") + " --truth --train " + scratch.path("dive.lcmlog"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  for (const char* row : {"complementary filter", "Kalman filter", "Kalman smoother", "parameter error"}) {
+    CHECK_MESSAGE(ran.says(row), ran.text);
+  }
+}
+
 TEST_CASE("fathom smooth: a table with a column map, from motion capture and gyro") {
   const Scratch scratch;
   const auto ran = shell(program("fathom") + " smooth " + file("test/data/beluga/yaw-1.csv") + " --map " +
