@@ -18,7 +18,8 @@
 namespace fathom::tool {
 namespace {
 
-constexpr double kConverged = 30.0;  // s after which filter and smoother are compared, as Pereira and Duncan did
+constexpr double kConverged = 30.0;   // s after which filter and smoother are compared, as Pereira and Duncan did
+constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
 struct Options {
   std::string run, out, config, model, map;
@@ -31,6 +32,12 @@ void print(const estimation::SmoothedTrial& trial) {
     if (one.used + one.refused + one.dropped == 0) continue;
     std::printf("%-18s %9lld %9lld %9lld %8.3f\n", one.name.c_str(), static_cast<long long>(one.used),
                 static_cast<long long>(one.refused), static_cast<long long>(one.dropped), one.nis());
+  }
+  for (const estimation::InnovationStatistics& one : trial.statistics) {
+    if (static_cast<double>(one.refused) <= kMostRefused * static_cast<double>(one.used + one.refused)) continue;
+    std::printf("%s: %.0f %% refused; its noise is stated too small, or it contradicts the others (fathom check)\n",
+                one.name.c_str(),
+                100.0 * static_cast<double>(one.refused) / static_cast<double>(one.used + one.refused));
   }
   Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -96,6 +103,7 @@ void run(const Options& options) {
   }
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   estimation::SmoothedTrial trial = estimation::smooth(recording, settings);
+  for (const std::string& note : trial.notes) std::fprintf(stderr, "%s\n", note.c_str());
   print(trial);
   recording.state.clear();
   for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));

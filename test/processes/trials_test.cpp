@@ -141,6 +141,7 @@ TEST_CASE("fathom smooth: a table with a column map, from motion capture and gyr
                          file("config/maps/beluga.yaml") + " --out " + scratch.path("yaw.lcmlog"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   CHECK_MESSAGE(ran.says("pose position"), ran.text);
+  CHECK_MESSAGE(ran.says("refused; its noise is stated too small"), ran.text);  // capture and gyro are turned
   CHECK(wire::read_log(scratch.path("yaw.lcmlog")).recording.smoothed.size() > 1000);
 }
 

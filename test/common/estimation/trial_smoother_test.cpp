@@ -212,7 +212,7 @@ TEST_CASE_FIXTURE(Fixture, "bad input: an outlier among the first three ranges d
   CHECK(worst < 0.25);  // m; begun from the outlier it is more than one, and right ranges are refused for seconds
 }
 
-TEST_CASE_FIXTURE(Fixture, "bad input: unequal time steps and a gap of seconds are no trouble") {
+TEST_CASE_FIXTURE(Fixture, "bad input: unequal time steps and a gap of seconds are bridged, and said") {
   auto trial = record(7);
   auto& ahrs = trial.recording.ahrs;
   for (std::size_t i = ahrs.size(); i-- > 0;) {
@@ -220,6 +220,9 @@ TEST_CASE_FIXTURE(Fixture, "bad input: unequal time steps and a gap of seconds a
     if (gap || (i % 3 == 1 && i % 7 < 3)) ahrs.erase(ahrs.begin() + static_cast<std::ptrdiff_t>(i));
   }
   const SmoothedTrial result = smooth(trial.recording, instruments);
+  REQUIRE(result.notes.size() == 1);
+  CHECK(result.notes.front().find("longer than the usual 0.02 s, the longest 3.") != std::string::npos);
+  CHECK(smooth(record(7).recording, instruments).notes.empty());
   std::size_t k = 0;
   double worst = 0.0;
   for (const auto& one : result.smoothed) {
