@@ -135,11 +135,11 @@ TEST_CASE("regress: without disturbance the vehicle file's derivatives come back
   auto runs = three_manoeuvres(vehicle);
   disturb(runs, 1, 0.0, 1e-3);
   const auto axes = regress(vehicle, runs, {});
-  for (const auto& [name, value] : truth_of(vehicle)) {
-    CAPTURE(name);
-    const SelectedTerm* term = find(axes, name);
+  for (const auto& known : truth_of(vehicle)) {
+    CAPTURE(known.first);
+    const SelectedTerm* term = find(axes, known.first);
     REQUIRE(term != nullptr);
-    CHECK(term->value == doctest::Approx(value).epsilon(0.02));
+    CHECK(term->value == doctest::Approx(known.second).epsilon(0.02));
   }
 }
 
@@ -221,10 +221,10 @@ TEST_CASE("trials: what the paper does not publish is varied, and what is found 
          for (auto& one : a.instruments.transponders) one.p_WT.head<2>() *= 2.0;
        }},
       {"accelerometers twice as noisy", [](Assumed& a) { a.instruments.accelerometer_noise *= 2.0; }}};
-  for (const auto& [name, change] : variations) {
-    CAPTURE(name);
+  for (const auto& variation : variations) {
+    CAPTURE(variation.first);
     Assumed a;
-    change(a);
+    variation.second(a);
     std::vector<ManoeuvreRows> runs;
     for (const auto kind : {ManoeuvreKind::kLine, ManoeuvreKind::kZigzag, ManoeuvreKind::kCircle}) {
       a.trial.manoeuvre = manoeuvre(kind);
@@ -242,11 +242,11 @@ TEST_CASE("trials: what the paper does not publish is varied, and what is found 
     }
     const auto axes = regress(a.vehicle, runs, {});
     // Load cells show 3 % more or less, of forces several times as large as what the hull's drag leaves of them.
-    for (const auto& [term, within] : std::map<std::string, double>{{"X_uu", 0.2}, {"N_ur", 0.3}, {"M_uq", 0.3}}) {
-      CAPTURE(term);
-      const SelectedTerm* found = find(axes, term);
+    for (const auto& one : std::map<std::string, double>{{"X_uu", 0.2}, {"N_ur", 0.3}, {"M_uq", 0.3}}) {
+      CAPTURE(one.first);
+      const SelectedTerm* found = find(axes, one.first);
       REQUIRE(found != nullptr);
-      CHECK(found->value == doctest::Approx(truth_of(a.vehicle).at(term)).epsilon(within));
+      CHECK(found->value == doctest::Approx(truth_of(a.vehicle).at(one.first)).epsilon(one.second));
     }
   }
 }
