@@ -59,7 +59,8 @@ Verdict agree(const std::vector<Transponder>& transponders, std::vector<double>&
   for (std::size_t i = 0; i < std::min(transponders.size(), ranges.size()); ++i) {
     heard += ranges[i] > 0.0 && transponders[i].used ? 1 : 0;
   }
-  if (heard < 4 || locate(transponders, ranges, depth, tolerance)) return {};
+  const std::size_t redundant = depth ? 3 : 4;  // fewer ranges fit a place whatever they say
+  if (heard < redundant || locate(transponders, ranges, depth, tolerance)) return {};
   for (std::size_t i = 0; i < std::min(transponders.size(), ranges.size()); ++i) {
     if (ranges[i] <= 0.0 || !transponders[i].used) continue;
     const double kept = ranges[i];
@@ -104,6 +105,7 @@ void StartFinder::use(const Ranges& sample) {
   ++ranges_heard_;
   const Verdict verdict = agree(settings_->transponders, ranges, depth_, 5.0 * settings_->range_noise);
   if (verdict.agreement == Agreement::kAllButOne) ranges[verdict.odd] = 0.0;
+  if (verdict.agreement == Agreement::kNone && elapsed_ < kPatience) return;  // a better message may come
   const auto place = locate(settings_->transponders, ranges, depth_, kTolerance);
   if (place) position_ = place;
 }

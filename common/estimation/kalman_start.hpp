@@ -33,7 +33,8 @@ struct Verdict {
   Agreement agreement{Agreement::kAll};
   std::size_t odd{};  ///< the one that is left out
 };
-/// Ranges as above; `ranges` is used as scratch and restored. Too few of them to contradict each other agree.
+/// Ranges as above; `ranges` is used as scratch and restored. Too few of them to contradict each other agree;
+/// of three and a depth nobody can say which one is odd.
 [[nodiscard]] Verdict agree(const std::vector<Transponder>& transponders, std::vector<double>& ranges,
                             std::optional<double> depth, double tolerance);
 

@@ -68,14 +68,18 @@ template <int N>
 void Smoother<N>::back_over(const FilterRecord<N>& record, KinematicModel model, const Visit& visit) {
   for (std::size_t k = record.instants.size() - 1; k > 0; --k) {
     visit(k, Smoothed<N>{record.instants[k], lambda_, Lambda_});
-    for (std::size_t i = record.instants[k].taken; i > record.instants[k - 1].taken; --i) {
-      const typename FilterRecord<N>::Taken& one = record.taken[i - 1];
+    for (std::size_t n = record.instants[k].taken; n > record.instants[k - 1].taken; --n) {
+      const typename FilterRecord<N>::Taken& one = record.taken[n - 1];
       const State v = Lambda_ * one.gain;
       lambda_ -= one.row * (one.gain.dot(lambda_) + one.innovation / one.variance);
       // (I - k h')' L (I - k h') + h h' / S, as one symmetric update of rank two.
       const State half = v - (0.5 * (one.gain.dot(v) + 1.0 / one.variance)) * one.row;
-      Lambda_.noalias() -= one.row * half.transpose();
-      Lambda_.noalias() -= half * one.row.transpose();
+      for (int i = 0; i < N; ++i) {  // most instruments see a few states
+        const double share = one.row[i];
+        if (share == 0.0) continue;
+        Lambda_.row(i) -= share * half.transpose();
+        Lambda_.col(i) -= share * half;
+      }
     }
     const Transition F{point_of<N>(record.instants[k - 1], record.instants[k]), record.instants[k].dt, model};
     transport_back<N>(F, lambda_);

@@ -1,6 +1,8 @@
 #include "common/estimation/transponder_check.hpp"
 
+#include <cmath>
 #include <limits>
+#include <string>
 
 #include "common/base/error.hpp"
 #include "common/estimation/trial_smoother.hpp"
@@ -39,11 +41,17 @@ double mean_surprise(const Recording& recording, const KalmanSettings& settings,
 KalmanSettings without_wrong_transponders(const Recording& recording, KalmanSettings settings,
                                           std::vector<std::string>& notes) {
   if (recording.ranges.empty()) return settings;
-  auto used = static_cast<int>(settings.transponders.size());
-  for (; used > 3; --used) {
+  for (auto used = settings.transponders.size(); used > 0; --used) {
     bool bad = false;
     const double doubt = mean_surprise(recording, settings, bad);
     if (!bad) return settings;
+    if (used <= 3) {
+      if (std::isfinite(doubt)) {
+        notes.push_back(recording.name + ": the ranges contradict each other; with " + std::to_string(used) +
+                        " transponders nothing tells which place is wrong");
+      }
+      return settings;
+    }
     Transponder* guilty = nullptr;
     double best = kHelps * doubt;  // infinite when nothing is found with all of them
     for (Transponder& one : settings.transponders) {
@@ -57,7 +65,9 @@ KalmanSettings without_wrong_transponders(const Recording& recording, KalmanSett
       guilty = &one;
     }
     if (guilty == nullptr) {
-      notes.push_back(recording.name + ": the ranges contradict each other, and no single transponder explains it");
+      notes.push_back(recording.name +
+                      ": the ranges contradict each other, and no single transponder explains it; check the places and "
+                      "their order in the file");
       return settings;
     }
     guilty->used = false;

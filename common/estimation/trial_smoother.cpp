@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 #include "common/base/error.hpp"
 
@@ -11,6 +13,7 @@ namespace {
 namespace at = model::at;
 
 constexpr std::size_t kStretch = 400;  // instants whose record is kept at a time: it stays in the cache
+constexpr double kUneven = 1.5;        // usual steps: longer ones are told of
 
 struct Event {
   Utime utime{};
@@ -159,6 +162,29 @@ class Run {
   std::vector<KinematicEstimator<N>> checkpoints_;
 };
 
+/// What unequal steps and gaps a run has; nothing where all are alike.
+std::optional<std::string> uneven(const std::string& name, const std::vector<SmoothedState>& states) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < states.size(); ++k) {
+    steps.push_back(seconds_between(states[k - 1].utime, states[k].utime));
+  }
+  if (steps.empty()) return std::nullopt;
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double usual = kUneven * *middle;
+  const auto longest = std::max_element(steps.begin(), steps.end());
+  if (*longest <= usual) return std::nullopt;
+  const auto at = static_cast<std::size_t>(longest - steps.begin());
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      ": %td of %zu steps are longer than the usual %.3g s, the longest %.3g s at %.1f s; the model bridges them",
+      std::count_if(steps.begin(), steps.end(), [&](double step) { return step > usual; }), steps.size(), *middle,
+      *longest, seconds_between(states.front().utime, states[at].utime));
+  return name + text;
+}
+
 template <int N>
 SmoothedTrial smooth_as(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit) {
   SmoothedTrial trial;
@@ -168,6 +194,7 @@ SmoothedTrial smooth_as(const Recording& recording, const KalmanSettings& settin
   trial.statistics = run.estimator().statistics();
   trial.likelihood = run.estimator().likelihood();
   run.backward(trial, visit);
+  if (const auto note = uneven(recording.name, trial.smoothed)) trial.notes.push_back(*note);
   return trial;
 }
 

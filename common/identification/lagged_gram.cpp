@@ -18,7 +18,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 #if defined(__x86_64__)
 // Where the processor has it, sums of products with four lanes and fused multiply-add: this pass is most of the cost of
-// a regression, and Debian's compilers may assume but two lanes. Tiles of 4 x 8 sums stay in registers.
+// a regression, and Debian's compilers may assume but two lanes. Tiles of 4 x 8 sums stay in registers; they are named
+// one by one because an array of them goes to memory and back with every row.
 using Lanes = double __attribute__((vector_size(32)));
 constexpr Eigen::Index kTall = 4, kWide = 8;
 
@@ -26,22 +27,22 @@ __attribute__((target("avx2,fma"))) void gram_in_lanes(const double* rows, Eigen
                                                        Eigen::MatrixXd& sum) {
   for (Eigen::Index j = 0; j < width; j += kWide) {
     for (Eigen::Index i = j; i < width; i += kTall) {
-      Lanes acc[kTall][2] = {};
+      Lanes a0{}, a1{}, b0{}, b1{}, c0{}, c1{}, d0{}, d1{};
       const double* row = rows;
       for (Eigen::Index k = 0; k < n; ++k, row += width) {
         Lanes low, high;
         __builtin_memcpy(&low, row + j, sizeof low);
         __builtin_memcpy(&high, row + j + 4, sizeof high);
-        for (Eigen::Index t = 0; t < kTall; ++t) {
-          const double x = row[i + t];
-          const Lanes all = {x, x, x, x};
-          acc[t][0] += all * low;
-          acc[t][1] += all * high;
-        }
+        const double a = row[i], b = row[i + 1], c = row[i + 2], d = row[i + 3];
+        a0 += a * low, a1 += a * high;
+        b0 += b * low, b1 += b * high;
+        c0 += c * low, c1 += c * high;
+        d0 += d * low, d1 += d * high;
       }
+      const Lanes tile[kTall][2] = {{a0, a1}, {b0, b1}, {c0, c1}, {d0, d1}};
       for (Eigen::Index t = 0; t < kTall; ++t) {
         for (Eigen::Index s = 0; s < kWide; ++s) {
-          if (i + t < sum.rows() && j + s < sum.cols()) sum(i + t, j + s) = acc[t][s / 4][s % 4];
+          if (i + t < sum.rows() && j + s < sum.cols()) sum(i + t, j + s) = tile[t][s / 4][s % 4];
         }
       }
     }
@@ -95,10 +96,14 @@ void LaggedGram::add(const Samples& samples, int block) {
 }
 
 void LaggedGram::add(const LaggedGram& other) {
-  for (const BlockGram& one : other.blocks_) {
-    blocks_.push_back(one);
-    sum(one);
-  }
+  if (other.blocks_.empty()) return;
+  start();
+  blocks_.insert(blocks_.end(), other.blocks_.begin(), other.blocks_.end());
+  steps_ += other.steps_;
+  lagged_ += other.lagged_;
+  ends_ += other.ends_;
+  firsts_ += other.firsts_;
+  samples_ += other.samples_;
   stretches_ += other.stretches_;
 }
 
@@ -112,11 +117,14 @@ LaggedGram LaggedGram::part(std::size_t begin, std::size_t count) const {
   return result;
 }
 
+void LaggedGram::start() {
+  if (steps_.size() > 0) return;
+  steps_.setZero(columns_, columns_);
+  lagged_ = ends_ = firsts_ = steps_;
+}
+
 void LaggedGram::sum(const BlockGram& block) {
-  if (steps_.size() == 0) {
-    steps_.setZero(columns_, columns_);
-    lagged_ = ends_ = firsts_ = steps_;
-  }
+  start();
   steps_ += block.steps;
   lagged_ += block.lagged;
   ends_ += block.last * block.last.transpose() - block.before * block.before.transpose();

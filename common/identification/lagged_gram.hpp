@@ -55,6 +55,7 @@ class LaggedGram {
   [[nodiscard]] LaggedGram part(std::size_t begin, std::size_t count) const;
 
  private:
+  void start();
   void sum(const BlockGram& block);
 
   Eigen::Index columns_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "common/base/error.hpp"
 #include "common/model/manoeuvres.hpp"
@@ -9,7 +10,8 @@
 namespace fathom::identification {
 namespace {
 
-constexpr double kGap = 3.0;  // typical steps between samples that are no neighbours any more
+constexpr double kGap = 3.0;             // typical steps between samples that are no neighbours any more
+constexpr std::size_t kFewestRows = 20;  // of a run: as many as an equation may have terms
 
 /// A wrench over time, averaged over an interval; held at the ends.
 class WrenchSignal {
@@ -128,6 +130,15 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
       stretch.push_back(row);
       if (k < states.size() && seconds_between(end, states[k].utime) > kGap * std::max(step, 0.5 * rows.dt)) break;
     }
+  }
+  std::size_t count = 0;
+  for (const auto& stretch : rows.stretches) count += stretch.size();
+  if (count < kFewestRows) {
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  ": %zu rows of %.3g s; regression needs %zu at least, so a higher --rate or a longer run", count,
+                  rows.dt, kFewestRows);
+    throw InputError(recording.name + text);
   }
   return rows;
 }

@@ -173,4 +173,13 @@ std::vector<std::string> render(const std::vector<Figure>& figures, const std::s
   return pictures;
 }
 
+std::string svg_file(const Figure& figure) {
+  std::string svg = render({figure}).front();
+  const std::size_t inside = svg.find('>') + 1;
+  svg.insert(inside, "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>");
+  svg.insert(svg.find(' '), " xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(figure.width) +
+                                "\" height=\"" + std::to_string(figure.height) + "\"");
+  return svg;
+}
+
 }  // namespace fathom::report

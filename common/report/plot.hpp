@@ -23,6 +23,9 @@ struct Figure {
 [[nodiscard]] std::vector<std::string> render(const std::vector<Figure>& figures,
                                               const std::string& gnuplot = "gnuplot");
 
+/// One figure as a file that viewers open: named as SVG and on white, which an element inside a page needs not be.
+[[nodiscard]] std::string svg_file(const Figure& figure);
+
 /// Text in gnuplot's single quotes.
 [[nodiscard]] std::string quoted(std::string text);
 

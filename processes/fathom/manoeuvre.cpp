@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -65,12 +66,38 @@ void line(const char* name, double a, double b, const char* unit) {
   std::printf("%-28s %12.4g %12.4g  %s\n", name, a, b, unit);
 }
 
+std::string label(const std::string& path) { return std::filesystem::path{path}.filename().string(); }
+
 std::string block(const char* name, const Flight& flight) {
   std::string text = std::string{name} + " << EOD\n";
   for (const model::FlightMoment& m : flight) {
-    text += std::to_string(m.p_WB.y()) + " " + std::to_string(m.p_WB.x()) + "\n";
+    text += std::to_string(m.p_WB.x()) + " " + std::to_string(m.p_WB.y()) + "\n";
   }
   return text + "EOD\n";
+}
+
+/// As seen from above, north to the right; to scale unless that flattens both tracks to a line.
+std::string axes(const Flight& one, const Flight& two, const report::Figure& figure) {
+  Eigen::Vector2d low = one.front().p_WB.head<2>(), high = low;
+  for (const Flight* flight : {&one, &two}) {
+    for (const model::FlightMoment& m : *flight) {
+      low = low.cwiseMin(m.p_WB.head<2>());
+      high = high.cwiseMax(m.p_WB.head<2>());
+    }
+  }
+  constexpr double kEdge = 1.1, kFlat = 0.25, kLeast = 0.5;  // shares, and m
+  const Eigen::Vector2d pixels(figure.width - figure.left - figure.right, figure.height - figure.top - figure.bottom);
+  const Eigen::Vector2d span = (high - low).cwiseMax(kLeast), middle = 0.5 * (low + high);
+  Eigen::Vector2d shown = kEdge * span.cwiseQuotient(pixels).maxCoeff() * pixels;
+  const bool flat = span.y() < kFlat * shown.y();
+  if (flat) shown.y() = kEdge * span.y();
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "set xrange [%.3f:%.3f]\nset yrange [%.3f:%.3f]\nset xlabel 'north [m]' offset 0, 0.6\n"
+                "set ylabel 'east [m]%s'\n",
+                middle.x() - 0.5 * shown.x(), middle.x() + 0.5 * shown.x(), middle.y() + 0.5 * shown.y(),
+                middle.y() - 0.5 * shown.y(), flat ? ", stretched" : "");
+  return text;
 }
 
 }  // namespace
@@ -109,11 +136,13 @@ void compare_manoeuvre(const std::string& first, const std::string& second, cons
   std::printf("difference, largest: %.2f m of position, %.2f rad of heading; at the end %.2f m\n", apart, turned,
               (one.back().p_WB - two.back().p_WB).norm());
   if (plot.empty()) return;
-  report::Figure figure{.alt = "Tracks of two sets of derivatives", .width = 560, .height = 420};
-  figure.script = block("$a", one) + block("$b", two) +
-                  "set size ratio -1\nset xlabel 'east [m]'\nset ylabel 'north [m]'\n"
-                  "plot $a with lines lw 2 lc rgb '#22262b', $b with lines lw 2 dt 2 lc rgb '#e07b00'\n";
-  tables::write_file(plot, report::render({figure}).front());
+  report::Figure figure{.alt = "Tracks of two sets of derivatives", .width = 560, .height = 420, .top = 50};
+  figure.left = 70;
+  figure.script = block("$a", one) + block("$b", two) + axes(one, two, figure) +
+                  "set key at screen 0.97, 0.97\nplot $a with lines lw 2 lc rgb '#22262b' title " +
+                  report::quoted(label(first)) + ", $b with lines lw 2 dt 2 lc rgb '#e07b00' title " +
+                  report::quoted(label(second)) + "\n";
+  tables::write_file(plot, report::svg_file(figure));
 }
 
 }  // namespace fathom::tool

@@ -30,17 +30,29 @@ struct Options {
 
 /// Squares of state errors against TRUTH.
 struct StateErrors {
-  Eigen::Vector4d sum{Eigen::Vector4d::Zero()};  // position, attitude, velocity, rates
+  const char* method;
+  Eigen::Matrix<double, 5, 1> sum{Eigen::Matrix<double, 5, 1>::Zero()};  // position ... rates, acceleration
   double count{};
-  template <class State>
-  void add(const State& state, const Truth& truth) {
-    const Eigen::Vector3d turn = rotation_vector_from_quaternion(truth.q_WB.conjugate() * state.q_WB);
-    sum += Eigen::Vector4d{(state.p_WB - truth.p_WB).squaredNorm(), turn.squaredNorm(),
-                           (state.nu - truth.nu).template head<3>().squaredNorm(),
-                           (state.nu - truth.nu).template tail<3>().squaredNorm()};
+  bool accelerations{};
+  void add(const StateEstimate& state, const Truth& truth) { add(state.p_WB, state.q_WB, state.nu, truth); }
+  void add(const SmoothedState& state, const Truth& truth) {
+    add(state.p_WB, state.q_WB, state.nu, truth);
+    sum[4] += (state.nu_dot - truth.nu_dot).head<3>().squaredNorm();
+    accelerations = true;
+  }
+  void print() const {
+    const Eigen::Matrix<double, 5, 1> rms = (sum / std::max(count, 1.0)).cwiseSqrt();
+    std::printf("  %-24s %10.4f %12.4f %13.4f %12.4f ", method, rms[0], rms[1], rms[2], rms[3]);
+    accelerations ? std::printf("%18.4f\n", rms[4]) : std::printf("%18s\n", "-");
+  }
+
+ private:
+  void add(const Eigen::Vector3d& p, const Eigen::Quaterniond& q, const Vector6d& nu, const Truth& truth) {
+    const Eigen::Vector3d turn = rotation_vector_from_quaternion(truth.q_WB.conjugate() * q);
+    sum.head<4>() += Eigen::Vector4d{(p - truth.p_WB).squaredNorm(), turn.squaredNorm(),
+                                     (nu - truth.nu).head<3>().squaredNorm(), (nu - truth.nu).tail<3>().squaredNorm()};
     count += 1.0;
   }
-  [[nodiscard]] Eigen::Vector4d rms() const { return (sum / std::max(count, 1.0)).cwiseSqrt(); }
 };
 
 template <class State>
@@ -129,7 +141,7 @@ void run(const Options& options) {
 
   identification::Identifier identifier{identifier_settings, vehicle};
   std::vector<identification::BaseRun> runs;
-  StateErrors filtered, smoothed;
+  StateErrors complementary{"complementary filter"}, forward{"Kalman filter"}, smoothed{"Kalman smoother"};
   for (std::size_t i = 0; i < options.train.size(); ++i) {
     const Recording recording = estimation::corrected(recordings[i], consistency.corrections[i]);
     const std::vector<Thrusters> inputs = forces(recording, consistency.corrections[i], vehicle);
@@ -149,7 +161,8 @@ void run(const Options& options) {
       state.utime += later;
       static_cast<void>(identifier.step(state));
     }
-    compare(states, recording.truth, filtered);
+    compare(states, recording.truth, complementary);
+    compare(trial.filtered, recording.truth, forward);
     compare(trial.smoothed, recording.truth, smoothed);
     runs.push_back({std::move(trial.smoothed), inputs});
   }
@@ -177,12 +190,10 @@ void run(const Options& options) {
     std::printf("parameter error, root mean square: %.1f %% and %.1f %%\n", 100.0 * std::sqrt(squares[0] / n),
                 100.0 * std::sqrt(squares[1] / n));
   }
-  if (filtered.count > 0.0) {
-    const Eigen::Vector4d a = filtered.rms(), b = smoothed.rms();
-    std::printf(
-        "state error, root mean square: position %.4f and %.4f m, attitude %.4f and %.4f rad, velocity %.4f and "
-        "%.4f m/s, rates %.4f and %.4f rad/s\n",
-        a[0], b[0], a[1], b[1], a[2], b[2], a[3], b[3]);
+  if (complementary.count > 0.0) {
+    std::printf("state error, root mean square: position [m], attitude [rad], velocity [m/s], rates [rad/s], ");
+    std::printf("acceleration [m/s^2]\n");
+    for (const StateErrors* one : {&complementary, &forward, &smoothed}) one->print();
   }
   if (options.validate.empty()) return;
   std::vector<Trial> trials;

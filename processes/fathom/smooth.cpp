@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "common/base/config.hpp"
@@ -17,10 +18,11 @@
 namespace fathom::tool {
 namespace {
 
-constexpr double kConverged = 30.0;  // s after which filter and smoother are compared, as Pereira and Duncan did
+constexpr double kConverged = 30.0;   // s after which filter and smoother are compared, as Pereira and Duncan did
+constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
 struct Options {
-  std::string run, out, config, model;
+  std::string run, out, config, model, map;
   bool stated{false};
 };
 
@@ -30,6 +32,12 @@ void print(const estimation::SmoothedTrial& trial) {
     if (one.used + one.refused + one.dropped == 0) continue;
     std::printf("%-18s %9lld %9lld %9lld %8.3f\n", one.name.c_str(), static_cast<long long>(one.used),
                 static_cast<long long>(one.refused), static_cast<long long>(one.dropped), one.nis());
+  }
+  for (const estimation::InnovationStatistics& one : trial.statistics) {
+    if (static_cast<double>(one.refused) <= kMostRefused * static_cast<double>(one.used + one.refused)) continue;
+    std::printf("%s: %.0f %% refused; its noise is stated too small, or it contradicts the others (fathom check)\n",
+                one.name.c_str(),
+                100.0 * static_cast<double>(one.refused) / static_cast<double>(one.used + one.refused));
   }
   Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -74,8 +82,12 @@ void run(const Options& options) {
     settings.model =
         options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
   }
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.run, options.out, ignored)) {
+    throw InputError(options.out + ": --out is the run itself; what was recorded is not written over");
+  }
   std::vector<std::string> notes;
-  Recording recording = std::move(read_recordings({options.run}, "", notes).front());
+  Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
   if (!recording.ranges.empty() && settings.transponders.empty()) {
     notes.push_back(options.run + ": RANGES are not used: no transponder's place is known; state them in --config");
   }
@@ -91,6 +103,7 @@ void run(const Options& options) {
   }
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   estimation::SmoothedTrial trial = estimation::smooth(recording, settings);
+  for (const std::string& note : trial.notes) std::fprintf(stderr, "%s\n", note.c_str());
   print(trial);
   recording.state.clear();
   for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));
@@ -108,6 +121,7 @@ void add_smooth(CLI::App& app) {
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
   command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
   command->add_option("--config", options->config, "YAML file whose section estimator has `filter: ekf`");
+  command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
   command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
   command->callback([options] { run(*options); });

@@ -52,6 +52,13 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: from a log to derivat
   const auto compared = shell(program("fathom") + " compare " + kVehicle + " " + kVehicle + " --manoeuvre circle");
   REQUIRE_MESSAGE(compared.code == 0, compared.text);
   CHECK_MESSAGE(compared.says("largest: 0.00 m"), compared.text);
+  const auto drawn = shell(program("fathom") + " compare " + kVehicle + " " + scratch.path("found.yaml") +
+                           " --manoeuvre zigzag --plot " + scratch.path("tracks.svg"));
+  REQUIRE_MESSAGE(drawn.code == 0, drawn.text);
+  std::ifstream svg{scratch.path("tracks.svg")};
+  const std::string picture{std::istreambuf_iterator<char>{svg}, {}};
+  CHECK(picture.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));  // without it no viewer shows the file
+  CHECK(picture.find("found.yaml") != std::string::npos);                   // which line is whose
 }
 
 TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said in one line") {
@@ -64,6 +71,14 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
   const auto bare =
       shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("x.lcmlog"));
   CHECK_MESSAGE(bare.says("RANGES are not used"), bare.text);
+  const auto itself =
+      shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("zigzag.lcmlog"));
+  CHECK(itself.code == 1);
+  CHECK_MESSAGE(itself.says("--out is the run itself"), itself.text);
+  const auto nothing =
+      shell(program("fathom") + " regress " + scratch.path("x.lcmlog") + " --rate 0.1 --vehicle " + kVehicle);
+  CHECK(nothing.code == 1);
+  CHECK_MESSAGE(nothing.says("regression needs 20 at least"), nothing.text);
   const auto unknown = shell(program("fathom") + " compare " + kVehicle + " " + kVehicle + " --manoeuvre loop");
   CHECK(unknown.code == 1);
   CHECK_MESSAGE(unknown.says("'loop' is no manoeuvre: line, zigzag, circle"), unknown.text);
@@ -93,6 +108,41 @@ TEST_CASE("fathom methods: both methods on the same recording, judged on another
   CHECK_MESSAGE(ran.says("complementary filter, recursive"), ran.text);
   CHECK_MESSAGE(ran.says("smoother, regression under AR(1)"), ran.text);
   CHECK_MESSAGE(ran.says("m_X"), ran.text);
+}
+
+TEST_CASE("fathom methods: against a truth it tells what each estimate was worth, and what each set of parameters") {
+  const Scratch scratch;
+  const auto dive =
+      test::make_dive(test::vehicle_from_repository("seabotix_lbv150"), {.duration = 60.0, .dt = 0.05, .spread = 0.0});
+  Recording recording;
+  for (std::size_t k = 0; k < dive.trial.size(); ++k) {
+    const Utime utime = utime_after(1'700'000'000'000'000, dive.trial.t[k]);
+    const Vector6d& nu = dive.trial.nu[k];
+    recording.ahrs.push_back({.utime = utime, .w_WB_B = nu.tail<3>(), .has_rates = true});
+    recording.pose_capture.push_back({.utime = utime, .p_WB = dive.trial.p_WB[k], .q_WB = dive.trial.q_WB[k]});
+    recording.dvl.push_back({.utime = utime, .v_WB_B = nu.head<3>()});
+    const Eigen::VectorXd& f = dive.trial.input[k];
+    recording.thrusters.push_back({.utime = utime, .force = {f.data(), f.data() + f.size()}});
+    recording.truth.push_back({.utime = utime, .p_WB = dive.trial.p_WB[k], .q_WB = dive.trial.q_WB[k], .nu = nu});
+  }
+  wire::write_log(recording, scratch.path("dive.lcmlog"));
+  const auto ran =
+      shell(program("fathom") + " methods --vehicle " + file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
+            file("test/trials/dives.yaml") + " --truth --train " + scratch.path("dive.lcmlog"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  for (const char* row : {"complementary filter", "Kalman filter", "Kalman smoother", "parameter error"}) {
+    CHECK_MESSAGE(ran.says(row), ran.text);
+  }
+}
+
+TEST_CASE("fathom smooth: a table with a column map, from motion capture and gyro") {
+  const Scratch scratch;
+  const auto ran = shell(program("fathom") + " smooth " + file("test/data/beluga/yaw-1.csv") + " --map " +
+                         file("config/maps/beluga.yaml") + " --out " + scratch.path("yaw.lcmlog"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  CHECK_MESSAGE(ran.says("pose position"), ran.text);
+  CHECK_MESSAGE(ran.says("refused; its noise is stated too small"), ran.text);  // capture and gyro are turned
+  CHECK(wire::read_log(scratch.path("yaw.lcmlog")).recording.smoothed.size() > 1000);
 }
 
 TEST_CASE("estimator: with `filter: ekf` it gives STATE from ranges, twice the same bytes") {

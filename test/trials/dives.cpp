@@ -1,5 +1,6 @@
 // Simulated runs of a small vehicle with motion capture, gyro and velocity log, as noisy as
 // config/pipelines/beluga.yaml says, for `fathom methods --truth`.
+#include <algorithm>
 #include <cstdio>
 #include <random>
 
@@ -38,7 +39,11 @@ void record_dives(const std::string& folder, int seeds) {
       if (k % 4 == 0) r.dvl.push_back({.utime = utime, .v_WB_B = nu.head<3>() + noise(0.01)});
       const Eigen::VectorXd& f = dive.trial.input[k];
       r.thrusters.push_back({.utime = utime, .force = {f.data(), f.data() + f.size()}});
-      r.truth.push_back({.utime = utime, .p_WB = dive.trial.p_WB[k], .q_WB = dive.trial.q_WB[k], .nu = nu});
+      const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, dive.trial.size() - 1);
+      const Vector6d nu_dot =
+          (dive.trial.nu[after] - dive.trial.nu[before]) / (dive.trial.dt * static_cast<double>(after - before));
+      r.truth.push_back(
+          {.utime = utime, .p_WB = dive.trial.p_WB[k], .q_WB = dive.trial.q_WB[k], .nu = nu, .nu_dot = nu_dot});
     }
     const std::string path = folder + "/dive-" + std::to_string(seed) + ".lcmlog";
     wire::write_log(r, path);

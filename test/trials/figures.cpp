@@ -28,8 +28,8 @@ constexpr const char* kDash = " with lines lw 2 dt 2 lc rgb '#e07b00'";
 report::Figure figure(const std::string& alt, const Curve& a, const char* style_a, const Curve& b, const char* style_b,
                       const std::string& x, const std::string& y, const std::string& more = "") {
   report::Figure f{.alt = alt, .width = 560, .height = 360};
-  f.script = a.block() + b.block() + more + "set xlabel '" + x + "'\nset ylabel '" + y + "'\nplot $" + a.name +
-             style_a + ", $" + b.name + style_b + "\n";
+  f.script = a.block() + b.block() + more + "set xlabel '" + x + "' offset 0, 0.6\nset ylabel '" + y + "'\nplot $" +
+             a.name + style_a + ", $" + b.name + style_b + "\n";
   return f;
 }
 
@@ -85,22 +85,28 @@ void figures(const std::string& folder, unsigned seed) {
   }
   none.add(0.0, 0.0);
   const std::vector<std::string> pictures = report::render(
-      {figure("Plan view", track_f, kCross, track_s, kLine, "X (north) [m]", "Y (east) [m]", "set size ratio -1\n"),
+      {figure("Plan view", track_f, kCross, track_s, kLine, "X (north) [m]", "Y (east) [m]",
+              "set xrange [-7:19]\nset yrange [13:-2]\n"),
        figure("Y over time", y_f, kCross, y_s, kLine, "time [s]", "Y [m]"),
        figure("Pitch", pitch_f, kCross, pitch_s, kLine, "time [s]", "pitch [rad]", "set yrange [-0.45:0.05]\n"),
        figure("Inclinometer", incline, kLine, none, " with dots", "time [s]", "pitch [rad]",
               "set yrange [-0.45:0.05]\n"),
        figure("Velocities", U, kLine, V, kDash, "time [s]", "velocity [m/s]"),
        figure("Sway acceleration", a_f, kDash, a_s, kLine, "time [s]", "derivative of v [m/s^2]")});
-  const char* captions[] = {
-      "1. Plan view: crosses filter, line smoother.",  "2. Y: crosses filter, line smoother.",
-      "3. Pitch: crosses filter, line smoother.",      "4. The pitch inclinometer, which the filter never saw.",
-      "5. Velocities in the world: line U, dashed V.", "6. Derivative of v in the body: line smoother, dashed truth."};
-  std::string page = "<!doctype html><meta charset='utf-8'><title>Circle</title><h1>A simulated circle to port</h1>\n";
+  const char* captions[] = {"1. Plan view, from above: crosses filter, line smoother.",
+                            "2. Y: crosses filter, line smoother.",
+                            "3. Pitch: crosses filter, line smoother.",
+                            "4. The pitch inclinometer, which the filter never saw.",
+                            "5. Velocities in the world: line U, dashed V.",
+                            "6. Derivative of v in the body: line smoother, dashed truth."};
+  std::string page =
+      "<!doctype html><meta charset='utf-8'><title>Circle</title><style>body{font-family:sans-serif;max-width:1160px;"
+      "margin:auto}div{display:grid;grid-template-columns:1fr 1fr;gap:8px}figure{margin:0}figcaption{font-size:13px}"
+      "</style><h1>A simulated circle to port</h1><div>\n";
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     page += "<figure>" + pictures[i] + "<figcaption>" + captions[i] + "</figcaption></figure>\n";
   }
-  tables::write_file(folder + "/figures.html", page);
+  tables::write_file(folder + "/figures.html", page + "</div>\n");
   apart /= late;
   std::printf("%s/figures.html\n", folder.c_str());
   std::printf("mean |smoother - filter| after 30 s: X %.1f Y %.1f Z %.1f cm (paper: 5.2 10.1 5.5)\n", 100 * apart.x(),

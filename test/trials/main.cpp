@@ -1,5 +1,5 @@
 // Simulated trials: fathom_trials record DIR [SEED] | figures DIR [SEED] | consistency [N] | variations | selection [N]
-// | dives DIR [N]
+// | recovery [N] | dives DIR [N]
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -55,12 +55,14 @@ int main(int argc, char** argv) {
       variations();
     } else if (what == "selection") {
       selection(number(2, 50));
+    } else if (what == "recovery") {
+      for (const double cell_gain : {0.03, 0.0}) recovery(number(2, 50), cell_gain);
     } else if (what == "dives" && argc > 2) {
       record_dives(argv[2], number(3, 3));
     } else {
       std::fprintf(stderr,
                    "fathom_trials record DIR [SEED] | figures DIR [SEED] | consistency [N] | variations | "
-                   "selection [N] | dives DIR [N]\n");
+                   "selection [N] | recovery [N] | dives DIR [N]\n");
       return 2;
     }
     return 0;

@@ -131,7 +131,7 @@ void variations() {
   show("web twice as wide", [](Setup& s, test::TrialSettings&) {
     for (auto& one : s.instruments.transponders) one.p_WT.head<2>() *= 2.0;
   });
-  show("a hull twice as long", [](Setup& s, test::TrialSettings&) { s.vehicle.hydrodynamics->length *= 1.5; });
+  show("a hull half as long again", [](Setup& s, test::TrialSettings&) { s.vehicle.hydrodynamics->length *= 1.5; });
 }
 
 // Truth: the motion of the three manoeuvres; a disturbance with or without memory is added to the force of every axis.
@@ -190,6 +190,51 @@ void selection(int seeds) {
       std::printf("\n");
     }
   }
+}
+
+// From the recorded instruments to the derivatives: ranges, gains of load cells and the umbilical's force are all
+// there.
+void recovery(int seeds, double cell_gain) {
+  const Setup base = setup();
+  std::map<std::string, double> truth;
+  for (const auto& one : base.vehicle.hydrodynamics->coefficients) truth[std::string{one.term->name}] = one.value;
+  std::map<std::string, std::vector<double>> errors;  // share of the truth
+  Rates rates;
+  int absent = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::vector<identification::ManoeuvreRows> runs;
+    for (const char* name : {"line", "zigzag", "circle"}) {
+      const auto number = static_cast<unsigned>(10 * seed) + static_cast<unsigned>(runs.size());
+      auto trial = test::record_trial(base.vehicle, base.instruments,
+                                      {.manoeuvre = preset(name), .seed = number, .cell_gain = cell_gain});
+      const auto instruments = estimation::tune_process(trial.recording, base.instruments);
+      trial.recording.smoothed = estimation::smooth(trial.recording, instruments).smoothed;
+      runs.push_back(identification::rows_of(trial.recording, base.vehicle, 10.0));
+    }
+    for (const auto& axis : identification::regress(base.vehicle, runs, {})) {
+      for (const std::string& name : axis.candidates.names) absent += truth.contains(name) ? 0 : 1;
+      for (const auto& term : axis.together.terms) {
+        const std::string& name = axis.candidates.names[static_cast<std::size_t>(term.column)];
+        const auto acts = truth.find(name);
+        if (acts == truth.end()) {
+          ++rates.false_ones;
+          ++rates.hits[name];
+        } else {
+          errors[name].push_back(std::abs(term.value / acts->second - 1.0));
+        }
+      }
+    }
+  }
+  std::printf("gains of load cells wrong by %.0f %%:\n", 100.0 * cell_gain);
+  for (auto& [name, all] : errors) {
+    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+    std::printf("%-8s selected %3.0f %%, median error %.0f %%\n", name.c_str(),
+                100.0 * static_cast<double>(all.size()) / seeds, 100.0 * all[all.size() / 2]);
+  }
+  std::printf("%d of %d that do not act are selected (%.1f %%):", rates.false_ones, absent,
+              100.0 * rates.false_ones / absent);
+  for (const auto& [name, count] : rates.hits) std::printf(" %s %.0f%%", name.c_str(), 100.0 * count / seeds);
+  std::printf("\n");
 }
 
 }  // namespace fathom::trials

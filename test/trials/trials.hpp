@@ -26,6 +26,8 @@ void variations();
 /// Which terms are selected over seeds, with and without memory in the disturbance, by AR(1) and by plain least
 /// squares.
 void selection(int seeds);
+/// How often every derivative is found, and how well, from what the instruments recorded; load cells have wrong gains.
+void recovery(int seeds, double cell_gain);
 /// dive-1.lcmlog ...: simulated dives for `fathom methods --truth`.
 void record_dives(const std::string& folder, int seeds);
 

@@ -176,7 +176,43 @@ TEST_CASE_FIXTURE(Fixture, "bad input: a transponder in the wrong place is named
   }
 }
 
-TEST_CASE_FIXTURE(Fixture, "bad input: unequal time steps and a gap of seconds are no trouble") {
+TEST_CASE_FIXTURE(Fixture, "bad input: one of three transponders in the wrong place, or two exchanged, is told of") {
+  const auto trial = record(6);
+  std::vector<std::string> notes;
+  KalmanSettings three = instruments;
+  three.transponders.resize(3);
+  static_cast<void>(without_wrong_transponders(trial.recording, three, notes));
+  CHECK(notes.empty());
+  three.transponders[1].p_WT += Eigen::Vector3d(2.0, -1.5, 0.0);
+  static_cast<void>(without_wrong_transponders(trial.recording, three, notes));
+  REQUIRE(notes.size() == 1);
+  CHECK(notes.front().find("with 3 transponders nothing tells which place is wrong") != std::string::npos);
+  notes.clear();
+  KalmanSettings exchanged = instruments;
+  std::swap(exchanged.transponders[0].p_WT, exchanged.transponders[1].p_WT);
+  static_cast<void>(without_wrong_transponders(trial.recording, exchanged, notes));
+  REQUIRE(notes.size() == 2);
+  CHECK(notes[0].find("transponder A contradicts") != std::string::npos);
+  CHECK(notes[1].find("transponder B contradicts") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Fixture, "bad input: an outlier among the first three ranges does not begin the run") {
+  auto trial = record(3);
+  Ranges& first = trial.recording.ranges.front();
+  for (std::size_t i = 0; i < first.range.size(); ++i) {
+    const Eigen::Vector3d p_WA = trial.flight.front().p_WB + trial.flight.front().q_WB * instruments.p_BA;
+    first.range[i] = (instruments.transponders[i].p_WT - p_WA).norm() + (i == 0 ? 2.24 : 0.05);
+    first.valid[i] = i == 0 || i == 1 || i == 4 ? 1 : 0;
+  }
+  const SmoothedTrial result = smooth(trial.recording, instruments);
+  double worst = 0.0;
+  for (std::size_t k = 0; k < 500; ++k) {
+    worst = std::max(worst, (result.smoothed[k].p_WB - trial.flight[k].p_WB).norm());
+  }
+  CHECK(worst < 0.25);  // m; begun from the outlier it is more than one, and right ranges are refused for seconds
+}
+
+TEST_CASE_FIXTURE(Fixture, "bad input: unequal time steps and a gap of seconds are bridged, and said") {
   auto trial = record(7);
   auto& ahrs = trial.recording.ahrs;
   for (std::size_t i = ahrs.size(); i-- > 0;) {
@@ -184,6 +220,9 @@ TEST_CASE_FIXTURE(Fixture, "bad input: unequal time steps and a gap of seconds a
     if (gap || (i % 3 == 1 && i % 7 < 3)) ahrs.erase(ahrs.begin() + static_cast<std::ptrdiff_t>(i));
   }
   const SmoothedTrial result = smooth(trial.recording, instruments);
+  REQUIRE(result.notes.size() == 1);
+  CHECK(result.notes.front().find("longer than the usual 0.02 s, the longest 3.") != std::string::npos);
+  CHECK(smooth(record(7).recording, instruments).notes.empty());
   std::size_t k = 0;
   double worst = 0.0;
   for (const auto& one : result.smoothed) {

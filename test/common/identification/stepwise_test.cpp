@@ -127,6 +127,25 @@ TEST_CASE("Gram: for every phi the sums are those of the whitened rows, first sa
   CHECK(gram.samples() == 203);
 }
 
+TEST_CASE("Gram: sums of two runs are those of both together, whatever the number of columns") {
+  for (const int columns : {3, 7, 8, 13, 40}) {
+    CAPTURE(columns);
+    const Problem one = problem(11, 150, columns, 0.8), other = problem(12, 90, columns, 0.8);
+    LaggedGram both{columns + 1};
+    both.add(gram_of(one, 20));
+    both.add(LaggedGram{columns + 1});
+    both.add(gram_of(other, 20));
+    for (const double phi : {0.0, 0.97}) {
+      const Eigen::MatrixXd a = whitened_rows(one.z, phi), b = whitened_rows(other.z, phi);
+      const Eigen::MatrixXd sum = a.transpose() * a + b.transpose() * b;
+      CHECK((both.whitened(phi) - sum).norm() < kRounding * sum.norm());
+    }
+    CHECK(both.samples() == 240);
+    CHECK(both.stretches() == 2);
+    CHECK(both.blocks().size() == gram_of(one, 20).blocks().size() + gram_of(other, 20).blocks().size());
+  }
+}
+
 TEST_CASE("AR(1): the minimum of the exact sum of squares, found by hand on a fine grid of phi") {
   const Problem p = problem(2, 400, 3, 0.7);
   const AutoregressiveFit fit = fit_autoregressive(gram_of(p), {0, 1, 2});
