@@ -161,7 +161,15 @@ void check_finds(const std::string& vehicle_name, const Hidden& one, double dura
     if (truth.effect->takes_part(truth.variant, i)) hidden_numbers.push_back(truth.theta[i]);
   }
   std::size_t compared = 0;
-  for (const NamedValue& value : outcome.found.after.parameters()) {
+  const std::vector<NamedValue> numbers = outcome.found.after.parameters();
+  for (const NamedValue& value : numbers) {
+    // An exponential strength is told for another place than the hidden one.
+    const std::size_t last = truth.theta.size() - 1;
+    if (truth.effect->is_given(truth.variant, last) &&
+        (value.name == name + ".at_depth" || value.name == name + ".at_distance"))
+      hidden_numbers[0] *= std::exp((value.value - truth.theta[last]) / truth.theta[last - 1]);
+  }
+  for (const NamedValue& value : numbers) {
     if (!value.name.starts_with(name + ".")) continue;
     const auto all = truth.effect->parameters();
     const auto number = std::ranges::find(all, value.name.substr(name.size() + 1), &model::EffectParameter::name);
@@ -275,9 +283,9 @@ TEST_CASE("search: a large change of payload is named, whatever its moment") {
 TEST_CASE("search: a boundary that is felt exponentially is named with its reach") {
   if (!test::kTimed) return;
   check_finds("seabotix_lbv150",
-              {"bottom_effect", "exponential force", {{2.0, 3.0}, {0.0, 0.0}, {0.2, 0.4}, {-0.1, 0.1}}}, kLong, 6);
+              {"bottom_effect", "exponential force", {{4.0, 6.0}, {0.0, 0.0}, {0.5, 0.8}, {-0.1, 0.1}}}, kLong, 6);
   check_finds("seabotix_lbv150",
-              {"wall_effect", "exponential force", {{2.0, 3.0}, {0.0, 0.0}, {0.0, 0.0}, {0.3, 0.5}, {-0.1, 0.1}}},
+              {"wall_effect", "exponential force", {{4.0, 6.0}, {0.0, 0.0}, {0.0, 0.0}, {0.8, 1.2}, {-0.1, 0.1}}},
               kLong, 7);
 }
 
