@@ -10,6 +10,8 @@
 #include "common/model/sensors/gyro.hpp"
 #include "common/model/sensors/heading.hpp"
 #include "common/model/sensors/position.hpp"
+#include "common/model/sensors/pressure.hpp"
+#include "common/model/sensors/range.hpp"
 #include "common/model/sensors/velocity_log.hpp"
 
 namespace fathom::estimation {

@@ -68,6 +68,11 @@ struct KinematicPoint {
   }
   /// d(R_WB^T c_W)/d(euler), with c_B = R_WB^T c_W.
   [[nodiscard]] Eigen::Matrix3d turned_in(const Eigen::Vector3d& c_B) const { return skew(c_B) * rates_from_euler; }
+  /// Writes the row of what grows as the point p_BP of the hull moves along `along_W`.
+  void set_along(const Eigen::Vector3d& along_W, const Eigen::Vector3d& p_BP, Observation& observation) const {
+    observation.set(at::kPosition, along_W);
+    if (!p_BP.isZero(0.0)) observation.set(at::kEuler, (along_W.transpose() * turned_out(p_BP)).transpose());
+  }
 };
 
 }  // namespace fathom::model

@@ -12,7 +12,8 @@
 #include "common/model/sensors/accelerometer.hpp"
 #include "common/model/sensors/gyro.hpp"
 #include "common/model/sensors/heading.hpp"
-#include "common/model/sensors/position.hpp"
+#include "common/model/sensors/pressure.hpp"
+#include "common/model/sensors/range.hpp"
 
 namespace fathom::estimation {
 namespace {
