@@ -1,6 +1,8 @@
 #include "common/diagnosis/round.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "common/diagnosis/evidence.hpp"
@@ -66,6 +68,22 @@ FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, con
   }
   FitResult again = problem.fit(nearer, &reference, kQuickTolerance);
   return again.cost < fit.cost ? again : fit;
+}
+
+/// Of all windows, weighted as in the fit.
+Eigen::VectorXd residuals(const TrajectoryFit& problem, const FitResult& fit) {
+  Eigen::Index rows = 0;
+  for (const auto& window : problem.windows()) rows += window.rows();
+  Eigen::VectorXd all(rows), own;
+  model::VelocityTrace trace;
+  rows = 0;
+  for (std::size_t w = 0; w < problem.windows().size(); ++w) {
+    own.resize(problem.windows()[w].rows());
+    problem.windows()[w].evaluate(fit.model, fit.nu0[w], fit.sigma, trace, own);
+    all.segment(rows, own.size()) = own;
+    rows += own.size();
+  }
+  return all;
 }
 
 /// Seconds beside a sudden change no slope leads to it, and a large one is then hardly told from none.
@@ -141,8 +159,30 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
     judge_by_data_left_out(judged, problem_, reference_, *checked_, fit);
     judged.reason = refusal(judged, settings_, &fit.model);
   }
-  if (!judged.reason.empty()) promises_.refused(answers_, i);
+  if (judged.reason.empty()) {
+    stands_.insert_or_assign(i, fit);
+  } else {
+    promises_.refused(answers_, i);
+  }
   return fit;
+}
+
+void Round::add_rivals(const Winner& winner, Judged& accepted) const {
+  const Eigen::VectorXd without = residuals(problem_, reference_);
+  const Eigen::VectorXd own = residuals(problem_, winner.fit) - without;
+  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (const auto& [place, fit] : stands_) {
+    const model::Effect* other = answers_.near[place].effect;
+    if (other == accepted.effect) continue;
+    const Eigen::VectorXd change = residuals(problem_, fit) - without;
+    if (change.dot(own) < settings_.alias_correlation * change.norm() * own.norm()) continue;
+    const std::string name{other->name()};
+    add(accepted.aliased_with, name);
+    if (robust_log_likelihood_ratio(fit.window_cost, winner.fit.window_cost) < kAlternativeLogOdds)
+      add(accepted.alternatives, name);
+  }
 }
 
 }  // namespace fathom::diagnosis

@@ -1,6 +1,7 @@
 // One round of the search: full fits of the candidates that promise most, until one stands that nothing speaks against.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "common/diagnosis/held_out.hpp"
@@ -24,6 +25,10 @@ class Round {
   /// `first` tells which candidates are meant; after `few` fits without a winner, only open ones, `most` in all.
   std::optional<Winner> fit_best(Which first, std::size_t few, std::size_t most);
 
+  /// Adds to what looks like the winner those that were fitted in full beside it, stand as well, and change the same
+  /// motion in the same way: what screening saw of them may have been far from where their fits went.
+  void add_rivals(const Winner& winner, Judged& accepted) const;
+
   [[nodiscard]] Coarse& coarse() { return coarse_; }
 
  private:
@@ -38,7 +43,8 @@ class Round {
   const Progress& progress_;
   double done_;
   Coarse coarse_;
-  std::optional<CrossValidation> checked_;  // of the reference, made when the first fit is judged
+  std::map<std::size_t, identification::FitResult> stands_;  // by place: fitted in full, and nothing speaks against it
+  std::optional<CrossValidation> checked_;                   // of the reference, made when the first fit is judged
 };
 
 }  // namespace fathom::diagnosis

@@ -289,6 +289,23 @@ TEST_CASE("search: a boundary that is felt exponentially is named with its reach
               kLong, 7);
 }
 
+TEST_CASE("search: drag that grows away from a far anchor looks like a wall's, and is named or among what it may be") {
+  if (!test::kTimed) return;
+  std::mt19937 random{20261122};
+  const double away = std::uniform_real_distribution<double>{10.0, 14.0}(random);  // m
+  const double bearing = std::uniform_real_distribution<double>{-3.0, 3.0}(random);
+  CAPTURE(bearing);
+  const Outcome outcome = search_dive(
+      vehicle_named("bluerov2"),
+      {test::active("tether_drag", {3.0, away * std::cos(bearing), away * std::sin(bearing), 1.0})}, kShort, 2);
+  CAPTURE(outcome.said);
+  REQUIRE_FALSE(outcome.found.accepted.empty());
+  const Judged& first = outcome.found.accepted.front();
+  const bool among = std::ranges::find(first.alternatives, "tether_drag") != first.alternatives.end();
+  CHECK((first.effect->name() == "tether_drag" || among));
+  MESSAGE(outcome.said);
+}
+
 TEST_CASE("search: a narrow dead band is named") {
   if (!test::kTimed) return;
   std::mt19937 random{20261121};
