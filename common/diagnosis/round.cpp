@@ -17,6 +17,7 @@ using identification::TrajectoryFit;
 constexpr double kAsGood = 0.9;           // of the gain: with fewer numbers, that is the better explanation
 constexpr double kHopeless = 1.0 / 3.0;   // of the best gain so far: screening does not err by more
 constexpr double kClearlyLess = 0.6;      // of the best gain so far, on a spread of windows
+constexpr double kAlike = 0.7;            // correlation of what two candidates change
 constexpr double kRestart = 0.1;          // of the screened size: where a fit that went astray begins again
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
@@ -111,16 +112,28 @@ std::optional<Winner> Round::fit_best(Which first, std::size_t few, std::size_t 
     if (best && fits >= few) break;
     const Which which = first == Which::kAll && fits >= few ? Which::kOpen : first;
     const std::vector<std::size_t> order = worth_fitting(answers_, promises_, settings_, which);
-    if (order.empty()) break;
-    const std::size_t next = order.front();
     const double best_share = best ? reduction(reference_.cost, best->fit.cost) : 0.0;
-    if (promises_.expected(answers_, next) < kHopeless * best_share) break;
+    const auto hopeful = std::ranges::find_if(order, [&](std::size_t i) {
+      const double promise = promises_.expected(answers_, i);
+      return promise >= kHopeless * best_share ||
+             (best && looks_like(i, *best) && promise >= kHopeless * answers_.share[best->place]);
+    });
+    if (hopeful == order.end()) break;
+    const std::size_t next = *hopeful;
     std::optional<FitResult> fit = fit_in_full(next, best_share);
     if (fit && answers_.judged[next].reason.empty() &&
         (!best || better(answers_, next, *fit, *best, reference_.cost, settings_.accept_log_odds)))
       best = Winner{next, std::move(*fit)};
   }
   return best;
+}
+
+/// What changes the same motion in the same way is measured by the promise of that, not by what its fit has kept:
+/// screening errs alike for both.
+bool Round::looks_like(std::size_t place, const Winner& best) const {
+  const Screened &one = answers_.near[place], &other = answers_.near[best.place];
+  return one.effect != other.effect && one.signature.size() == other.signature.size() &&
+         one.signature.dot(other.signature) > kAlike;
 }
 
 /// Empty when a spread of windows already tells that it would be in vain, or gain far less than `best_share`.

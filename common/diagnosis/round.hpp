@@ -32,6 +32,7 @@ class Round {
   [[nodiscard]] Coarse& coarse() { return coarse_; }
 
  private:
+  [[nodiscard]] bool looks_like(std::size_t place, const Winner& best) const;
   std::optional<identification::FitResult> fit_in_full(std::size_t i, double best_share);
 
   Answers& answers_;

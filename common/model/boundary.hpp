@@ -10,7 +10,10 @@ namespace fathom::model {
 
 constexpr double kSmallestGap = 0.1;     // m: closer, hull and boundary touch
 constexpr double kSmallestReach = 0.02;  // m
-constexpr double kMostBeyond = 3.0;      // reaches beyond the place that a strength is told for
+constexpr double kLongestReach =
+    2.0;  // m for a craft of 30 kg, three times its length: what reaches farther is no boundary
+constexpr double kTypicalReach = 1.0;  // m: no search begins with a longer one
+constexpr double kMostBeyond = 3.0;    // reaches beyond the place that a strength is told for
 
 /// 1 at a gap of 1 m, falling as its inverse square.
 inline double proximity(double gap) {

@@ -15,9 +15,9 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
-                                 EffectParameter{"bottom_depth", "m", 20.0},
-                                 EffectParameter{"reach", "m", 1.0, kSmallestReach}, EffectParameter{"at_depth", "m"}};
+constexpr std::array kParameters{
+    EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4}, EffectParameter{"bottom_depth", "m", 20.0},
+    EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach}, EffectParameter{"at_depth", "m"}};
 constexpr std::size_t kBottomDepth = 1, kReach = 2, kAtDepth = 3;
 enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
 constexpr std::array kUnits{"N m^2", "N m^2/(m/s)^2", "N", "N/(m/s)^2"};  // of the strength
@@ -64,7 +64,8 @@ class BottomEffect final : public Effect {
     if (!presses(variant)) size /= speed * speed;
     std::vector<std::vector<double>> starts;
     if (exponential(variant)) {
-      for (const double share : kReaches) starts.push_back({size, 0.0, share * range, deepest});
+      for (const double share : kReaches)
+        starts.push_back({size, 0.0, std::min(share * range, kTypicalReach), deepest});
       return starts;
     }
     for (const double gap : kGaps) {

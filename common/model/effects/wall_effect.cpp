@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
                                  EffectParameter{"bearing", "rad", 3.0}, EffectParameter{"distance", "m", 20.0},
-                                 EffectParameter{"reach", "m", 1.0, kSmallestReach},
+                                 EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach},
                                  EffectParameter{"at_distance", "m"}};
 constexpr std::size_t kBearing = 1, kDistance = 2, kReach = 3, kAtDistance = 4;
 enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
@@ -78,7 +78,7 @@ class WallEffect final : public Effect {
       const Eigen::Vector2d n{std::cos(bearing), std::sin(bearing)};
       const double width = n.cwiseAbs().dot(half), edge = n.dot(middle) + width;
       if (exponential(variant)) {
-        starts.push_back({size, bearing, 0.0, 2.0 * kReachShare * width, edge});
+        starts.push_back({size, bearing, 0.0, std::min(2.0 * kReachShare * width, kTypicalReach), edge});
         continue;
       }
       for (const double gap : kGaps) {
