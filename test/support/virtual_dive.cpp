@@ -124,12 +124,17 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
       const double now = t + s * kStep;
       model::Motion begin = motion_at(now, nu);
       model::feel(dive.truth, begin, memory, 0.0);
-      model::Motion middle = motion_at(now + 0.5 * kStep, nu + 0.5 * kStep * model::acceleration(dive.truth, begin));
-      model::feel(dive.truth, middle, memory, kStep);
-      const Vector6d halfway = middle.nu;
+      // Memories are advanced to the instant at which they are asked, with the command of the time in between.
+      const Vector6d halfway = nu + 0.5 * kStep * model::acceleration(dive.truth, begin);
+      model::Motion early = motion_at(now + 0.25 * kStep, nu);
+      model::feel(dive.truth, early, memory, 0.5 * kStep);
+      model::Motion middle = motion_at(now + 0.5 * kStep, halfway);
+      model::feel(dive.truth, middle, memory, 0.0);
       nu += kStep * model::acceleration(dive.truth, middle);
       p += kStep * (q * halfway.head<3>());
       q = (q * quaternion_from_rotation_vector(kStep * halfway.tail<3>())).normalized();
+      model::Motion late = motion_at(now + 0.75 * kStep, nu);
+      model::feel(dive.truth, late, memory, 0.5 * kStep);
     }
   }
   model::VelocityView seen{measured};

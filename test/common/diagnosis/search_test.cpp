@@ -156,6 +156,7 @@ void check_finds(const std::string& vehicle_name, const Hidden& one, double dura
   CHECK(first.effect->name() == name);
   CHECK(first.variant == truth.variant);
   CHECK(first.log_odds > Settings{}.accept_log_odds);
+  for (const Judged& judged : outcome.found.accepted) CHECK(judged.effect->name() == name);
   std::vector<double> hidden_numbers;
   for (std::size_t i = 0; i < truth.theta.size(); ++i) {
     if (truth.effect->takes_part(truth.variant, i)) hidden_numbers.push_back(truth.theta[i]);

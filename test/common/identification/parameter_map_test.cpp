@@ -97,10 +97,11 @@ TEST_CASE("parameter map: masses stay positive and drag takes power") {
 }
 
 TEST_CASE("parameter map: a number that takes no part keeps its value, and no prior pulls at it") {
-  Fixture fixture;
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Model model = model::nominal_model(vehicle, false);
   constexpr int kExponential = 2;
-  fixture.model.add(test::active("bottom_effect", {2.0, 0.0, 0.3, 1.25}, kExponential));
-  const ParameterMap map{fixture.model};
+  model.add(test::active("bottom_effect", {2.0, 0.0, 0.3, 1.25}, kExponential));
+  const ParameterMap map{model};
   const std::size_t own = map.size() - 4;
   CHECK(map[own].sought);
   CHECK_FALSE(map[own + 1].sought);
