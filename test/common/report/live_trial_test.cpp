@@ -122,7 +122,8 @@ TEST_CASE("live trial: a run that was cut keeps as settled what had been left be
   CHECK_FALSE(result.visits[1].left);
   CHECK(result.phase == "excite");
   // Cut before the identifier said anything of surge: a page without that figure, not an error.
-  for (ModelEstimate& model : cut.model) std::erase_if(model.modes, [](const ModeMetric& m) { return m.mode == "surge"; });
+  for (ModelEstimate& model : cut.model)
+    std::erase_if(model.modes, [](const ModeMetric& m) { return m.mode == "surge"; });
   const std::string page = to_html(result, cut, vehicle(), site());
   CHECK(page.find("Trace of the covariance of yaw") != std::string::npos);
   CHECK(page.find("Trace of the covariance of surge") == std::string::npos);
