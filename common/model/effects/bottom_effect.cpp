@@ -15,18 +15,15 @@
 namespace fathom::model::effects {
 namespace {
 
+using namespace boundary;
+
 constexpr std::array kParameters{
     EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4}, EffectParameter{"bottom_depth", "m", 20.0},
     EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach}, EffectParameter{"at_depth", "m"}};
 constexpr std::size_t kBottomDepth = 1, kReach = 2, kAtDepth = 3;
-enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
-constexpr std::array kUnits{"N m^2", "N m^2/(m/s)^2", "N", "N/(m/s)^2"};  // of the strength
-constexpr double kSmallestRange = 0.05;                                   // m of depth
-constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};                          // m below the deepest place
-constexpr std::array kReaches{0.1, 0.3, 0.9};                             // of the range of depth
-
-bool presses(int variant) { return variant == kForce || variant == kExponentialForce; }
-bool exponential(int variant) { return variant >= kExponentialForce; }
+constexpr double kSmallestRange = 0.05;           // m of depth
+constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};  // m below the deepest place
+constexpr std::array kReaches{0.1, 0.3, 0.9};     // of the range of depth
 
 class BottomEffect final : public Effect {
  public:
@@ -48,14 +45,13 @@ class BottomEffect final : public Effect {
   }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
-    return number == 0 ? kUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
+    return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     if (!scene.position || scene.p_high.z() - scene.p_low.z() <= kSmallestRange) return {};
     const bool moves = dof[0] || dof[1] || dof[2];
-    return {dof[2] ? "force" : "-", moves ? "drag" : "-", dof[2] ? "exponential force" : "-",
-            moves ? "exponential drag" : "-"};
+    return names(dof[2], moves);
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double range = scene.p_high.z() - scene.p_low.z(), deepest = scene.p_high.z();
@@ -79,12 +75,7 @@ class BottomEffect final : public Effect {
     const double z = motion.p_WB.z();
     const double near = theta[0] * (exponential(variant) ? proximity_at(z - theta[kAtDepth], theta[kReach])
                                                          : proximity(theta[kBottomDepth] - z));
-    if (presses(variant)) {
-      load.wrench.head<3>() -= near * motion.R_WB.row(2).transpose();
-    } else {
-      const Eigen::Vector3d v_r = motion.nu_r().head<3>();
-      load.wrench.head<3>() -= near * v_r.norm() * v_r;
-    }
+    press(motion, variant, near, motion.R_WB.row(2).transpose(), load);
   }
 };
 

@@ -18,20 +18,18 @@
 namespace fathom::model::effects {
 namespace {
 
+using namespace boundary;
+
 constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
                                  EffectParameter{"bearing", "rad", 3.0}, EffectParameter{"distance", "m", 20.0},
                                  EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach},
                                  EffectParameter{"at_distance", "m"}};
 constexpr std::size_t kBearing = 1, kDistance = 2, kReach = 3, kAtDistance = 4;
-enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
-constexpr std::array kUnits{"N m^2", "N m^2/(m/s)^2", "N", "N/(m/s)^2"};  // of the strength
 constexpr int kBearings = 8;
 constexpr std::array kGaps{0.3, 1.0};    // m beyond the box of positions
 constexpr double kReachShare = 0.2;      // of the width of that box, where a search begins
 constexpr double kSmallestRange = 0.05;  // m
 
-bool presses(int variant) { return variant == kForce || variant == kExponentialForce; }
-bool exponential(int variant) { return variant >= kExponentialForce; }
 Eigen::Vector3d toward(EffectTheta theta) { return {std::cos(theta[kBearing]), std::sin(theta[kBearing]), 0.0}; }
 
 class WallEffect final : public Effect {
@@ -56,15 +54,14 @@ class WallEffect final : public Effect {
   }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
-    return number == 0 ? kUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
+    return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const double range = (scene.p_high - scene.p_low).head<2>().maxCoeff();
     if (!scene.position || !scene.attitude || range <= kSmallestRange) return {};
     const bool pushed = dof[0] || dof[1], moves = pushed || dof[2];
-    return {pushed ? "force" : "-", moves ? "drag" : "-", pushed ? "exponential force" : "-",
-            moves ? "exponential drag" : "-"};
+    return names(pushed, moves);
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const Eigen::Vector2d middle = 0.5 * (scene.p_high + scene.p_low).head<2>();
@@ -94,12 +91,7 @@ class WallEffect final : public Effect {
     const double along = n.dot(motion.p_WB);
     const double near = theta[0] * (exponential(variant) ? proximity_at(along - theta[kAtDistance], theta[kReach])
                                                          : proximity(theta[kDistance] - along));
-    if (presses(variant)) {
-      load.wrench.head<3>() -= near * (motion.R_WB.transpose() * n);
-    } else {
-      const Eigen::Vector3d v_r = motion.nu_r().head<3>();
-      load.wrench.head<3>() -= near * v_r.norm() * v_r;
-    }
+    press(motion, variant, near, motion.R_WB.transpose() * n, load);
   }
 };
 
