@@ -45,9 +45,19 @@ std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& fou
   return values;
 }
 
+/// What acts itself is no alternative to another.
+std::vector<std::string> alternatives_of(const Judged& judged, const SearchResult& found) {
+  std::vector<std::string> open = judged.alternatives;
+  std::erase_if(open, [&](const std::string& name) {
+    return std::ranges::any_of(found.accepted, [&](const Judged& other) { return other.effect->name() == name; });
+  });
+  return open;
+}
+
 void list_effects(const SearchResult& found, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
+    const std::vector<std::string> alternatives = alternatives_of(judged, found);
     const double log_odds = at_most_for(found.explained, judged.log_odds);
     const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
                                      [&](const Judged& j) { return j.effect == judged.effect; });
@@ -59,7 +69,7 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
       known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
       known->log_odds = std::max(known->log_odds, log_odds);
       known->error_reduction = 1.0 - (1.0 - known->error_reduction) * (1.0 - judged.error_reduction);
-      for (const std::string& other : judged.alternatives) {
+      for (const std::string& other : alternatives) {
         if (std::find(known->alternatives.begin(), known->alternatives.end(), other) == known->alternatives.end()) {
           known->alternatives.push_back(other);
         }
@@ -76,7 +86,7 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
                               .parameters = numbers,
                               .log_odds = log_odds,
                               .error_reduction = judged.error_reduction,
-                              .alternatives = judged.alternatives,
+                              .alternatives = alternatives,
                               .other_forms = other_forms,
                               .sentence = std::string(judged.effect->sentence())});
   }
@@ -248,13 +258,13 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     text =
         "The base model explains these runs: none of the " + std::to_string(asked) +
         " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. " +
-        memory_sentence(result) + foretold_sentence(foretold);
+        memory_sentence(result);
   } else if (names.empty()) {
     text = "The base model leaves structure in the residual that no known effect explains. ";
     if (found.taken_back) {
       text += "What helped the training runs did not help the validation run; it is listed among the refused. ";
     }
-    text += foretold_sentence(foretold) + unjudged;
+    text += unjudged;
   } else {
     text = "The motion shows what the base model lacks: " + joined(names) + ". ";
     for (const EffectFound& effect : result.effects) {
@@ -264,6 +274,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     }
     text += unjudged.empty() ? improvement_sentence(result) : unjudged;
   }
+  text += foretold_sentence(foretold);
   if (stand_ins) {
     text += "Where " + joined(names) + " act" + (names.size() > 1 ? "" : "s") + ", only " + percent(found.explained) +
             " of the error that outlasts the noise is gone; a whole cause removes nearly all of it. So " +
@@ -272,11 +283,9 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
   if (!open.empty()) {
     text += "On this data " + joined(open) + " cannot be told apart";
-    for (const Judged& judged : found.accepted) {
-      if (judged.alternatives.empty()) continue;
-      text += "; what would settle it: " + std::string(judged.effect->revealed_by());
-      break;
-    }
+    const auto first =
+        std::ranges::find_if(result.effects, [](const EffectFound& e) { return !e.alternatives.empty(); });
+    text += "; what would settle it: " + motion_for(first->name);
     text += ". ";
   }
   if (found.free_form) {

@@ -164,6 +164,24 @@ TEST_CASE(
   CHECK(says(concluded(0.3, 1e-6).paragraph, "foretells 30 % of the motion along Y"));
   CHECK(concluded(-0.5, 0.4).verdict == "adequate");  // an axis that nothing moves: noise is all that there is
   CHECK_FALSE(says(concluded(0.9, 1e-6).paragraph, "5 s ahead"));
+  MadeUp found;
+  found.accept("current", {0.1, 0.1});
+  DiagnosisResult result;
+  result.improvement = {0.4, 0.3, 0.5};
+  result.error_after.prediction = {{.horizon_s = 5.0, .r2 = {0.9, 0.3, 0.9, 0.9, 0.9, 0.9}}};
+  result.residual_after = {{"Y", 1e-6, 2.0, 0.9}};
+  conclude(found.found, found.left, found.scene(), result);
+  CHECK(says(result.paragraph, "foretells 30 % of the motion along Y"));  // beside what was found, too
+}
+
+TEST_CASE("verdict: an alternative that was accepted beside it is none any more") {
+  MadeUp made;
+  made.accept("current", {0.1, 0.1}).alternatives = {"tether_tension", "wall_effect"};
+  made.accept("tether_tension", {1.0, 1.0, 1.0, 1.0, 1.0});
+  const DiagnosisResult result = made.concluded();
+  REQUIRE(result.effects.size() == 2);
+  CHECK(result.effects[0].alternatives == std::vector<std::string>{"wall_effect"});
+  CHECK(says(result.paragraph, "current (or wall_effect)"));
 }
 
 TEST_CASE("verdict: nothing found but structure left is unexplained, says where, and asks for the nearest candidate") {
