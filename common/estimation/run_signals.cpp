@@ -189,9 +189,10 @@ void Reader::clean(const std::string& signal, Series& series, double spike_floor
   for (int axis = 0; axis < 3; ++axis) {
     const FrozenAxis alone = frozen_axis(series, axis, frozen);
     if (alone.longest <= 0.0) continue;
-    report(signal, "frozen", alone.longest, "s",
-           std::string("one axis (") + "xyz"[axis] + ") repeats itself exactly for " + number(alone.longest) +
-               " s, from " + text("%.1f s", alone.begin) + ", while another moves",
+    const char* letters = signal == "gyro" ? "pqr" : signal == "dvl" ? "uvw" : "xyz";
+    report(signal + "." + letters[axis], "frozen", alone.longest, "s",
+           "repeats itself exactly for " + number(alone.longest) + " s, from " + text("%.1f s", alone.begin) +
+               ", while another axis moves",
            "none of the axes used while it does");
     for (std::size_t i = 0; i < frozen.size(); ++i) frozen[i] = frozen[i] | alone.samples[i];
   }
