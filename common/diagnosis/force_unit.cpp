@@ -46,11 +46,11 @@ std::optional<ConsistencyFinding> compare_inertia(const model::Vehicle& vehicle,
                              .finding = "scale",
                              .size = ratio,
                              .evidence = words.data(),
-                             .action = "nothing; look at the unit of the forces, and at the file's mass"};
+                             .action = "not corrected: look at the unit of the forces, and at the file's mass"};
   for (const Unit& unit : {Unit{1e-3, "the forces are in kN"}, Unit{1.0 / kNewtonsInKgf, "the forces are in kgf"},
                            Unit{1e3, "the forces are in mN"}}) {
     if (std::abs(std::log(ratio / unit.factor)) < std::log(kAlike))
-      finding.evidence += std::string("; as if ") + unit.words;
+      finding.action = std::string("not corrected: it is as if ") + unit.words;
   }
   return finding;
 }

@@ -25,11 +25,11 @@ TEST_CASE("force unit: named when all inertias are far from the file's, silent w
   const auto kilo = compare_inertia(vehicle, fitted(1.1e-3, 0.4));
   REQUIRE(kilo);
   CHECK(kilo->size == doctest::Approx(1.1e-3).epsilon(1e-6));
-  CHECK(kilo->evidence.ends_with("as if the forces are in kN"));
+  CHECK(kilo->action.ends_with("as if the forces are in kN"));
   const auto kgf = compare_inertia(vehicle, fitted(0.11, 1.0));
   REQUIRE(kgf);
-  CHECK(kgf->evidence.ends_with("as if the forces are in kgf"));
+  CHECK(kgf->action.ends_with("as if the forces are in kgf"));
   const auto strange = compare_inertia(vehicle, fitted(30.0, 1.0));
   REQUIRE(strange);
-  CHECK(strange->evidence.find("as if") == std::string::npos);
+  CHECK(strange->action.find("as if") == std::string::npos);
 }
