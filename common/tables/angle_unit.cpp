@@ -11,9 +11,9 @@ namespace fathom::tables {
 namespace {
 
 constexpr double kStretch = 1.0;  // s of track against which velocities are held
-// Shares of the track that the velocities explain, whatever their own scale. A heading that is some 40 degrees off
-// still explains .6; the wrong unit turns the vehicle round many times.
-constexpr double kNotAsRead = 0.6, kAsMeant = 0.9;
+// Shares of the track that the velocities explain, whatever their own scale and a fixed turn of the world: a compass
+// that is off must not look like another unit to a vehicle that holds its heading. The wrong unit turns it many times.
+constexpr double kNotAsRead = 0.6, kAsMeant = 0.95;
 constexpr std::size_t kFewestStretches = 20;
 
 struct Columns {
@@ -22,7 +22,7 @@ struct Columns {
 
 /// Share of the horizontal track that velocities explain when headings are multiplied by `unit`.
 double explained(const Columns& columns, const Rows& rows, double unit) {
-  double track = 0.0, along = 0.0, travelled = 0.0;
+  double track = 0.0, along = 0.0, across = 0.0, travelled = 0.0;
   std::size_t stretches = 0, first = 0;
   bool whole = true;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero(), from = Eigen::Vector2d::Zero();
@@ -41,6 +41,7 @@ double explained(const Columns& columns, const Rows& rows, double unit) {
       const Eigen::Vector2d step = columns.position.vector(end).head<2>() - from;
       track += step.squaredNorm();
       along += step.dot(sum);
+      across += step.y() * sum.x() - step.x() * sum.y();
       travelled += sum.squaredNorm();
       ++stretches;
     }
@@ -48,8 +49,8 @@ double explained(const Columns& columns, const Rows& rows, double unit) {
     whole = true;
     sum.setZero();
   }
-  if (stretches < kFewestStretches || track <= 0.0 || travelled <= 0.0 || along <= 0.0) return 0.0;
-  return along * along / (track * travelled);
+  if (stretches < kFewestStretches || track <= 0.0 || travelled <= 0.0) return 0.0;
+  return (along * along + across * across) / (track * travelled);
 }
 
 }  // namespace

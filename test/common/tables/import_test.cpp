@@ -219,13 +219,13 @@ TEST_CASE("beluga: the first row of surge-1 arrives in NED and forward-right-dow
 }
 
 TEST_CASE("import: angles in another unit than said are named by what carries the velocities along the track") {
-  // A vehicle that swings its heading by half a turn and drives ahead.
-  const auto table = [](double unit) {
+  // A vehicle that swings its heading and drives ahead, its compass off by `turn`.
+  const auto table = [](double unit, double swing = 1.5, double turn = 0.0) {
     std::string csv = "t,x,y,z,phi,theta,psi,u,v,w\n";
     double x = 0.0, y = 0.0;
     for (int k = 0; k < 1200; ++k) {
-      const double t = 0.05 * k, heading = 0.5 + 1.5 * std::sin(0.2 * t);
-      for (const double number : {t, x, y, 1.0, 0.0, 0.0, heading * unit, 0.4, 0.0})
+      const double t = 0.05 * k, heading = 0.5 + swing * std::sin(0.2 * t);
+      for (const double number : {t, x, y, 1.0, 0.0, 0.0, (heading + turn) * unit, 0.4, 0.0})
         csv += std::to_string(number) + ",";
       csv += "0.0\n";
       x += 0.05 * 0.4 * std::cos(heading);
@@ -246,4 +246,7 @@ TEST_CASE("import: angles in another unit than said are named by what carries th
   CHECK(complaint_about(table(kInDegrees), "deg") == "no complaint");
   CHECK(complaint_about(table(kInDegrees), "rad").find("only with headings in deg (100 % of it") != std::string::npos);
   CHECK(complaint_about(table(1.0), "deg").find("only with headings in rad") != std::string::npos);
+  // A wrong compass is not a wrong unit, though read as degrees a held heading would lie along the track.
+  CHECK(complaint_about(table(1.0, 0.1, 2.0), "rad") == "no complaint");
+  CHECK(complaint_about(table(1.0, 1.5, 2.0), "rad") == "no complaint");
 }
