@@ -19,10 +19,17 @@ Eigen::Vector3d euler_from_rotation(const Eigen::Matrix3d& R_WB) {
 }
 
 Eigen::Quaterniond quaternion_from_rotation_vector(const Eigen::Vector3d& phi) {
-  const double angle = phi.norm();
-  // Series of sin(a/2)/a below 1e-4 rad: the next term is under 1e-19.
-  const double scale = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
-  return Eigen::Quaterniond(std::cos(0.5 * angle), scale * phi.x(), scale * phi.y(), scale * phi.z());
+  const double x = 0.25 * phi.squaredNorm();  // half the angle, squared
+  double cosine, scale;
+  if (x < 0.01) {  // what turns in a step; the next terms are under 1e-16
+    cosine = 1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0)));
+    scale = 0.5 * (1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0))));
+  } else {
+    const double half = std::sqrt(x);
+    cosine = std::cos(half);
+    scale = 0.5 * std::sin(half) / half;
+  }
+  return Eigen::Quaterniond(cosine, scale * phi.x(), scale * phi.y(), scale * phi.z());
 }
 
 Eigen::Vector3d rotation_vector_from_quaternion(const Eigen::Quaterniond& q) {

@@ -24,36 +24,51 @@ inline double largest_step(const Vehicle& vehicle) {
   return std::clamp(kMostDamping * quickest_decay(vehicle), kShortestStep, kLargestStep);
 }
 
-/// What a step of length 1 with decay z >= 0 makes of a constant slope, elementwise: (1 - exp(-z)) / z.
-inline Vector6d decay_share(const Vector6d& z) {
-  return z.unaryExpr([](double x) { return x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x; });
+/// What a step with decay z >= 0 makes of a constant slope, (1 - exp(-z)) / z, and of one that grows from 0 to 1 over
+/// the step, (exp(-z) - 1 + z) / z^2; the former also for half of z. Elementwise, and their derivatives with respect to
+/// z (half of z): one exponential tells them all.
+struct StepShares {
+  Vector6d half, whole, growth, half_slope, whole_slope, growth_slope;
+
+  explicit StepShares(const Vector6d& decays) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      const double z = decays[i], y = 0.5 * z;
+      if (z < 1e-2) {  // series; what is left out is below 1e-9
+        half[i] = 1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0));
+        whole[i] = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0));
+        growth[i] = 0.5 - z / 6.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0));
+        half_slope[i] = -0.5 + y / 3.0 * (1.0 - 0.375 * y);
+        whole_slope[i] = -0.5 + z / 3.0 * (1.0 - 0.375 * z);
+        growth_slope[i] = -1.0 / 6.0 + z / 12.0 * (1.0 - 0.3 * z);
+        continue;
+      }
+      const double e = std::expm1(-y), all = e * (2.0 + e);  // exp(-y) - 1, exp(-z) - 1
+      half[i] = -e / y;
+      whole[i] = -all / z;
+      growth[i] = (all + z) / (z * z);
+      half_slope[i] = (e + y + e * y) / (y * y);
+      whole_slope[i] = (all + z + all * z) / (z * z);
+      growth_slope[i] = -(2.0 * z + all * (2.0 + z)) / (z * z * z);
+    }
+  }
+};
+
+/// Where the body's x axis points, seen from above: cosine and sine of the heading times the cosine of pitch.
+inline Eigen::Vector2d bow(const Eigen::Quaterniond& q) {
+  return {1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()), 2.0 * (q.w() * q.z() + q.x() * q.y())};
 }
 
-/// And of a slope that grows from 0 to 1 over the step: (exp(-z) - 1 + z) / z^2.
-inline Vector6d growth_share(const Vector6d& z) {
-  return z.unaryExpr(
-      [](double x) { return x < 1e-2 ? 0.5 - x / 6.0 + x * x / 24.0 : (std::exp(-x) - 1.0 + x) / (x * x); });
-}
-
-/// Derivatives of both with respect to z.
-inline Vector6d decay_share_slope(const Vector6d& z) {
-  return z.unaryExpr(
-      [](double x) { return x < 1e-2 ? -0.5 + x / 3.0 - x * x / 8.0 : (std::exp(-x) * (1.0 + x) - 1.0) / (x * x); });
-}
-inline Vector6d growth_share_slope(const Vector6d& z) {
-  return z.unaryExpr([](double x) {
-    return x < 1e-2 ? -1.0 / 6.0 + x / 12.0 - x * x / 40.0 : (2.0 - x - std::exp(-x) * (2.0 + x)) / (x * x * x);
-  });
-}
-
-/// Rotation about the world's down axis by psi, then the tilt of q.
-inline Eigen::Quaterniond with_heading(const Eigen::Quaterniond& tilt, double psi) {
-  const Eigen::Vector3d euler = euler_from_rotation(tilt.toRotationMatrix());
-  return Eigen::Quaterniond(rotation_from_euler({euler.x(), euler.y(), psi}));
-}
-
-inline double heading(const Eigen::Quaterniond& q) {
-  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+/// The tilt of one attitude with the heading of another.
+inline Eigen::Quaterniond with_heading(const Eigen::Quaterniond& tilt, const Eigen::Quaterniond& heading) {
+  const Eigen::Vector2d from = bow(tilt), to = bow(heading);
+  const double size = from.norm() * to.norm();
+  if (size < 1e-12) return tilt;  // straight up or down: there is no heading
+  const double cosine = from.dot(to) / size, sine = (from.x() * to.y() - from.y() * to.x()) / size;
+  // Half of the turn between them; each formula where it is exact.
+  const double half_cosine = std::sqrt(0.5 * std::max(1.0 + cosine, 0.0));
+  const double half_sine =
+      cosine > 0.0 ? 0.5 * sine / half_cosine : std::copysign(std::sqrt(0.5 * (1.0 - cosine)), sine);
+  return Eigen::Quaterniond(half_cosine, 0.0, 0.0, half_sine) * tilt;
 }
 
 /// State of one rollout and the step that advances it.
@@ -173,16 +188,16 @@ class Rollout {
     const Vector6d decay = damping(nu_);
     const Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
     const Eigen::Vector3d p_half = p_ + half * (motion_.R_WB * nu_.head<3>());
-    const Vector6d nu_half =
-        measured_where_fixed(from, offset + half, nu_ + half * decay_share(half * decay).cwiseProduct(k1));
+    const StepShares shares{h * decay};
+    const Vector6d nu_half = measured_where_fixed(from, offset + half, nu_ + half * shares.half.cwiseProduct(k1));
     const Eigen::Quaterniond q_half = q_ * quaternion_from_rotation_vector(half * nu_.tail<3>());
     const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);
     if (sensitivity_ != nullptr)
-      sensitivity_->advance(*this, {from, offset + half, p_half, q_half, nu_half, k2, decay, nu_, k1}, h);
+      sensitivity_->advance(*this, {from, offset + half, p_half, q_half, nu_half, k2, decay, nu_, k1, shares}, h);
     p_ += h * (q_half * nu_half.head<3>());
     q_ = (q_ * quaternion_from_rotation_vector(h * nu_half.tail<3>())).normalized();
     const Vector6d change = k2 + decay.cwiseProduct(nu_half - nu_) - k1;
-    const Vector6d slope = decay_share(h * decay).cwiseProduct(k1) + 2.0 * growth_share(h * decay).cwiseProduct(change);
+    const Vector6d slope = shares.whole.cwiseProduct(k1) + 2.0 * shares.growth.cwiseProduct(change);
     nu_ = measured_where_fixed(from, offset + h, nu_ + h * slope);
     follow_measured_attitude(from, offset + h);
   }
@@ -190,9 +205,17 @@ class Rollout {
   void follow_measured_attitude(std::size_t from, double offset) {
     if (!tilt_measured_ && !heading_measured_) return;
     const std::size_t next = std::min(from + 1, trial_.size() - 1);
-    const Eigen::Quaterniond measured = trial_.q_WB[from].slerp(std::min(offset / trial_.dt, 1.0), trial_.q_WB[next]);
-    const Eigen::Quaterniond& tilt = tilt_measured_ ? measured : q_;
-    q_ = with_heading(tilt, heading(heading_measured_ ? measured : q_));
+    const double share = std::min(offset / trial_.dt, 1.0);
+    Eigen::Quaterniond measured = trial_.q_WB[next];
+    if (share < 1.0 - 1e-9) {  // a straight line: what a vehicle turns in a sample is little
+      const Eigen::Quaterniond& before = trial_.q_WB[from];
+      const double way = before.dot(measured) < 0.0 ? -1.0 : 1.0;
+      measured.coeffs() = (1.0 - share) * way * before.coeffs() + share * measured.coeffs();
+      measured.normalize();
+    }
+    q_ = tilt_measured_ && heading_measured_ ? measured
+         : tilt_measured_                    ? with_heading(measured, q_)
+                                             : with_heading(q_, measured);
   }
 
   void run_in(std::size_t start, double h) {

@@ -166,18 +166,17 @@ void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
   State rate, middle;
   slope(A, B, state_, rate);
   middle = half * rate;
-  middle.bottomRows<6>() = decay_share(half * at.decay).asDiagonal() * middle.bottomRows<6>();
-  middle.bottomRows<6>() +=
-      (half * half * decay_share_slope(half * at.decay)).cwiseProduct(at.nu_dot_begin).asDiagonal() * decay;
+  middle.bottomRows<6>() = at.shares.half.asDiagonal() * middle.bottomRows<6>();
+  middle.bottomRows<6>() += (half * half * at.shares.half_slope).cwiseProduct(at.nu_dot_begin).asDiagonal() * decay;
   State rate_middle;
   slope(A, B, state_ + middle, rate_middle);
   state_.topRows<6>() += h * rate_middle.topRows<6>();
   const Vector6d moved = at.nu - at.nu_begin;
   const Vector6d change = at.nu_dot + at.decay.cwiseProduct(moved) - at.nu_dot_begin;
-  const Vector6d by_decay = h * (decay_share_slope(h * at.decay).cwiseProduct(at.nu_dot_begin) +
-                                 2.0 * growth_share_slope(h * at.decay).cwiseProduct(change));
-  const Vector6d growth = 2.0 * growth_share(h * at.decay);
-  state_.bottomRows<6>() += h * ((decay_share(h * at.decay) - growth).asDiagonal() * rate.bottomRows<6>() +
+  const Vector6d by_decay =
+      h * (at.shares.whole_slope.cwiseProduct(at.nu_dot_begin) + 2.0 * at.shares.growth_slope.cwiseProduct(change));
+  const Vector6d growth = 2.0 * at.shares.growth;
+  state_.bottomRows<6>() += h * ((at.shares.whole - growth).asDiagonal() * rate.bottomRows<6>() +
                                  growth.asDiagonal() * rate_middle.bottomRows<6>() +
                                  growth.cwiseProduct(at.decay).asDiagonal() * middle.bottomRows<6>() +
                                  (by_decay + growth.cwiseProduct(moved)).asDiagonal() * decay);

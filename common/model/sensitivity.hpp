@@ -6,6 +6,7 @@
 namespace fathom::model {
 
 class Rollout;
+struct StepShares;
 
 /// The middle of a rollout's step, where its derivatives are taken.
 struct StepMiddle {
@@ -18,6 +19,7 @@ struct StepMiddle {
   const Vector6d& decay;     ///< rates of decay that the step itself uses, 1/s
   const Vector6d& nu_begin;  ///< at the step's start, where the decay was taken
   const Vector6d& nu_dot_begin;
+  const StepShares& shares;  ///< of the step
 };
 
 /// S = d(state)/d(columns), state error = [position 3 in W; rotation 3 in B; velocity 6], S_dot = A S + B.
