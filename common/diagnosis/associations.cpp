@@ -220,14 +220,36 @@ Association LeftOver::oscillation(int axis) const {
   return best;
 }
 
-std::vector<Association> LeftOver::associations(double share, double log_odds) const {
+double LeftOver::size(int axis) const {
+  struct Spread {
+    double sum{}, square{}, count{};
+    void add(double x) { sum += x, square += x * x, count += 1.0; }
+    [[nodiscard]] double variance() const { return square / count - sum / count * (sum / count); }
+  } left, applied;
+  for (const Run& run : runs_) {
+    for (std::size_t i = 0; i < run.at.size(); ++i) {
+      const double residual = run.wrench[i][axis], tau = run.at[i].tau[0][axis];
+      if (!std::isfinite(residual)) continue;
+      left.add(residual);
+      applied.add(tau);
+    }
+  }
+  if (left.count < 2.0 || !(applied.variance() > 0.0)) return kNaN;
+  return std::sqrt(left.variance() / applied.variance());
+}
+
+std::vector<Association> LeftOver::associations(double share, double log_odds, double of_wrench) const {
   std::vector<Association> found;
   for (int axis = 0; axis < 6; ++axis) {
     if (!model_.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
     std::vector<Association> of_axis = of_suspects(axis);
     of_axis.push_back(step(axis));
     of_axis.push_back(oscillation(axis));
-    std::erase_if(of_axis, [&](const Association& a) { return !(a.share >= share && a.log_odds >= log_odds); });
+    const double whole = size(axis);
+    for (Association& one : of_axis) one.of_wrench = std::sqrt(one.share) * whole;
+    std::erase_if(of_axis, [&](const Association& a) {
+      return !(a.share >= share && a.log_odds >= log_odds) || a.of_wrench < of_wrench;
+    });
     found.insert(found.end(), of_axis.begin(), of_axis.end());
   }
   std::ranges::stable_sort(found, std::greater{}, &Association::share);

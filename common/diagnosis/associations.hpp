@@ -21,8 +21,9 @@ class LeftOver {
   /// `residuals`: of `trials`, as wrench_residuals() gives them. Model and trials must outlive it.
   LeftOver(const model::Model& model, std::span<const Trial> trials, std::span<const std::vector<Vector6d>> residuals);
 
-  /// With at least this share and these log odds, largest share first.
-  [[nodiscard]] std::vector<Association> associations(double share, double log_odds) const;
+  /// With at least this share, these log odds, and this size where a wrench is applied along the axis at all; largest
+  /// share first.
+  [[nodiscard]] std::vector<Association> associations(double share, double log_odds, double of_wrench) const;
   /// Natural log odds that the residual goes with what the curve runs over.
   [[nodiscard]] double log_odds(const FreeCurve& curve) const;
 
@@ -48,6 +49,8 @@ class LeftOver {
   [[nodiscard]] std::vector<Association> of_suspects(int axis) const;
   [[nodiscard]] Association step(int axis) const;
   [[nodiscard]] Association oscillation(int axis) const;
+  /// Residual over applied wrench along an axis, both without their means (rms); NaN where none is applied.
+  [[nodiscard]] double size(int axis) const;
 
   const model::Model& model_;
   std::vector<Run> runs_;

@@ -118,8 +118,9 @@ std::vector<Association> left_in(std::span<const Trial> train, std::span<const T
         std::max(in_fitted.log_odds(**same), in_unseen.log_odds(**same)) < settings.accept_log_odds)
       found.free_form.reset();
   }
-  std::vector<Association> left = in_unseen.associations(kSmallestAssociation, settings.accept_log_odds);
-  for (Association& other : in_fitted.associations(kSmallestAssociation, settings.accept_log_odds)) {
+  const double odds = settings.accept_log_odds;
+  std::vector<Association> left = in_unseen.associations(kSmallestAssociation, odds, kSmallestForce);
+  for (Association& other : in_fitted.associations(kSmallestAssociation, odds, kSmallestForce)) {
     const auto same = std::ranges::find_if(
         left, [&](const Association& one) { return one.axis == other.axis && one.with == other.with; });
     if (same == left.end()) left.push_back(std::move(other));

@@ -83,10 +83,8 @@ double share_explained(const LastingError& before, const LastingError& after) {
 }
 
 double at_most_for(double share, double log_odds) {
-  constexpr double kNone = 1e-3;  // explains next to nothing
   if (share >= 1.0) return log_odds;
-  const double sure = std::max(share, kNone);
-  return std::min(log_odds, std::log(sure / (1.0 - sure)));
+  return std::min(log_odds, 2.0 * std::log((1.0 - kWholeCause) / (1.0 - share)));
 }
 
 }  // namespace fathom::diagnosis

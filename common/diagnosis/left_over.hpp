@@ -6,9 +6,10 @@
 
 namespace fathom::diagnosis {
 
-/// Below this share an accepted effect may be the imitation of something else: most causes explain nearly everything
-/// that they cause, and a stand-in leaves its own wrong form behind.
-constexpr double kWholeCause = 0.9;
+/// Below this share an accepted effect is more likely the imitation of something else than not: a cause explains nearly
+/// everything that it causes, and a stand-in leaves its own wrong form behind. Where right names and stand-ins meet in
+/// some two hundred data sets of three simulators (docs/decisions/020).
+constexpr double kWholeCause = 0.97;
 
 /// Mean square of what lasts in the velocities that a model predicts over windows, whose initial velocity is free, per
 /// axis, and the standard error that noise without memory would give it, (m/s)^2 and (rad/s)^2.
@@ -26,7 +27,8 @@ struct LastingError {
 /// cannot be it (two standard errors). Where nothing is gone: 0, or 1 if nothing was certainly lacking.
 [[nodiscard]] double share_explained(const LastingError& before, const LastingError& after);
 
-/// Log odds that a name is right, given that it stands for `share` of what was lacking: at most share to 1 - share.
+/// Log odds that a name is right, given that it stands for `share` of what was lacking: even at kWholeCause, four times
+/// better for half of that left.
 [[nodiscard]] double at_most_for(double share, double log_odds);
 
 }  // namespace fathom::diagnosis

@@ -11,6 +11,9 @@ namespace fathom::diagnosis {
 
 /// Share of the residual's variance that must go with something before structure is called unexplained.
 constexpr double kSmallestAssociation = 0.1;
+/// And its size, share of the applied wrench (rms): what is smaller changes no prediction, as a weak effect (5 %, of
+/// which the base model's numbers hide a part) does.
+constexpr double kSmallestForce = 0.015;
 
 /// Fills effects, candidates, what was not measured, verdict and paragraph of `result`, whose errors and parameters are
 /// already there. `scene` is that of the training runs; `unjudged` says why no prediction was judged, if none was.

@@ -116,7 +116,11 @@ Json not_measured(const std::vector<NotMeasured>& groups) {
 Json associations(const std::vector<Association>& left) {
   Json array = Json::array();
   for (const auto& a : left) {
-    array.push_back({{"axis", a.axis}, {"with", a.with}, {"share", finite(a.share)}, {"log_odds", finite(a.log_odds)}});
+    array.push_back({{"axis", a.axis},
+                     {"with", a.with},
+                     {"share", finite(a.share)},
+                     {"log_odds", finite(a.log_odds)},
+                     {"of_wrench", finite(a.of_wrench)}});
   }
   return array;
 }

@@ -72,7 +72,10 @@ std::string to_json(const LiveTrialResult& result) {
   for (const NamedValue& p : result.effect_numbers) {
     json["effect_parameters"][p.name] = {{"value", finite(p.value)}, {"std", finite(p.std)}, {"unit", p.unit}};
   }
-  json["diagnosis"] = {{"verdict", result.ranking.verdict}, {"candidates", Json::array()}};
+  json["diagnosis"] = {{"verdict", result.ranking.verdict},
+                       {"against", result.ranking.against},
+                       {"segment", result.ranking.segment},
+                       {"candidates", Json::array()}};
   for (const EffectEvidence& one : result.ranking.candidates) {
     json["diagnosis"]["candidates"].push_back(
         {{"name", one.name}, {"log_odds", finite(one.log_odds)}, {"error_reduction", finite(one.error_reduction)}});

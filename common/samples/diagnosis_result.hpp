@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -50,6 +51,7 @@ struct Association {
   std::string with;   ///< "position", "heading", "a step at 30 s", ...
   double share{};     ///< of the residual's variance that the base model's own numbers could not take up
   double log_odds{};  ///< natural, that there is such a relation, all that was asked having been paid for
+  double of_wrench{std::numeric_limits<double>::quiet_NaN()};  ///< its size over that of the applied wrench (rms)
 };
 
 constexpr double kNotRandom = 0.01;  ///< p-value below which a residual counts as having a memory

@@ -5,10 +5,12 @@
     test/bench/live.py latency [--seconds 40]      real time, lcm-logger's clock
     test/bench/live.py memory [--seconds 3600]     lockstep, resident memory of every process over virtual time
     test/bench/live.py dropout 1001..1010          ten seconds without a tag: largest error of the position
+    test/bench/live.py agreement 1..30             effects drawn: does `fathom diagnose` say of the log what was said live?
 """
 import argparse
 import json
 import os
+import random
 import statistics
 import struct
 import subprocess
@@ -177,9 +179,57 @@ def dropout(options):
               f"ten seconds without", flush=True)
 
 
+def hideable(options):
+    """Names of all effects, as the simulator lists them when it is asked for one that it does not know."""
+    ran = trial(options, tempfile.mkdtemp(), 1, "--hide", "?", limit=1)
+    words = (ran.stderr + ran.stdout).split("there are ")[1].splitlines()[0]
+    return sorted(word.strip(" .,;") for word in words.replace(" and ", ",").split(","))
+
+
+def relation(live, later):
+    """How the last live verdict stands to that on the whole log."""
+    names = {effect["name"] for effect in later["effects"]}
+    possible = names.union(*(effect["alternatives"] for effect in later["effects"]))
+    first = live["candidates"][0]["name"] if live["candidates"] else ""
+    if live["verdict"] == "effect":
+        return "same" if first in possible else "other name" if names else "live alone names"
+    if live["verdict"] == "ambiguous":
+        return "same, live less sure" if {first, live["against"]} & possible else "other name"
+    if names:
+        return "live names nothing"
+    return "same" if live["verdict"] == later["verdict"] else "live " + live["verdict"] + ", later " + later["verdict"]
+
+
+def agreement(options):
+    effects, counts = hideable(options), {}
+    for seed in seeds_of(options.what):
+        draw = random.Random(seed)
+        hidden = draw.choice(effects) if draw.random() < 0.8 else ""
+        with tempfile.TemporaryDirectory() as folder:
+            ran = trial(options, folder, seed, *(["--hide", hidden] if hidden else []))
+            if ran.returncode != 0:
+                print(f"seed {seed}: {hidden or 'nothing'}: {ran.stderr.splitlines()[-1]}", flush=True)
+                continue
+            live = result(folder)["diagnosis"]
+            ran = subprocess.run([os.path.join(options.bin, "fathom"), "diagnose",
+                                  "--vehicle", os.path.join(ROOT, f"config/vehicles/{options.vehicle}.yaml"), "--train",
+                                  os.path.join(folder, "run.lcmlog"), "--out", os.path.join(folder, "later")],
+                                 capture_output=True, text=True)
+            if ran.returncode != 0:
+                print(f"seed {seed}: {hidden or 'nothing'}: {ran.stderr.splitlines()[-1]}", flush=True)
+                continue
+            later = result(os.path.join(folder, "later"))
+        kind = relation(live, later)
+        counts[kind] = counts.get(kind, 0) + 1
+        told = ", ".join(c["name"] for c in live["candidates"][:1]) if live["verdict"] in ("effect", "ambiguous") else ""
+        print(f"seed {seed}: hidden {hidden or 'nothing'}; live {live['verdict']} {told} {live['against']}; later "
+              f"{later['verdict']} {[e['name'] for e in later['effects']]}: {kind}", flush=True)
+    print(f"\n{sum(counts.values())} trials: {counts}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=["seeds", "latency", "memory", "dropout"])
+    parser.add_argument("command", choices=["seeds", "latency", "memory", "dropout", "agreement"])
     parser.add_argument("what", nargs="?", default="1001..1020")
     parser.add_argument("--site", default="tank")
     parser.add_argument("--vehicle", default="seabotix_lbv150")
@@ -192,7 +242,8 @@ def main():
     options.bin = os.path.abspath(options.bin)
     if options.seconds is None:
         options.seconds = 3600 if options.command == "memory" else 40
-    {"seeds": seeds, "latency": latency, "memory": memory, "dropout": dropout}[options.command](options)
+    {"seeds": seeds, "latency": latency, "memory": memory, "dropout": dropout,
+     "agreement": agreement}[options.command](options)
 
 
 main()

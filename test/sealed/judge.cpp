@@ -208,8 +208,8 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
   }
   score.before = normalised(result.at("error").at("before"));
   score.after = normalised(result.at("error").at("after"));
+  score.tilts = truth.at("base").contains("K_p") || truth.at("base").contains("M_q");
   if (truth.contains("bound")) {
-    score.tilts = truth.at("bound").contains("K_p") || truth.at("bound").contains("M_q");
     for (const auto& [name, bound] : truth.at("bound").items()) {
       const Json& fitted = result.at("parameters").at("after");
       if (!fitted.contains(name) || !fitted.at(name).at("value").is_number()) continue;

@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 using Names = std::vector<std::string>;
 
 Json truth_of(const std::string& kind, const Names& names) {
-  Json truth{{"seed", 1}, {"kind", kind}, {"floor", {{"truth", 0.02}, {"base", 0.1}}}};
+  Json truth{{"seed", 1}, {"kind", kind}, {"base", Json::object()}, {"floor", {{"truth", 0.02}, {"base", 0.1}}}};
   truth["effects"] = Json::array();
   for (const auto& name : names)
     truth["effects"].push_back({{"name", name}, {"share", 0.15}, {"parameters", {{"T", 0.2}}}});

@@ -185,7 +185,7 @@ inline DiagnosisReport made_up_report(const FixtureOptions& options = {}) {
     r.residual_before.push_back({kForces[k], 1e-12, 1.6, 0.81});
     r.residual_after.push_back({kForces[k], k == 1 ? 0.003 : 0.21, k == 1 ? 0.8 : 0.2, 0.94});
   }
-  r.goes_with.push_back({"Y", "position", 0.2, 9.0});
+  r.goes_with.push_back({"Y", "position", 0.2, 9.0, 0.1});
   report.traces.push_back(made_up_trace(options, "random-2", 7));
   return report;
 }

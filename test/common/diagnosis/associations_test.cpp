@@ -74,8 +74,8 @@ struct Dive {
     for (std::size_t k = half; k + half < kCount; ++k)
       residuals[0][k] = (sum[k + half + 1] - sum[k - half]) / static_cast<double>(span) * Vector6d::Unit(0);
   }
-  [[nodiscard]] std::vector<Association> left() const {
-    return LeftOver{model, trials, residuals}.associations(kShare, kOdds);
+  [[nodiscard]] std::vector<Association> left(double of_wrench = 0.0) const {
+    return LeftOver{model, trials, residuals}.associations(kShare, kOdds, of_wrench);
   }
 };
 
@@ -97,6 +97,18 @@ TEST_CASE("associations: noise goes with nothing, whatever its memory and howeve
     found += left.empty() ? 0 : 1;
   }
   CHECK(found == 0);
+}
+
+TEST_CASE("associations: what is small beside the thrust is none, however sure it is") {
+  const Dive dive{3, 0.0, 0.0, [](const Trial& t, std::size_t k) { return 2.0 * std::abs(t.nu[k][0]); }};
+  const auto all = dive.left();
+  REQUIRE(among(all, "speed"));
+  const auto speed = std::ranges::find(all, std::string{"speed"}, &Association::with);
+  REQUIRE(speed != all.end());
+  CHECK(speed->of_wrench > 0.01);
+  CHECK(speed->of_wrench < 0.2);
+  CHECK(among(dive.left(0.9 * speed->of_wrench), "speed"));
+  CHECK_FALSE(among(dive.left(1.1 * speed->of_wrench), "speed"));
 }
 
 TEST_CASE("associations: what is put in is named, in noise with a memory, and with the share that it has") {

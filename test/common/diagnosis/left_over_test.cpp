@@ -81,8 +81,9 @@ TEST_CASE("left over: what is not certainly left counts as gone, and axes where 
 
 TEST_CASE("left over: a name is no surer than the share that it stands for") {
   CHECK(at_most_for(1.0, 40.0) == 40.0);
-  CHECK(at_most_for(0.9, 40.0) == doctest::Approx(std::log(9.0)));
-  CHECK(at_most_for(0.9, 1.0) == 1.0);
-  CHECK(at_most_for(0.5, 40.0) == doctest::Approx(0.0));
+  CHECK(at_most_for(kWholeCause, 40.0) == doctest::Approx(0.0));
+  CHECK(at_most_for(0.99, 40.0) == doctest::Approx(std::log(9.0)));
+  CHECK(at_most_for(0.99, 1.0) == 1.0);
+  CHECK(at_most_for(0.5, 40.0) < std::log(0.1));
   CHECK(std::isfinite(at_most_for(0.0, 40.0)));
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/diagnosis/left_over.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -90,7 +91,7 @@ TEST_CASE("verdict: what leaves much of the error that lasts is kept, and is no 
   CHECK(result.verdict == "unexplained");
   REQUIRE(result.effects.size() == 1);
   CHECK(result.effects[0].accepted);
-  CHECK(result.effects[0].log_odds == doctest::Approx(std::log(0.6 / 0.4)));
+  CHECK(result.effects[0].log_odds == doctest::Approx(2.0 * std::log((1.0 - kWholeCause) / 0.4)));
   CHECK(result.explained == 0.6);
   CHECK(says(result.paragraph, "only 60 %"));
 }

@@ -42,7 +42,7 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(keys(file["error"]["improvement"]) == Names{"ci95", "value"});
   CHECK(keys(file["parameters"]) == Names{"after", "before"});
   CHECK(keys(file["residual"]) == Names{"after", "before", "goes_with"});
-  CHECK(keys(file["residual"]["goes_with"][0]) == Names{"axis", "log_odds", "share", "with"});
+  CHECK(keys(file["residual"]["goes_with"][0]) == Names{"axis", "log_odds", "of_wrench", "share", "with"});
   CHECK(keys(file["residual"]["after"]["X"]) == Names{"autocorrelation_time_s", "explained", "p_value"});
 }
 
