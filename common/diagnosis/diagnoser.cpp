@@ -94,8 +94,14 @@ double share_on(std::span<const Trial> unseen, const SearchResult& found, const 
   fits.window = found.window;
   const identification::TrajectoryFit windows{vehicle, unseen, fits};
   const double lead = lead_of(found.after.model);
-  return share_explained(lasting_error(windows, found.before.model, lead),
-                         lasting_error(windows, found.after.model, lead));
+  double share = 0.0;
+  for (const double moment : {kMoment, kFilteredNoise}) {
+    const LastingError before = lasting_error(windows, found.before.model, lead, moment);
+    // Where nothing lasts so long, nothing is told by its absence.
+    if (moment > kMoment && !certainly_lacking(before)) continue;
+    share = std::max(share, share_explained(before, lasting_error(windows, found.after.model, lead, moment)));
+  }
+  return share;
 }
 
 /// What is left in the runs that were fitted, and in those that were not: what a model lacks shows in either, and

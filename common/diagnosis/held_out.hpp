@@ -49,8 +49,10 @@ class CrossValidation {
 
 /// Share of the error (RMS) that the effect saves on windows left out.
 struct HeldOut {
-  double blocks{};  ///< left out: a fifth of the 30 s blocks, spread over all runs
-  double runs{};    ///< a run at a time had no part in the effect's size; equal to `blocks` with fewer than three runs
+  /// Left out: a fifth of the 30 s blocks, spread over all runs. Where the base model itself cannot be told from the
+  /// others, as with axes that are excited one after the other, they had no part in the effect's size alone.
+  double blocks{};
+  double runs{};  ///< a run at a time had no part in the effect's size; equal to `blocks` with fewer than three runs
 };
 
 /// Sum of squared residuals, each block predicted from the other blocks.

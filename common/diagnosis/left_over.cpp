@@ -6,23 +6,22 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kMoment = 0.1;   // s: longer than what sensors filter, shorter than a hull's answer
 constexpr double kCertain = 2.0;  // standard errors
 
-/// Sum and number of products of an axis' residuals kMoment apart, and the sum of the early ones' squares.
+/// Sum and number of products of an axis' residuals `moment` s apart, and the sum of the early ones' squares.
 struct Products {
   double sum{}, count{}, square{};
 };
 
 Products products(const identification::WindowResidual& window, const identification::AxisRows& rows,
-                  const Eigen::VectorXd& residual) {
+                  const Eigen::VectorXd& residual, double moment) {
   Products found;
   const Eigen::Index end = rows.first + rows.count;
   for (Eigen::Index early = rows.first, late = rows.first; early < end; ++early) {
-    const double moment = window.time(early) + kMoment;
-    while (late < end && window.time(late) < moment - 1e-6) ++late;
+    const double later = window.time(early) + moment;
+    while (late < end && window.time(late) < later - 1e-6) ++late;
     if (late == end) break;
-    if (window.time(late) > moment + kMoment) continue;  // a gap
+    if (window.time(late) > later + kMoment) continue;  // a gap
     found.sum += residual[early] * residual[late];
     found.square += residual[early] * residual[early];
     found.count += 1.0;
@@ -32,7 +31,8 @@ Products products(const identification::WindowResidual& window, const identifica
 
 }  // namespace
 
-LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model, double lead) {
+LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model, double lead,
+                           double moment) {
   identification::FitResult fit;
   fit.model = model;
   for (const identification::WindowResidual& window : problem.windows())
@@ -48,7 +48,7 @@ LastingError lasting_error(const identification::TrajectoryFit& problem, const m
     if (!all && early(window)) continue;
     for (const identification::AxisRows& rows : window.axes()) {
       if (rows.count == 0) continue;
-      const Products of_window = products(window, rows, projected[w].residual);
+      const Products of_window = products(window, rows, projected[w].residual, moment);
       const int axis = window.axis(rows.first);
       sum[axis] += of_window.sum;
       count[axis] += of_window.count;
@@ -65,12 +65,14 @@ LastingError lasting_error(const identification::TrajectoryFit& problem, const m
   return lasting;
 }
 
+bool certainly_lacking(const LastingError& error) {
+  return ((error.square - kCertain * error.error).array() > 0.0).any();
+}
+
 double share_explained(const LastingError& before, const LastingError& after) {
   double weighted = 0.0, weights = 0.0;
-  bool lacking = false;
   for (int axis = 0; axis < 6; ++axis) {
     if (before.square[axis] <= 0.0 || after.all[axis] <= 0.0) continue;
-    lacking = lacking || before.square[axis] > kCertain * before.error[axis];
     const double left = std::max(after.square[axis] - kCertain * after.error[axis], 0.0);
     const double gone = 1.0 - left / before.square[axis];
     if (gone <= 0.0) continue;
@@ -79,7 +81,7 @@ double share_explained(const LastingError& before, const LastingError& after) {
     weights += weight;
   }
   if (weights > 0.0) return weighted / weights;
-  return lacking ? 0.0 : 1.0;
+  return certainly_lacking(before) ? 0.0 : 1.0;
 }
 
 double at_most_for(double share, double log_odds) {

@@ -1,5 +1,6 @@
 // How much of what the base model lacks the accepted effects explain. Noise has forgotten itself after a moment, what a
-// model lacks has not: the residual's covariance over that moment measures it, whatever the sensors' noise.
+// model lacks has not: the residual's covariance over that moment measures it, whatever the sensors' noise. Noise that
+// a filter has coloured takes a longer moment to forget.
 #pragma once
 
 #include "common/identification/trajectory_fit.hpp"
@@ -11,16 +12,23 @@ namespace fathom::diagnosis {
 /// some two hundred data sets of three simulators (docs/decisions/020).
 constexpr double kWholeCause = 0.97;
 
+constexpr double kMoment = 0.1;         // s
+constexpr double kFilteredNoise = 0.5;  // s: what an estimator has coloured is forgotten by then
+
 /// Mean square of what lasts in the velocities that a model predicts over windows, whose initial velocity is free, per
-/// axis, and the standard error that noise without memory would give it, (m/s)^2 and (rad/s)^2.
+/// axis, and the standard error that noise with no more memory would give it, (m/s)^2 and (rad/s)^2.
 struct LastingError {
   Vector6d square{Vector6d::Zero()};
   Vector6d error{Vector6d::Zero()};
   Vector6d all{Vector6d::Zero()};  ///< mean square of the whole residual, noise included
 };
-/// Windows that begin less than `lead` s after their run are left out, if others remain.
+/// Windows that begin less than `lead` s after their run are left out, if others remain. What lasts outlasts `moment`
+/// s: longer than what sensors filter, shorter than a hull's answer.
 [[nodiscard]] LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model,
-                                         double lead = 0.0);
+                                         double lead = 0.0, double moment = kMoment);
+
+/// Beyond what such noise may show.
+[[nodiscard]] bool certainly_lacking(const LastingError& error);
 
 /// Share (0..1) of the lasting error of `before` that is gone in `after`, over the axes where something is gone, each
 /// with the weight of what is gone from it over what is left there in all. What is left counts only as far as noise
