@@ -1,7 +1,6 @@
 // Streams to samples to rows. Samples of the warm-up are kept, tell the scene, and are then used like all others.
 #include "common/diagnosis/live_diagnoser.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -10,13 +9,13 @@
 namespace fathom::diagnosis {
 namespace {
 
-using identification::IntegralRegressor;
-using identification::RowBlock;
-
-constexpr double kMaxRate = 100.0;      // 1/s: twenty times the bandwidth of a 2 s window
-constexpr double kPositionKnown = 5.0;  // m, std: worse than that says nothing about a tether
-constexpr double kWarmUpGap = 5.0;      // s without motion after which a warm-up starts over
-constexpr double kSmallestMass = 0.1;   // of the prior mean: keeps a poor first fit physical
+constexpr double kMaxRate = 100.0;            // 1/s: twenty times the bandwidth of a 2 s window
+constexpr double kPositionKnown = 5.0;        // m, std: worse than that says nothing about a tether
+constexpr double kWarmUpGap = 5.0;            // s without motion after which a warm-up starts over
+constexpr Utime kLongestSilence = 2'000'000;  // us: after that the grid of commands begins anew
+constexpr double kWider = 2.0;                // times longer, and candidates are made for what was shown by then
+constexpr std::size_t kOldPerNew = 8;
+constexpr std::size_t kMostSeen = 60'000;  // samples: ten minutes at 100 Hz, some 40 MB; then what there is has to do
 
 }  // namespace
 
@@ -40,8 +39,7 @@ LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle&
         identification::ParameterVector mean(static_cast<Eigen::Index>(vehicle.priors.size()));
         for (Eigen::Index i = 0; i < mean.size(); ++i) mean[i] = vehicle.priors[static_cast<std::size_t>(i)].mean;
         return mean;
-      }()},
-      regressor_{integral_settings()} {}
+      }()} {}
 
 identification::IntegralSettings LiveDiagnoser::integral_settings() const {
   identification::IntegralSettings s;
@@ -56,7 +54,7 @@ identification::IntegralSettings LiveDiagnoser::integral_settings() const {
 
 const std::vector<LiveForm>& LiveDiagnoser::forms() const {
   static const std::vector<LiveForm> kNone;
-  return candidates_ ? candidates_->columns.forms() : kNone;
+  return screening_ ? screening_->forms() : kNone;
 }
 
 std::optional<EffectRanking> LiveDiagnoser::step(const StateEstimate& state) {
@@ -116,8 +114,12 @@ std::optional<EffectRanking> LiveDiagnoser::step(const Battery& battery) {
 
 std::optional<EffectRanking> LiveDiagnoser::finish() {
   std::optional<EffectRanking> ranking = release(true);
-  if (!candidates_ && !warm_up_.empty()) prepare();
-  if (candidates_) candidates_->evidence.close_block();
+  if (!screening_ && !seen_.empty()) {
+    screening_ = screening();
+    for (const LiveSample& sample : seen_) (void)screening_->use(sample);
+  }
+  if (wider_) catch_up(seen_.size());
+  if (screening_) screening_->close();
   return newest_ > 0 ? std::optional{rank(newest_)} : ranking;
 }
 
@@ -128,30 +130,31 @@ std::optional<EffectRanking> LiveDiagnoser::release(bool all) {
       reject("no input");
       continue;
     }
-    const Sample sample = sample_of(*aligned);
-    if (sample.motion.valid) newest_ = sample.motion.utime;
-    if (!candidates_) {
-      if (!sample.motion.valid) continue;
-      if (!warm_up_.empty() && seconds_between(warm_up_.back().motion.utime, sample.motion.utime) > kWarmUpGap) {
-        forget_motion();
-      }
-      if (!origin_) origin_ = sample.motion.utime;
-      record_input(sample);
-      warm_up_.push_back(sample);
-      if (seconds_between(warm_up_.front().motion.utime, sample.motion.utime) < settings_.warm_up) continue;
-      prepare();
-      ranking = rank(sample.motion.utime);
+    LiveSample sample = sample_of(*aligned);
+    const Utime utime = sample.motion.utime;
+    if (sample.motion.valid) newest_ = utime;
+    if (screening_) {
+      if (sample.motion.valid) note_commands(sample);
+      if (const auto until = screening_->use(sample)) ranking = rank(*until);
+      keep(std::move(sample));
       continue;
     }
-    if (sample.motion.valid) record_input(sample);
-    use(sample, ranking);
+    if (!sample.motion.valid) continue;
+    if (!seen_.empty() && seconds_between(seen_.back().motion.utime, utime) > kWarmUpGap) forget_motion();
+    note_commands(sample);
+    seen_.push_back(std::move(sample));
+    shown_ = seconds_between(seen_.front().motion.utime, utime);
+    if (shown_ < settings_.warm_up) continue;
+    screening_ = screening();
+    for (const LiveSample& one : seen_) (void)screening_->use(one);
+    ranking = rank(utime);
   }
   return ranking;
 }
 
-LiveDiagnoser::Sample LiveDiagnoser::sample_of(const identification::StreamAligner::Aligned& aligned) {
+LiveSample LiveDiagnoser::sample_of(const identification::StreamAligner::Aligned& aligned) {
   const StateEstimate& state = aligned.state;
-  Sample sample;
+  LiveSample sample;
   sample.motion.utime = state.utime;
   if (!state.valid) {
     reject("state invalid");
@@ -167,123 +170,67 @@ LiveDiagnoser::Sample LiveDiagnoser::sample_of(const identification::StreamAlign
     sample.q_WB = state.q_WB;
     sample.has_position = state.sigma.head<3>().maxCoeff() < kPositionKnown;
     sample.voltage = aligned.voltage;
-    if (source_ == Source::kCurve && sample.voltage > 0.0 && vehicle_->curve.voltage > 0.0) {
-      sample.boost = std::pow(sample.voltage / vehicle_->curve.voltage, vehicle_->curve.voltage_exponent);
-    }
-    sample.force = sample.boost * *aligned.input;
+    sample.force = boost(sample.voltage) * *aligned.input;
     sample.motion.tau = nominal_.allocation * sample.force;
   }
   return sample;
 }
 
-model::Scene LiveDiagnoser::scene() const {
-  model::Scene scene{.vehicle = vehicle_.get(), .position = true, .attitude = true, .velocity = true, .rates = true};
-  scene.input_is_wrench = source_ == Source::kWrench;
-  const Sample& first = warm_up_.front();
-  scene.duration = seconds_between(first.motion.utime, warm_up_.back().motion.utime);
-  scene.p_low = scene.p_high = first.p_WB;
-  scene.force_rms = model::ActuatorForces::Zero(nominal_.allocation.cols());
-  double low = first.voltage, high = first.voltage;
-  for (const Sample& sample : warm_up_) {
-    scene.position = scene.position && sample.has_position;
-    scene.p_low = scene.p_low.cwiseMin(sample.p_WB).eval();
-    scene.p_high = scene.p_high.cwiseMax(sample.p_WB).eval();
-    scene.nu_rms += sample.motion.nu.cwiseAbs2();
-    scene.tau_rms += sample.motion.tau.cwiseAbs2();
-    scene.force_rms += sample.force.cwiseAbs2();
-    scene.mean_voltage += sample.voltage / static_cast<double>(warm_up_.size());
-    low = std::min(low, sample.voltage);
-    high = std::max(high, sample.voltage);
-  }
-  const auto count = static_cast<double>(warm_up_.size());
-  scene.nu_rms = (scene.nu_rms / count).cwiseSqrt().eval();
-  scene.tau_rms = (scene.tau_rms / count).cwiseSqrt().eval();
-  scene.force_rms = (scene.force_rms / count).cwiseSqrt().eval();
-  scene.voltage = low > 0.0;
-  scene.voltage_range = high - low;
-  return scene;
+/// Factor of the voltage on a curve's force.
+double LiveDiagnoser::boost(double voltage) const {
+  if (source_ != Source::kCurve || !(voltage > 0.0) || !(vehicle_->curve.voltage > 0.0)) return 1.0;
+  return std::pow(voltage / vehicle_->curve.voltage, vehicle_->curve.voltage_exponent);
 }
 
-// A first fit of the base model: drag and masses for effects that alter what the hull feels, and the size of the
-// residual per axis, which weighs the axes against each other.
-model::Model LiveDiagnoser::base_from_warm_up(Vector6d& sigma) {
-  IntegralRegressor regressor{integral_settings()};
-  std::vector<RowBlock> blocks;
-  for (const Sample& sample : warm_up_) {
-    if (const auto block = regressor.step(sample.motion)) blocks.push_back(*block);
+void LiveDiagnoser::note_commands(LiveSample& sample) {
+  const Utime now = sample.motion.utime;
+  if (!commands_end_ || now - *commands_end_ > kLongestSilence) {
+    sample.commands_from = now;
+    sample.commands.emplace_back(sample.force);
+    commands_end_ = now + kCommandStep;
   }
-  const Eigen::Index n = prior_mean_.size();
-  Vector6d scale = Vector6d::Zero();
-  Vector6d count = Vector6d::Zero();
-  for (const RowBlock& block : blocks) {
-    for (const auto& row : block.view()) {
-      scale[row.axis] += row.y * row.y;
-      count[row.axis] += 1.0;
-    }
+  for (; *commands_end_ <= now; *commands_end_ += kCommandStep) {
+    const auto input = aligner_.input_at(*commands_end_);
+    sample.commands.emplace_back(input ? Eigen::VectorXd{boost(sample.voltage) * *input}
+                                       : Eigen::VectorXd{sample.force});
   }
-  sigma = (scale.array() / count.array().max(1.0)).sqrt().max(1e-3) * 0.1;
-  Eigen::VectorXd theta = prior_mean_;
-  for (int round = 0; round < 3; ++round) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double prior = vehicle_->priors[static_cast<std::size_t>(i)].sigma;
-      normal(i, i) = 1.0 / (prior * prior);
-      right[i] = prior_mean_[i] / (prior * prior);
-    }
-    for (const RowBlock& block : blocks) {
-      for (const auto& row : block.view()) {
-        const double weight = 1.0 / (sigma[row.axis] * sigma[row.axis]);
-        normal += weight * row.h * row.h.transpose();
-        right += weight * row.y * row.h;
-      }
-    }
-    theta = normal.ldlt().solve(right);
-    Vector6d square = Vector6d::Zero();
-    for (const RowBlock& block : blocks) {
-      for (const auto& row : block.view()) square[row.axis] += std::pow(row.y - row.h.dot(theta), 2);
-    }
-    for (int axis = 0; axis < 6; ++axis) {
-      const double freedom = std::max(count[axis] - 4.0, 1.0);  // about four parameters per axis
-      if (count[axis] > 0.0) sigma[axis] = std::max(std::sqrt(square[axis] / freedom), 1e-4);
-    }
-  }
-  model::Model model = nominal_;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    double value = theta[static_cast<Eigen::Index>(i)];
-    const double mean = prior_mean_[static_cast<Eigen::Index>(i)];
-    if (model::sign_constraint(parameters_[i]) > 0) value = std::max(value, kSmallestMass * mean);
-    if (model::sign_constraint(parameters_[i]) < 0) value = std::min(value, 0.0);
-    model.theta[model::index(parameters_[i])] = value;
-  }
-  return model;
 }
 
-void LiveDiagnoser::prepare() {
-  const model::Model base = base_from_warm_up(sigma_);
-  Eigen::VectorXd information(prior_mean_.size());
-  for (Eigen::Index i = 0; i < information.size(); ++i) {
-    information[i] = std::pow(vehicle_->priors[static_cast<std::size_t>(i)].sigma, -2);
+std::unique_ptr<LiveScreening> LiveDiagnoser::screening() const {
+  return std::make_unique<LiveScreening>(LiveBasis{.vehicle = *vehicle_,
+                                                   .parameters = parameters_,
+                                                   .prior_mean = prior_mean_,
+                                                   .nominal = nominal_,
+                                                   .input_is_wrench = source_ == Source::kWrench,
+                                                   .block = settings_.block,
+                                                   .max_gap = settings_.max_gap,
+                                                   .most_blocks = static_cast<std::size_t>(settings_.most_blocks),
+                                                   .integral = integral_settings()},
+                                         seen_, screening_ ? std::optional{screening_->sigma()} : std::nullopt);
+}
+
+// A pass over all that was seen takes seconds, which nobody has at once: with every new sample a few old ones are
+// heard.
+void LiveDiagnoser::keep(LiveSample sample) {
+  if (!all_seen_) return;
+  const bool valid = sample.motion.valid;
+  const double shown = seconds_between(seen_.front().motion.utime, sample.motion.utime);
+  seen_.push_back(std::move(sample));
+  if (!wider_ && valid && shown >= kWider * shown_) {
+    wider_ = screening();
+    caught_up_ = 0;
+    shown_ = shown;
   }
-  std::vector<LiveEvidence::Mass> masses;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    if (model::sign_constraint(parameters_[i]) > 0) masses.push_back({column, prior_mean_[column]});
+  if (wider_) catch_up(kOldPerNew);
+  if (!wider_ && seen_.size() > kMostSeen) {
+    all_seen_ = false;
+    seen_.clear();
   }
-  candidates_ = std::make_unique<Candidates>(base, scene(), information, std::move(masses),
-                                             static_cast<std::size_t>(settings_.most_blocks));
-  Candidates& c = *candidates_;
-  c.wrench.assign(regressor_.capacity(), WrenchColumns::Zero(6, c.columns.columns()));
-  c.momentum.assign(regressor_.capacity(),
-                    WrenchColumns::Zero(6, static_cast<Eigen::Index>(c.columns.inertial().size())));
-  c.filtered.setZero(6, c.columns.columns());
-  c.rate.setZero(6, static_cast<Eigen::Index>(c.columns.inertial().size()));
-  c.row.setZero(prior_mean_.size() + 1 + c.columns.columns());
-  const std::vector<Sample> kept = std::move(warm_up_);
-  warm_up_.clear();
-  last_.reset();
-  std::optional<EffectRanking> none;
-  for (const Sample& sample : kept) use(sample, none);
+}
+
+void LiveDiagnoser::catch_up(std::size_t samples) {
+  for (; samples > 0 && caught_up_ < seen_.size(); --samples) (void)wider_->use(seen_[caught_up_++]);
+  if (caught_up_ == seen_.size()) screening_ = std::move(wider_);
 }
 
 }  // namespace fathom::diagnosis

@@ -1,6 +1,8 @@
 // The diagnoser on line: STATE, THRUSTERS and BATTERY in, EFFECTS out. A fast screening in a filtered regression: each
 // candidate's wrench along the measured motion is averaged with the same windows as the base model's rows, and asked
-// how much of the residual it explains that the base parameters cannot. Pure and blind to the order of arrival.
+// how much of the residual it explains that the base parameters cannot. Each time that the trial has become twice as
+// long, candidates are made anew for all that it has shown by then, and hear all of it. Pure and blind to the order of
+// arrival.
 #pragma once
 
 #include <deque>
@@ -11,9 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/diagnosis/live_evidence.hpp"
-#include "common/diagnosis/places.hpp"
-#include "common/identification/integral_regressor.hpp"
+#include "common/diagnosis/live_screening.hpp"
 #include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/estimates.hpp"
@@ -50,6 +50,8 @@ struct LiveSettings {
 class LiveDiagnoser {
  public:
   LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle);
+  LiveDiagnoser(const LiveDiagnoser&) = delete;  // its passes point into it
+  LiveDiagnoser& operator=(const LiveDiagnoser&) = delete;
 
   /// A ranking follows the first state of each new block.
   std::optional<EffectRanking> step(const StateEstimate& state);
@@ -75,37 +77,15 @@ class LiveDiagnoser {
 
  private:
   enum class Source { kUnknown, kForce, kCurve, kWrench };
-  struct Sample {
-    identification::MotionSample motion;
-    Eigen::Vector3d p_WB;
-    Eigen::Quaterniond q_WB;
-    model::ActuatorForces force;
-    double boost{1.0};  ///< factor of the voltage on a curve's force
-    double voltage{};
-    bool has_position{};
-  };
-  struct Candidates {  // what exists after the warm-up
-    Candidates(const model::Model& base, const model::Scene& scene, const Eigen::VectorXd& information,
-               std::vector<LiveEvidence::Mass> masses, std::size_t most_blocks)
-        : columns{base, scene}, evidence{columns, information, std::move(masses), most_blocks} {}
-    LiveCandidates columns;
-    LiveEvidence evidence;
-    std::vector<WrenchColumns> wrench, momentum;  // ring, beside the regressor's
-    std::size_t next{};
-    std::size_t filled{};
-    WrenchColumns filtered, rate;  // workspace
-    Eigen::VectorXd row;
-  };
   void reject(const char* reason) { ++rejected_[reason]; }
   std::optional<EffectRanking> release(bool all);
-  [[nodiscard]] Sample sample_of(const identification::StreamAligner::Aligned& aligned);
-  void record_input(const Sample& sample);
+  [[nodiscard]] LiveSample sample_of(const identification::StreamAligner::Aligned& aligned);
+  [[nodiscard]] double boost(double voltage) const;
+  void note_commands(LiveSample& sample);
   void forget_motion();
-  void prepare();
-  void use(const Sample& sample, std::optional<EffectRanking>& ranking);
-  void add(const identification::RowBlock& block);
-  [[nodiscard]] model::Scene scene() const;
-  [[nodiscard]] model::Model base_from_warm_up(Vector6d& sigma);
+  [[nodiscard]] std::unique_ptr<LiveScreening> screening() const;
+  void keep(LiveSample sample);
+  void catch_up(std::size_t samples);
   [[nodiscard]] EffectRanking rank(Utime utime);
   [[nodiscard]] bool leaves_much(Utime utime);
   [[nodiscard]] identification::IntegralSettings integral_settings() const;
@@ -116,18 +96,15 @@ class LiveDiagnoser {
   Source source_{Source::kUnknown};
   identification::StreamAligner aligner_;
   model::Model nominal_;
-  std::vector<Sample> warm_up_;
-  std::optional<Sample> last_;
-  std::optional<Utime> origin_;
-  Utime newest_{};                     // valid state used
-  std::optional<std::int64_t> block_;  // number of the block that is filling
-  Vector6d sigma_{Vector6d::Ones()};
   identification::ParameterVector prior_mean_;
-  std::vector<Eigen::VectorXd> past_;  // commands on a uniform grid, for delays
-  Utime past_begin_{};
-  identification::IntegralRegressor regressor_;
-  std::unique_ptr<Candidates> candidates_;
-  Places places_;
+  std::deque<LiveSample> seen_;  // all of the trial, as long as another pass may be made; the warm-up at first
+  bool all_seen_{true};
+  std::unique_ptr<LiveScreening> screening_;
+  double shown_{};                        // s of the trial that its candidates were made for
+  std::unique_ptr<LiveScreening> wider_;  // for more of it, still behind
+  std::size_t caught_up_{};               // samples of seen_ that it has taken
+  Utime newest_{};                        // valid state used
+  std::optional<Utime> commands_end_;     // next instant on the grid of commands
   std::vector<LiveSuspicion> suspicions_;
   std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_;
   struct Left {

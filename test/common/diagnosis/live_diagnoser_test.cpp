@@ -119,6 +119,19 @@ TEST_CASE("live diagnoser: hidden effects are ranked first") {
   }
 }
 
+TEST_CASE("live diagnoser: what the warm-up could not show is found once the trial has shown it") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const test::VirtualDive dive = test::make_dive(
+      vehicle, {.duration = kDuration, .seed = 16, .effects = {test::active("payload_change", {0.0, 6.0, 170.0})}});
+  LiveDiagnoser diagnoser{LiveSettings{}, vehicle};
+  const EffectRanking ranking = listen(diagnoser, dive.trial).back();
+  CAPTURE(told(ranking));
+  REQUIRE_FALSE(ranking.candidates.empty());
+  CHECK(ranking.candidates.front().name == "payload_change");
+  REQUIRE(ranking.candidates.front().numbers.size() == 3);
+  CHECK(ranking.candidates.front().numbers[2] == doctest::Approx(170.0).epsilon(0.05));
+}
+
 TEST_CASE("live diagnoser: nothing is adopted on clean data") {
   // The LBV150 has one vertical thruster: losing its thrust and the heave masses together explains nothing.
   for (const char* name : {"bluerov2", "seabotix_lbv150"}) {

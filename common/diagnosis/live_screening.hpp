@@ -1,0 +1,85 @@
+// One pass of the live regression: candidates made for what a stretch of the trial has shown (how deep, how fast, how
+// long), and the evidence of the samples that went through them. Once the trial has shown more, another pass is made.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/diagnosis/live_evidence.hpp"
+#include "common/diagnosis/places.hpp"
+#include "common/identification/integral_regressor.hpp"
+
+namespace fathom::diagnosis {
+
+constexpr Utime kCommandStep = 20'000;  // us between commands that are kept for delays
+
+/// One instant of the streams, ready to be asked.
+struct LiveSample {
+  identification::MotionSample motion;
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
+  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
+  model::ActuatorForces force;
+  double voltage{};
+  bool has_position{};
+  std::optional<Utime> commands_from;     ///< the grid of commands begins anew here
+  std::vector<Eigen::VectorXd> commands;  ///< on that grid since the sample before
+};
+
+/// What a pass rests on.
+struct LiveBasis {
+  const model::Vehicle& vehicle;
+  const std::vector<model::BaseParameter>& parameters;  ///< of the vehicle file, in its order
+  const identification::ParameterVector& prior_mean;
+  const model::Model& nominal;
+  bool input_is_wrench{};
+  double block{};    ///< s
+  double max_gap{};  ///< s
+  std::size_t most_blocks{};
+  identification::IntegralSettings integral;  ///< of the rows
+};
+
+class LiveScreening {
+ public:
+  /// Candidates for the scene of the valid ones among `seen`, of which there is one at least. Everything in `basis`
+  /// must outlive it. `sigma` weighs the axes as an earlier pass did: what a long stretch leaves tells of the cause
+  /// that is looked for rather than of noise.
+  LiveScreening(const LiveBasis& basis, const std::deque<LiveSample>& seen, const std::optional<Vector6d>& sigma);
+
+  /// Takes the next sample. The first one of a new block hands out the instant up to which rows count; what came
+  /// before may be judged then.
+  std::optional<Utime> use(const LiveSample& sample);
+  /// The streams ended: what is in the open block counts too.
+  void close() { evidence_->close_block(); }
+
+  [[nodiscard]] const LiveEvidence& evidence() const { return *evidence_; }
+  [[nodiscard]] const std::vector<LiveForm>& forms() const { return columns_->forms(); }
+  [[nodiscard]] const Places& places() const { return places_; }
+  /// Size of the rows' residual per axis, N and N m.
+  [[nodiscard]] const Vector6d& sigma() const { return sigma_; }
+
+ private:
+  [[nodiscard]] model::Scene scene(const std::deque<LiveSample>& seen) const;
+  [[nodiscard]] model::Model base_of(const std::deque<LiveSample>& seen);
+  void add(const identification::RowBlock& block);
+
+  LiveBasis basis_;
+  Utime origin_;
+  Vector6d sigma_{Vector6d::Ones()};
+  identification::IntegralRegressor regressor_;
+  std::unique_ptr<LiveCandidates> columns_;
+  std::unique_ptr<LiveEvidence> evidence_;
+  Places places_;
+  std::optional<LiveSample> last_;
+  std::optional<std::int64_t> block_;  // number of the block that is filling
+  std::vector<Eigen::VectorXd> past_;  // commands on their grid
+  Utime past_begin_{};
+  std::vector<WrenchColumns> wrench_, momentum_;  // ring, beside the regressor's
+  std::size_t next_{};
+  std::size_t filled_{};
+  WrenchColumns filtered_, rate_;  // workspace
+  Eigen::VectorXd row_;
+};
+
+}  // namespace fathom::diagnosis
