@@ -202,7 +202,7 @@ std::string motion_for(const std::string& name) { return std::string(model::find
 
 /// What to drive next: what tells look-alikes apart, else what sharpens the weakest number, else what would confirm
 /// or rule out the nearest candidate. Empty when nothing is open.
-std::string next_manoeuvre(const DiagnosisResult& result) {
+std::string next_manoeuvre(const DiagnosisResult& result, const Judged* promising) {
   for (const EffectFound& effect : result.effects) {
     if (effect.alternatives.empty()) continue;
     std::vector<std::string> motions{motion_for(effect.name)};
@@ -217,10 +217,20 @@ std::string next_manoeuvre(const DiagnosisResult& result) {
     return "To know " + weakest.effect->name + " better (its " + weakest.name + " is known to " +
            percent(weakest.share) + "): " + motion_for(weakest.effect->name) + ".";
   }
+  if (promising != nullptr) {
+    const std::string name{promising->effect->name()};
+    return "To confirm or rule out " + name + ": " + motion_for(name) + ".";
+  }
   if (result.verdict != "unexplained" || result.candidates.empty()) return "";
   const CandidateTried& nearest = result.candidates.front();
   if (nearest.error_reduction <= 0.0) return "";
   return "To confirm or rule out the nearest candidate, " + nearest.name + ": " + motion_for(nearest.name) + ".";
+}
+
+/// The refused effect that would save most of the error; none when that is little.
+const Judged* promising_of(const SearchResult& found) {
+  const auto most = std::ranges::max_element(found.refused, {}, &Judged::error_reduction);
+  return most != found.refused.end() && most->error_reduction >= kPromising ? &*most : nullptr;
 }
 
 }  // namespace
@@ -240,7 +250,8 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const std::vector<Foretold> foretold = badly_foretold(result);
   // Worse than to assume the average: whatever is at work, the model does not explain it.
   const bool blind = std::ranges::any_of(foretold, [](const Foretold& one) { return one.share < 0.0; });
-  const bool structure = !left.empty() || found.free_form || found.taken_back || blind;
+  const Judged* promising = promising_of(found);
+  const bool structure = !left.empty() || found.free_form || found.taken_back || blind || promising != nullptr;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
@@ -288,6 +299,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     text += "; what would settle it: " + motion_for(first->name);
     text += ". ";
   }
+  if (promising != nullptr) {
+    text += std::string(promising->effect->name()) + " would remove " + percent(promising->error_reduction) +
+            " of the error, and is not certain: " + promising->reason + ". ";
+  }
   if (found.free_form) {
     text += "A force on " + found.free_form->axis + " that depends on " + found.free_form->with +
             " in a way that no known effect has would remove " + percent(found.free_form->share) +
@@ -303,7 +318,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
   text += not_measured_sentences(result.not_measured, *scene.vehicle);
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  result.manoeuvre = next_manoeuvre(result);
+  result.manoeuvre = next_manoeuvre(result, promising);
 }
 
 }  // namespace fathom::diagnosis

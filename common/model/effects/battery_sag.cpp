@@ -1,5 +1,5 @@
 // Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an
-// open propeller on a DC motor (bounds a little wider); where no voltage is logged, or it does not change,
+// open propeller on a DC motor (bounds wider: a controller below its voltage loses more); where no voltage is logged, or it does not change,
 // f = f_c (1 - s t / 300 s) with t the time in the run. Ignores: load-dependent sag within the thruster's own cable.
 // Revealed by the same manoeuvre early and late. Confused with payload change and, in one short run, with drag.
 #include <algorithm>
@@ -12,9 +12,9 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 2.5}};
+constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 4.0}};
 enum Form { kVoltage, kTime };
-constexpr double kTimeScale = 300.0;      // s: a bound of 2.5 then allows a battery that is empty after two minutes
+constexpr double kTimeScale = 300.0;      // s: the bound then allows a battery that is empty after a minute and a quarter
 constexpr double kSmallestRange = 0.003;  // of the voltage: less says nothing
 constexpr double kSmallestShare = 0.05;   // of the thrust, which cannot turn round
 

@@ -37,9 +37,9 @@ struct MadeUp {
                               .error_reduction = 0.3});
     return found.accepted.back();
   }
-  void refuse(const std::string& name, double log_odds, const std::string& reason) {
+  void refuse(const std::string& name, double log_odds, const std::string& reason, double saves = 0.004) {
     found.refused.push_back(
-        {.effect = model::find_effect(name), .log_odds = log_odds, .error_reduction = 0.004, .reason = reason});
+        {.effect = model::find_effect(name), .log_odds = log_odds, .error_reduction = saves, .reason = reason});
   }
   /// Standard deviations as shares of the numbers, in the order of the fit's parameters.
   void known_to(double base, const std::vector<double>& effects) {
@@ -94,6 +94,19 @@ TEST_CASE("verdict: what leaves much of the error that lasts is kept, and is no 
   CHECK(result.effects[0].log_odds == doctest::Approx(2.0 * std::log((1.0 - kWholeCause) / 0.4)));
   CHECK(result.explained == 0.6);
   CHECK(says(result.paragraph, "only 60 %"));
+}
+
+TEST_CASE("verdict: a refused effect that would save much leaves the verdict open, and says what to drive") {
+  MadeUp made;
+  made.refuse("current", -4.0, "log odds -4.0, 8.0 needed");
+  made.refuse("wall_effect", 0.5, "log odds 0.5, 5.0 needed", 0.39);
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "unexplained");
+  CHECK(says(result.paragraph, "wall_effect would remove 39 % of the error, and is not certain: log odds 0.5"));
+  CHECK(says(result.manoeuvre, "confirm or rule out wall_effect"));
+  MadeUp little;
+  little.refuse("wall_effect", 0.5, "log odds 0.5, 5.0 needed", 0.05);
+  CHECK(little.concluded().verdict == "adequate");
 }
 
 TEST_CASE("verdict: nothing found and nothing left is adequate, and there is nothing to drive") {
