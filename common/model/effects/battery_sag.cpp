@@ -1,7 +1,8 @@
 // Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an
-// open propeller on a DC motor (bounds wider: a controller below its voltage loses more); where no voltage is logged, or it does not change,
-// f = f_c (1 - s t / 300 s) with t the time in the run. Ignores: load-dependent sag within the thruster's own cable.
-// Revealed by the same manoeuvre early and late. Confused with payload change and, in one short run, with drag.
+// open propeller on a DC motor (bounds wider: a controller below its voltage loses more); where no voltage is logged,
+// or it does not change, f = f_c (1 - s t / 300 s) with t the time in the run. Ignores: load-dependent sag within the
+// thruster's own cable. Revealed by the same manoeuvre early and late. Confused with payload change and, in one short
+// run, with drag.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 4.0}};
 enum Form { kVoltage, kTime };
-constexpr double kTimeScale = 300.0;      // s: the bound then allows a battery that is empty after a minute and a quarter
+constexpr double kTimeScale = 300.0;  // s: the bound then allows a battery that is empty after a minute and a quarter
 constexpr double kSmallestRange = 0.003;  // of the voltage: less says nothing
 constexpr double kSmallestShare = 0.05;   // of the thrust, which cannot turn round
 
