@@ -14,8 +14,8 @@ constexpr double kSmallestAssociation = 0.1;
 /// And its size, share of the applied wrench (rms): what is smaller changes no prediction, as a weak effect (5 %, of
 /// which the base model's numbers hide a part) does.
 constexpr double kSmallestForce = 0.015;
-/// A refused effect that would save this share of the error (RMS) saves it in too few places to be sure of its name, but
-/// something is at work: three times what noise with a memory ever let one save.
+/// A refused effect that would save this share of the error (RMS) saves it in too few places to be sure of its name,
+/// but something is at work: three times what noise with a memory ever let one save.
 constexpr double kPromising = 0.15;
 
 /// Fills effects, candidates, what was not measured, verdict and paragraph of `result`, whose errors and parameters are
