@@ -10,6 +10,8 @@ bool take_state_as_measured(Recording& recording) {
         {.utime = state.utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .valid = state.valid});
     if (velocity) recording.dvl.push_back({.utime = state.utime, .v_WB_B = state.nu.head<3>(), .valid = state.valid});
   }
+  // It has gone into STATE already: where a filter smooths, the two would differ and prove nothing.
+  for (Ahrs& ahrs : recording.ahrs) ahrs.has_specific_force = false;
   return true;
 }
 

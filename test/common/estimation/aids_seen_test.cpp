@@ -79,7 +79,10 @@ TEST_CASE("aids seen: what has no place, no tag on the map, or no state near it 
 
 TEST_CASE("state as measured: stands in for a motion capture that is not there, and only then") {
   Fixture f;
+  f.recording.ahrs.push_back({.has_rates = true, .has_specific_force = true});
   CHECK(take_state_as_measured(f.recording));
+  CHECK(f.recording.ahrs.back().has_rates);
+  CHECK_FALSE(f.recording.ahrs.back().has_specific_force);  // it is in STATE already
   REQUIRE(f.recording.pose_capture.size() == 1);
   CHECK(f.recording.pose_capture[0].p_WB == f.p_WB);
   CHECK(f.recording.dvl[0].v_WB_B == f.v_B);
