@@ -193,6 +193,7 @@ std::vector<Foretold> badly_foretold(const DiagnosisResult& result) {
 std::string foretold_sentence(const std::vector<Foretold>& axes) {
   if (axes.empty()) return "";
   std::vector<std::string> words;
+  words.reserve(axes.size());
   for (const Foretold& one : axes)
     words.push_back((one.share > 0.0 ? percent(one.share) : "nothing") + " of the motion along " + one.axis);
   return "5 s ahead the model foretells " + joined(words) + ". ";
