@@ -107,6 +107,7 @@ class Completion {
 
 std::vector<Component> one_each(const std::vector<std::string>& names, int first_axis) {
   std::vector<Component> components;
+  components.reserve(names.size());
   for (const std::string& name : names) components.push_back({name, {first_axis++}});
   return components;
 }
