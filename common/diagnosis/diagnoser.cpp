@@ -95,10 +95,10 @@ double share_on(std::span<const Trial> unseen, const SearchResult& found, const 
   const identification::TrajectoryFit windows{vehicle, unseen, fits};
   const double lead = lead_of(found.after.model);
   double share = 0.0;
-  for (const double moment : {kMoment, kFilteredNoise}) {
+  for (const double moment : {kWhiteNoise, kFilteredNoise}) {
     const LastingError before = lasting_error(windows, found.before.model, lead, moment);
     // Where nothing lasts so long, nothing is told by its absence.
-    if (moment > kMoment && !certainly_lacking(before)) continue;
+    if (moment > kWhiteNoise && !certainly_lacking(before)) continue;
     share = std::max(share, share_explained(before, lasting_error(windows, found.after.model, lead, moment)));
   }
   return share;

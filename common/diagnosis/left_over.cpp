@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kCertain = 2.0;  // standard errors
 
+constexpr double kGap = 0.1;  // s: a residual that is later than due by more stands after a gap
+
 /// Sum and number of products of an axis' residuals `moment` s apart, and the sum of the early ones' squares.
 struct Products {
   double sum{}, count{}, square{};
@@ -21,7 +23,7 @@ Products products(const identification::WindowResidual& window, const identifica
     const double later = window.time(early) + moment;
     while (late < end && window.time(late) < later - 1e-6) ++late;
     if (late == end) break;
-    if (window.time(late) > later + kMoment) continue;  // a gap
+    if (window.time(late) > later + kGap) continue;
     found.sum += residual[early] * residual[late];
     found.square += residual[early] * residual[early];
     found.count += 1.0;

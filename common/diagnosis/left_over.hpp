@@ -12,7 +12,7 @@ namespace fathom::diagnosis {
 /// some two hundred data sets of three simulators (docs/decisions/020).
 constexpr double kWholeCause = 0.97;
 
-constexpr double kMoment = 0.1;         // s
+constexpr double kWhiteNoise = 0.1;     // s: what sensors filter is forgotten by then
 constexpr double kFilteredNoise = 0.5;  // s: what an estimator has coloured is forgotten by then
 
 /// Mean square of what lasts in the velocities that a model predicts over windows, whose initial velocity is free, per
@@ -25,7 +25,7 @@ struct LastingError {
 /// Windows that begin less than `lead` s after their run are left out, if others remain. What lasts outlasts `moment`
 /// s: longer than what sensors filter, shorter than a hull's answer.
 [[nodiscard]] LastingError lasting_error(const identification::TrajectoryFit& problem, const model::Model& model,
-                                         double lead = 0.0, double moment = kMoment);
+                                         double lead = 0.0, double moment = kWhiteNoise);
 
 /// Beyond what such noise may show.
 [[nodiscard]] bool certainly_lacking(const LastingError& error);

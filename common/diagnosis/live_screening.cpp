@@ -63,10 +63,10 @@ std::optional<Utime> LiveScreening::use(const LiveSample& sample) {
   if (!sample.motion.valid) {
     columns_->reset();
     filled_ = 0;
-    last_.reset();
+    before_.reset();
     return {};
   }
-  const double elapsed = last_ ? seconds_between(last_->motion.utime, sample.motion.utime) : 0.0;
+  const double elapsed = before_ ? seconds_between(before_->utime, sample.motion.utime) : 0.0;
   if (elapsed > basis_.max_gap) {
     columns_->reset();
     filled_ = 0;
@@ -82,11 +82,11 @@ std::optional<Utime> LiveScreening::use(const LiveSample& sample) {
                              .input = &past,
                              .vehicle = &basis_.vehicle};
   const model::ActuatorForces middle =
-      last_ ? model::ActuatorForces{0.5 * (last_->force + sample.force)} : sample.force;
+      before_ ? model::ActuatorForces{0.5 * (before_->force + sample.force)} : sample.force;
   columns_->step(motion, middle, elapsed, wrench_[next_], momentum_[next_]);
   next_ = (next_ + 1) % wrench_.size();
   filled_ = std::min(filled_ + 1, wrench_.size());
-  last_ = sample;
+  before_ = {sample.motion.utime, sample.force};
   if (!rows) return {};
   // The instant of a row is its window's end: blocks close by message time alone.
   const auto block = static_cast<std::int64_t>(seconds_between(origin_, rows->end) / basis_.block);

@@ -60,6 +60,10 @@ class LiveScreening {
   [[nodiscard]] const Vector6d& sigma() const { return sigma_; }
 
  private:
+  struct Before {
+    Utime utime{};
+    model::ActuatorForces force;
+  };
   [[nodiscard]] model::Scene scene(const std::deque<LiveSample>& seen) const;
   [[nodiscard]] model::Model base_of(const std::deque<LiveSample>& seen);
   void add(const identification::RowBlock& block);
@@ -71,7 +75,7 @@ class LiveScreening {
   std::unique_ptr<LiveCandidates> columns_;
   std::unique_ptr<LiveEvidence> evidence_;
   Places places_;
-  std::optional<LiveSample> last_;
+  std::optional<Before> before_;
   std::optional<std::int64_t> block_;  // number of the block that is filling
   std::vector<Eigen::VectorXd> past_;  // commands on their grid
   Utime past_begin_{};

@@ -177,6 +177,8 @@ void Promises::recall(Answers& answers) const {
     if (known == refused_.end() || known->second.times < kEnoughRefusals) continue;
     if (answers.share[i] > kPromisesMore * known->second.share) continue;
     answers.judged[i] = known->second.judged;
+    // The screening, which promises no less than a fit keeps, has seen the effects that were accepted since.
+    answers.judged[i].error_reduction = std::min(answers.judged[i].error_reduction, answers.share[i]);
     answers.fitted[i] = true;
   }
 }

@@ -228,10 +228,13 @@ std::string next_manoeuvre(const DiagnosisResult& result, const Judged* promisin
   return "To confirm or rule out the nearest candidate, " + nearest.name + ": " + motion_for(nearest.name) + ".";
 }
 
-/// The refused effect that would save most of the error; none when that is little.
+/// The refused effect that would save most of the error; none when that is little, or when the validation run has just
+/// told that it saves nothing there.
 const Judged* promising_of(const SearchResult& found) {
   const auto most = std::ranges::max_element(found.refused, {}, &Judged::error_reduction);
-  return most != found.refused.end() && most->error_reduction >= kPromising ? &*most : nullptr;
+  if (most == found.refused.end() || found.taken_back) return nullptr;
+  const auto windows = static_cast<double>(std::max<std::size_t>(found.after.window_cost.size(), 1));
+  return most->error_reduction >= kPromising + 1.0 / windows ? &*most : nullptr;
 }
 
 }  // namespace

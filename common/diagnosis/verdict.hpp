@@ -15,7 +15,8 @@ constexpr double kSmallestAssociation = 0.1;
 /// which the base model's numbers hide a part) does.
 constexpr double kSmallestForce = 0.015;
 /// A refused effect that would save this share of the error (RMS) saves it in too few places to be sure of its name,
-/// but something is at work: three times what noise with a memory ever let one save.
+/// but something is at work: three times what noise with a memory ever let one save on a whole trial. On few windows
+/// chance saves more: one window's share is added.
 constexpr double kPromising = 0.15;
 
 /// Fills effects, candidates, what was not measured, verdict and paragraph of `result`, whose errors and parameters are

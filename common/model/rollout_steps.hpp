@@ -37,9 +37,9 @@ struct StepShares {
         half[i] = 1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0));
         whole[i] = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0));
         growth[i] = 0.5 - z / 6.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0));
-        half_slope[i] = -0.5 + y / 3.0 * (1.0 - 0.375 * y);
-        whole_slope[i] = -0.5 + z / 3.0 * (1.0 - 0.375 * z);
-        growth_slope[i] = -1.0 / 6.0 + z / 12.0 * (1.0 - 0.3 * z);
+        half_slope[i] = -0.5 + y / 3.0 * (1.0 - 0.375 * y * (1.0 - y * 4.0 / 15.0));
+        whole_slope[i] = -0.5 + z / 3.0 * (1.0 - 0.375 * z * (1.0 - z * 4.0 / 15.0));
+        growth_slope[i] = -1.0 / 6.0 + z / 12.0 * (1.0 - 0.3 * z * (1.0 - z * 2.0 / 9.0));
         continue;
       }
       const double e = std::expm1(-y), all = e * (2.0 + e);  // exp(-y) - 1, exp(-z) - 1

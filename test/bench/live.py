@@ -181,7 +181,8 @@ def dropout(options):
 
 def hideable(options):
     """Names of all effects, as the simulator lists them when it is asked for one that it does not know."""
-    ran = trial(options, tempfile.mkdtemp(), 1, "--hide", "?", limit=1)
+    with tempfile.TemporaryDirectory() as folder:
+        ran = trial(options, folder, 1, "--hide", "?", limit=1)
     words = (ran.stderr + ran.stdout).split("there are ")[1].splitlines()[0]
     return sorted(word.strip(" .,;") for word in words.replace(" and ", ",").split(","))
 

@@ -81,6 +81,10 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
   for (int i = 0; i < 6; ++i) {
     if (!vehicle.dof[static_cast<std::size_t>(i)]) reachable.row(i).setZero();
   }
+  std::vector<int> free_axes;
+  for (int i = 0; i < 6; ++i) {
+    if (vehicle.dof[static_cast<std::size_t>(i)]) free_axes.push_back(i);
+  }
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> inverse{reachable};
   Vector6d nu = Vector6d::Zero();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -89,9 +93,15 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
   // The command of the next sample is decided now, so that inputs run straight from sample to sample.
   const auto command = [&](double t) {
     Vector6d tau = excitation.at(t);
+    if (settings.turn > 0.0) {
+      const int driven = free_axes[static_cast<std::size_t>(t / settings.turn) % free_axes.size()];
+      tau = (Vector6d::Unit(driven) * tau[driven]).eval();
+      return Eigen::VectorXd{inverse.solve(Eigen::VectorXd{tau})};
+    }
     tau.head<3>() -= (q.conjugate() * p).cwiseProduct(0.15 * excitation.strength().head<3>());
     return Eigen::VectorXd{inverse.solve(Eigen::VectorXd{tau})};
   };
+  const double remembered = settings.noise_memory > 0.0 ? std::exp(-settings.dt / settings.noise_memory) : 0.0;
   std::vector<Vector6d> noises;
   model::VelocityTrace measured(6, static_cast<Eigen::Index>(samples));
   trial.input.reserve(samples + 1);
@@ -105,6 +115,7 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     trial.q_WB.push_back(q);
     Vector6d noise;
     for (int i = 0; i < 6; ++i) noise[i] = trial.nu_sigma[i] * normal(random);
+    if (k > 0) noise = remembered * noises.back() + std::sqrt(1.0 - remembered * remembered) * noise;
     noises.push_back(noise);
     measured.col(static_cast<Eigen::Index>(k)) = nu;
     trial.voltage.push_back(voltage);

@@ -16,6 +16,8 @@ struct DiveSettings {
   unsigned seed{1};
   double velocity_noise{0.005};  ///< m/s, std
   double rate_noise{0.005};      ///< rad/s
+  double noise_memory{0.0};      ///< s, time constant; the standard deviations stay
+  double turn{0.0};              ///< s that each free axis is driven alone, one after the other; 0: all together
   double spread{0.1};            ///< of the true base parameters around the vehicle file's means
   bool wrench{false};            ///< inputs are the wrench, not single thrusters
   /// 0: inputs run straight from sample to sample; 1/2: each is held until the next; -1/2: it held since the last.

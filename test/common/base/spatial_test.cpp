@@ -49,6 +49,15 @@ TEST_CASE("spatial: a rotation vector survives the quaternion, small, large and 
   CHECK(rotation_vector_from_quaternion(Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0)).isApprox(Vector3d(0, 0, kPi)));
 }
 
+TEST_CASE("spatial: the series of a small rotation meets the sine and cosine at its bound") {
+  constexpr double kBound = 0.2;  // rad, where the code changes over
+  for (const double angle : {0.1 * kBound, 0.5 * kBound, kBound * (1.0 - 1e-9), kBound * (1.0 + 1e-9), 2.0 * kBound}) {
+    const Eigen::Quaterniond q = quaternion_from_rotation_vector({0.0, angle, 0.0});
+    CHECK(std::abs(q.w() - std::cos(0.5 * angle)) < 2e-16);
+    CHECK(std::abs(q.y() - std::sin(0.5 * angle)) < 2e-16);
+  }
+}
+
 TEST_CASE("spatial: skew times a vector is the cross product") {
   const Vector3d a(1.0, 2.0, 3.0);
   CHECK((skew(a) * Vector3d(4.0, 5.0, 6.0)).isApprox(Vector3d(-3.0, 6.0, -3.0), kRounding));

@@ -32,11 +32,16 @@ class Weed final : public model::Effect {
   std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"growth", "", 100.0}};
 };
 
+constexpr double kFilter = 0.1;  // s: an estimator that remembers
+
 /// Share that `suspect` explains on a dive that it was not fitted to, with `hidden` in both.
-double share(const model::ActiveEffect& hidden, const model::ActiveEffect& suspect) {
+double share(const model::ActiveEffect& hidden, const model::ActiveEffect& suspect, double noise_memory = 0.0,
+             double moment = kWhiteNoise) {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const auto dive = [&](unsigned seed) {
-    return test::make_dive(vehicle, {.duration = kDuration, .seed = seed, .spread = 0.0, .effects = {hidden}});
+    return test::make_dive(
+        vehicle,
+        {.duration = kDuration, .seed = seed, .noise_memory = noise_memory, .spread = 0.0, .effects = {hidden}});
   };
   const test::VirtualDive first = dive(21), second = dive(22);
   const std::vector<Trial> train{first.trial}, unseen{second.trial};
@@ -47,7 +52,8 @@ double share(const model::ActiveEffect& hidden, const model::ActiveEffect& suspe
   model.add(suspect);
   const FitResult with = problem.fit(model, &without);
   const TrajectoryFit windows{vehicle, unseen, settings};
-  return share_explained(lasting_error(windows, without.model), lasting_error(windows, with.model));
+  return share_explained(lasting_error(windows, without.model, 0.0, moment),
+                         lasting_error(windows, with.model, 0.0, moment));
 }
 
 LastingError axis(int which, double square, double error, double all) {
@@ -65,6 +71,33 @@ TEST_CASE("left over: a true cause explains what lasts, a stand-in does not") {
   const Weed weed;
   const model::ActiveEffect hidden{&weed, 0, "", {150.0}};
   CHECK(share(hidden, test::active("battery_sag", {0.5})) < kWholeCause);
+}
+
+TEST_CASE("left over: what an estimator has coloured is forgotten within half a second, a stand-in's rest is not") {
+  const model::ActiveEffect current = test::active("current", {0.02, -0.01}),
+                            guess = test::active("current", {0.01, 0.01});
+  CHECK(share(current, guess, kFilter) < kWholeCause);  // .1 s later the noise is still there
+  CHECK(share(current, guess, kFilter, kFilteredNoise) > kWholeCause);
+  const Weed weed;
+  const model::ActiveEffect hidden{&weed, 0, "", {150.0}};
+  CHECK(share(hidden, test::active("battery_sag", {0.5}), kFilter, kFilteredNoise) < kWholeCause);
+}
+
+TEST_CASE("left over: whether anything lacks is told beside noise of either kind") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto lacking = [&](double noise_memory, double moment, std::vector<model::ActiveEffect> effects) {
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = kDuration,
+                                                             .seed = 23,
+                                                             .noise_memory = noise_memory,
+                                                             .spread = 0.0,
+                                                             .effects = std::move(effects)});
+    const TrajectoryFit windows{vehicle, {&dive.trial, 1}, {.window = 5.0, .threads = 1}};
+    return certainly_lacking(lasting_error(windows, model::nominal_model(vehicle, false), 0.0, moment));
+  };
+  CHECK_FALSE(lacking(0.0, kWhiteNoise, {}));
+  CHECK(lacking(kFilter, kWhiteNoise, {}));
+  CHECK_FALSE(lacking(kFilter, kFilteredNoise, {}));
+  CHECK(lacking(kFilter, kFilteredNoise, {test::active("current", {0.08, -0.05})}));
 }
 
 TEST_CASE("left over: what is not certainly left counts as gone, and axes where nothing is gone do not count") {

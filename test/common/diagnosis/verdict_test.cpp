@@ -24,6 +24,7 @@ struct MadeUp {
   MadeUp() {
     found.before.model = model::nominal_model(vehicle, false);
     found.after.model = found.before.model;
+    found.after.window_cost.assign(50, 1.0);
   }
   Judged& accept(const std::string& name, std::vector<double> theta, int variant = 0,
                  const std::string& variant_name = "") {
@@ -107,6 +108,20 @@ TEST_CASE("verdict: a refused effect that would save much leaves the verdict ope
   MadeUp little;
   little.refuse("wall_effect", 0.5, "log odds 0.5, 5.0 needed", 0.05);
   CHECK(little.concluded().verdict == "adequate");
+}
+
+TEST_CASE(
+    "verdict: on a few windows, or once the validation run has spoken, what a refused effect would save is chance") {
+  MadeUp made;
+  made.refuse("wall_effect", 0.5, "log odds 0.5, 5.0 needed", 0.21);
+  CHECK(made.concluded().verdict == "unexplained");
+  made.found.after.window_cost.assign(10, 1.0);
+  CHECK(made.concluded().verdict == "adequate");
+  made.found.after.window_cost.assign(50, 1.0);
+  made.found.taken_back = true;
+  const DiagnosisResult result = made.concluded();
+  CHECK_FALSE(says(result.paragraph, "would remove"));
+  CHECK(says(result.paragraph, "did not help the validation run"));
 }
 
 TEST_CASE("verdict: nothing found and nothing left is adequate, and there is nothing to drive") {
