@@ -2,19 +2,15 @@
 
 #include <doctest/doctest.h>
 
-#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "common/base/error.hpp"
-#include "test/support/timing.hpp"
 
 using namespace fathom;
 using namespace fathom::tables;
 
 namespace {
-
-constexpr double kTenMegabytesSeconds = 1.0;  // what the reader promises; an ordinary machine needs a tenth of it
 
 std::string complaint(const std::string& text) {
   try {
@@ -67,15 +63,4 @@ TEST_CASE("csv: what is wrong is said in one line with the file's line") {
     CHECK_THROWS_WITH_AS(static_cast<void>(read_csv(path)), (std::string(path) + ": cannot read this file").c_str(),
                          InputError);
   }
-}
-
-TEST_CASE("csv: ten megabytes take less than a second") {
-  std::string text = "t,a,b,c,d,e,f,g,h,i\n";
-  while (text.size() < 10'000'000) text += "12.345678,-0.001234,1.5e-3,1580.25,0,1,-2.718281828,3.14159,42,0.5\n";
-  const auto start = std::chrono::steady_clock::now();
-  const CsvTable table = parse_csv(text, "big.csv");
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  MESSAGE("10 MB of CSV: " << seconds << " s");
-  CHECK(table.rows() > 100'000);
-  if (test::kTimed) CHECK(seconds < kTenMegabytesSeconds);
 }
