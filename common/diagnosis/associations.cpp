@@ -147,7 +147,10 @@ LeftOver::Answer LeftOver::answer(const LagSums& sums, const Indices& asked, dou
   const double before = square_left(products, base, {}, {});
   const double after = square_left(products, base, asked, with.x.tail(static_cast<Eigen::Index>(asked.size())));
   const double of_variance = before > 0.0 ? 1.0 - after / before : 0.0;
-  return {std::max(of_variance, 1.0 - with.sse / without.sse), 0.5 * n * std::log(without.sse / with.sse) - price};
+  // Few samples beside many columns: what the base columns and the memory take up is no evidence (Liang et al. 2008,
+  // eq. 6, the unit information prior).
+  const double free = n - without.rank - static_cast<double>(LagSums::kMemory);
+  return {std::max(of_variance, 1.0 - with.sse / without.sse), 0.5 * free * std::log(without.sse / with.sse) - price};
 }
 
 LeftOver::Answer LeftOver::answer(int axis, bool (*seen)(const Trial&), const Asked& asked) const {

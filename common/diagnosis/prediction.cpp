@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "common/base/distributions.hpp"
+
 namespace fathom::diagnosis {
 namespace {
 
@@ -101,6 +103,10 @@ Predictions predict(const model::Model& model, std::span<const model::Window> wi
       }
     }
     predictions.windows.push_back(errors);
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const double sigma = trial.nu_sigma[static_cast<Eigen::Index>(axis)];
+      predictions.noise[axis] += sigma * sigma / static_cast<double>(windows.size());
+    }
   }
   for (std::size_t h = 0; h < kHorizons.size(); ++h) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -158,10 +164,29 @@ std::vector<PredictionError> Predictions::summary(const model::Vehicle& vehicle)
       const bool known = vehicle.dof[axis] && samples > 0.0;
       row.rmse[axis] = known ? std::sqrt(total / samples) : kNaN;
       row.r2[axis] = known && variance[h][axis] > 0.0 ? 1.0 - total / samples / variance[h][axis] : kNaN;
+      if (!known) continue;
+      row.p_half[axis] = p_foretells(0.5, h, axis);
+      row.p_average[axis] = p_foretells(0.0, h, axis);
     }
     rows.push_back(row);
   }
   return rows;
+}
+
+double Predictions::p_foretells(double share, std::size_t horizon, std::size_t axis) const {
+  const double motion = std::max(variance[horizon][axis] - noise[axis], 0.0);
+  const double allowed = (1.0 - share) * motion + 2.0 * noise[axis];
+  double n = 0.0, sum = 0.0, square = 0.0;
+  for (const WindowErrors& window : windows) {
+    if (window.count[horizon][axis] <= 0.0) continue;
+    const double beyond = window.square[horizon][axis] / window.count[horizon][axis] - allowed;
+    n += 1.0;
+    sum += beyond;
+    square += beyond * beyond;
+  }
+  if (n < 2.0 || sum <= 0.0) return 1.0;
+  const double scatter = (square - sum * sum / n) / (n - 1.0);  // of one window
+  return scatter > 0.0 ? 0.5 * f_tail(sum * sum / n / scatter, n - 1.0) : 0.0;
 }
 
 Interval improvement(const Predictions& before, const Predictions& after, const model::Vehicle& vehicle) {

@@ -22,8 +22,12 @@ struct WindowErrors {
 struct Predictions {
   std::vector<WindowErrors> windows;
   std::array<std::array<double, 6>, 3> variance{};  ///< of the measured velocity over the same samples
+  std::array<double, 6> noise{};                    ///< variance of the sensors' noise in it
 
   [[nodiscard]] std::vector<PredictionError> summary(const model::Vehicle& vehicle) const;
+  /// P-value of the model's foretelling `share` of the motion or more, by how its error scatters from window to window
+  /// (Student's t, one-sided). Noise costs a prediction twice: where it begins and where it is compared.
+  [[nodiscard]] double p_foretells(double share, std::size_t horizon, std::size_t axis) const;
 };
 
 /// True where the velocity of an axis at sample `k` is a measurement, not a guess across a gap.

@@ -173,18 +173,21 @@ WeakestNumber weakest_number(const DiagnosisResult& result) {
 struct Foretold {
   std::string axis;
   double share{};  // R2, 5 s ahead
+  bool blind{};    // to assume the average would be better
 };
 
-/// Axes of which the final model foretells less than half of the motion although what is left there is not random.
+/// Axes of which the final model certainly foretells less than half of the motion although what is left there is not
+/// random.
 std::vector<Foretold> badly_foretold(const DiagnosisResult& result) {
-  constexpr double kHorizon = 5.0, kLeast = 0.5;  // s
+  constexpr double kHorizon = 5.0;  // s
   std::vector<Foretold> axes;
   for (const PredictionError& error : result.error_after.prediction) {
     if (error.horizon_s != kHorizon) continue;
     for (const AxisWhiteness& axis : result.residual_after) {
       const auto i =
           static_cast<std::size_t>(std::ranges::find(model::kAxisNames, axis.axis) - model::kAxisNames.begin());
-      if (axis.p_value < kNotRandom && error.r2[i] < kLeast) axes.push_back({axis.axis, error.r2[i]});
+      if (axis.p_value < kNotRandom && error.p_half[i] < kNotRandom)
+        axes.push_back({axis.axis, error.r2[i], error.p_average[i] < kNotRandom});
     }
   }
   return axes;
@@ -253,7 +256,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
   const std::vector<Foretold> foretold = badly_foretold(result);
   // Worse than to assume the average: whatever is at work, the model does not explain it.
-  const bool blind = std::ranges::any_of(foretold, [](const Foretold& one) { return one.share < 0.0; });
+  const bool blind = std::ranges::any_of(foretold, &Foretold::blind);
   const Judged* promising = promising_of(found);
   const bool structure = !left.empty() || found.free_form || found.taken_back || blind || promising != nullptr;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;

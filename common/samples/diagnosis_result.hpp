@@ -29,6 +29,10 @@ struct PredictionError {
   double horizon_s{};
   std::array<double, 6> rmse{};  ///< m/s, rad/s
   std::array<double, 6> r2{};
+  /// One-sided p-values, over windows, of foretelling half of the motion, and as much of it as its average does. What
+  /// the sensors' noise adds is allowed for. 1 where nothing is told.
+  std::array<double, 6> p_half{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  std::array<double, 6> p_average{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
 };
 
 /// Errors of one model on the validation runs.

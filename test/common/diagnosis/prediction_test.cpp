@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <random>
 
 #include "common/estimation/split.hpp"
 #include "test/support/virtual_dive.hpp"
@@ -127,4 +128,51 @@ TEST_CASE("prediction: what was cut out of a longer run is predicted from where 
   model::Model plain = dive.truth;
   plain.effects.clear();
   CHECK(lead_of(plain) == 0.0);
+}
+
+TEST_CASE("prediction: what is certain of the share foretold grows with the windows, by Student's t") {
+  Predictions made;
+  made.variance[1][0] = 1.0;
+  const auto window = [](double mean_square) {
+    WindowErrors errors;
+    errors.square[1][0] = 50.0 * mean_square;
+    errors.count[1][0] = 50.0;
+    return errors;
+  };
+  made.windows = {window(3.0)};
+  CHECK(made.p_foretells(0.0, 1, 0) == 1.0);  // one window has no scatter
+  made.windows = {window(3.0), window(1.0)};
+  // 2 and 0 beyond the average's: t = 1 with one degree of freedom, a quarter lies above.
+  CHECK(made.p_foretells(0.0, 1, 0) == doctest::Approx(0.25));
+  made.windows = {window(3.0), window(1.0), window(3.0), window(1.0), window(3.0), window(1.0)};
+  CHECK(made.p_foretells(0.0, 1, 0) == doctest::Approx(0.0379).epsilon(0.01));  // t = sqrt(5), five degrees of freedom
+  CHECK(made.p_foretells(0.5, 1, 0) < made.p_foretells(0.0, 1, 0));
+  made.noise[0] = 1.0;  // there was no motion at all: twice the noise is what no model can help
+  CHECK(made.p_foretells(0.5, 1, 0) == 1.0);
+  CHECK(made.p_foretells(0.5, 1, 3) == 1.0);  // an axis without samples
+}
+
+TEST_CASE("prediction: the truth is never caught foretelling less than half, in motion or at rest") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  constexpr unsigned kSeeds = 20;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    CAPTURE(seed);
+    test::VirtualDive dive = test::make_dive(vehicle, {.duration = 60.0, .seed = seed});
+    const auto moved = predict(dive.truth, prediction_windows({&dive.trial, 1})).summary(vehicle);
+    // At rest: noise is all that is measured.
+    model::Model still = dive.truth;
+    still.theta.tail<4>().setZero();
+    std::mt19937 random{seed};
+    std::normal_distribution<double> normal;
+    for (std::size_t k = 0; k < dive.trial.size(); ++k) {
+      for (int axis = 0; axis < 6; ++axis) dive.trial.nu[k][axis] = dive.trial.nu_sigma[axis] * normal(random);
+      dive.trial.input[k].setZero();
+    }
+    const auto rest = predict(still, prediction_windows({&dive.trial, 1})).summary(vehicle);
+    for (const std::size_t axis : {0UL, 1UL, 2UL, 5UL}) {
+      CHECK(moved[1].p_half[axis] > 0.01);
+      CHECK(rest[1].p_half[axis] > 1e-3);
+      CHECK(rest[1].p_average[axis] > 1e-3);
+    }
+  }
 }

@@ -180,24 +180,29 @@ TEST_CASE("verdict: what is left may have a memory: adequate all the same, and s
 TEST_CASE(
     "verdict: a model that foretells worse than the average explains nothing, one that foretells little says so") {
   const MadeUp made;
-  const auto concluded = [&](double r2, double p_value) {
+  const auto concluded = [&](double r2, double p_value, double p_half = 1e-6, double p_average = 1.0) {
     DiagnosisResult result;
     result.error_after.prediction = {{.horizon_s = 5.0, .r2 = {0.9, r2, 0.9, 0.9, 0.9, 0.9}}};
+    result.error_after.prediction[0].p_half[1] = p_half;
+    result.error_after.prediction[0].p_average[1] = p_average;
     result.residual_after = {{"X", 0.3, 0.3, 0.9}, {"Y", p_value, 2.0, 0.9}};
     conclude(made.found, made.left, made.scene(), result);
     return result;
   };
-  CHECK(concluded(-0.5, 1e-6).verdict == "unexplained");
-  CHECK(says(concluded(-0.5, 1e-6).paragraph, "foretells nothing of the motion along Y"));
+  CHECK(concluded(-0.5, 1e-6, 1e-6, 1e-6).verdict == "unexplained");
+  CHECK(says(concluded(-0.5, 1e-6, 1e-6, 1e-6).paragraph, "foretells nothing of the motion along Y"));
   CHECK(concluded(0.3, 1e-6).verdict == "adequate");
   CHECK(says(concluded(0.3, 1e-6).paragraph, "foretells 30 % of the motion along Y"));
-  CHECK(concluded(-0.5, 0.4).verdict == "adequate");  // an axis that nothing moves: noise is all that there is
-  CHECK_FALSE(says(concluded(0.9, 1e-6).paragraph, "5 s ahead"));
+  CHECK(concluded(-0.5, 0.4, 1e-6, 1e-6).verdict == "adequate");  // noise is all that there is
+  CHECK(concluded(-0.5, 1e-6, 0.1, 0.2).verdict == "adequate");   // a few windows tell nothing
+  CHECK_FALSE(says(concluded(-0.5, 1e-6, 0.1, 0.2).paragraph, "5 s ahead"));
+  CHECK_FALSE(says(concluded(0.9, 1e-6, 1.0).paragraph, "5 s ahead"));
   MadeUp found;
   found.accept("current", {0.1, 0.1});
   DiagnosisResult result;
   result.improvement = {0.4, 0.3, 0.5};
   result.error_after.prediction = {{.horizon_s = 5.0, .r2 = {0.9, 0.3, 0.9, 0.9, 0.9, 0.9}}};
+  result.error_after.prediction[0].p_half[1] = 1e-6;
   result.residual_after = {{"Y", 1e-6, 2.0, 0.9}};
   conclude(found.found, found.left, found.scene(), result);
   CHECK(says(result.paragraph, "foretells 30 % of the motion along Y"));  // beside what was found, too
