@@ -33,6 +33,15 @@ double white_noise_sigma(std::span<const double> series) {
   return mad_sigma(std::move(third)) / std::sqrt(20.0);  // 1 + 9 + 9 + 1
 }
 
+double effective_count(std::span<const double> weights) {
+  double sum = 0.0, square = 0.0;
+  for (const double weight : weights) {
+    sum += weight;
+    square += weight * weight;
+  }
+  return square > 0.0 ? sum * sum / square : 0.0;
+}
+
 double jackknife_sigma(std::span<const double> replicates) {
   const auto n = static_cast<double>(replicates.size());
   if (replicates.size() < 2) return 0.0;

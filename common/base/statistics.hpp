@@ -14,6 +14,9 @@ namespace fathom {
 [[nodiscard]] double huber_weight(double ratio, double limit = 1.5);
 /// Standard deviation of white noise on a smooth uniform series, from third differences: smooth motion drops out.
 [[nodiscard]] double white_noise_sigma(std::span<const double> series);
+/// How many parts of equal weight say as much as these weights, none of them negative: (sum w)^2 / sum w^2 (Kish 1965,
+/// sec. 11.7); 0 when all are zero.
+[[nodiscard]] double effective_count(std::span<const double> weights);
 /// Standard deviation of an estimate from its delete-one-block replicates (Efron 1982).
 [[nodiscard]] double jackknife_sigma(std::span<const double> replicates);
 

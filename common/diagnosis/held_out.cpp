@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/statistics.hpp"
+
 namespace fathom::diagnosis {
 namespace {
 
@@ -150,13 +152,9 @@ double CrossValidation::log_likelihood_ratio(std::span<const Eigen::Index> place
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < known.size(); ++i) direction[known[i]] = weighted[static_cast<Eigen::Index>(i)];
   const Eigen::VectorXd influence = all.solve(direction);
-  double sum = 0.0, square = 0.0;
-  for (const Window& window : windows_) {
-    const double share = influence.dot(window.information * influence);
-    sum += share;
-    square += share * share;
-  }
-  const double informative = square > 0.0 ? sum * sum / square : 0.0;
+  std::vector<double> shares;
+  for (const Window& window : windows_) shares.push_back(influence.dot(window.information * influence));
+  const double informative = effective_count(shares);
   const double wald = x.dot(weighted);
   return informative > 1.0 && wald > 0.0 ? 0.5 * informative * std::log1p(wald / informative) : 0.0;
 }

@@ -20,7 +20,14 @@ struct Fault {
   std::string signal, reference;
   NamedValue number;
   double deviations{};  ///< from no fault
+  double freedom{};     ///< degrees of freedom of the number's standard deviation
 };
+
+/// Log-likelihood ratio of the number against no fault: Student's, for a few blocks of data know their scatter badly.
+double log_likelihood_ratio(const Fault& fault) {
+  const double square = fault.deviations * fault.deviations;
+  return fault.freedom > 0.0 ? 0.5 * (fault.freedom + 1.0) * std::log1p(square / fault.freedom) : 0.5 * square;
+}
 
 std::optional<Fault> fault_of(const ConsistencyFinding& finding) {
   if (finding.run != "all" || finding.std <= 0.0 || !finding.action.starts_with("corrected")) return std::nullopt;
@@ -29,7 +36,8 @@ std::optional<Fault> fault_of(const ConsistencyFinding& finding) {
                  finding.signal,
                  finding.reference,
                  {finding.signal + "." + number, value, std, finding.unit},
-                 std::abs(value) / std};
+                 std::abs(value) / std,
+                 finding.freedom};
   };
   if (finding.finding == "delay") return fault("sensor_latency", "delay", finding.size, finding.std);
   if (finding.finding == "scale") {
@@ -64,7 +72,8 @@ void charge_the_late(std::vector<Fault>& faults) {
        earliest->reference,
        earliest->signal,
        {earliest->reference + ".delay", -earliest->number.value, earliest->number.std, earliest->number.unit},
-       earliest->deviations});
+       earliest->deviations,
+       earliest->freedom});
 }
 
 std::string listed(const std::vector<EffectFound>& effects) {
@@ -83,7 +92,7 @@ void adopt_sensor_faults(DiagnosisResult& result) {
   charge_the_late(faults);
   std::vector<EffectFound> found;
   for (const Fault& fault : faults) {
-    const double odds = std::min(0.5 * fault.deviations * fault.deviations, kMostOdds) - std::log(kFindingsTried);
+    const double odds = std::min(log_likelihood_ratio(fault), kMostOdds) - std::log(kFindingsTried);
     auto place = std::find_if(found.begin(), found.end(), [&](const auto& e) { return e.name == fault.effect; });
     if (place == found.end()) {
       const model::Effect* effect = model::find_effect(fault.effect);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "common/base/statistics.hpp"
 
@@ -93,20 +94,40 @@ struct Normals {
     yy += sign * other.yy;
     weight += sign * other.weight;
   }
+  [[nodiscard]] Eigen::VectorXd solve() const { return solve(g); }
   /// Columns are scaled to unit length first; a tiny ridge keeps what the data cannot see at zero.
-  [[nodiscard]] Eigen::VectorXd solve() const {
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& of) const {
     const Eigen::VectorXd scale = (h.diagonal().array() + 1e-300).rsqrt();
-    Eigen::MatrixXd scaled = h.selfadjointView<Eigen::Lower>();
+    Eigen::MatrixXd scaled = full();
     scaled = scale.asDiagonal() * scaled * scale.asDiagonal();
     scaled.diagonal().array() += 1e-7;
-    const Eigen::VectorXd right = scale.asDiagonal() * g;
+    const Eigen::VectorXd right = scale.asDiagonal() * of;
     return scale.asDiagonal() * scaled.ldlt().solve(right);
   }
-  [[nodiscard]] double cost(const Eigen::VectorXd& theta) const {
-    const Eigen::MatrixXd full = h.selfadjointView<Eigen::Lower>();
-    return std::max(yy - 2.0 * theta.dot(g) + theta.dot(full * theta), 0.0) / std::max(weight, 1e-300);
+  [[nodiscard]] Eigen::MatrixXd full() const { return h.selfadjointView<Eigen::Lower>(); }
+  [[nodiscard]] double square(const Eigen::VectorXd& theta) const {
+    return std::max(yy - 2.0 * theta.dot(g) + theta.dot(full() * theta), 0.0);
   }
+  [[nodiscard]] double cost(const Eigen::VectorXd& theta) const { return square(theta) / std::max(weight, 1e-300); }
 };
+
+/// Mean square of a window's misfit, times how much more the blocks' gradients scatter than misfits without a memory
+/// would make them. Less it is never taken to be: increments that meet end to end share their noise with opposite
+/// signs, which helps where the motion is slow, and not where a quick one shows a number.
+double noise_of(const std::vector<Normals>& blocks, const Eigen::VectorXd& theta) {
+  Normals all(static_cast<int>(theta.size()));
+  for (const Normals& block : blocks) all.add(block, 1.0);
+  const double square = all.square(theta) / std::max(3.0 * all.weight, 1e-300);
+  Eigen::VectorXd scatter = Eigen::VectorXd::Zero(theta.size());
+  for (const Normals& block : blocks) scatter += (block.full() * theta - block.g).cwiseAbs2();
+  double ratio = 0.0, count = 0.0;
+  for (Eigen::Index j = 0; j < theta.size(); ++j) {
+    if (!(all.h(j, j) > 1e-12) || !(square > 0.0)) continue;
+    ratio += scatter[j] / (square * all.h(j, j));
+    count += 1.0;
+  }
+  return square * (count > 0.0 ? std::max(ratio / count, 1.0) : 1.0);
+}
 
 /// Misfits per window (NaN where the sensor is missing) for theta, and Huber weights from them.
 struct Misfits {
@@ -339,7 +360,12 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
     double moved = 0.0;
     fit.theta_replicates.push_back(solve_all(b, moved, nullptr));
     fit.delay_replicates.push_back(delay + moved * kFineStep);
+    const auto block = static_cast<std::size_t>(b);
+    fit.information.push_back(normals[1][block].full());
+    const auto square = [&](std::size_t node) { return normals[node][block].square(fit.theta); };
+    fit.delay_information.push_back(std::max(square(0) - 2.0 * square(1) + square(2), 0.0) / (kFineStep * kFineStep));
   }
+  fit.noise = noise_of(normals[1], fit.theta);
 
   middle.shift(spline, fit.delay);
   const Misfits misfit = misfits(problem, middle, fit.theta, 1);
@@ -361,6 +387,21 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
     fit.lever_seen[a] = energy > kLeverSeen * problem.lever_noise * static_cast<double>(problem.fixed.size());
   }
   return fit;
+}
+
+IncrementFit::Uncertainty IncrementFit::uncertainty(const Eigen::VectorXd& gradient) const {
+  if (information.empty()) return {};
+  Normals all(static_cast<int>(gradient.size()));
+  for (const Eigen::MatrixXd& block : information) all.h += block;
+  const Eigen::VectorXd influence = all.solve(gradient);
+  std::vector<double> shares;
+  for (const Eigen::MatrixXd& block : information) shares.push_back(std::max(influence.dot(block * influence), 0.0));
+  return {std::sqrt(noise * std::max(influence.dot(gradient), 0.0)), effective_count(shares)};
+}
+
+IncrementFit::Uncertainty IncrementFit::delay_uncertainty() const {
+  const double bend = std::accumulate(delay_information.begin(), delay_information.end(), 0.0);
+  return {bend > 0.0 ? std::sqrt(2.0 * noise / bend) : 0.0, effective_count(delay_information)};
 }
 
 }  // namespace fathom::estimation

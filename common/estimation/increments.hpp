@@ -41,11 +41,23 @@ struct IncrementFit {
   Eigen::VectorXd theta_upper;  ///< with the sensor's noise taken out of the normal equations: brackets the truth
   std::vector<double> delay_replicates;               ///< delete-block
   std::vector<Eigen::VectorXd> theta_replicates;      ///< delete-block
+  std::vector<double> delay_information;              ///< per block: second derivative of the sum of squares, 1/s^2
+  std::vector<Eigen::MatrixXd> information;           ///< per block: normal matrix of theta
+  double noise{};                                     ///< mean square of a window's misfit, more if it has a memory
   double explained{};                                 ///< robust R^2
   Eigen::Vector3d residual{Eigen::Vector3d::Zero()};  ///< robust sigma of the windows' misfit per axis, in units of y
   bool lever_seen[3]{};                               ///< the vehicle turned far more than the attitude's noise
   std::vector<double> outlier_times;                  ///< s, windows that miss by more than the limit
   double seconds{};                                   ///< s of data used
+
+  struct Uncertainty {
+    double sigma{};   ///< by the misfit of all windows
+    double blocks{};  ///< how many, as if of equal weight, tell of it
+  };
+  /// Of a function of theta that has this gradient. A manoeuvre that shows it once lies in one block or two, and these
+  /// few know little of their own scatter.
+  [[nodiscard]] Uncertainty uncertainty(const Eigen::VectorXd& gradient) const;
+  [[nodiscard]] Uncertainty delay_uncertainty() const;
 };
 
 struct IncrementOptions {

@@ -95,7 +95,7 @@ std::array<Estimate, 2> tilt_of(const PoseSeries& pose) {
   for (std::size_t k = 0; k < 2; ++k) {
     result[k] = {.value = n[static_cast<Eigen::Index>(k)],
                  .sigma = jackknife_sigma(replicates[k]),
-                 .blocks = stretches.size() - 1};
+                 .freedom = static_cast<double>(stretches.size() - 1)};
   }
   const bool sure = std::max(result[0].sigma, result[1].sigma) < kSensible;
   for (Estimate& one : result) one.informative = sure;

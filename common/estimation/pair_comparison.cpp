@@ -13,24 +13,6 @@ constexpr double kColumnSeen = 8.0;    // |column of M| over its sigma: below, n
 
 }  // namespace
 
-Estimate Comparison::estimate(std::size_t run, const Read& read, bool bracket) const {
-  const IncrementFit& one = fit(run);
-  Estimate result;
-  std::vector<double> replicates;
-  for (const Eigen::VectorXd& theta : one.theta_replicates) replicates.push_back(read(theta));
-  result.value = read(one.theta);
-  result.sigma = jackknife_sigma(replicates);
-  if (bracket) {
-    // The sensor's own noise pulls the plain value toward zero, taking it out may overshoot: the truth is between.
-    const double upper = read(one.theta_upper);
-    const double half = 0.5 * (upper - result.value);
-    result.value += half;
-    result.sigma = std::hypot(result.sigma, half);
-  }
-  result.informative = true;
-  return result;
-}
-
 void Comparison::see_columns() {
   std::vector<double> explained;
   seen_.assign(runs_.size(), {false, false, false});
@@ -39,9 +21,8 @@ void Comparison::see_columns() {
     for (int k = 0; k < 3; ++k) {
       double sigma = 0.0;
       for (int i = 0; i < 3; ++i) {
-        sigma = std::max(sigma, estimate(
-                                    r, [&](const Eigen::VectorXd& theta) { return theta[3 * k + i]; }, false)
-                                    .sigma);
+        const auto element = [&](const Eigen::VectorXd& theta) { return theta[3 * k + i]; };
+        sigma = std::max(sigma, estimate(fit(r), element, false).sigma);
       }
       seen_[r][static_cast<std::size_t>(k)] = fit(r).theta.segment<3>(3 * k).norm() > kColumnSeen * sigma;
     }
@@ -49,13 +30,6 @@ void Comparison::see_columns() {
   }
   result_.checked = !explained.empty();
   result_.explained = median(std::move(explained));
-}
-
-SharedValue Comparison::decide(std::vector<Estimate> estimates, double neutral, double floor) const {
-  for (std::size_t r = 0; r < estimates.size(); ++r) {
-    if (estimates[r].informative) estimates[r].blocks = fit(r).theta_replicates.size() - 1;
-  }
-  return share(estimates, neutral, floor);
 }
 
 void Comparison::report(const SharedValue& decision, const std::string& signal, const std::string& finding,
@@ -71,7 +45,8 @@ void Comparison::report(const SharedValue& decision, const std::string& signal, 
          .evidence = text("%.5g +- %.2g (1 sigma)", decision.pooled.value, decision.pooled.sigma) + " " + unit +
                      ", from " + std::to_string(decision.pooled.count) + " recordings" + more,
          .action = action,
-         .std = decision.pooled.sigma});
+         .std = decision.pooled.sigma,
+         .freedom = decision.freedom});
   }
   for (const std::size_t r : decision.different) {
     result_.findings.push_back({.run = runs_[r],
@@ -91,11 +66,10 @@ void Comparison::find_delay() {
   std::vector<Estimate> estimates(runs_.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (!fit(r).ok || !fit(r).delay_found || fit(r).explained < kLeastExplained) continue;
-    estimates[r].value = fit(r).delay;
-    estimates[r].sigma = jackknife_sigma(fit(r).delay_replicates);
+    estimates[r] = estimate_delay(fit(r));
     estimates[r].informative = estimates[r].sigma < 0.05;
   }
-  const SharedValue decision = decide(estimates, 0.0, kDelayFloor);
+  const SharedValue decision = share(estimates, 0.0, kDelayFloor);
   report(decision, names_.signal, "delay", "s", 0.0, "corrected: clocks aligned",
          decision.pooled.value > 0.0 ? "; lags " + names_.reference : "; leads " + names_.reference);
   for (std::size_t r = 0; r < runs_.size(); ++r) result_.faults[r].delay = decision.applied[r];

@@ -3,11 +3,10 @@
 // the room calls compare().
 #pragma once
 
-#include <functional>
 #include <utility>
 
 #include "common/estimation/compatibility.hpp"
-#include "common/estimation/shared_value.hpp"
+#include "common/estimation/increment_estimate.hpp"
 
 namespace fathom::estimation {
 
@@ -23,16 +22,13 @@ class Comparison {
   [[nodiscard]] PairResult run();
 
  private:
-  using Read = std::function<double(const Eigen::VectorXd& theta)>;
   [[nodiscard]] const IncrementFit& fit(std::size_t run) const { return result_.fits[run]; }
-  [[nodiscard]] Estimate estimate(std::size_t run, const Read& read, bool bracket) const;
   void see_columns();
   void find_axes();
   void find_scales();
   void find_turns();
   void find_offsets();
   void find_delay();
-  [[nodiscard]] SharedValue decide(std::vector<Estimate> estimates, double neutral, double floor) const;
   void report(const SharedValue& decision, const std::string& signal, const std::string& finding,
               const std::string& unit, double neutral, const std::string& action, const std::string& more = "");
   [[nodiscard]] std::string axis(int k) const { return names_.signal + "." + names_.axes[static_cast<std::size_t>(k)]; }

@@ -21,10 +21,10 @@ void Comparison::find_offsets() {
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       if (!fit(r).ok || fit(r).explained < kLeastExplained) continue;
       estimates[r] = estimate(
-          r, [&](const Eigen::VectorXd& theta) { return theta[9 + a]; }, false);
+          fit(r), [&](const Eigen::VectorXd& theta) { return theta[9 + a]; }, false);
       estimates[r].informative = estimates[r].sigma < 10.0 * names_.bias_floor;
     }
-    const SharedValue decision = decide(estimates, 0.0, names_.bias_floor);
+    const SharedValue decision = share(estimates, 0.0, names_.bias_floor);
     report(decision, axis(a), "bias", names_.unit, 0.0, "corrected: the size is added");
     for (std::size_t r = 0; r < runs_.size(); ++r) result_.faults[r].bias[a] = decision.applied[r];
   }
@@ -36,10 +36,10 @@ void Comparison::find_offsets() {
       if (lever_axis >= 0 && !fit(r).lever_seen[lever_axis]) continue;
       // What the sensor's noise takes off its scale, the arm takes on: both are bracketed alike.
       estimates[r] = estimate(
-          r, [&](const Eigen::VectorXd& theta) { return theta[column]; }, lever_axis >= 0);
+          fit(r), [&](const Eigen::VectorXd& theta) { return theta[column]; }, lever_axis >= 0);
       estimates[r].informative = estimates[r].sigma < limit;
     }
-    return decide(estimates, 0.0, floor);
+    return share(estimates, 0.0, floor);
   };
   std::array<SharedValue, 3> levers;
   double largest_lever = 0.0;

@@ -41,9 +41,9 @@ void Comparison::find_scales() {
       if (!seen_[r][static_cast<std::size_t>(k)]) continue;
       const Eigen::Vector3d direction = turned_[r].col(k);
       estimates[r] = estimate(
-          r, [&](const Eigen::VectorXd& theta) { return direction.dot(theta.segment<3>(3 * k)); }, true);
+          fit(r), [&](const Eigen::VectorXd& theta) { return direction.dot(theta.segment<3>(3 * k)); }, true);
     }
-    const SharedValue decision = decide(estimates, 1.0, kScaleFloor);
+    const SharedValue decision = share(estimates, 1.0, kScaleFloor);
     const std::string unit = unit_guess(decision.pooled.value, names_.signal == "gyro");
     report(decision, axis(k), decision.found && !unit.empty() ? "unit" : "scale", "", 1.0,
            "corrected: multiplied by the size", "; 1 % matters" + (unit.empty() ? "" : "; " + unit));

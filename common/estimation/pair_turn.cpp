@@ -40,13 +40,11 @@ void Comparison::find_turns() {
         P.row(body).cwiseAbs().maxCoeff(&logged);
         return seen_[r][static_cast<std::size_t>(logged)];
       };
+      const auto of_first = [&](const Eigen::VectorXd& theta) { return component(theta, i, j); };
+      const auto of_second = [&](const Eigen::VectorXd& theta) { return -component(theta, j, i); };
       Estimate one, two;
-      if (logged_seen(i))
-        one = estimate(
-            r, [&](const Eigen::VectorXd& theta) { return component(theta, i, j); }, false);
-      if (logged_seen(j))
-        two = estimate(
-            r, [&](const Eigen::VectorXd& theta) { return -component(theta, j, i); }, false);
+      if (logged_seen(i)) one = estimate(fit(r), of_first, false);
+      if (logged_seen(j)) two = estimate(fit(r), of_second, false);
       if (!one.informative && !two.informative) continue;
       const double w1 = one.informative ? 1.0 / (one.sigma * one.sigma) : 0.0;
       const double w2 = two.informative ? 1.0 / (two.sigma * two.sigma) : 0.0;
@@ -56,10 +54,11 @@ void Comparison::find_turns() {
                                        ? 0.5 * std::abs(one.value - two.value) * 2.0 * std::min(w1, w2) / (w1 + w2)
                                        : 0.0;
       estimates[r].sigma = std::hypot(std::sqrt(1.0 / (w1 + w2)), contradiction);
+      estimates[r].freedom = (w1 * one.freedom + w2 * two.freedom) / (w1 + w2);
       estimates[r].informative = true;
       turn[r][a] = estimates[r].value;
     }
-    const SharedValue decision = decide(estimates, 0.0, kAngleFloor);
+    const SharedValue decision = share(estimates, 0.0, kAngleFloor);
     least[static_cast<std::size_t>(a)] = std::max(kAngleFloor, decision.limit * decision.pooled.sigma);
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       const Eigen::Matrix3d large = turned_[r] * result_.faults[r].base.transpose();

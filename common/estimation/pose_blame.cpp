@@ -1,9 +1,9 @@
 // When gyro and DVL both contradict the pose in one way, the pose is to blame: its body axes, its unit, its heading.
 #include <cmath>
 
-#include "common/base/statistics.hpp"
 #include "common/base/units.hpp"
 #include "common/estimation/consistency_check.hpp"
+#include "common/estimation/increment_estimate.hpp"
 #include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
@@ -42,32 +42,27 @@ bool Check::blame_position_unit(const PairResult& dvl) {
 }
 
 bool Check::find_heading(const PairResult& dvl) {
-  std::vector<double> values, sigmas;
+  std::vector<Estimate> estimates;
   for (const IncrementFit& fit : dvl.fits) {
     if (!fit.ok || fit.theta_replicates.empty() || fit.theta.size() < 16) continue;
-    std::vector<double> replicates;
-    for (const Eigen::VectorXd& theta : fit.theta_replicates) replicates.push_back(theta[15]);
-    const double sigma = jackknife_sigma(replicates);
-    if (sigma > 2.0 * kDegree) continue;
-    values.push_back(fit.theta[15]);
-    sigmas.push_back(sigma);
+    estimates.push_back(estimate(
+        fit, [](const Eigen::VectorXd& theta) { return theta[15]; }, false));
+    estimates.back().informative = estimates.back().sigma < 2.0 * kDegree;
   }
-  const Pooled pooled = pool(values, sigmas);
+  const SharedValue shared = share(estimates, 0.0, 0.5 * kDegree);
   const double before = result_.corrections.empty() ? 0.0 : result_.corrections[0].heading;
-  const bool significant =
-      pooled.count > 0 && std::abs(pooled.value) > 6.0 * pooled.sigma && std::abs(pooled.value) > 0.5 * kDegree;
-  if (significant) {
-    for (Corrections& corrections : result_.corrections) corrections.heading += pooled.value;
+  if (shared.found) {
+    for (Corrections& corrections : result_.corrections) corrections.heading += shared.pooled.value;
   }
-  const double heading = before + (significant ? pooled.value : 0.0);
+  const double heading = before + (shared.found ? shared.pooled.value : 0.0);
   if (heading == 0.0) return false;
   std::erase_if(result_.findings, [](const ConsistencyFinding& one) { return one.finding == "heading_offset"; });
   const double offset = -std::remainder(heading, 360.0 * kDegree);
   report(reference_ + ".attitude", "heading_offset", offset, "rad",
          text("heading and track over ground differ by %.2f +- %.2f deg at all headings", offset / kDegree,
-              pooled.sigma / kDegree),
+              shared.pooled.sigma / kDegree),
          "corrected: attitude turned about the vertical", "pose_capture.position and dvl");
-  return significant;
+  return shared.found;
 }
 
 }  // namespace fathom::estimation

@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "common/base/distributions.hpp"
+
 namespace fathom::estimation {
 namespace {
 
-constexpr double kSignificant = 4.0;  // sigmas
+constexpr double kByChance = 2e-5;  // a check asks some forty numbers: one false finding in a thousand checks
 
 }  // namespace
 
@@ -39,23 +41,21 @@ SharedValue share(std::span<const Estimate> estimates, double neutral, double fl
     }
   }
   std::vector<double> values, sigmas;
-  std::size_t blocks = 0;
   int positive = 0, negative = 0;
   for (const std::size_t r : used) {
     values.push_back(estimates[r].value - neutral);
     sigmas.push_back(estimates[r].sigma);
-    blocks += estimates[r].blocks;
+    decision.freedom += estimates[r].freedom;
     (values.back() > 0.0 ? positive : negative) += 1;
   }
   decision.pooled = pool(values, sigmas);
   if (used.empty()) return decision;
-  // Student's tail: few blocks know their own scatter badly. This follows the 6e-5 quantile down to 7 blocks.
-  const double limit = kSignificant * (1.0 + 5.0 / static_cast<double>(blocks));
-  decision.limit = limit;
+  // Student's tail: few blocks of data know their own scatter badly.
+  decision.limit = std::sqrt(f_quantile(kByChance, std::max(decision.freedom, 1.0)));
   const double size = std::abs(decision.pooled.value);
   const int same = decision.pooled.value > 0.0 ? positive : negative;
   const bool repeated = used.size() < 3 ? same == static_cast<int>(used.size()) : same >= 3;
-  decision.found = size > limit * decision.pooled.sigma && size > floor && repeated;
+  decision.found = size > decision.limit * decision.pooled.sigma && size > floor && repeated;
   decision.pooled.value += neutral;
   if (decision.found) decision.applied.assign(estimates.size(), decision.pooled.value);
   for (const std::size_t r : decision.different) decision.applied[r] = estimates[r].value;

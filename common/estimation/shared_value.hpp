@@ -14,7 +14,7 @@ struct Estimate {
   double value{};
   double sigma{std::numeric_limits<double>::infinity()};
   bool informative{false};
-  std::size_t blocks{};  ///< of data behind sigma
+  double freedom{};  ///< degrees of freedom of sigma
 };
 
 /// The decision over recordings.
@@ -22,6 +22,7 @@ struct SharedValue {
   Pooled pooled;
   bool found{false};                   ///< significant, large enough, and repeated
   double limit{};                      ///< sigmas that count as significant with this much data
+  double freedom{};                    ///< degrees of freedom of the pooled sigma
   std::vector<double> applied;         ///< per recording: its value, or neutral
   std::vector<std::size_t> different;  ///< recordings with a value of their own
 };

@@ -22,6 +22,7 @@ struct ConsistencyFinding {
   std::string evidence;  ///< one sentence with the numbers
   std::string action;    ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
   double std{};          ///< of the size; 0 where it is a count or was not estimated
+  double freedom{};      ///< degrees of freedom of std
 };
 
 /// Open-loop prediction error at one horizon. Axis order u v w p q r; NaN where the axis is not simulated.

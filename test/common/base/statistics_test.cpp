@@ -36,6 +36,13 @@ TEST_CASE("the jackknife of a mean is the standard error") {
   CHECK(jackknife_sigma(replicates) == doctest::Approx(std::sqrt(7.0 / 4.0)));  // variance 7
 }
 
+TEST_CASE("equal weights count all, one weight counts one") {
+  CHECK(effective_count(std::array{2.0, 2.0, 2.0}) == doctest::Approx(3.0));
+  CHECK(effective_count(std::array{0.0, 5.0, 0.0}) == doctest::Approx(1.0));
+  CHECK(effective_count(std::array{3.0, 1.0}) == doctest::Approx(1.6));
+  CHECK(effective_count(std::array{0.0, 0.0}) == 0.0);
+}
+
 TEST_CASE("pooling weighs by precision and admits scatter") {
   const std::array<double, 2> alike{1.0, 1.2};
   const std::array<double, 2> sigma{0.1, 0.2};

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -41,6 +42,19 @@ TEST_CASE("sensor faults: delay, scale and lever arm become effects, in the term
   CHECK(result.verdict == "effect");
   CHECK(result.candidates.size() == 3);
   CHECK(result.effects[0].log_odds > 3.0);
+}
+
+TEST_CASE("sensor faults: eight standard deviations are worth less where few blocks of data tell of them") {
+  const auto odds = [](double freedom) {
+    DiagnosisResult result{.verdict = "adequate"};
+    result.consistency = {finding("dvl", "lever_arm_x", 0.08, 0.01)};
+    result.consistency[0].freedom = freedom;
+    diagnosis::adopt_sensor_faults(result);
+    return result.effects.at(0).log_odds;
+  };
+  CHECK(odds(1e6) == doctest::Approx(32.0 - std::log(40.0)).epsilon(1e-3));
+  // (7 + 1) / 2 ln(1 + 64 / 7), the likelihood ratio of Student's distribution.
+  CHECK(odds(7.0) == doctest::Approx(4.0 * std::log1p(64.0 / 7.0) - std::log(40.0)));
 }
 
 TEST_CASE("sensor faults: nothing is measured before it happens: what seems early has a late reference") {

@@ -7,13 +7,13 @@
 namespace fathom::estimation {
 namespace {
 
-constexpr std::size_t kBlocks = 10;
+constexpr double kFreedom = 10;
 constexpr double kFloor = 0.01;
 
 std::vector<Estimate> estimates(std::initializer_list<double> values, double sigma) {
   std::vector<Estimate> list;
   for (const double value : values)
-    list.push_back({.value = value, .sigma = sigma, .informative = true, .blocks = kBlocks});
+    list.push_back({.value = value, .sigma = sigma, .informative = true, .freedom = kFreedom});
   return list;
 }
 
@@ -48,10 +48,11 @@ TEST_CASE("shared value: neutral where it is unsure, too small to matter, or not
 
 TEST_CASE("shared value: few blocks of data know their own scatter badly, so more is asked of them") {
   auto list = estimates({1.05}, 0.01);
-  list[0].blocks = 100;
-  CHECK(share(list, 1.0, kFloor).found);  // 5 sigmas against 4 x 1.05
-  list[0].blocks = 5;
-  CHECK_FALSE(share(list, 1.0, kFloor).found);  // against 4 x 2
+  list[0].freedom = 100;
+  CHECK(share(list, 1.0, kFloor).found);  // 5 sigmas against 4.5
+  list[0].freedom = 5;
+  CHECK_FALSE(share(list, 1.0, kFloor).found);
+  CHECK(share(list, 1.0, kFloor).limit > 10.0);
 }
 
 TEST_CASE("shared value: one recording unlike the others keeps its own, when the others are a majority") {

@@ -1,0 +1,17 @@
+// One number read from an increment fit, and how sure it is: by what it does when blocks of data are left out, and by
+// the misfit of all windows.
+#pragma once
+
+#include <functional>
+
+#include "common/estimation/increments.hpp"
+#include "common/estimation/shared_value.hpp"
+
+namespace fathom::estimation {
+
+/// `read` is a smooth function of theta. `bracket`: the sensor's own noise pulls the number toward zero.
+[[nodiscard]] Estimate estimate(const IncrementFit& fit, const std::function<double(const Eigen::VectorXd&)>& read,
+                                bool bracket);
+[[nodiscard]] Estimate estimate_delay(const IncrementFit& fit);
+
+}  // namespace fathom::estimation
