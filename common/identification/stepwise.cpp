@@ -155,9 +155,26 @@ class Selection {
   Eigen::VectorXd left_, with_b_;
 };
 
+/// What F a term needs to enter, and to stay.
+class Thresholds {
+ public:
+  Thresholds(const StepwiseSettings& settings, std::size_t candidates)
+      : settings_{settings}, enter_{settings.familywise / std::max<double>(1.0, static_cast<double>(candidates))} {}
+  [[nodiscard]] bool enters(double f, double freedom) const {
+    return settings_.f_in ? f >= *settings_.f_in : f_tail(f, freedom) <= enter_;
+  }
+  [[nodiscard]] bool leaves(double f, double freedom) const {
+    return settings_.f_out ? f < *settings_.f_out : f_tail(f, freedom) > settings_.leave_factor * enter_;
+  }
+
+ private:
+  const StepwiseSettings& settings_;
+  double enter_;
+};
+
 /// Candidates with the most promising first; the widened F is never larger than the plain one, so that few are asked.
 std::optional<int> best_entry(const Selection& selection, const Columns& candidates, const StepwiseSettings& settings,
-                              double enter) {
+                              const Thresholds& thresholds) {
   std::vector<std::pair<double, int>> ranked;
   for (const int j : candidates) {
     if (std::find(selection.columns().begin(), selection.columns().end(), j) != selection.columns().end()) continue;
@@ -169,42 +186,41 @@ std::optional<int> best_entry(const Selection& selection, const Columns& candida
   std::optional<int> best;
   const double freedom = selection.freedom(selection.columns().size() + 1);
   for (const auto& [f, j] : ranked) {
-    if (f <= best_f || f_tail(f, freedom) > enter) break;
+    if (f <= best_f || !thresholds.enters(f, freedom)) break;
     const double widened = f / selection.widening_entering(j);
-    if (widened <= best_f || f_tail(widened, freedom) > enter) continue;
+    if (widened <= best_f || !thresholds.enters(widened, freedom)) continue;
     best_f = widened;
     best = j;
   }
   return best;
 }
 
-std::optional<std::size_t> worst_term(const Selection& selection, double leave) {
+std::optional<std::size_t> worst_term(const Selection& selection, const Thresholds& thresholds) {
   std::optional<std::size_t> worst;
-  double highest = leave;
+  double lowest = 0.0;
   const std::size_t k = selection.columns().size();
   for (std::size_t i = 0; i < k; ++i) {
     const auto one = selection.standing(i);
-    const double p = f_tail(one.value * one.value / (one.variance * one.widening), selection.freedom(k));
-    if (p <= highest) continue;
-    highest = p;
+    const double f = one.value * one.value / (one.variance * one.widening);
+    if (!thresholds.leaves(f, selection.freedom(k)) || (worst && f >= lowest)) continue;
+    lowest = f;
     worst = i;
   }
   return worst;
 }
 
 Columns select(const LaggedGram& gram, double phi, const Columns& candidates, const StepwiseSettings& settings) {
-  const double enter = settings.familywise / std::max<double>(1.0, static_cast<double>(candidates.size()));
-  const double leave = settings.leave_factor * enter;
+  const Thresholds thresholds{settings, candidates.size()};
   Selection selection{gram, phi, settings};
   Columns in;
   // Every entry lowers the sum of squares and every exit raises it by less; the bound is for ties of rounding alone.
   for (std::size_t turn = 0; turn < 4 * candidates.size(); ++turn) {
     if (static_cast<int>(in.size()) >= settings.most) break;
-    const auto entry = best_entry(selection, candidates, settings, enter);
+    const auto entry = best_entry(selection, candidates, settings, thresholds);
     if (!entry) break;
     in.push_back(*entry);
     selection.set(in);
-    while (const auto exit = worst_term(selection, leave)) {
+    while (const auto exit = worst_term(selection, thresholds)) {
       in.erase(in.begin() + static_cast<std::ptrdiff_t>(*exit));
       selection.set(in);
     }

@@ -3,6 +3,7 @@
 // of the trial, so that the test knows how many independent samples there are.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct StepwiseSettings {
   bool effective_samples{true};  ///< false: every sample counts as independent of the others
   double collinear{1e-8};        ///< share of a candidate's square that the selected ones must leave over
   int most{20};                  ///< terms at most
+  /// Thresholds on F itself, as stepwise regressions are often given; they take the place of `familywise` and
+  /// `leave_factor`. Both or none, and f_out <= f_in.
+  std::optional<double> f_in{}, f_out{};
 };
 
 struct SelectedTerm {

@@ -9,6 +9,7 @@
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
+#include "processes/fathom/regress_json.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -19,10 +20,11 @@ using identification::StepwiseResult;
 constexpr std::array<const char*, 6> kTitles{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 struct Options {
-  std::string vehicle, write;
+  std::string vehicle, write, json;
   std::vector<std::string> runs;
   std::vector<double> current;
   double rate{10.0};
+  double significance{0.05}, f_in{}, f_out{};
   bool table{false}, estimate{false}, plain{false};
 };
 
@@ -108,6 +110,13 @@ void run(const Options& options) {
   }
   identification::RegressionSettings settings;
   settings.rate = options.rate;
+  settings.stepwise.familywise = options.significance;
+  if (options.f_out > 0.0 && !(options.f_in >= options.f_out))
+    throw InputError("--f-out must not exceed --f-in, or a term would leave as soon as it has entered");
+  if (options.f_in > 0.0) {
+    settings.stepwise.f_in = options.f_in;
+    settings.stepwise.f_out = options.f_out > 0.0 ? options.f_out : options.f_in;
+  }
   settings.stepwise.autoregressive = settings.stepwise.effective_samples = !options.plain;
   if (options.current.size() == 2) settings.v_WF << options.current[0], options.current[1], 0.0;
   if (options.estimate) {
@@ -125,6 +134,7 @@ void run(const Options& options) {
     if (!options.table) print_quality(axis, runs);
   }
   if (!options.write.empty()) tables::write_file(options.write, coefficients_of(axes));
+  if (!options.json.empty()) tables::write_file(options.json, regression_json(axes, runs, vehicle, settings));
 }
 
 }  // namespace
@@ -139,6 +149,13 @@ void add_regress(CLI::App& app) {
   command->add_option("--current", options->current, "north and east velocity of the water [m/s]")->expected(2);
   command->add_flag("--estimate-current", options->estimate, "find the water's velocity as well");
   command->add_flag("--plain", options->plain, "plain least squares, as if the residual were white");
+  command->add_option("--significance", options->significance, "chance that any term is selected when none acts")
+      ->check(CLI::Range(1e-12, 1.0));
+  command->add_option("--f-in", options->f_in, "F from which a term enters, in place of --significance")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--f-out", options->f_out, "F below which a term leaves; --f-in without it")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--json", options->json, "write all that is told to this file");
   command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
   command->callback([options] { run(*options); });
 }

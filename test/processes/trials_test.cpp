@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
@@ -42,9 +43,15 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: from a log to derivat
   CHECK(result.smoothed.size() == trial.flight.size());
   CHECK(result.loads.size() == trial.recording.loads.size());
 
-  const auto regressed = shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + " --vehicle " +
-                               kVehicle + " --write " + scratch.path("found.yaml"));
+  const auto regressed =
+      shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + " --vehicle " + kVehicle + " --write " +
+            scratch.path("found.yaml") + " --json " + scratch.path("found.json"));
   REQUIRE_MESSAGE(regressed.code == 0, regressed.text);
+  std::ifstream told{scratch.path("found.json")};
+  const auto json = nlohmann::json::parse(told);
+  CHECK(json.at("axes").size() == 6);
+  CHECK(json.at("axes")[0].at("together").at("terms").size() > 0);
+  CHECK(json.at("axes")[0].at("manoeuvres")[0].at("name") == "smooth");
   CHECK_MESSAGE(regressed.says("X_uu"), regressed.text);
   CHECK_MESSAGE(regressed.says("forces from load cells"), regressed.text);
   CHECK_MESSAGE(regressed.says("N_ur"), regressed.text);
@@ -79,6 +86,10 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
       shell(program("fathom") + " regress " + scratch.path("x.lcmlog") + " --rate 0.1 --vehicle " + kVehicle);
   CHECK(nothing.code == 1);
   CHECK_MESSAGE(nothing.says("regression needs 20 at least"), nothing.text);
+  const auto thresholds =
+      shell(program("fathom") + " regress " + scratch.path("x.lcmlog") + " --f-in 2 --f-out 4 --vehicle " + kVehicle);
+  CHECK(thresholds.code == 1);
+  CHECK_MESSAGE(thresholds.says("--f-out must not exceed --f-in"), thresholds.text);
   const auto unknown = shell(program("fathom") + " compare " + kVehicle + " " + kVehicle + " --manoeuvre loop");
   CHECK(unknown.code == 1);
   CHECK_MESSAGE(unknown.says("'loop' is no manoeuvre: line, zigzag, circle"), unknown.text);

@@ -232,6 +232,27 @@ TEST_CASE("stepwise: near-collinear candidates, the same selection as QR fits of
   }
 }
 
+TEST_CASE("stepwise: thresholds on F select as the probabilities that belong to them, stricter ones select less") {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    const Problem p = problem(seed, 400, 12, 0.6, 1.0);
+    const auto columns = [&](const StepwiseSettings& settings) {
+      std::vector<int> in;
+      for (const auto& term : stepwise({gram_of(p)}, p.names, settings).terms) in.push_back(term.column);
+      return in;
+    };
+    // With this many samples the quantile hardly depends on how many terms are in.
+    const double enter = 0.05 / 12;
+    CHECK(columns({.effective_samples = false,
+                   .f_in = f_quantile(enter, 396.0),
+                   .f_out = f_quantile(2.0 * enter, 396.0)}) == columns({.effective_samples = false}));
+    const auto many = columns({.f_in = 1.0, .f_out = 0.9}), few = columns({.f_in = 200.0, .f_out = 100.0});
+    CHECK(many.size() > few.size());
+    for (const int one : few) CHECK(std::ranges::find(many, one) != many.end());
+    CHECK(columns({.f_in = 1e9, .f_out = 1e9}).empty());
+  }
+}
+
 TEST_CASE("stepwise: constant, zero and collinear regressors are named and not inverted") {
   Problem p = problem(3, 500, 6, 0.5);
   p.z.col(3).setZero();
