@@ -38,6 +38,7 @@ void NmeaUsbl::sentence(const Words& words, Frame& frame) {
   trusted_ = false;
   if (words[0] == "PSIMSSB") read_psimssb(words);
   if (words[0] == "PTSAG") read_ptsag(words);
+  if (words[0] == "PTSAX" || words[0] == "PTSAY") read_ptsax(words);
   if (words[0] == "PSONLLD") read_psonlld(words);
   if (words[0] == "PSONALL") read_psonall(words);
   frame.device_time = time_;
@@ -87,8 +88,8 @@ void NmeaUsbl::read_psimssb(const Words& words) {
   }
 }
 
-// #frame, time, day, month, year, beacon, latitude, N, longitude, E, validity, depth, valid, depth of the sensor
-void NmeaUsbl::read_ptsag(const Words& words) {
+// #frame, time, day, month, year, beacon
+void NmeaUsbl::read_date_and_beacon(const Words& words) {
   const auto clock = time_of_day(words[2]);
   const auto day = whole(words[3]);
   const auto month = whole(words[4]);
@@ -97,18 +98,47 @@ void NmeaUsbl::read_ptsag(const Words& words) {
     if (const auto midnight = seconds_since_1970(*year, *month, *day, 0, 0, 0.0)) time_ = *midnight + *clock;
   }
   beacon_ = words[6];
+}
+
+// validity, depth, its validity
+void NmeaUsbl::read_valid_depth(const Words& words, std::size_t validity) {
+  status_ = words[validity];
+  const std::string_view measured = words[validity + 2];
+  if (measured == "1" || measured == "2") depth_ = words.number_at(validity + 1);
+  trusted_ = !status_.empty();
+}
+
+// #frame, time, day, month, year, beacon, latitude, N, longitude, E, validity, depth, valid, depth of the sensor
+void NmeaUsbl::read_ptsag(const Words& words) {
+  read_date_and_beacon(words);
   const auto latitude = degrees_minutes(words[7], words[8], 2, 'N', 'S');
   const auto longitude = degrees_minutes(words[9], words[10], 3, 'E', 'W');
   if (latitude) first_ = *latitude / kRadians;
   if (longitude) second_ = *longitude / kRadians;
-  status_ = words[11];
-  const bool depth_valid = words[13] == "1" || words[13] == "2";
-  if (depth_valid) depth_ = words.number_at(12);
-  trusted_ = !status_.empty();
+  read_valid_depth(words, 11);
   const bool ship = whole(beacon_) == 0;
   if (ship || !latitude || !longitude || !depth_) return;
   p_WB_ = from_degrees(*latitude, *longitude, *depth_, from_);
   needs_origin(from_.latitude.has_value(), "latitude and longitude");
+}
+
+// #frame, time, day, month, year, beacon, X, Y, validity, depth, valid, depth of the sensor
+void NmeaUsbl::read_ptsax(const Words& words) {
+  read_date_and_beacon(words);
+  first_ = words.number_at(7);
+  second_ = words.number_at(8);
+  read_valid_depth(words, 9);
+  const bool ship = whole(beacon_) == 0;
+  if (ship || !first_ || !second_ || !depth_) return;
+  const bool x = words[0] == "PTSAX";
+  const std::optional<RelativeAxes>& axes = x ? from_.ptsax : from_.ptsay;
+  if (!axes) {
+    return complain("the system says X and Y ($" + std::string{words[0]} +
+                    "), whose directions are not public; state '" + (x ? "ptsax" : "ptsay") +
+                    "' of the transceiver as the system is set up, as in 'forward port'");
+  }
+  const Eigen::Vector2d place = axes->axes * Eigen::Vector2d{*first_, *second_};
+  p_WB_ = (axes->head_up ? from_head_up : from_north_up)(place.x(), place.y(), *depth_, from_);
 }
 
 // time, name, A, latitude, longitude, depth, and accuracies whose meaning is not public

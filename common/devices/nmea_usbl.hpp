@@ -1,4 +1,5 @@
-// Acoustic positions in NMEA sentences: Kongsberg $PSIMSSB, Sonardyne $PSONLLD and $PSONALL, iXblue $PTSAG.
+// Acoustic positions in NMEA sentences: Kongsberg $PSIMSSB, Sonardyne $PSONLLD and $PSONALL, iXblue $PTSAG, $PTSAX and
+// $PTSAY.
 #pragma once
 
 #include <string_view>
@@ -9,8 +10,8 @@
 
 namespace fathom::devices {
 
-/// A fix without position gives no sample; one that the system distrusts gives a sample that is not valid. $PTSAX and
-/// $PTSAY are frames only: their axes are not described in public.
+/// A fix without position gives no sample; one that the system distrusts gives a sample that is not valid. The axes of
+/// $PTSAX and $PTSAY are not described in public: without the settings `ptsax` and `ptsay` they are frames only.
 class NmeaUsbl final : public NmeaParser {
  public:
   explicit NmeaUsbl(const Settings& settings);
@@ -20,6 +21,9 @@ class NmeaUsbl final : public NmeaParser {
   void describe_values(Fields& fields) const override;
   void read_psimssb(const Words& words);
   void read_ptsag(const Words& words);
+  void read_ptsax(const Words& words);
+  void read_date_and_beacon(const Words& words);
+  void read_valid_depth(const Words& words, std::size_t validity);
   void read_psonlld(const Words& words);
   void read_psonall(const Words& words);
   void needs_origin(bool stated, std::string_view what);

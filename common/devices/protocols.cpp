@@ -47,7 +47,7 @@ constexpr std::array kProtocols{
     Protocol{"pd6", Kind::kDvl, "Teledyne PD6 and PD13 text", 115200, make<Pd6>, 0.01},
     Protocol{"wl_serial", Kind::kDvl, "Water Linked A50, serial", 115200, make<WaterLinkedSerial>},
     Protocol{"wl_json", Kind::kDvl, "Water Linked A50, JSON over TCP (port 16171)", 0, make<WaterLinkedJson>},
-    Protocol{"nmea_usbl", Kind::kUsbl, "$PSIMSSB, $PSONLLD, $PSONALL, $PTSAG", 9600, make<NmeaUsbl>, 0.0, kDay},
+    Protocol{"nmea_usbl", Kind::kUsbl, "$PSIMSSB, $PSONLLD, $PSONALL, $PTSAG, $PTSAX", 9600, make<NmeaUsbl>, 0.0, kDay},
     Protocol{"evologics", Kind::kUsbl, "EvoLogics USBLLONG", 19200, make<Evologics>},
     Protocol{"psimlbm", Kind::kRanges, "Kongsberg $PSIMLBM", 9600, make<NmeaRanges>, 0.0, kDay},
     Protocol{"range_text", Kind::kRanges, "lines of NAME=METRES", 9600, make<TextRanges>},
@@ -71,6 +71,34 @@ double read_positive(const Config& config, const std::string& key, const std::st
   return value;
 }
 
+/// "forward port", "north east": which way X and Y point.
+RelativeAxes read_axes(const Config& config, const std::string& key) {
+  struct Way {
+    const char* name;
+    bool head_up;
+    Eigen::Vector2d to;
+  };
+  static const std::array<Way, 8> kWays{{{"forward", true, {1, 0}},
+                                         {"aft", true, {-1, 0}},
+                                         {"starboard", true, {0, 1}},
+                                         {"port", true, {0, -1}},
+                                         {"north", false, {1, 0}},
+                                         {"south", false, {-1, 0}},
+                                         {"east", false, {0, 1}},
+                                         {"west", false, {0, -1}}}};
+  const std::string text = config.text(key);
+  for (const Way& x : kWays) {
+    for (const Way& y : kWays) {
+      if (x.head_up != y.head_up || x.to.dot(y.to) != 0.0 || text != std::string{x.name} + " " + y.name) continue;
+      return {(Eigen::Matrix2d{} << x.to, y.to).finished(), x.head_up};
+    }
+  }
+  config.fail(key, "'" + key +
+                       "' says which way X and Y point: two of forward, aft, starboard, port, or two of north, "
+                       "south, east, west, as in 'forward port', not '" +
+                       text + "'");
+}
+
 void read_transceiver(const Config& config, Transceiver& from) {
   from.beacon = config.text("beacon");
   from.sigma = read_positive(config, "sigma", "m");
@@ -84,6 +112,8 @@ void read_transceiver(const Config& config, Transceiver& from) {
   optional("longitude", "rad", from.longitude);
   optional("northing", "m", from.northing);
   optional("easting", "m", from.easting);
+  if (place.has("ptsax")) from.ptsax = read_axes(place, "ptsax");
+  if (place.has("ptsay")) from.ptsay = read_axes(place, "ptsay");
 }
 
 void read_cells(const Config& config, std::vector<LoadCell>& cells) {

@@ -22,12 +22,19 @@ struct LoadCell {
   std::string unit;  ///< word behind the number, when the instrument sends one
 };
 
+/// Which way X and Y of a sentence point whose maker does not say it in public.
+struct RelativeAxes {
+  Eigen::Matrix2d axes{Eigen::Matrix2d::Identity()};  ///< (X, Y) to forward and starboard, or to north and east
+  bool head_up{};                                     ///< the former
+};
+
 /// Where positions of acoustic systems come from: the transceiver that does not move with the vehicle.
 struct Transceiver {
   Eigen::Vector3d p_W{Eigen::Vector3d::Zero()};  ///< m, NED, of the transceiver
   double heading{};                              ///< rad, of the axis that the system calls "head up"
   std::optional<double> latitude, longitude;     ///< rad, of the world's origin; for systems that say degrees
   std::optional<double> northing, easting;       ///< m, of the world's origin; for systems that say UTM
+  std::optional<RelativeAxes> ptsax, ptsay;      ///< as the system is set up
   std::string beacon;                            ///< only this one is the vehicle; empty: every one
   double sigma{1.0};                             ///< m, where the system states no accuracy
 };

@@ -1,4 +1,6 @@
 // Positions, ranges, loads and depths: signs, gaps and units, by hand.
+#include "common/base/config.hpp"
+#include "common/base/error.hpp"
 #include "test/support/frames.hpp"
 
 using namespace fathom;
@@ -55,6 +57,53 @@ TEST_CASE("Sonardyne, iXblue and EvoLogics: positions in the world") {
   CHECK(fix(modems[0]).norm() == doctest::Approx(825e-6 * 1500.0).epsilon(0.001));
   CHECK(modems[0].value("device_time") == doctest::Approx(10446.534643));
   CHECK_FALSE(modems[2].has_sample);
+}
+
+TEST_CASE("PTSAX, PTSAY: nothing without the stated axes, and each as its own are stated") {
+  using devices::detail::nmea_sentence;
+  const devices::Protocol& protocol = devices::protocol("nmea_usbl", "test");
+  const auto configured = [&](const std::string& axes) {
+    return devices::read_settings(
+        Config::parse("beacon: ''\nsigma: 1 m\ntransceiver: {position: 10 20 1 m, heading: 90 deg" + axes + "}\n",
+                      "test"),
+        protocol);
+  };
+  const std::string line = nmea_sentence("PTSAX,#7,135006.00,07,02,2013,03,12.5,-4.0,F,0030.2,1,0000.0");
+  const devices::Settings without = configured(", ptsay: north east");
+  const auto silent = protocol.make(without);
+  CHECK_FALSE(decode_wire(*silent, protocol, without, line).at(0).has_sample);
+  CHECK(silent->complaint().starts_with("the system says X and Y ($PTSAX), whose directions are not public"));
+  const std::vector<std::pair<std::string, Eigen::Vector3d>> cases{
+      {"forward starboard", {10.0 + 4.0, 20.0 + 12.5, 31.2}},  // forward is east, starboard south
+      {"forward port", {10.0 - 4.0, 20.0 + 12.5, 31.2}},
+      {"starboard forward", {10.0 - 12.5, 20.0 - 4.0, 31.2}},
+      {"north east", {10.0 + 12.5, 20.0 - 4.0, 31.2}},
+      {"west south", {10.0 + 4.0, 20.0 - 12.5, 31.2}}};
+  for (const auto& [axes, place] : cases) {
+    CAPTURE(axes);
+    const auto rows = decode("nmea_usbl", line, configured(", ptsax: " + axes));
+    CHECK(fix(rows.at(0)).isApprox(place, kSingle));
+    CHECK(rows[0].at("SI valid") == "1");
+    CHECK(rows[0].value("device_time") == doctest::Approx(1360245006.0));
+  }
+  // A depth that is not valid is none, and the ship itself is no transponder.
+  for (const char* other : {"PTSAY,#1,135006.00,07,02,2013,03,12.5,-4.0,F,0030.2,0,0000.0",
+                            "PTSAY,#1,135006.00,07,02,2013,00,12.5,-4.0,F,0030.2,1,0000.0"}) {
+    CHECK_FALSE(decode("nmea_usbl", nmea_sentence(other), configured(", ptsay: north east")).at(0).has_sample);
+  }
+  for (const std::string axes : {"forward", "forward east", "north south", "up port"})
+    CHECK_THROWS_AS((void)configured(", ptsax: " + axes), InputError);
+}
+
+TEST_CASE("PTSAX, PTSAY: two sentences of one fix are one place, turned by the ship's heading") {
+  devices::Settings settings;
+  settings.transceiver.heading = 38.96 * kRadians;  // what lies between the two of a system at sea
+  settings.transceiver.ptsax = devices::RelativeAxes{Eigen::Vector2d{1.0, -1.0}.asDiagonal(), false};
+  settings.transceiver.ptsay = devices::RelativeAxes{Eigen::Vector2d{1.0, -1.0}.asDiagonal(), true};
+  const auto rows = decode("nmea_usbl", wire_bytes("usbl_other_families/examples.txt"), settings);
+  REQUIRE(rows[6].has_sample);
+  REQUIRE(rows[7].has_sample);
+  CHECK((fix(rows[6]) - fix(rows[7])).norm() < 0.2);
 }
 
 TEST_CASE("USBL: where only other transponders are heard that is said, beside the wanted one they are passed over") {
