@@ -39,7 +39,7 @@ Transition::Transition(const model::KinematicPoint& from, double step, Kinematic
     : dt{step}, coupled{model == KinematicModel::kCoupled}, R_WB{from.R_WB}, euler_rates{from.euler_from_rates} {
   by_euler = from.turned_out(from.group(at::kAcceleration));
   const Eigen::Vector3d turn = dt * from.group(at::kRates) + 0.5 * dt * dt * from.group(at::kRateSlopes);
-  const double sr = std::sin(from.x[6]), cr = std::cos(from.x[6]), tp = std::tan(from.x[7]), cp = std::cos(from.x[7]);
+  const double sr = from.sin_roll, cr = from.cos_roll, cp = from.cos_pitch, tp = from.sin_pitch / cp;
   const double across = sr * turn.y() + cr * turn.z(), along = cr * turn.y() - sr * turn.z();
   euler_euler << 1.0 + along * tp, across / (cp * cp), 0.0,  //
       -across, 1.0, 0.0,                                     //
@@ -116,6 +116,7 @@ void KalmanFilter<N>::start(const State& x, const State& sigma) {
   P_ = sigma.cwiseAbs2().asDiagonal();
   reference_.setIdentity();
   turned_.reset();
+  transition_.reset();
 }
 
 template <int N>
@@ -126,7 +127,7 @@ model::KinematicPoint KalmanFilter<N>::point() const {
 }
 
 template <int N>
-Transition KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicModel model) {
+void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicModel model) {
   turned_.reset();
   if (std::abs(x_[at::kEuler + 1]) > kSteep) {
     const model::KinematicPoint steep = point();
@@ -139,7 +140,7 @@ Transition KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, Kinema
     P_.template middleRows<3>(at::kEuler) = rows;
   }
   const model::KinematicPoint from = point();
-  Transition F{from, dt, model};
+  const Transition F{from, dt, model};
   const auto group = [this](int begin) { return x_.template segment<3>(begin); };
   group(at::kPosition) += dt * group(at::kVelocity);
   if (F.coupled) {
@@ -173,7 +174,7 @@ Transition KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, Kinema
     P_.diagonal().template segment<3>(at::kBias + 3).array() += square(noise.gyro_bias) * dt;
   }
   mirror<N>(P_);
-  return F;
+  transition_ = F;
 }
 
 template <int N>
@@ -194,9 +195,9 @@ typename KalmanFilter<N>::Outcome KalmanFilter<N>::update(const model::Observati
   if (!std::isfinite(outcome.variance) || !(outcome.variance > 0.0)) return outcome;
   if (outcome.innovation * outcome.innovation > gate * gate * outcome.variance) return outcome;
   outcome.used = true;
-  outcome.gain = w / outcome.variance;
+  outcome.gain = w * (1.0 / outcome.variance);
   if (prior < kPreciseBeyond * observation.variance) {
-    const State scaled = w / std::sqrt(outcome.variance);
+    const State scaled = w * (1.0 / std::sqrt(outcome.variance));
     P_.noalias() -= scaled * scaled.transpose();
   } else {  // Joseph: (I - k h') P (I - k h')' + k R k'
     Covariance left = P_ - outcome.gain * w.transpose();

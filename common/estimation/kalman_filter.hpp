@@ -52,9 +52,9 @@ class KalmanFilter {
   };
 
   void start(const State& x, const State& sigma);
-  /// Goes on by dt > 0; returns the transition. Where pitch has come near the vertical, the angles are first counted
+  /// Goes on by dt > 0. Where pitch has come near the vertical, the angles are first counted
   /// from the present attitude: turned() then says how small changes of the old ones become changes of the new ones.
-  Transition predict(double dt, const ProcessNoise& noise, KinematicModel model);
+  void predict(double dt, const ProcessNoise& noise, KinematicModel model);
   /// Something unseen has moved the vehicle, or the estimate is lost: adds to the variances. Between instants only.
   void doubt(const State& sigma) { P_.diagonal() += sigma.cwiseAbs2(); }
   /// The point at which the observations of this instant are linearised; good until the next predict().
@@ -65,6 +65,8 @@ class KalmanFilter {
   /// What the last predict() did to the angles before it went on.
   [[nodiscard]] const std::optional<Eigen::Matrix3d>& turned() const { return turned_; }
   [[nodiscard]] const Eigen::Matrix3d& reference() const { return reference_; }
+  /// Of the last predict().
+  [[nodiscard]] const std::optional<Transition>& transition() const { return transition_; }
   /// Yaw is not folded: it goes on counting turns, so that smoothing is a sum.
   [[nodiscard]] const State& state() const { return x_; }
   [[nodiscard]] const Covariance& covariance() const { return P_; }
@@ -74,6 +76,7 @@ class KalmanFilter {
   Covariance P_{Covariance::Identity()};
   Eigen::Matrix3d reference_{Eigen::Matrix3d::Identity()};  // from which the angles are counted
   std::optional<Eigen::Matrix3d> turned_;
+  std::optional<Transition> transition_;
 };
 
 /// P F^T in place, columns by columns.

@@ -49,22 +49,22 @@ void KinematicEstimator<N>::start(Utime utime, const KalmanStart& start) {
 template <int N>
 void KinematicEstimator<N>::advance(Utime utime, FilterRecord<N>* record) {
   record_ = record;
-  open_dt_ = 0.0;
+  open_ = false;
   double left = seconds_between(now_, utime);
   now_ = utime;
   while (left > 0.0) {
     const double dt = left > kLongestStep ? std::min(kLongestStep, 0.5 * left) : left;
     filter_.predict(dt, settings_->process, settings_->model);
     left -= dt;
-    if (left > 0.0 && record != nullptr) record->add(dt, filter_);
-    open_dt_ = dt;
+    if (left > 0.0 && record != nullptr) record->add(true, filter_);
+    open_ = true;
   }
   upright_ = upright_ && std::abs(filter_.state()[at::kEuler + 1]) < model::kSteepest;
 }
 
 template <int N>
 void KinematicEstimator<N>::close(FilterRecord<N>* record) {
-  if (record != nullptr) record->add(open_dt_, filter_);
+  if (record != nullptr) record->add(open_, filter_);
 }
 
 template <int N>

@@ -81,7 +81,7 @@ class KinematicEstimator {
   std::vector<int> in_a_row_;   // refused
   std::vector<double> ranges_;  // of one message; 0: not heard, or contradicts the others
   Utime now_{};
-  double open_dt_{};  // of the step that close() records
+  bool open_{};  // time has gone on since the last record
   bool started_{false}, upright_{true};
 };
 

@@ -1,35 +1,23 @@
 #include "common/estimation/smoother.hpp"
 
 namespace fathom::estimation {
-namespace {
-
-/// Where the step from `from` to `to` was made linear.
-template <int N>
-model::KinematicPoint point_of(const typename FilterRecord<N>::Instant& from,
-                               const typename FilterRecord<N>::Instant& to) {
-  model::KinematicVector x = model::KinematicVector::Zero();
-  x.template head<N>() = from.x;
-  if (to.turned) x.segment<3>(model::at::kEuler).setZero();
-  return model::KinematicPoint{x, to.reference};
-}
-
-}  // namespace
-
 template <int N>
 void FilterRecord<N>::begin(const KalmanFilter<N>& filter) {
   instants.clear();
   taken.clear();
-  add(0.0, filter);
+  add(false, filter);
 }
 
 template <int N>
-void FilterRecord<N>::add(double dt, const KalmanFilter<N>& filter) {
+void FilterRecord<N>::add(bool went_on, const KalmanFilter<N>& filter) {
   Instant& instant = instants.emplace_back();
-  instant.dt = dt;
   instant.x = filter.state();
   instant.P = filter.covariance();
   instant.reference = filter.reference();
-  if (dt > 0.0) instant.turned = filter.turned();
+  if (went_on) {
+    instant.step = filter.transition();
+    instant.turned = filter.turned();
+  }
   instant.taken = taken.size();
 }
 
@@ -59,18 +47,29 @@ typename Smoothed<N>::Covariance Smoothed<N>::covariance() const {
 
 template <int N>
 typename Smoothed<N>::State Smoothed<N>::variance() const {
-  Covariance LP;
-  LP.noalias() = Lambda_ * filtered_.P;
-  return filtered_.P.diagonal() - filtered_.P.cwiseProduct(LP).colwise().sum().transpose();
+  // Lambda is the sum of a half and its transpose, which both give the diagonal of P Lambda P alike: blocks above the
+  // diagonal need not be multiplied.
+  constexpr int kBlock = 6;
+  const Covariance& P = filtered_.P;
+  State variance = P.diagonal();
+  Eigen::Matrix<double, kBlock, N> half;
+  for (int b = 0; b < N; b += kBlock) {
+    const auto rows = P.template middleRows<kBlock>(b);
+    half = (0.5 * Lambda_.template block<kBlock, kBlock>(b, b)).lazyProduct(rows);
+    for (int c = 0; c < b; c += kBlock)
+      half += Lambda_.template block<kBlock, kBlock>(b, c).lazyProduct(P.template middleRows<kBlock>(c));
+    variance -= 2.0 * rows.cwiseProduct(half).colwise().sum().transpose();
+  }
+  return variance;
 }
 
 template <int N>
-void Smoother<N>::back_over(const FilterRecord<N>& record, KinematicModel model, const Visit& visit) {
+void Smoother<N>::back_over(const FilterRecord<N>& record, const Visit& visit) {
   for (std::size_t k = record.instants.size() - 1; k > 0; --k) {
     visit(k, Smoothed<N>{record.instants[k], lambda_, Lambda_});
     for (std::size_t n = record.instants[k].taken; n > record.instants[k - 1].taken; --n) {
       const typename FilterRecord<N>::Taken& one = record.taken[n - 1];
-      const State v = Lambda_ * one.gain;
+      const State v = Lambda_.lazyProduct(one.gain);  // of a size that is known: no call of a general product
       lambda_ -= one.row * (one.gain.dot(lambda_) + one.innovation / one.variance);
       // (I - k h')' L (I - k h') + h h' / S, as one symmetric update of rank two.
       const State half = v - (0.5 * (one.gain.dot(v) + 1.0 / one.variance)) * one.row;
@@ -81,7 +80,8 @@ void Smoother<N>::back_over(const FilterRecord<N>& record, KinematicModel model,
         Lambda_.col(i) -= share * half;
       }
     }
-    const Transition F{point_of<N>(record.instants[k - 1], record.instants[k]), record.instants[k].dt, model};
+    if (!record.instants[k].step) continue;
+    const Transition& F = *record.instants[k].step;
     transport_back<N>(F, lambda_);
     transport_back<N>(F, Lambda_);
     Lambda_.transposeInPlace();

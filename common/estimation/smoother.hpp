@@ -17,10 +17,10 @@ struct FilterRecord {
   using State = typename KalmanFilter<N>::State;
   using Covariance = typename KalmanFilter<N>::Covariance;
   struct Instant {
-    double dt{};  ///< s since the instant before
-    State x;      ///< after all observations
+    State x;  ///< after all observations
     Covariance P;
     Eigen::Matrix3d reference{Eigen::Matrix3d::Identity()};  ///< of the angles
+    std::optional<Transition> step{};                        ///< that led here, if time went on
     std::optional<Eigen::Matrix3d> turned{};                 ///< before the step that led here: see KalmanFilter
     std::size_t taken{};                                     ///< observations taken in up to and with this instant
   };
@@ -33,7 +33,8 @@ struct FilterRecord {
   std::vector<Taken> taken;
 
   void begin(const KalmanFilter<N>& filter);
-  void add(double dt, const KalmanFilter<N>& filter);
+  /// Where the filter stands; `went_on`: after a predict() since the instant before.
+  void add(bool went_on, const KalmanFilter<N>& filter);
   void add(const model::Observation& observation, const typename KalmanFilter<N>::Outcome& outcome);
 };
 
@@ -64,7 +65,7 @@ class Smoother {
 
   /// Goes back over a record, newest instant first; entry 0 is not visited. Records of one run follow each other,
   /// newest first.
-  void back_over(const FilterRecord<N>& record, KinematicModel model, const Visit& visit);
+  void back_over(const FilterRecord<N>& record, const Visit& visit);
 
  private:
   using State = typename KalmanFilter<N>::State;

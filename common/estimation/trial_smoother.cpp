@@ -134,7 +134,7 @@ class Run {
         utimes.resize(record.instants.size(), 0);
         if (output(k)) utimes.back() = events_[instants_[k]].utime;
       }
-      smoother.back_over(record, settings_.model, [&](std::size_t i, const Smoothed<N>& smoothed) {
+      smoother.back_over(record, [&](std::size_t i, const Smoothed<N>& smoothed) {
         if (utimes[i] == 0) return;
         const typename KalmanFilter<N>::State x = smoothed.state();
         if (visit) visit(utimes[i], x, smoothed.covariance());

@@ -5,7 +5,8 @@
 namespace fathom::model {
 
 KinematicPoint::KinematicPoint(const KinematicVector& state, const Eigen::Matrix3d& reference) : x{state} {
-  const double sr = std::sin(x[6]), cr = std::cos(x[6]), sp = std::sin(x[7]), cp = std::cos(x[7]);
+  const double sr = sin_roll = std::sin(x[6]), cr = cos_roll = std::cos(x[6]);
+  const double sp = sin_pitch = std::sin(x[7]), cp = cos_pitch = std::cos(x[7]);
   const double sy = std::sin(x[8]), cy = std::cos(x[8]);
   Eigen::Matrix3d turned;
   turned << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //

@@ -56,6 +56,7 @@ struct KinematicPoint {
   explicit KinematicPoint(const KinematicVector& state, const Eigen::Matrix3d& reference = Eigen::Matrix3d::Identity());
 
   KinematicVector x;
+  double sin_roll, cos_roll, sin_pitch, cos_pitch;
   Eigen::Matrix3d R_WB;
   Eigen::Matrix3d euler_from_rates;  ///< d(roll, pitch, yaw)/dt = this * w_WB_B (Fossen 2011, eq. 2.28)
   Eigen::Matrix3d rates_from_euler;  ///< its inverse: small turns in B by small changes of the angles

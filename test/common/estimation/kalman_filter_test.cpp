@@ -165,7 +165,7 @@ void against_textbook(KinematicModel model) {
       variance[r] = rows[i].variance;
       record.add(rows[i], filter.update(rows[i], kNoGate, moved_by));
     }
-    record.add(dt, filter);
+    record.add(true, filter);
     const Matrix& P = dense.P_predicted.back();
     const Matrix S = H * P * H.transpose() + Matrix(variance.asDiagonal());
     const Matrix K = P * H.transpose() * S.inverse();
@@ -185,7 +185,7 @@ void against_textbook(KinematicModel model) {
   }
   Smoother<N> smoother;
   int visited = 0;
-  smoother.back_over(record, model, [&](std::size_t k, const Smoothed<N>& smoothed) {
+  smoother.back_over(record, [&](std::size_t k, const Smoothed<N>& smoothed) {
     ++visited;
     CHECK((smoothed.state() - xs[k]).norm() < 20.0 * kSlope);
     CHECK((smoothed.covariance() - Ps[k]).norm() < 100.0 * kSlope * Ps[k].norm());
@@ -269,12 +269,12 @@ TEST_CASE("Kalman filter and smoother: consistent over 50 seeds when the motion 
            {Eigen::Vector3d(20, 0, 8), Eigen::Vector3d(0, 20, 8), Eigen::Vector3d(-9, -9, 8)}) {
         if (k % 5 == 0) both([&](const auto& p) { return model::observe_range(p, {0, 0, 0}, T, 0.0, 2.5e-3); });
       }
-      record.add(dt, filter);
+      record.add(true, filter);
     }
     const KalmanFilter<24>::State e = filter.state() - truth;
     filter_nees += e.dot(filter.covariance().ldlt().solve(e)) / (24.0 * kSeeds);
     Smoother<24> smoother;
-    smoother.back_over(record, KinematicModel::kCoupled, [&](std::size_t k, const Smoothed<24>& smoothed) {
+    smoother.back_over(record, [&](std::size_t k, const Smoothed<24>& smoothed) {
       if (k != kSteps / 2) return;
       const KalmanFilter<24>::State off = smoothed.state() - truths[k];
       smoother_nees += off.dot(smoothed.covariance().ldlt().solve(off)) / (24.0 * kSeeds);
@@ -314,14 +314,14 @@ TEST_CASE("Kalman filter and smoother: covariances stay positive and symmetric o
       if (row.variance == 2.5e-3) row.variance = 1e-6;
       record.add(row, filter.update(row, kNoGate, moved_by));
     }
-    record.add(dt, filter);
+    record.add(true, filter);
     if (k % 5000 == 0 || k < 20) smallest = std::min(smallest, eigenvalue(filter.covariance()));
     REQUIRE(filter.covariance().diagonal().minCoeff() > 0.0);
   }
   CHECK(smallest > 0.0);
   CHECK(filter.covariance() == filter.covariance().transpose());
   Smoother<24> smoother;
-  smoother.back_over(record, KinematicModel::kCoupled, [&](std::size_t, const Smoothed<24>& smoothed) {
+  smoother.back_over(record, [&](std::size_t, const Smoothed<24>& smoothed) {
     const auto P = smoothed.covariance();
     REQUIRE(P.diagonal().minCoeff() > 0.0);
     smallest = std::min(smallest, eigenvalue(P));
