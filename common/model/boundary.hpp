@@ -16,7 +16,7 @@ namespace fathom::model::boundary {
 
 /// Variants of an effect: what is felt, and by which law it fades.
 enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag };
-constexpr std::array kStrengthUnits{"N m^2", "N m^2/(m/s)^2", "N", "N/(m/s)^2"};  // by form
+constexpr std::array kStrengthUnits{"N m^2", "m^2", "N", ""};  // by form; of drag: times the hull's own
 [[nodiscard]] inline bool presses(int form) { return form == kForce || form == kExponentialForce; }
 [[nodiscard]] inline bool exponential(int form) { return form >= kExponentialForce; }
 /// Their names; "-" where the vehicle cannot show them: `pushed` and `moves`, a force or a drag would be felt.
@@ -42,14 +42,16 @@ constexpr double kMostBeyond = 3.0;      // reaches beyond the place that a stre
   return std::exp(std::min(beyond / std::max(reach, kSmallestReach), kMostBeyond));
 }
 
-/// Adds the push away from the boundary that lies `toward_B` (unit vector), or the drag; `near` is strength times
-/// proximity.
-inline void press(const Motion& motion, int form, double near, const Eigen::Vector3d& toward_B, Load& load) {
+constexpr double kStartShare = 0.3;  // of the hull's own drag, where a search begins
+
+/// Adds the push away from the boundary that lies `toward_B` (unit vector), or more of the hull's own drag; `near` is
+/// strength times proximity.
+inline void press(int form, double near, const Eigen::Vector3d& toward_B, Load& load) {
   if (presses(form)) {
     load.wrench.head<3>() -= near * toward_B;
   } else {
-    const Eigen::Vector3d v_r = motion.nu_r().head<3>();
-    load.wrench.head<3>() -= near * v_r.norm() * v_r;
+    load.wrench.head<3>() += near * load.drag.head<3>();
+    load.drag_share += near;
   }
 }
 

@@ -71,6 +71,11 @@ void settle(const Model& model, Motion motion, std::span<double> memory) {
   }
 }
 
+Vector6d hull_drag(const Model& model, const Vector6d& nu_r) {
+  return model.theta.segment<6>(index(BaseParameter::X_u)).cwiseProduct(nu_r) +
+         model.theta.segment<6>(index(BaseParameter::X_uu)).cwiseProduct(nu_r.cwiseAbs().cwiseProduct(nu_r));
+}
+
 Vector6d generalised_force(const Model& model, const Motion& motion, Load& load) {
   const auto& theta = model.theta;
   const Vector6d inertia = inertia_diagonal(model);
@@ -105,14 +110,14 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
     force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
   }
 
-  force += theta.segment<6>(index(BaseParameter::X_u)).cwiseProduct(nu_r);
-  force += theta.segment<6>(index(BaseParameter::X_uu)).cwiseProduct(nu_r.cwiseAbs().cwiseProduct(nu_r));
+  load = Load{};
+  load.drag = hull_drag(model, nu_r);
+  force += load.drag;
 
   const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
   force.head<3>() += theta[index(BaseParameter::W_B)] * down_B;
   force.tail<3>() += theta.segment<3>(index(BaseParameter::G_x)).cross(down_B);
 
-  load = Load{};
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   return force + load.wrench;
 }

@@ -41,6 +41,8 @@ void feel(const Model& model, Motion& motion, std::span<double> memory, double d
 /// Memory at rest in `motion`.
 void settle(const Model& model, Motion motion, std::span<double> memory);
 
+/// Drag of the hull at a velocity relative to the water, N and N m.
+[[nodiscard]] Vector6d hull_drag(const Model& model, const Vector6d& nu_r);
 /// Wrench of everything but inertia, applied thrust included: M nu_dot = generalised_force. Call after feel().
 [[nodiscard]] Vector6d generalised_force(const Model& model, const Motion& motion, Load& load);
 /// nu_dot [m/s^2, rad/s^2]; zero in degrees of freedom that the vehicle file leaves out. Call after feel().

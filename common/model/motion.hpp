@@ -85,6 +85,8 @@ struct Load {
   Vector6d wrench{Vector6d::Zero()};   ///< N, N m at Bo, body axes
   Matrix6d inertia{Matrix6d::Zero()};  ///< added to M; symmetric
   bool has_inertia{false};
+  Vector6d drag{Vector6d::Zero()};  ///< N, N m: the hull's own by the base parameters, for effects that make it more
+  double drag_share{};              ///< how much more of its forces the effects' wrench holds, as a share
 };
 
 }  // namespace fathom::model

@@ -18,6 +18,7 @@ constexpr double kSteepest = 1e-3;  // cos^2 of the pitch beyond which the headi
 
 Load total_load(const Model& model, const Motion& motion) {
   Load load;
+  load.drag = hull_drag(model, motion.nu_r());
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   return load;
 }
@@ -63,8 +64,13 @@ Sensitivity::Input Sensitivity::input(const Model& model, const Motion& motion, 
   // the added mass also its change, since steady water turns in B: nu_c_dot = -w x v_c.
   Vector6d nu_r_dot = nu_dot;
   nu_r_dot.head<3>() += motion.nu.tail<3>().cross(motion.v_WF_B) - motion.a_WF_B;
-  const BaseRegressor Y = base_regressor(nu_r_dot, motion.nu_r(), motion.R_WB);
-  return divided_by_inertia(model, total_load(model, motion), Eigen::Matrix<double, 6, kBaseParameterCount>(-Y));
+  BaseRegressor Y = base_regressor(nu_r_dot, motion.nu_r(), motion.R_WB);
+  const Load load = total_load(model, motion);
+  for (Eigen::Index axis = 0; axis < 3 && load.drag_share != 0.0; ++axis) {
+    Y(axis, index(BaseParameter::X_u) + axis) *= 1.0 + load.drag_share;
+    Y(axis, index(BaseParameter::X_uu) + axis) *= 1.0 + load.drag_share;
+  }
+  return divided_by_inertia(model, load, Eigen::Matrix<double, 6, kBaseParameterCount>(-Y));
 }
 
 void Sensitivity::velocity_rows(const Model& model, const Motion& motion, const Vector6d& nu_dot, Dynamics& A) const {

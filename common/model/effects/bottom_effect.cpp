@@ -1,6 +1,6 @@
 // Physics: near the bottom the water between hull and floor cannot escape freely. `force` is a steady push up (cushion
-// of the thrusters' wash, a > 0) or pull down (suction, a < 0), w = -a f down_B; `drag` is more of it in all
-// directions, w = -c f |v_r| v_r. Each falls with the inverse square of the gap to the bottom, f = 1 / (z_b - z)^2, or
+// of the thrusters' wash, a > 0) or pull down (suction, a < 0), w = -a f down_B; `drag`: the hull's own translational
+// drag grows by the share c f. Each falls with the inverse square of the gap to the bottom, f = 1 / (z_b - z)^2, or
 // exponentially, f = exp((z - z_d) / s), told for the deepest place z_d that was visited (boundary.hpp). The bottom's
 // depth z_b or the reach s is a number to be found. Ignores: growth of the added mass, slope of the bottom, which
 // thruster blows. Revealed by hovering and moving at several heights, one within a hull's length of the floor. Confused
@@ -55,9 +55,7 @@ class BottomEffect final : public Effect {
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double range = scene.p_high.z() - scene.p_low.z(), deepest = scene.p_high.z();
-    const double speed = std::max(scene.nu_rms.head<3>().norm(), 1e-2);
-    double size = 0.1 * std::max(scene.tau_rms.head<3>().norm(), 1e-2);
-    if (!presses(variant)) size /= speed * speed;
+    const double size = presses(variant) ? 0.1 * std::max(scene.tau_rms.head<3>().norm(), 1e-2) : kStartShare;
     std::vector<std::vector<double>> starts;
     if (exponential(variant)) {
       for (const double share : kReaches)
@@ -75,7 +73,7 @@ class BottomEffect final : public Effect {
     const double z = motion.p_WB.z();
     const double near = theta[0] * (exponential(variant) ? proximity_at(z - theta[kAtDepth], theta[kReach])
                                                          : proximity(theta[kBottomDepth] - z));
-    press(motion, variant, near, motion.R_WB.row(2).transpose(), load);
+    press(variant, near, motion.R_WB.row(2).transpose(), load);
   }
 };
 

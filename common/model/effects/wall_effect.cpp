@@ -1,11 +1,11 @@
 // Physics: as bottom_effect, with an upright wall: planes n . p = const with n = (cos b, sin b, 0) toward it, felt by
-// `force`, w = -a f R_WB^T n (a > 0 pushes away, a < 0 sucks: Bernoulli between hull and wall), or by `drag`,
-// w = -c f |v_r| v_r. Each falls with the inverse square of the gap to the wall, f = 1 / (d - n . p)^2, or
-// exponentially, f = exp((n . p - d_a) / s), told for a place d_a as near as the vehicle came (boundary.hpp). Bearing b
-// and the wall's distance d from the site's origin, or the reach s, are numbers to be found. Ignores: more than one
-// wall (each is a form of its own search), growth of the added mass, the jets' own reflection. Revealed by moving along
-// and toward each side of the site. Confused with tether_tension (pulls along a line to a point) and, with little
-// motion across, with current.
+// `force`, w = -a f R_WB^T n (a > 0 pushes away, a < 0 sucks: Bernoulli between hull and wall), or by `drag`: the
+// hull's own translational drag grows by the share c f. Each falls with the inverse square of the gap to the wall, f =
+// 1 / (d - n . p)^2, or exponentially, f = exp((n . p - d_a) / s), told for a place d_a as near as the vehicle came
+// (boundary.hpp). Bearing b and the wall's distance d from the site's origin, or the reach s, are numbers to be found.
+// Ignores: more than one wall (each is a form of its own search), growth of the added mass, the jets' own reflection.
+// Revealed by moving along and toward each side of the site. Confused with tether_tension (pulls along a line to a
+// point) and, with little motion across, with current.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -66,9 +66,7 @@ class WallEffect final : public Effect {
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const Eigen::Vector2d middle = 0.5 * (scene.p_high + scene.p_low).head<2>();
     const Eigen::Vector2d half = 0.5 * (scene.p_high - scene.p_low).head<2>();
-    const double speed = std::max(scene.nu_rms.head<3>().norm(), 1e-2);
-    double size = 0.1 * std::max(scene.tau_rms.head<2>().norm(), 1e-2);
-    if (!presses(variant)) size /= speed * speed;
+    const double size = presses(variant) ? 0.1 * std::max(scene.tau_rms.head<2>().norm(), 1e-2) : kStartShare;
     std::vector<std::vector<double>> starts;
     for (int k = 0; k < kBearings; ++k) {
       const double bearing = 2.0 * std::numbers::pi * k / kBearings;
@@ -91,7 +89,7 @@ class WallEffect final : public Effect {
     const double along = n.dot(motion.p_WB);
     const double near = theta[0] * (exponential(variant) ? proximity_at(along - theta[kAtDistance], theta[kReach])
                                                          : proximity(theta[kDistance] - along));
-    press(motion, variant, near, motion.R_WB.transpose() * n, load);
+    press(variant, near, motion.R_WB.transpose() * n, load);
   }
 };
 

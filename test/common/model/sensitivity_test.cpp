@@ -121,6 +121,13 @@ TEST_CASE("sensitivity: six axes, with nothing and with each kind of effect") {
   check(vehicle, {test::active("thruster_lag", {0.25})}, 74);
 }
 
+TEST_CASE("sensitivity: where a boundary makes the hull's drag several times as large, its numbers count as often") {
+  constexpr int kExponentialDrag = 3;
+  const model::Vehicle vehicle = test::vehicle_from_repository("beluga");
+  check(vehicle, {test::active("wall_effect", {2.0, 0.3, 0.0, 0.5, 2.0}, kExponentialDrag)}, 83);
+  check(four_axes(), {test::active("bottom_effect", {1.5, 0.0, 0.4, 0.5}, kExponentialDrag)}, 84);
+}
+
 TEST_CASE("sensitivity: five axes: roll is simulated, tilt is as measured, heading is simulated") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   check(vehicle, {}, 75, kQuick);

@@ -254,6 +254,7 @@ TEST_CASE("fluid_memory, cubic_drag, tether_drag, drag of boundaries: none feeds
     motion.R_WB = rotation_from_euler({0.2 * normal(random), 0.2 * normal(random), normal(random)});
     motion.p_WB = Eigen::Vector3d{normal(random), normal(random), normal(random)};
     model::Load load;
+    load.drag = -2.0 * motion.nu;
     for (int axis = 0; axis < 6; ++axis) model::find_effect("cubic_drag")->load(motion, std::vector{3.0}, axis, load);
     model::find_effect("tether_drag")->load(motion, std::vector{3.0, 1.0, 2.0, 3.0}, 0, load);
     model::find_effect("bottom_effect")->load(motion, std::vector{3.0, 4.0}, 1, load);

@@ -15,6 +15,7 @@ constexpr double kRounding = 1e-12;
 
 model::Load load_of(const char* name, const std::vector<double>& theta, int variant, const model::Motion& motion) {
   model::Load load;
+  load.drag << -4.0 * motion.nu.head<3>(), Eigen::Vector3d::Constant(-7.0);
   model::find_effect(name)->load(motion, theta, variant, load);
   return load;
 }
@@ -44,12 +45,12 @@ TEST_CASE("bottom_effect: pushes up along the world's vertical as the inverse sq
   CHECK(load_of("bottom_effect", {8.0, 5.0}, 0, motion).wrench.head<3>().norm() == doctest::Approx(800.0));
 }
 
-TEST_CASE("bottom_effect: its drag is quadratic in the speed through the water, against it") {
+TEST_CASE("bottom_effect: its drag is the hull's own once more for each square of a metre, without moments") {
   model::Motion motion;
   motion.p_WB.z() = 4.5;
   motion.nu << 0.6, 0.0, 0.8, 0.1, 0.1, 0.1;
   const model::Load load = load_of("bottom_effect", {2.0, 5.0}, 1, motion);
-  CHECK((load.wrench.head<3>() + 2.0 / 0.25 * 1.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() + 2.0 / 0.25 * 4.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
   CHECK(load.wrench.tail<3>().isZero(0.0));
 }
 
@@ -74,8 +75,11 @@ TEST_CASE(
   motion.p_WB.z() = 2.0 - kReach;
   CHECK(load_of("bottom_effect", floor, kForce, motion).wrench[2] == doctest::Approx(-3.0 / std::numbers::e));
   motion.nu << 0.6, 0.0, 0.8, 0.0, 0.0, 0.0;
-  const Vector6d drag = load_of("bottom_effect", floor, kDrag, motion).wrench;
-  CHECK((drag.head<3>() + 3.0 / std::numbers::e * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  // Three times the hull's own at the place, which grows with it, and no moment.
+  const model::Load drag = load_of("bottom_effect", floor, kDrag, motion);
+  CHECK((drag.wrench.head<3>() + 3.0 / std::numbers::e * 4.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  CHECK(drag.wrench.tail<3>().isZero(0.0));
+  CHECK(drag.drag_share == doctest::Approx(3.0 / std::numbers::e));
   motion.p_WB.z() = 1e3;
   CHECK(std::abs(load_of("bottom_effect", floor, kForce, motion).wrench[2]) < 100.0);
 
