@@ -13,6 +13,7 @@
 #include <random>
 
 #include "common/diagnosis/force_residual.hpp"
+#include "test/support/timing.hpp"
 
 using namespace fathom;
 using namespace fathom::diagnosis;
@@ -101,7 +102,7 @@ TEST_CASE("associations: noise goes with nothing, whatever its memory and howeve
 
 TEST_CASE("associations: half a minute of noise goes with nothing either") {
   constexpr std::size_t kShort = 660;
-  constexpr unsigned kSeeds = 400;
+  const unsigned kSeeds = test::seeds(400);
   int found = 0;
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     const double memory = std::array{0.0, 0.5, 2.0, 5.0}[seed % 4];
