@@ -15,6 +15,7 @@ namespace fathom::simulation {
 namespace {
 
 constexpr double kOpenWater = 10.0;     // m around the start, where there are no walls
+constexpr double kBoundaryDrag = 0.5;   // m^2, or plain at the boundary itself
 constexpr double kOrbitalShare = 0.02;  // m/s of the water per N of the prior: the same number is both
 constexpr double kTiltShare = 0.3;      // of the righting moment that an unknown one may have
 constexpr double kMassShare = 0.15;     // of the vehicle's mass that a payload may have
@@ -109,6 +110,8 @@ double drawn(const model::Effect& effect, const model::EffectParameter& paramete
   if (name == "bearing") return effect.name() == "wave" ? 2.0 * std::numbers::pi * side : wall_bearing;
   if (name == "distance" || name == "at_distance") return wall_distance;
   if (name == "frequency") return scene.tones_horizontal.front().omega;
+  // What a boundary adds is a share of the hull's own drag, and never takes drag away.
+  if (name == "strength" && variant.ends_with("drag")) return kBoundaryDrag * share;
   double size = share * parameter.sigma;
   if (effect.name() == "wave" && variant == "orbital") size *= kOrbitalShare;
   if (effect.name() == "restoring_moment") size = std::min(size, kTiltShare * share * occasion.righting);
