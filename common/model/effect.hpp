@@ -102,6 +102,8 @@ class Effect {
   virtual void load(const Motion&, EffectTheta, int /*variant*/, Load&) const {}
   /// False when feel() changes the thrust by command, time and voltage alone: derivatives then need not ask it.
   [[nodiscard]] virtual bool feels_motion() const { return true; }
+  /// True when the wrench is a share of the hull's drag: it then changes with the base parameters.
+  [[nodiscard]] virtual bool multiplies_drag(int /*variant*/) const { return false; }
   /// True when the wrench depends on where the vehicle is (not only on how it moves).
   [[nodiscard]] virtual bool feels_place() const { return false; }
   /// Size of the memory z.

@@ -14,7 +14,7 @@ constexpr double kStep = 1e-3;  // of the number or a tenth of its sigma, for di
 EffectWrench::EffectWrench(const Model& base, ActiveEffect effect, std::span<const BaseParameter> parameters)
     : base_{base}, effect_{std::move(effect)} {
   base_.effects.clear();
-  if (effect_.effect->feels_motion()) {
+  if (effect_.effect->feels_motion() || effect_.effect->multiplies_drag(effect_.variant)) {
     for (const BaseParameter parameter : parameters) {
       moved_bases_.push_back(base_);
       moved_bases_.back().theta[index(parameter)] += 1.0;

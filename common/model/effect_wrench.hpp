@@ -9,12 +9,13 @@
 namespace fathom::model {
 
 /// Rows X..N; first column: at the numbers themselves; then one per number: change per unit of it; then, for an effect
-/// that alters what the hull feels, one per base parameter asked for: change per unit of that.
+/// that alters what the hull feels or multiplies its drag, one per base parameter asked for: change per unit of that.
 using EffectColumns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 class EffectWrench {
  public:
-  /// `base` supplies drag and masses, for effects that alter what the hull feels; its own effects are left out.
+  /// `base` supplies drag and masses, for effects that alter what the hull feels or multiply its drag; its own effects
+  /// are left out.
   EffectWrench(const Model& base, ActiveEffect effect, std::span<const BaseParameter> parameters = {});
 
   [[nodiscard]] const ActiveEffect& effect() const { return effect_; }

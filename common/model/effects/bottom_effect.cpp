@@ -38,6 +38,7 @@ class BottomEffect final : public Effect {
   bool is_given(int variant, std::size_t number) const override { return exponential(variant) && number == kAtDepth; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
+  bool multiplies_drag(int variant) const override { return !presses(variant); }
   /// A floor that takes drag away is none.
   bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const override {
     if (!presses(variant) && theta[0] < 0.0) return false;

@@ -47,6 +47,7 @@ class WallEffect final : public Effect {
   }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
+  bool multiplies_drag(int variant) const override { return !presses(variant); }
   /// A wall that takes drag away is none.
   bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const override {
     if (!presses(variant) && theta[0] < 0.0) return false;
