@@ -44,7 +44,11 @@ Json error(const ModelError& error) {
   for (const auto& [axis, rmse] : error.force_rmse) force[axis] = finite(rmse);
   Json prediction = Json::array();
   for (const auto& p : error.prediction) {
-    prediction.push_back({{"horizon_s", horizon(p.horizon_s)}, {"rmse", per_axis(p.rmse)}, {"r2", per_axis(p.r2)}});
+    prediction.push_back({{"horizon_s", horizon(p.horizon_s)},
+                          {"rmse", per_axis(p.rmse)},
+                          {"r2", per_axis(p.r2)},
+                          {"p_half", per_axis(p.p_half)},
+                          {"p_average", per_axis(p.p_average)}});
   }
   return {{"force_rmse", force}, {"prediction", prediction}};
 }

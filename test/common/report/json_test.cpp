@@ -84,6 +84,7 @@ TEST_CASE("Horizons are 1, 5 and 10, and axes are u v w p q r in SI units") {
   CHECK(prediction[0]["horizon_s"] == 1);
   CHECK(prediction[0]["horizon_s"].is_number_integer());
   CHECK(prediction[2]["horizon_s"] == 10);
+  CHECK(keys(prediction[0]) == Names{"horizon_s", "p_average", "p_half", "r2", "rmse"});
   CHECK(keys(prediction[0]["rmse"]) == Names{"p", "q", "r", "u", "v", "w"});
   CHECK(prediction[1]["rmse"]["r"] == report.result.error_before.prediction[1].rmse[5]);
 }
