@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/base/statistics.hpp"
+#include "common/estimation/increment_normals.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -12,7 +14,7 @@ namespace {
 constexpr double kMisfitFreedom = 6.0;
 
 /// The jackknife's sigma, of as many degrees of freedom as blocks tell of it, with that of the misfit.
-void settle(Estimate& estimate, const IncrementFit::Uncertainty& known) {
+void settle(Estimate& estimate, const Uncertainty& known) {
   const double own = std::max(known.blocks - 1.0, 0.0);
   estimate.freedom = own + kMisfitFreedom;
   estimate.sigma =
@@ -20,6 +22,22 @@ void settle(Estimate& estimate, const IncrementFit::Uncertainty& known) {
 }
 
 }  // namespace
+
+Uncertainty uncertainty(const IncrementFit& fit, const Eigen::VectorXd& gradient) {
+  if (fit.information.empty()) return {};
+  Normals all(static_cast<int>(gradient.size()));
+  for (const Eigen::MatrixXd& block : fit.information) all.h += block;
+  const Eigen::VectorXd influence = all.solve(gradient);
+  std::vector<double> shares;
+  for (const Eigen::MatrixXd& block : fit.information)
+    shares.push_back(std::max(influence.dot(block * influence), 0.0));
+  return {std::sqrt(fit.noise * std::max(influence.dot(gradient), 0.0)), effective_count(shares)};
+}
+
+Uncertainty delay_uncertainty(const IncrementFit& fit) {
+  const double bend = std::accumulate(fit.delay_information.begin(), fit.delay_information.end(), 0.0);
+  return {bend > 0.0 ? std::sqrt(2.0 * fit.noise / bend) : 0.0, effective_count(fit.delay_information)};
+}
 
 Estimate estimate(const IncrementFit& fit, const std::function<double(const Eigen::VectorXd&)>& read, bool bracket) {
   Estimate result;
@@ -36,7 +54,7 @@ Estimate estimate(const IncrementFit& fit, const std::function<double(const Eige
     gradient[i] = 0.5 * (above - read(moved)) / kStep;
     moved[i] = fit.theta[i];
   }
-  settle(result, fit.uncertainty(gradient));
+  settle(result, uncertainty(fit, gradient));
   if (bracket) {
     // The sensor's own noise pulls the plain value toward zero, taking it out may overshoot: the truth is between.
     const double half = 0.5 * (read(fit.theta_upper) - result.value);
@@ -49,7 +67,7 @@ Estimate estimate(const IncrementFit& fit, const std::function<double(const Eige
 
 Estimate estimate_delay(const IncrementFit& fit) {
   Estimate result{.value = fit.delay, .sigma = jackknife_sigma(fit.delay_replicates), .informative = true};
-  settle(result, fit.delay_uncertainty());
+  settle(result, delay_uncertainty(fit));
   return result;
 }
 

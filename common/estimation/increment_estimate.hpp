@@ -9,6 +9,15 @@
 
 namespace fathom::estimation {
 
+struct Uncertainty {
+  double sigma{};   ///< by the misfit of all windows
+  double blocks{};  ///< how many, as if of equal weight, tell of it
+};
+/// Of a function of theta that has this gradient. A manoeuvre that shows it once lies in one block or two, and these
+/// few know little of their own scatter.
+[[nodiscard]] Uncertainty uncertainty(const IncrementFit& fit, const Eigen::VectorXd& gradient);
+[[nodiscard]] Uncertainty delay_uncertainty(const IncrementFit& fit);
+
 /// `read` is a smooth function of theta. `bracket`: the sensor's own noise pulls the number toward zero.
 [[nodiscard]] Estimate estimate(const IncrementFit& fit, const std::function<double(const Eigen::VectorXd&)>& read,
                                 bool bracket);

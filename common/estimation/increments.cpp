@@ -1,13 +1,12 @@
 #include "common/estimation/increments.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "common/base/statistics.hpp"
+#include "common/estimation/increment_normals.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -20,9 +19,6 @@ constexpr std::size_t kFewestWindows = 60;
 constexpr double kSharp = 0.8;          // least over median cost of all delays
 constexpr double kLeverSeen = 30.0;     // energy of a lever column over its noise: the bias stays under 5 mm
 constexpr double kBlockSeconds = 30.0;  // longer than any closed loop remembers
-
-constexpr int kMostColumns = 24;
-using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostColumns>;  // no heap
 
 /// One delay: a design row triple per window.
 class Design {
@@ -68,66 +64,6 @@ class Design {
   std::vector<Rows> rows_;
   std::vector<bool> whole_;
 };
-
-struct Normals {
-  explicit Normals(int size) : h(Eigen::MatrixXd::Zero(size, size)), g(Eigen::VectorXd::Zero(size)) {}
-  Eigen::MatrixXd h;
-  Eigen::VectorXd g;
-  double yy{};
-  double weight{};
-  void add(const Rows& rows, const Eigen::Vector3d& y, double w) {
-    // Three rows at a time are too few for Eigen's blocked product, which costs four times as much.
-    const auto n = static_cast<std::size_t>(rows.cols());
-    const double* const a = rows.data();
-    double* const to = h.data();
-    for (std::size_t j = 0; j < n; ++j) {
-      const double r0 = w * a[3 * j], r1 = w * a[3 * j + 1], r2 = w * a[3 * j + 2];
-      for (std::size_t i = j; i < n; ++i) to[n * j + i] += r0 * a[3 * i] + r1 * a[3 * i + 1] + r2 * a[3 * i + 2];
-      g[static_cast<Eigen::Index>(j)] += r0 * y[0] + r1 * y[1] + r2 * y[2];
-    }
-    yy += w * y.squaredNorm();
-    weight += w;
-  }
-  void add(const Normals& other, double sign) {
-    h += sign * other.h;
-    g += sign * other.g;
-    yy += sign * other.yy;
-    weight += sign * other.weight;
-  }
-  [[nodiscard]] Eigen::VectorXd solve() const { return solve(g); }
-  /// Columns are scaled to unit length first; a tiny ridge keeps what the data cannot see at zero.
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& of) const {
-    const Eigen::VectorXd scale = (h.diagonal().array() + 1e-300).rsqrt();
-    Eigen::MatrixXd scaled = full();
-    scaled = scale.asDiagonal() * scaled * scale.asDiagonal();
-    scaled.diagonal().array() += 1e-7;
-    const Eigen::VectorXd right = scale.asDiagonal() * of;
-    return scale.asDiagonal() * scaled.ldlt().solve(right);
-  }
-  [[nodiscard]] Eigen::MatrixXd full() const { return h.selfadjointView<Eigen::Lower>(); }
-  [[nodiscard]] double square(const Eigen::VectorXd& theta) const {
-    return std::max(yy - 2.0 * theta.dot(g) + theta.dot(full() * theta), 0.0);
-  }
-  [[nodiscard]] double cost(const Eigen::VectorXd& theta) const { return square(theta) / std::max(weight, 1e-300); }
-};
-
-/// Mean square of a window's misfit, times how much more the blocks' gradients scatter than misfits without a memory
-/// would make them. Less it is never taken to be: increments that meet end to end share their noise with opposite
-/// signs, which helps where the motion is slow, and not where a quick one shows a number.
-double noise_of(const std::vector<Normals>& blocks, const Eigen::VectorXd& theta) {
-  Normals all(static_cast<int>(theta.size()));
-  for (const Normals& block : blocks) all.add(block, 1.0);
-  const double square = all.square(theta) / std::max(3.0 * all.weight, 1e-300);
-  Eigen::VectorXd scatter = Eigen::VectorXd::Zero(theta.size());
-  for (const Normals& block : blocks) scatter += (block.full() * theta - block.g).cwiseAbs2();
-  double ratio = 0.0, count = 0.0;
-  for (Eigen::Index j = 0; j < theta.size(); ++j) {
-    if (!(all.h(j, j) > 1e-12) || !(square > 0.0)) continue;
-    ratio += scatter[j] / (square * all.h(j, j));
-    count += 1.0;
-  }
-  return square * (count > 0.0 ? std::max(ratio / count, 1.0) : 1.0);
-}
 
 /// Misfits per window (NaN where the sensor is missing) for theta, and Huber weights from them.
 struct Misfits {
@@ -387,21 +323,6 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
     fit.lever_seen[a] = energy > kLeverSeen * problem.lever_noise * static_cast<double>(problem.fixed.size());
   }
   return fit;
-}
-
-IncrementFit::Uncertainty IncrementFit::uncertainty(const Eigen::VectorXd& gradient) const {
-  if (information.empty()) return {};
-  Normals all(static_cast<int>(gradient.size()));
-  for (const Eigen::MatrixXd& block : information) all.h += block;
-  const Eigen::VectorXd influence = all.solve(gradient);
-  std::vector<double> shares;
-  for (const Eigen::MatrixXd& block : information) shares.push_back(std::max(influence.dot(block * influence), 0.0));
-  return {std::sqrt(noise * std::max(influence.dot(gradient), 0.0)), effective_count(shares)};
-}
-
-IncrementFit::Uncertainty IncrementFit::delay_uncertainty() const {
-  const double bend = std::accumulate(delay_information.begin(), delay_information.end(), 0.0);
-  return {bend > 0.0 ? std::sqrt(2.0 * noise / bend) : 0.0, effective_count(delay_information)};
 }
 
 }  // namespace fathom::estimation

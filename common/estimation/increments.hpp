@@ -49,15 +49,6 @@ struct IncrementFit {
   bool lever_seen[3]{};                               ///< the vehicle turned far more than the attitude's noise
   std::vector<double> outlier_times;                  ///< s, windows that miss by more than the limit
   double seconds{};                                   ///< s of data used
-
-  struct Uncertainty {
-    double sigma{};   ///< by the misfit of all windows
-    double blocks{};  ///< how many, as if of equal weight, tell of it
-  };
-  /// Of a function of theta that has this gradient. A manoeuvre that shows it once lies in one block or two, and these
-  /// few know little of their own scatter.
-  [[nodiscard]] Uncertainty uncertainty(const Eigen::VectorXd& gradient) const;
-  [[nodiscard]] Uncertainty delay_uncertainty() const;
 };
 
 struct IncrementOptions {

@@ -95,8 +95,8 @@ TEST_CASE("increment estimate: sigma and degrees of freedom hold over many seeds
 
 TEST_CASE("increment estimate: what one block shows has few degrees of freedom, what all show has many") {
   const Eigen::VectorXd unit = Eigen::VectorXd::Unit(9, 0);
-  CHECK(fit_of(true, 1).uncertainty(unit).blocks < 3.0);
-  CHECK(fit_of(false, 1).uncertainty(unit).blocks > 6.0);
+  CHECK(uncertainty(fit_of(true, 1), unit).blocks < 3.0);
+  CHECK(uncertainty(fit_of(false, 1), unit).blocks > 6.0);
   CHECK(estimate(fit_of(true, 1), scale, false).freedom < estimate(fit_of(false, 1), scale, false).freedom);
 }
 
