@@ -225,10 +225,11 @@ TEST_CASE("drivers: with the example's configuration each hears and says what do
     CHECK(actual.hears == stated.hears);
     CHECK(actual.says == stated.says);
     // Without its instrument a driver stays up until it is told to end; every key of its section is read.
-    script += "timeout -s INT --preserve-status 1 " + program(driver) + config + " --out file://" +
+    script += "timeout -s INT --preserve-status 3 " + program(driver) + config + " --out file://" +
               scratch.path(driver) + " || echo " + driver + " failed &\n";
   }
-  CHECK(shell(script + "wait").text.empty());
+  const auto ran = shell(script + "wait");
+  CHECK_MESSAGE(ran.text.empty(), ran.text);
 }
 
 TEST_CASE("drivers: bad configuration is refused with one line") {
