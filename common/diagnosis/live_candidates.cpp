@@ -101,7 +101,7 @@ void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForc
     wrench.col(probe.column) = is_start ? Vector6d{total - absent} : Vector6d{(total - at_start) * probe.per_step};
     const Eigen::Index entry = momentum_of_[static_cast<std::size_t>(probe.column)];
     if (entry < 0) continue;
-    const Vector6d added = load.inertia * motion.nu;
+    const Vector6d added = load.inertia() * motion.nu;
     if (is_start) momentum_at_start = added;
     momentum.col(entry) = is_start ? added : Vector6d{(added - momentum_at_start) * probe.per_step};
   }

@@ -110,7 +110,7 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
     force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
   }
 
-  load = Load{};
+  load.clear();
   load.drag = hull_drag(model, nu_r);
   force += load.drag;
 
@@ -134,7 +134,7 @@ Vector6d acceleration(const Model& model, const Motion& motion) {
     }
     return nu_dot;
   }
-  Matrix6d M = load.inertia;
+  Matrix6d M = load.inertia();
   M.diagonal() += inertia;
   Vector6d right = force;
   for (Eigen::Index i = 0; i < 6; ++i) {
@@ -151,7 +151,7 @@ Vector6d residual_wrench(const Model& model, const Motion& motion, const Vector6
   Load load;
   const Vector6d force = generalised_force(model, motion, load);
   Vector6d inertial = inertia_diagonal(model).cwiseProduct(nu_dot);
-  if (load.has_inertia) inertial += load.inertia * nu_dot;
+  if (load.has_inertia) inertial += load.inertia() * nu_dot;
   return inertial - force;
 }
 

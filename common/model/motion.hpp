@@ -82,11 +82,27 @@ struct Motion {
 
 /// What an effect adds to the right-hand side, and the inertia it adds on the left.
 struct Load {
-  Vector6d wrench{Vector6d::Zero()};   ///< N, N m at Bo, body axes
-  Matrix6d inertia{Matrix6d::Zero()};  ///< added to M; symmetric
+  Vector6d wrench{Vector6d::Zero()};  ///< N, N m at Bo, body axes
   bool has_inertia{false};
   Vector6d drag{Vector6d::Zero()};  ///< N, N m: the hull's own by the base parameters, for effects that make it more
   double drag_share{};              ///< how much more of its forces the effects' wrench holds, as a share
+
+  /// Added to M; symmetric. Made when it is asked for: few effects have any, and every step begins with a load of none.
+  [[nodiscard]] Matrix6d& added_inertia() {
+    if (!has_inertia) inertia_.setZero();
+    has_inertia = true;
+    return inertia_;
+  }
+  [[nodiscard]] Matrix6d inertia() const { return has_inertia ? inertia_ : Matrix6d{Matrix6d::Zero()}; }
+  void clear() {
+    wrench.setZero();
+    drag.setZero();
+    drag_share = 0.0;
+    has_inertia = false;
+  }
+
+ private:
+  Matrix6d inertia_;
 };
 
 }  // namespace fathom::model

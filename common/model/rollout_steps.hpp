@@ -28,15 +28,17 @@ inline double largest_step(const Vehicle& vehicle) {
 /// the step, (exp(-z) - 1 + z) / z^2; the former also for half of z. Elementwise, and their derivatives with respect to
 /// z (half of z): one exponential tells them all.
 struct StepShares {
-  Vector6d half, whole, growth, half_slope, whole_slope, growth_slope;
+  Vector6d half, whole, growth;
+  Vector6d half_slope, whole_slope, growth_slope;  ///< only when asked for
 
-  explicit StepShares(const Vector6d& decays) {
+  StepShares(const Vector6d& decays, bool with_slopes) {
     for (Eigen::Index i = 0; i < 6; ++i) {
       const double z = decays[i], y = 0.5 * z;
       if (z < 1e-2) {  // series; what is left out is below 1e-9
         half[i] = 1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0));
         whole[i] = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0));
         growth[i] = 0.5 - z / 6.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0));
+        if (!with_slopes) continue;
         half_slope[i] = -0.5 + y / 3.0 * (1.0 - 0.375 * y * (1.0 - y * 4.0 / 15.0));
         whole_slope[i] = -0.5 + z / 3.0 * (1.0 - 0.375 * z * (1.0 - z * 4.0 / 15.0));
         growth_slope[i] = -1.0 / 6.0 + z / 12.0 * (1.0 - 0.3 * z * (1.0 - z * 2.0 / 9.0));
@@ -46,6 +48,7 @@ struct StepShares {
       half[i] = -e / y;
       whole[i] = -all / z;
       growth[i] = (all + z) / (z * z);
+      if (!with_slopes) continue;
       half_slope[i] = (e + y + e * y) / (y * y);
       whole_slope[i] = (all + z + all * z) / (z * z);
       growth_slope[i] = -(2.0 * z + all * (2.0 + z)) / (z * z * z);
@@ -188,7 +191,7 @@ class Rollout {
     const Vector6d decay = damping(nu_);
     const Vector6d k1 = felt_acceleration(from, offset, p_, q_, nu_, half);
     const Eigen::Vector3d p_half = p_ + half * (motion_.R_WB * nu_.head<3>());
-    const StepShares shares{h * decay};
+    const StepShares shares{h * decay, sensitivity_ != nullptr};
     const Vector6d nu_half = measured_where_fixed(from, offset + half, nu_ + half * shares.half.cwiseProduct(k1));
     const Eigen::Quaterniond q_half = q_ * quaternion_from_rotation_vector(half * nu_.tail<3>());
     const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);

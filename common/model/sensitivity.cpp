@@ -26,7 +26,7 @@ Load total_load(const Model& model, const Motion& motion) {
 /// M^-1 of a right-hand side; rows of left-out degrees of freedom become zero.
 template <typename Right>
 Right divided_by_inertia(const Model& model, const Load& load, Right right) {
-  Matrix6d M = load.inertia;
+  Matrix6d M = load.inertia();
   M.diagonal() += model.theta.head<6>();
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     if (model.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
@@ -81,7 +81,7 @@ void Sensitivity::velocity_rows(const Model& model, const Motion& motion, const 
     const auto add = [&](Eigen::Index column, const Motion& moved) {
       const Load there = total_load(model, moved);
       Vector6d change = there.wrench - load.wrench;
-      if (load.has_inertia) change -= (there.inertia - load.inertia) * nu_dot;
+      if (load.has_inertia) change -= (there.inertia() - load.inertia()) * nu_dot;
       slope.col(column) += change / kDifference;
     };
     Motion moved = motion;

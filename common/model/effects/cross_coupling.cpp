@@ -99,9 +99,8 @@ class CrossCoupling final : public Effect {
     if (term.form == Form::kLinear) load.wrench[term.row] += theta[0] * velocity;
     if (term.form == Form::kQuadratic) load.wrench[term.row] += theta[0] * std::abs(velocity) * velocity;
     if (term.form == Form::kInertia) {
-      load.inertia(term.row, term.column) += theta[0];
-      load.inertia(term.column, term.row) += theta[0];
-      load.has_inertia = true;
+      load.added_inertia()(term.row, term.column) += theta[0];
+      load.added_inertia()(term.column, term.row) += theta[0];
       // Momentum that the pair adds, and what it costs to turn it (Fossen 2011, eq. 6.44); steady water seen from a
       // turning body accelerates by -w x v_WF.
       const Eigen::Vector3d w = motion.nu.tail<3>();

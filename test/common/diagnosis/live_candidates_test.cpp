@@ -174,7 +174,7 @@ TEST_CASE("live candidates: inertia enters as momentum") {
     form.effect->load(instant.motion, start->theta, form.variant, load);
     // Linear in its one number: the start's momentum, and that of one sigma.
     const double share = column == start->column ? 1.0 : form.effect->parameters()[0].sigma / start->theta[0];
-    const Vector6d expected = share * load.inertia * instant.motion.nu;
+    const Vector6d expected = share * load.inertia() * instant.motion.nu;
     CHECK((instant.momentum.col(static_cast<Eigen::Index>(i)) - expected).norm() < kRounding);
   }
 }

@@ -45,7 +45,7 @@ Eigen::Quaterniond attitude(double roll, double pitch, double yaw) {
 TEST_CASE("rollout steps: shares of a decaying step and their slopes, on both sides of where series end") {
   for (const double z : {1e-9, 1e-4, 9.99e-3, 1.001e-2, 1.999e-2, 2.001e-2, 0.3, 1.5}) {
     CAPTURE(z);
-    const StepShares shares{Vector6d::Constant(z)};
+    const StepShares shares{Vector6d::Constant(z), true};
     const Shares all = by_series(z), half = by_series(0.5L * z);
     CHECK(std::abs(shares.half[0] - static_cast<double>(half.whole)) < kLeftOut);
     CHECK(std::abs(shares.whole[0] - static_cast<double>(all.whole)) < kLeftOut);
@@ -54,10 +54,11 @@ TEST_CASE("rollout steps: shares of a decaying step and their slopes, on both si
     CHECK(std::abs(shares.whole_slope[0] - static_cast<double>(all.whole_slope)) < kLeftOut);
     CHECK(std::abs(shares.growth_slope[0] - static_cast<double>(all.growth_slope)) < kLeftOut);
   }
-  const StepShares still{Vector6d::Zero()};
+  const StepShares still{Vector6d::Zero(), true};
   CHECK(still.whole == Vector6d::Ones());
   CHECK(still.growth == Vector6d::Constant(0.5));
-  const StepShares stiff{Vector6d::Constant(1e4)};  // the step outlasts the decay: what remains is the steady answer
+  const StepShares stiff{Vector6d::Constant(1e4),
+                         true};  // the step outlasts the decay: what remains is the steady answer
   CHECK(stiff.whole[0] == doctest::Approx(1e-4));
   CHECK(stiff.growth[0] == doctest::Approx(1e-4).epsilon(1e-3));
 }

@@ -156,7 +156,7 @@ TEST_CASE("payload_change, cross_coupling: what mass adds does no work") {
       for (int axis = 0; axis < 6; ++axis) motion.nu[axis] = normal(random);
       model::Load load;
       (void)model::generalised_force(model, motion, load);
-      Matrix6d M = load.inertia;
+      Matrix6d M = load.inertia();
       M.diagonal() += model.theta.head<6>();
       CHECK(std::abs(motion.nu.dot(M * model::acceleration(model, motion))) < 1e-9);
     }
