@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/base/parallel.hpp"
 #include "common/diagnosis/free_curve.hpp"
 #include "common/diagnosis/held_out.hpp"
 #include "common/diagnosis/judgement.hpp"
@@ -26,19 +27,24 @@ struct Curve {
 };
 
 /// The most helpful curve of each axis by a first look, best first.
-std::vector<Curve> promising(const Linearisation& base, std::span<const std::unique_ptr<const FreeCurve>> all) {
-  std::vector<Curve> best;
-  for (const auto& curve : all) {
+std::vector<Curve> promising(const Linearisation& base, std::span<const std::unique_ptr<const FreeCurve>> all,
+                             int threads) {
+  std::vector<Curve> looked(all.size());
+  for_each_index(all.size(), threads, [&](std::size_t i) {
+    const FreeCurve& curve = *all[i];
     const std::vector<std::vector<double>> start{
-        std::vector<double>(FreeCurve::kKnots, 0.1 * curve->parameters()[0].sigma)};
-    const Screened screened = screen(base, *curve, 0, "", start);
-    const double share = reduction(total(base.window_cost()), total(screened.window_cost));
-    if (share < kTelling) continue;
-    const auto same = std::ranges::find(best, curve->axis(), [](const Curve& c) { return c.curve->axis(); });
+        std::vector<double>(FreeCurve::kKnots, 0.1 * curve.parameters()[0].sigma)};
+    const Screened screened = screen(base, curve, 0, "", start);
+    looked[i] = {&curve, screened.theta, reduction(total(base.window_cost()), total(screened.window_cost))};
+  });
+  std::vector<Curve> best;
+  for (const Curve& one : looked) {
+    if (one.share < kTelling) continue;
+    const auto same = std::ranges::find(best, one.curve->axis(), [](const Curve& c) { return c.curve->axis(); });
     if (same == best.end()) {
-      best.push_back({curve.get(), screened.theta, share});
-    } else if (share > same->share) {
-      *same = {curve.get(), screened.theta, share};
+      best.push_back(one);
+    } else if (one.share > same->share) {
+      *same = one;
     }
   }
   std::ranges::stable_sort(best, std::greater{}, &Curve::share);
@@ -76,7 +82,8 @@ bool test_forms(SearchResult& result, const TrajectoryFit& problem, const FitRes
   const auto all = free_curves(scene);
   const double error = error_left_out(problem, accepted);
   bool refused = false;
-  for (const Curve& each : promising(Linearisation{problem, accepted}.thinned(kWindows), all)) {
+  for (const Curve& each :
+       promising(Linearisation{problem, accepted}.thinned(kWindows), all, problem.settings().threads)) {
     model::Model model = accepted.model;
     model.add({each.curve, 0, "", each.theta});
     const FitResult with_both = problem.fit(model, &accepted, kTolerance);

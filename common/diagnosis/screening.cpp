@@ -206,7 +206,12 @@ Eigen::MatrixXd derivatives(const Linearisation& base, CandidateModel& candidate
   const model::ActiveEffect& active = candidate.active();
   Eigen::MatrixXd columns(residual.size(), static_cast<Eigen::Index>(theta.size()));
   std::vector<double> sizes(theta.size());
+  const auto asked = [&](std::size_t i) { return active.effect->takes_part(active.variant, i); };
   for (std::size_t i = 0; i < theta.size(); ++i) {
+    if (!asked(i)) {
+      columns.col(static_cast<Eigen::Index>(i)).setZero();
+      continue;
+    }
     sizes[i] = theta[i] == 0.0 && first[i] != 0.0
                    ? first[i]
                    : kSmallStep * std::max(std::abs(theta[i]), 0.1 * parameters[i].sigma);
@@ -218,8 +223,7 @@ Eigen::MatrixXd derivatives(const Linearisation& base, CandidateModel& candidate
   remove_base(base, columns);
   for (std::size_t i = 0; i < theta.size(); ++i) {
     auto column = columns.col(static_cast<Eigen::Index>(i));
-    column = (column - residual) * (parameters[i].sigma / sizes[i]);
-    if (!active.effect->takes_part(active.variant, i)) column.setZero();
+    if (asked(i)) column = (column - residual) * (parameters[i].sigma / sizes[i]);
   }
   return columns;
 }
