@@ -4,6 +4,10 @@
 add_library(fathom_warnings INTERFACE)
 target_compile_options(fathom_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
                        -Wno-missing-field-initializers)  # designated initializers leave the rest at its default on purpose
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # guesses about what is inlined at -O3: wrong about Eigen and std::string
+  target_compile_options(fathom_warnings INTERFACE -Wno-error=array-bounds -Wno-error=free-nonheap-object
+                         -Wno-error=restrict -Wno-error=stringop-overflow -Wno-error=stringop-overread)
+endif()
 if(FATHOM_FUZZ)  # every room is instrumented; clang's own further warnings are no errors here
   target_compile_options(fathom_warnings INTERFACE -Wno-error)
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
