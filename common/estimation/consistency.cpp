@@ -22,7 +22,8 @@ Check::Check(std::span<const Recording> recordings) {
     names_.push_back(run.name);
     poses_.push_back(block_average(reference_pose(run), kWorkingRate));
     gyro_.push_back(block_average(run.gyro, kWorkingRate));
-    dvl_.push_back(block_average(run.dvl, kWorkingRate));
+    dvl_.push_back(recording.one_estimate ? Series{} : block_average(run.dvl, kWorkingRate));
+    one_estimate_ = one_estimate_ || recording.one_estimate;
     force_.push_back(block_average(run.specific_force, kWorkingRate));
     reference_ = run.pose.has_attitude || run.attitude.empty() ? "pose_capture" : "ahrs_attitude";
   }
@@ -145,7 +146,7 @@ ConsistencyResult Check::run() {
   std::vector<PoseSeries> poses;
   for (std::size_t r = 0; r < runs_.size(); ++r) poses.push_back(pose(r));
   append(compare_with_vertical(reference_ + ".attitude", names_, poses));
-  align_clocks(dvl.checked);
+  align_clocks(dvl.checked || one_estimate_);
   append(compare_noise(runs_));
   result_.pairs.emplace("gyro", std::move(gyro));
   result_.pairs.emplace("dvl", std::move(dvl));

@@ -58,6 +58,7 @@ class Check {
   std::vector<Series> gyro_, dvl_, force_;
   std::vector<std::string> names_;
   std::string reference_;
+  bool one_estimate_{false};  // pose and velocity share a clock, and nothing else can be asked of them
   ConsistencyResult result_;
 };
 

@@ -6,8 +6,8 @@
 
 namespace fathom::estimation {
 
-/// STATE as pose and, without a velocity log, as velocity too; the accelerometer is then no witness of its own any
-/// more. False, and nothing done, when the recording has motion capture or no state.
+/// STATE as pose and, without a velocity log, as velocity too, which is then no witness against the pose; nor is the
+/// accelerometer any more. False, and nothing done, when the recording has motion capture or no state.
 bool take_state_as_measured(Recording& recording);
 
 }  // namespace fathom::estimation

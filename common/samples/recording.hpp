@@ -15,7 +15,8 @@ namespace fathom {
 
 /// Streams of one run. An empty stream means: not recorded. Pictures stay in the log: they do not fit into memory.
 struct Recording {
-  std::string name;  ///< file name without folder and extension
+  std::string name;          ///< file name without folder and extension
+  bool one_estimate{false};  ///< velocities in `dvl` come from the same estimate as `pose_capture`: they prove nothing
   std::vector<PoseCapture> pose_capture;
   std::vector<Ahrs> ahrs;
   std::vector<Dvl> dvl;

@@ -86,7 +86,12 @@ TEST_CASE("state as measured: stands in for a motion capture that is not there, 
   REQUIRE(f.recording.pose_capture.size() == 1);
   CHECK(f.recording.pose_capture[0].p_WB == f.p_WB);
   CHECK(f.recording.dvl[0].v_WB_B == f.v_B);
+  CHECK(f.recording.one_estimate);
   CHECK_FALSE(take_state_as_measured(f.recording));
+  Fixture with_dvl;
+  with_dvl.recording.dvl.push_back({.utime = 1'000'000});
+  CHECK(take_state_as_measured(with_dvl.recording));
+  CHECK_FALSE(with_dvl.recording.one_estimate);
   Recording nothing;
   CHECK_FALSE(take_state_as_measured(nothing));
 }

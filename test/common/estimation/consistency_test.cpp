@@ -46,6 +46,19 @@ TEST_CASE("short clean recordings give no finding either, in motion or nearly at
   }
 }
 
+TEST_CASE("velocities of the pose's own estimate accuse nobody, and hold its clock against a late gyro") {
+  Recording run = test::synthetic_recording({.seed = 5, .gyro_delay = 0.12, .dvl_lever = {0.2, 0.0, 0.0}}, "run");
+  const auto apart = estimation::check_consistency(std::vector{run});
+  CHECK(find(apart.findings, "dvl", "lever_arm_x") != nullptr);
+  run.one_estimate = true;
+  const auto one = estimation::check_consistency(std::vector{run});
+  for (const ConsistencyFinding& finding : one.findings) CHECK(finding.signal != "dvl");
+  CHECK(find(one.findings, "gyro", "delay") != nullptr);
+  CHECK(one.corrections[0].dvl.matrix().isIdentity());
+  CHECK(one.corrections[0].pose_shift == 0.0);
+  CHECK(one.corrections[0].gyro_shift == doctest::Approx(-0.12).epsilon(0.05));
+}
+
 TEST_CASE("clean recordings of few axes or little motion give no finding") {
   std::mt19937 random(77);
   std::uniform_real_distribution<double> any(0.0, 1.0);
