@@ -120,6 +120,7 @@ std::optional<EffectRanking> LiveDiagnoser::finish() {
   }
   if (wider_) catch_up(seen_.size());
   if (screening_) screening_->close();
+  sensors_.finish();
   return newest_ > 0 ? std::optional{rank(newest_)} : ranking;
 }
 
@@ -133,6 +134,7 @@ std::optional<EffectRanking> LiveDiagnoser::release(bool all) {
     LiveSample sample = sample_of(*aligned);
     const Utime utime = sample.motion.utime;
     if (sample.motion.valid) newest_ = utime;
+    sensors_.step(aligned->state);
     if (screening_) {
       if (sample.motion.valid) note_commands(sample);
       if (const auto until = screening_->use(sample)) ranking = rank(*until);

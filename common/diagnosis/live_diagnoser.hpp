@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/diagnosis/live_screening.hpp"
+#include "common/diagnosis/live_sensor_check.hpp"
 #include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/estimates.hpp"
@@ -59,6 +60,9 @@ class LiveDiagnoser {
   /// `tau`.
   std::optional<EffectRanking> step(const Thrusters& thrusters);
   std::optional<EffectRanking> step(const Battery& battery);
+  /// Compared with STATE: a sensor's fault is no force.
+  void hear(const Ahrs& ahrs) { sensors_.hear(ahrs); }
+  void hear(const Dvl& dvl) { sensors_.hear(dvl); }
   /// What the identifier's model leaves, over the noise that it was told of. Counts by its time stamp.
   void hear(const ModelEstimate& model);
   /// The streams ended: what was waiting is used and judged.
@@ -87,6 +91,7 @@ class LiveDiagnoser {
   void keep(LiveSample sample);
   void catch_up(std::size_t samples);
   [[nodiscard]] EffectRanking rank(Utime utime);
+  [[nodiscard]] EffectRanking by_forces(Utime utime);
   [[nodiscard]] bool leaves_much(Utime utime);
   [[nodiscard]] identification::IntegralSettings integral_settings() const;
 
@@ -107,6 +112,7 @@ class LiveDiagnoser {
   std::optional<Utime> commands_end_;     // next instant on the grid of commands
   std::vector<LiveSuspicion> suspicions_;
   std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_;
+  LiveSensorCheck sensors_;
   struct Left {
     Utime utime{};
     double ratio{};

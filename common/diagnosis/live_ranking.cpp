@@ -13,7 +13,19 @@ constexpr std::size_t kMostModels = 100;  // of MODEL that are remembered
 
 }  // namespace
 
+/// A fault of a sensor comes first, and nothing else is accused beside it: the motion that accuses was measured by it.
 EffectRanking LiveDiagnoser::rank(Utime utime) {
+  EffectRanking ranking = by_forces(utime);
+  const std::vector<EffectEvidence>& faults = sensors_.faults();
+  if (faults.empty() || ranking.verdict == "collecting") return ranking;
+  ranking.verdict = "effect";
+  ranking.against.clear();
+  rivals_.reset();
+  ranking.candidates.insert(ranking.candidates.begin(), faults.begin(), faults.end());
+  return ranking;
+}
+
+EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   EffectRanking ranking{.utime = utime, .verdict = "collecting"};
   rivals_.reset();
   if (!screening_) return ranking;
@@ -99,6 +111,7 @@ void LiveDiagnoser::reset() {
   source_ = Source::kUnknown;
   aligner_.reset();
   left_.clear();
+  sensors_.reset();
   suspicions_.clear();
   rivals_.reset();
 }

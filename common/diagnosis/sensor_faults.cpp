@@ -84,9 +84,9 @@ std::string listed(const std::vector<EffectFound>& effects) {
 
 }  // namespace
 
-void adopt_sensor_faults(DiagnosisResult& result) {
+std::vector<EffectFound> sensor_faults(std::span<const ConsistencyFinding> findings) {
   std::vector<Fault> faults;
-  for (const ConsistencyFinding& finding : result.consistency) {
+  for (const ConsistencyFinding& finding : findings) {
     if (const std::optional<Fault> fault = fault_of(finding)) faults.push_back(*fault);
   }
   charge_the_late(faults);
@@ -107,6 +107,11 @@ void adopt_sensor_faults(DiagnosisResult& result) {
     place->log_odds = std::max(place->log_odds, odds);
     place->parameters.push_back(fault.number);
   }
+  return found;
+}
+
+void adopt_sensor_faults(DiagnosisResult& result) {
+  const std::vector<EffectFound> found = sensor_faults(result.consistency);
   if (found.empty()) return;
   result.paragraph = "The sensors contradict each other (" + listed(found) +
                      "); that is corrected in everything that follows. " + result.paragraph;

@@ -1,5 +1,8 @@
-// diagnoser: states, thruster commands and battery voltage in, the ranking of candidate causes out.
+// diagnoser: states, thruster commands, battery voltage, and the sensors that states rest on in, the ranking of
+// candidate causes out.
+#include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/state_t.hpp>
@@ -60,6 +63,16 @@ int main(int argc, char** argv) {
       if (!battery) return process.reject(wire::kBattery);
       forces.step(*battery);
       say(diagnoser.step(*battery));
+    });
+    process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
+      const auto ahrs = wire::decode(message);
+      if (!ahrs) return process.reject(wire::kAhrs);
+      diagnoser.hear(*ahrs);
+    });
+    process.on<fathom_lcm::dvl_t>(wire::kDvl, [&](const auto& message) {
+      const auto dvl = wire::decode(message);
+      if (!dvl) return process.reject(wire::kDvl);
+      diagnoser.hear(*dvl);
     });
     process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
       const auto model = wire::decode(message);

@@ -131,6 +131,25 @@ TEST_CASE("live diagnoser: what the warm-up could not show is found once the tri
   CHECK(ranking.candidates.front().numbers[2] == doctest::Approx(170.0).epsilon(0.05));
 }
 
+TEST_CASE("live diagnoser: a fault of a sensor is no force, and comes before all that its motion accuses") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = kDuration, .seed = 31, .effects = {test::active("current", {0.2, -0.2})}});
+  const Trial& trial = dive.trial;
+  constexpr std::size_t kLate = 8;  // samples
+  LiveDiagnoser diagnoser{LiveSettings{}, vehicle};
+  for (std::size_t k = kLate; k < trial.size(); ++k)
+    diagnoser.hear(
+        Ahrs{.utime = utime_after(kStart, trial.t[k]), .w_WB_B = trial.nu[k - kLate].tail<3>(), .has_rates = true});
+  const EffectRanking ranking = listen(diagnoser, trial).back();
+  CAPTURE(told(ranking));
+  REQUIRE(ranking.candidates.size() > 1);
+  CHECK(ranking.verdict == "effect");
+  CHECK(ranking.candidates.front().name == "sensor_latency");
+  CHECK(ranking.candidates.front().numbers.front() == doctest::Approx(kLate * trial.dt).epsilon(0.1));
+  CHECK_FALSE(diagnoser.rivals());
+}
+
 TEST_CASE("live diagnoser: nothing is adopted on clean data") {
   // The LBV150 has one vertical thruster: losing its thrust and the heave masses together explains nothing.
   for (const char* name : {"bluerov2", "seabotix_lbv150"}) {

@@ -1,0 +1,46 @@
+// What hides in an instrument, on line: the sensors are compared with STATE and with each other while the trial runs. A
+// late or wrongly scaled gyro looks like a force to whoever trusts it; named as the sensor's fault, it accuses no
+// water.
+#pragma once
+
+#include <deque>
+#include <future>
+#include <optional>
+#include <vector>
+
+#include "common/samples/estimates.hpp"
+#include "common/samples/recording.hpp"
+#include "common/samples/sensors.hpp"
+
+namespace fathom::diagnosis {
+
+/// Looks whenever the trial has become twice as long, beside the caller, and says what it found a fixed time of the
+/// messages later: how quick the machine is does not count, nor which channel comes first, up to a second.
+class LiveSensorCheck {
+ public:
+  void hear(const Ahrs& ahrs);
+  void hear(const Dvl& dvl);
+  /// In the order of time.
+  void step(const StateEstimate& state);
+  /// Looks at all there is, at once.
+  void finish();
+  void reset();
+
+  /// sensor_latency, sensor_scale and lever_arm as the last look found them.
+  [[nodiscard]] const std::vector<EffectEvidence>& faults() const { return faults_; }
+
+ private:
+  [[nodiscard]] Recording until(Utime end) const;
+  void take();
+
+  std::deque<Ahrs> ahrs_;
+  std::deque<Dvl> dvl_;
+  std::deque<PoseCapture> pose_;
+  std::optional<Utime> first_;
+  double next_look_{};  // s of the trial
+  Utime due_{};
+  std::future<std::vector<EffectEvidence>> look_;
+  std::vector<EffectEvidence> faults_;
+};
+
+}  // namespace fathom::diagnosis
