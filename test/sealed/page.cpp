@@ -301,7 +301,8 @@ void draw_picture(std::span<const Score> scores, const std::string& path) {
     std::fprintf(plot, "\n");
   }
   std::fprintf(
-      plot, "EOD\nplot $matrix using 1:2:3 with image, '' using 1:2:($3 > 0 ? sprintf('%%d', $3) : '') with labels\n");
+      plot,
+      "EOD\nplot $matrix using 1:2:3 with image pixels, '' using 1:2:($3 > 0 ? sprintf('%%d', $3) : '') with labels\n");
   std::fprintf(plot, "set size 0.3,0.5\nset origin 0.7,0.5\nset title 'Stated and true share of right names'\n");
   std::fprintf(
       plot,
