@@ -19,7 +19,8 @@ constexpr std::size_t kMostSeen = 60'000;  // samples: ten minutes at 100 Hz, so
 
 }  // namespace
 
-LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle)
+LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle,
+                             const estimation::Corrections& corrections)
     : settings_{settings},
       vehicle_{std::make_unique<const model::Vehicle>(vehicle)},
       parameters_{[&] {
@@ -39,7 +40,8 @@ LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle&
         identification::ParameterVector mean(static_cast<Eigen::Index>(vehicle.priors.size()));
         for (Eigen::Index i = 0; i < mean.size(); ++i) mean[i] = vehicle.priors[static_cast<std::size_t>(i)].mean;
         return mean;
-      }()} {}
+      }()},
+      sensors_{corrections} {}
 
 identification::IntegralSettings LiveDiagnoser::integral_settings() const {
   identification::IntegralSettings s;

@@ -50,7 +50,9 @@ struct LiveSettings {
 
 class LiveDiagnoser {
  public:
-  LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle);
+  /// `corrections`: those that STATE is made with.
+  LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle,
+                const estimation::Corrections& corrections = {});
   LiveDiagnoser(const LiveDiagnoser&) = delete;  // its passes point into it
   LiveDiagnoser& operator=(const LiveDiagnoser&) = delete;
 

@@ -1,94 +1,149 @@
 #include "common/diagnosis/live_sensor_check.hpp"
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <span>
-#include <string>
+#include <system_error>
+#include <utility>
 
+#include "common/base/spatial.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
-#include "common/estimation/consistency.hpp"
 
 namespace fathom::diagnosis {
 namespace {
 
 constexpr double kFirstLook = 60.0;  // s of the trial
 constexpr double kWider = 2.0;       // of the trial's length at the look before
-constexpr double kKept = 600.0;      // s, as of the motion
+constexpr double kKept = 300.0;      // s: more would not make a delay better known than the estimator lets it be
 constexpr double kSkew = 1.0;        // s by which channels may lag each other
-constexpr double kThinking = 20.0;   // s from a look to its answer; it takes about one
+constexpr double kMargin = 30.0;     // s that a sensor may be ahead of STATE when a log is played quickly
+constexpr double kThinking = 20.0;   // s from a look to its answer; it takes less than one
+constexpr double kGap = 5.0;         // s without STATE: another trial begins
+constexpr double kLeap = 1.0;        // s back: another clock begins
 
-const std::string kReference = "pose_capture";  // STATE, here: what the estimator makes of all sensors is none of them
+/// "dvl" of "dvl.delay", "gyro.p" of "gyro.p.error".
+std::string signal_of(const NamedValue& number) { return number.name.substr(0, number.name.rfind('.')); }
+std::string group_of(const std::string& signal) { return signal.substr(0, signal.find('.')); }
 
-template <class Samples>
-void forget(Samples& samples, Utime now) {
-  while (!samples.empty() && seconds_between(samples.front().utime, now) > kKept) samples.pop_front();
-}
-
-std::vector<EffectEvidence> look(const Recording& recording) {
-  std::vector<EffectEvidence> faults;
-  for (const EffectFound& fault : sensor_faults(estimation::check_consistency(std::span(&recording, 1)).findings)) {
-    if (fault.variant == kReference) continue;
-    EffectEvidence& evidence =
-        faults.emplace_back(EffectEvidence{.name = fault.name, .log_odds = fault.log_odds, .variant = fault.variant});
-    for (const NamedValue& number : fault.parameters) evidence.numbers.push_back(number.value);
-  }
-  return faults;
+/// As many numbers as the effect has, in their order.
+std::vector<double> numbers_of(const EffectFound& fault, const NamedValue& number) {
+  if (fault.name != "lever_arm") return {number.value};
+  std::vector<double> xyz(3, 0.0);
+  for (const NamedValue& one : fault.parameters)
+    xyz[static_cast<std::size_t>(std::clamp(one.name.back() - 'x', 0, 2))] = one.value;
+  return xyz;
 }
 
 }  // namespace
 
+LiveSensorCheck::LiveSensorCheck(estimation::Corrections corrections) : corrections_{std::move(corrections)} {}
+
 void LiveSensorCheck::hear(const Ahrs& ahrs) {
-  if (!ahrs_.empty() && ahrs.utime <= ahrs_.back().utime) return;
-  ahrs_.push_back(ahrs);
-  ahrs_.back().has_specific_force = false;  // STATE rests on it already
-  forget(ahrs_, ahrs.utime);
+  if (!ahrs.has_rates) return;
+  keep(rates_, {utime_after(ahrs.utime, corrections_.gyro_shift),
+                corrections_.gyro.matrix() * ahrs.w_WB_B + corrections_.gyro.bias});
 }
 
 void LiveSensorCheck::hear(const Dvl& dvl) {
-  if (!dvl_.empty() && dvl.utime <= dvl_.back().utime) return;
-  dvl_.push_back(dvl);
-  forget(dvl_, dvl.utime);
+  if (!dvl.valid || dvl.held) return;
+  keep(velocities_, {utime_after(dvl.utime, corrections_.dvl_shift),
+                     corrections_.dvl.matrix() * dvl.v_WB_B + corrections_.dvl.bias});
+}
+
+/// A clock that is wild for a moment costs that moment only.
+void LiveSensorCheck::keep(std::deque<Sample>& samples, const Sample& sample) const {
+  if (!pose_.empty() && seconds_between(pose_.back().utime, sample.utime) > kMargin) return;
+  if (!samples.empty() && seconds_between(sample.utime, samples.back().utime) > kLeap) samples.clear();
+  if (!samples.empty() && sample.utime <= samples.back().utime) return;
+  samples.push_back(sample);
+  while (seconds_between(samples.front().utime, sample.utime) > kKept + 2.0 * kMargin) samples.pop_front();
 }
 
 void LiveSensorCheck::step(const StateEstimate& state) {
+  if (!pose_.empty() && seconds_between(pose_.back().utime, state.utime) > kGap) {
+    pose_.clear();
+    first_.reset();
+  }
   pose_.push_back({.utime = state.utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .valid = state.valid});
-  forget(pose_, state.utime);
+  while (seconds_between(pose_.front().utime, state.utime) > kKept + kMargin) pose_.pop_front();
   if (!first_) {
     first_ = state.utime;
     next_look_ = kFirstLook;
   }
-  if (look_.valid() && state.utime >= due_) take();
+  if (look_.valid() && state.utime >= due_) take(look_.get());
   const double shown = seconds_between(*first_, state.utime);
   if (look_.valid() || shown < next_look_) return;
   next_look_ = kWider * shown;
   due_ = utime_after(state.utime, kThinking);
-  look_ = std::async(std::launch::async, look, until(state.utime));
+  try {
+    look_ = std::async(std::launch::async, [recording = until(state.utime)]() mutable {
+      const Recording own = std::move(recording);  // gone with the look, not with its answer
+      return look(own);
+    });
+  } catch (const std::system_error&) {  // no thread to be had: the next look will do
+  }
 }
 
-/// What every channel has told by then, however late it is.
+/// What every channel has told by then, however late or early it is.
 Recording LiveSensorCheck::until(Utime now) const {
-  const Utime end = utime_after(now, -kSkew);
-  const auto copy = [&](const auto& from, auto& to) {
-    for (const auto& sample : from) {
-      if (sample.utime <= end) to.push_back(sample);
-    }
-  };
+  const Utime end = utime_after(now, -kSkew), begin = std::max(utime_after(end, -kKept), first_.value_or(now));
+  const auto within = [&](const auto& sample) { return sample.utime >= begin && sample.utime <= end; };
   Recording recording{.name = "trial"};
-  recording.one_estimate = dvl_.empty();
-  copy(pose_, recording.pose_capture);
-  copy(ahrs_, recording.ahrs);
-  copy(dvl_, recording.dvl);
+  recording.pose_capture.reserve(pose_.size());
+  recording.ahrs.reserve(rates_.size());
+  recording.dvl.reserve(velocities_.size());
+  std::ranges::copy_if(pose_, std::back_inserter(recording.pose_capture), within);
+  for (const Sample& sample : rates_) {
+    if (within(sample)) recording.ahrs.push_back({.utime = sample.utime, .w_WB_B = sample.x, .has_rates = true});
+  }
+  const Eigen::Matrix3d turned = skew(corrections_.dvl.lever) + corrections_.dvl.coupling;
+  for (const Sample& sample : velocities_) {
+    if (!within(sample)) continue;
+    const auto after = std::ranges::upper_bound(rates_, sample.utime, {}, &Sample::utime);
+    const Eigen::Vector3d w = after == rates_.begin() ? Eigen::Vector3d{Eigen::Vector3d::Zero()} : std::prev(after)->x;
+    recording.dvl.push_back({.utime = sample.utime, .v_WB_B = sample.x + turned * w});
+  }
+  recording.one_estimate = recording.dvl.empty();
   return recording;
 }
 
-void LiveSensorCheck::take() { faults_ = look_.get(); }
+/// STATE stands for the motion capture; what the estimator makes of all sensors is none of them, and is not named.
+LiveSensorCheck::Found LiveSensorCheck::look(const Recording& recording) {
+  const auto checked = estimation::check_consistency(std::span(&recording, 1));
+  Found found;
+  for (const auto& [signal, pair] : checked.pairs) {
+    if (pair.checked) found.judged.push_back(signal);
+  }
+  for (const EffectFound& fault : sensor_faults(checked.findings)) {
+    for (const NamedValue& number : fault.parameters) {
+      const std::string signal = signal_of(number);
+      const bool told = std::ranges::any_of(
+          found.faults, [&](const EffectEvidence& one) { return one.name == fault.name && one.variant == signal; });
+      if (told || std::ranges::find(found.judged, group_of(signal)) == found.judged.end()) continue;
+      found.faults.push_back(
+          {.name = fault.name, .log_odds = fault.log_odds, .variant = signal, .numbers = numbers_of(fault, number)});
+    }
+  }
+  return found;
+}
+
+void LiveSensorCheck::take(Found found) {
+  std::erase_if(faults_, [&](const EffectEvidence& one) {
+    return std::ranges::find(found.judged, group_of(one.variant)) != found.judged.end();
+  });
+  faults_.insert(faults_.end(), found.faults.begin(), found.faults.end());
+  std::ranges::stable_sort(faults_, std::greater{}, &EffectEvidence::log_odds);
+}
 
 void LiveSensorCheck::finish() {
-  if (look_.valid()) take();
-  if (!pose_.empty()) faults_ = look(until(utime_after(pose_.back().utime, kSkew)));
+  if (look_.valid()) take(look_.get());
+  if (!pose_.empty()) take(look(until(utime_after(pose_.back().utime, kSkew))));
 }
 
 void LiveSensorCheck::reset() {
   if (look_.valid()) (void)look_.get();
-  *this = LiveSensorCheck{};
+  *this = LiveSensorCheck{std::move(corrections_)};
 }
 
 }  // namespace fathom::diagnosis

@@ -6,8 +6,10 @@
 #include <deque>
 #include <future>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "common/estimation/consistency.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/recording.hpp"
 #include "common/samples/sensors.hpp"
@@ -18,6 +20,9 @@ namespace fathom::diagnosis {
 /// messages later: how quick the machine is does not count, nor which channel comes first, up to a second.
 class LiveSensorCheck {
  public:
+  /// `corrections`: those that STATE is made with; what they mend is no finding.
+  explicit LiveSensorCheck(estimation::Corrections corrections = {});
+
   void hear(const Ahrs& ahrs);
   void hear(const Dvl& dvl);
   /// In the order of time.
@@ -26,20 +31,31 @@ class LiveSensorCheck {
   void finish();
   void reset();
 
-  /// sensor_latency, sensor_scale and lever_arm as the last look found them.
+  /// sensor_latency, sensor_scale and lever_arm of AHRS and DVL, most certain first; the variant is the signal. What
+  /// was found stays until a later look can judge the same sensor.
   [[nodiscard]] const std::vector<EffectEvidence>& faults() const { return faults_; }
 
  private:
+  struct Sample {
+    Utime utime{};
+    Eigen::Vector3d x;
+  };
+  struct Found {
+    std::vector<EffectEvidence> faults;
+    std::vector<std::string> judged;  // signals
+  };
+  void keep(std::deque<Sample>& samples, const Sample& sample) const;
   [[nodiscard]] Recording until(Utime end) const;
-  void take();
+  [[nodiscard]] static Found look(const Recording& recording);
+  void take(Found found);
 
-  std::deque<Ahrs> ahrs_;
-  std::deque<Dvl> dvl_;
+  estimation::Corrections corrections_;
+  std::deque<Sample> rates_, velocities_;
   std::deque<PoseCapture> pose_;
   std::optional<Utime> first_;
   double next_look_{};  // s of the trial
   Utime due_{};
-  std::future<std::vector<EffectEvidence>> look_;
+  std::future<Found> look_;
   std::vector<EffectEvidence> faults_;
 };
 

@@ -1,5 +1,6 @@
 #include "common/estimation/consistency.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/units.hpp"
@@ -16,6 +17,7 @@ constexpr double kWorkingRate =
 
 Check::Check(std::span<const Recording> recordings) {
   result_.corrections.resize(recordings.size());
+  one_estimate_ = std::ranges::all_of(recordings, &Recording::one_estimate);
   for (const Recording& recording : recordings) {
     runs_.push_back(read_signals(recording, result_.findings));
     const RunSignals& run = runs_.back();
@@ -23,7 +25,6 @@ Check::Check(std::span<const Recording> recordings) {
     poses_.push_back(block_average(reference_pose(run), kWorkingRate));
     gyro_.push_back(block_average(run.gyro, kWorkingRate));
     dvl_.push_back(recording.one_estimate ? Series{} : block_average(run.dvl, kWorkingRate));
-    one_estimate_ = one_estimate_ || recording.one_estimate;
     force_.push_back(block_average(run.specific_force, kWorkingRate));
     reference_ = run.pose.has_attitude || run.attitude.empty() ? "pose_capture" : "ahrs_attitude";
   }

@@ -37,6 +37,11 @@ class Process {
   void on_latest(const std::string& channel, Handler handler) {
     subscribe<Message>(channel, 1, std::move(handler));
   }
+  /// Hears every message of a channel whose clock says nothing of this process's time: a jump in it restarts nothing.
+  template <class Message, class Handler>
+  void listens_to(const std::string& channel, Handler handler) {
+    subscribe<Message>(channel, kQueue, std::move(handler), false);
+  }
   /// Declares what is said on a channel; needed before publish().
   template <class Message>
   void publishes(const std::string& channel) {
@@ -96,13 +101,13 @@ class Process {
   using Deliver = std::function<bool(std::span<const std::uint8_t>)>;
 
   template <class Message, class Handler>
-  void subscribe(const std::string& channel, std::size_t capacity, Handler handler) {
+  void subscribe(const std::string& channel, std::size_t capacity, Handler handler, bool keeps_time = true) {
     add_hearing(channel, Message::getTypeName(), capacity,
-                [this, channel, handler = std::move(handler)](std::span<const std::uint8_t> bytes) mutable {
+                [this, channel, keeps_time, handler = std::move(handler)](std::span<const std::uint8_t> bytes) mutable {
                   Message message{};
                   const int length = static_cast<int>(bytes.size());
                   if (message.decode(bytes.data(), 0, length) != length || !is_time(message.utime)) return false;
-                  arrived(channel, message.utime);
+                  if (keeps_time) arrived(channel, message.utime);
                   handler(static_cast<const Message&>(message));
                   return true;
                 });

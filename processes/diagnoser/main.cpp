@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
     std::optional<diagnoser::Proposals> proposals = proposals_of(process, vehicle);
-    diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle};
+    diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle, corrections};
     estimation::ThrusterForces forces{corrections.thrusters, vehicle};
     const auto say = [&](std::optional<EffectRanking> ranking) {
       if (!ranking) return;
@@ -64,12 +64,12 @@ int main(int argc, char** argv) {
       forces.step(*battery);
       say(diagnoser.step(*battery));
     });
-    process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
+    process.listens_to<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
       const auto ahrs = wire::decode(message);
       if (!ahrs) return process.reject(wire::kAhrs);
       diagnoser.hear(*ahrs);
     });
-    process.on<fathom_lcm::dvl_t>(wire::kDvl, [&](const auto& message) {
+    process.listens_to<fathom_lcm::dvl_t>(wire::kDvl, [&](const auto& message) {
       const auto dvl = wire::decode(message);
       if (!dvl) return process.reject(wire::kDvl);
       diagnoser.hear(*dvl);

@@ -23,18 +23,18 @@ StateEstimate state_of(const PoseCapture& pose) {
 /// When the answer changed, and to how many faults.
 using Answers = std::vector<std::pair<Utime, std::size_t>>;
 
-/// Sensors come `late` after the states of their time.
-Answers listen(LiveSensorCheck& check, const Recording& recording, double late = 0.0) {
+/// Sensors come `late` after the states of their time; `told`: when each came, where stamps lie.
+Answers listen(LiveSensorCheck& check, const Recording& recording, double late = 0.0, const Recording* told = nullptr) {
+  const Recording& came = told != nullptr ? *told : recording;
   Answers answers;
-  auto ahrs = recording.ahrs.begin();
-  auto dvl = recording.dvl.begin();
-  for (const PoseCapture& pose : recording.pose_capture) {
-    const Utime now = utime_after(pose.utime, -late);
-    for (; ahrs != recording.ahrs.end() && ahrs->utime <= now; ++ahrs) check.hear(*ahrs);
-    for (; dvl != recording.dvl.end() && dvl->utime <= now; ++dvl) check.hear(*dvl);
-    check.step(state_of(pose));
+  std::size_t ahrs = 0, dvl = 0;
+  for (std::size_t k = 0; k < recording.pose_capture.size(); ++k) {
+    const Utime now = utime_after(came.pose_capture[k].utime, -late);
+    for (; ahrs < came.ahrs.size() && came.ahrs[ahrs].utime <= now; ++ahrs) check.hear(recording.ahrs[ahrs]);
+    for (; dvl < came.dvl.size() && came.dvl[dvl].utime <= now; ++dvl) check.hear(recording.dvl[dvl]);
+    check.step(state_of(recording.pose_capture[k]));
     if (answers.empty() || answers.back().second != check.faults().size())
-      answers.emplace_back(pose.utime, check.faults().size());
+      answers.emplace_back(recording.pose_capture[k].utime, check.faults().size());
   }
   return answers;
 }
@@ -72,9 +72,18 @@ TEST_CASE("live sensor check: a gyro's scale and a velocity log's lever arm") {
   const auto named = [&](const char* name) {
     return std::ranges::find(check.faults(), std::string{name}, &EffectEvidence::name);
   };
-  REQUIRE(named("sensor_scale") != check.faults().end());
   REQUIRE(named("lever_arm") != check.faults().end());
-  for (const double error : named("sensor_scale")->numbers) CHECK(error == doctest::Approx(0.1).epsilon(0.1));
+  CHECK(named("lever_arm")->variant == "dvl");
+  REQUIRE(named("lever_arm")->numbers.size() == 3);
+  CHECK(std::abs(named("lever_arm")->numbers[0]) == doctest::Approx(0.3).epsilon(0.1));
+  CHECK(std::abs(named("lever_arm")->numbers[1]) < 0.05);
+  for (const char* axis : {"gyro.p", "gyro.q", "gyro.r"}) {
+    const auto scale = std::ranges::find_if(
+        check.faults(), [&](const EffectEvidence& e) { return e.name == "sensor_scale" && e.variant == axis; });
+    REQUIRE(scale != check.faults().end());
+    REQUIRE(scale->numbers.size() == 1);
+    CHECK(scale->numbers.front() == doctest::Approx(0.1).epsilon(0.1));
+  }
 }
 
 TEST_CASE("live sensor check: what is in order is not accused, at any look") {
@@ -90,29 +99,95 @@ TEST_CASE("live sensor check: what is in order is not accused, at any look") {
   }
 }
 
-TEST_CASE("live sensor check: velocities that only STATE tells are no witness, and STATE itself is no sensor") {
+TEST_CASE("live sensor check: STATE is no sensor, also beside one that is late") {
   // The clock of the poses is late: whoever is compared with them seems early.
-  Recording recording = test::synthetic_recording({.seed = 6, .gyro_delay = -0.15}, "trial");
-  recording.dvl.clear();
+  for (const double dvl_rate : {0.0, 10.0}) {
+    const Recording recording =
+        test::synthetic_recording({.seed = 6, .dvl_rate = dvl_rate, .gyro_delay = -0.15, .dvl_delay = 0.1}, "trial");
+    LiveSensorCheck check;
+    (void)listen(check, recording);
+    check.finish();
+    CHECK(check.faults().empty() == (dvl_rate == 0.0));
+    for (const EffectEvidence& fault : check.faults()) CHECK(fault.variant == "dvl");
+  }
+}
+
+TEST_CASE("live sensor check: what STATE is corrected for is no finding") {
+  const Recording recording = test::synthetic_recording({.seed = 3, .gyro_delay = 0.12}, "trial");
+  estimation::Corrections corrections;
+  corrections.gyro_shift = -0.12;
+  LiveSensorCheck check{corrections};
+  for (int round = 0; round < 2; ++round) {
+    (void)listen(check, recording);
+    check.finish();
+    CHECK(check.faults().empty());
+    check.reset();
+  }
+}
+
+TEST_CASE("live sensor check: rest takes nothing back") {
+  Recording recording = test::synthetic_recording({.seed = 3, .dvl_rate = 0.0, .gyro_delay = 0.12}, "trial");
+  const PoseCapture still = recording.pose_capture.back();
+  for (int k = 1; k <= 12'000; ++k) {
+    recording.pose_capture.push_back(still);
+    recording.pose_capture.back().utime = utime_after(still.utime, 0.05 * k);
+    recording.ahrs.push_back({.utime = recording.pose_capture.back().utime, .has_rates = true});
+  }
   LiveSensorCheck check;
-  (void)listen(check, recording);
+  CHECK(listen(check, recording).back().second == 1);
   check.finish();
-  CHECK(check.faults().empty());
+  REQUIRE(check.faults().size() == 1);
+  CHECK(check.faults().front().name == "sensor_latency");
+}
+
+TEST_CASE("live sensor check: clocks that leap cost a moment, not the check") {
+  const test::SyntheticOptions options{.seed = 3, .dvl_rate = 0.0, .gyro_delay = 0.12};
+  const Recording recording = test::synthetic_recording(options, "trial");
+  const auto one_late_gyro = [&](const Recording& run) {
+    LiveSensorCheck check;
+    CHECK(listen(check, run, 0.0, &recording).back().second == 1);
+  };
+  const auto leap = [&](double at, std::size_t samples, double seconds) {
+    Recording run = recording;
+    const auto from = static_cast<std::ptrdiff_t>(at * options.gyro_rate);
+    for (auto k = run.ahrs.begin() + from; k != run.ahrs.begin() + from + static_cast<std::ptrdiff_t>(samples); ++k)
+      k->utime = utime_after(k->utime, seconds);
+    return run;
+  };
+  one_late_gyro(leap(30.0, 1, 86'400.0));
+  one_late_gyro(leap(0.0, 1, 86'400.0));
+  one_late_gyro(leap(20.0, 1, -3'600.0));
+  SUBCASE("all of them, as when a clock is set") {
+    Recording run = recording;
+    const auto set = [](auto& stream, Utime from) {
+      for (auto& one : stream) {
+        if (one.utime >= from) one.utime = utime_after(one.utime, 3'600.0);
+      }
+    };
+    const Utime moment = utime_after(run.pose_capture.front().utime, 30.0);
+    set(run.pose_capture, moment);
+    set(run.ahrs, moment);
+    one_late_gyro(run);
+  }
 }
 
 TEST_CASE("live sensor check: neither the order of arrival nor a reset changes what is said, nor when") {
-  const Recording recording = test::synthetic_recording({.seed = 3, .duration = 150.0, .gyro_delay = 0.12}, "trial");
-  LiveSensorCheck check;
-  const Answers expected = listen(check, recording);
-  const std::vector<EffectEvidence> faults = check.faults();
-  for (const double late : {0.3, 0.9}) {
-    check.reset();
-    CHECK(check.faults().empty());
-    CHECK(listen(check, recording, late) == expected);
-    REQUIRE(check.faults().size() == faults.size());
-    for (std::size_t i = 0; i < faults.size(); ++i) {
-      CHECK(check.faults()[i].log_odds == faults[i].log_odds);
-      CHECK(check.faults()[i].numbers == faults[i].numbers);
+  for (const double duration : {150.0, 700.0}) {
+    const Recording recording =
+        test::synthetic_recording({.seed = 3, .duration = duration, .gyro_delay = 0.12}, "trial");
+    LiveSensorCheck check;
+    const Answers expected = listen(check, recording);
+    const std::vector<EffectEvidence> faults = check.faults();
+    REQUIRE_FALSE(faults.empty());
+    for (const double late : {0.3, 0.9, -0.9, -20.0}) {
+      check.reset();
+      CHECK(check.faults().empty());
+      CHECK(listen(check, recording, late) == expected);
+      REQUIRE(check.faults().size() == faults.size());
+      for (std::size_t i = 0; i < faults.size(); ++i) {
+        CHECK(check.faults()[i].log_odds == faults[i].log_odds);
+        CHECK(check.faults()[i].numbers == faults[i].numbers);
+      }
     }
   }
 }

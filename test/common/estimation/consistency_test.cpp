@@ -52,7 +52,7 @@ TEST_CASE("velocities of the pose's own estimate accuse nobody, and hold its clo
   CHECK(find(apart.findings, "dvl", "lever_arm_x") != nullptr);
   run.one_estimate = true;
   const auto one = estimation::check_consistency(std::vector{run});
-  for (const ConsistencyFinding& finding : one.findings) CHECK(finding.signal != "dvl");
+  for (const ConsistencyFinding& finding : one.findings) CHECK_FALSE(finding.signal.starts_with("dvl"));
   CHECK(find(one.findings, "gyro", "delay") != nullptr);
   CHECK(one.corrections[0].dvl.matrix().isIdentity());
   CHECK(one.corrections[0].pose_shift == 0.0);

@@ -150,6 +150,16 @@ TEST_CASE("process: a jump back by more than a second is one restart, a late mes
   Seen seen;
   CHECK(run_echo({"--in", in(scratch.path("twice.lcmlog")), "--out", in(scratch.path("out.lcmlog"))}, seen) == 0);
   CHECK(seen.restarts == 1);
+
+  int heard = 0, restarts = 0;
+  const auto listen = [&](Process& process) {
+    process.listens_to<fathom_lcm::depth_t>(wire::kDepth, [&](const auto&) { ++heard; });
+    process.on_restart([&] { ++restarts; });
+    process.run();
+  };
+  CHECK(run({"--in", in(scratch.path("twice.lcmlog")), "--out", in(scratch.path("heard.lcmlog"))}, listen) == 0);
+  CHECK(heard == 4);
+  CHECK(restarts == 0);
 }
 
 TEST_CASE("process: an exception in a handler ends the process with exit code 1 and without on_end") {
