@@ -16,7 +16,8 @@ constexpr std::size_t kMostModels = 100;  // of MODEL that are remembered
 /// A fault of a sensor comes first, and nothing else is accused beside it: the motion that accuses was measured by it.
 EffectRanking LiveDiagnoser::rank(Utime utime) {
   EffectRanking ranking = by_forces(utime);
-  const std::vector<EffectEvidence>& faults = sensors_.faults();
+  std::vector<EffectEvidence> faults = sensors_.faults();
+  std::erase_if(faults, [&](const EffectEvidence& fault) { return fault.log_odds < settings_.accept_log_odds; });
   if (faults.empty() || ranking.verdict == "collecting") return ranking;
   ranking.verdict = "effect";
   ranking.against.clear();

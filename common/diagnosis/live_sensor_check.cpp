@@ -1,6 +1,7 @@
 #include "common/diagnosis/live_sensor_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <span>
@@ -17,10 +18,10 @@ constexpr double kFirstLook = 60.0;  // s of the trial
 constexpr double kWider = 2.0;       // of the trial's length at the look before
 constexpr double kKept = 300.0;      // s: more would not make a delay better known than the estimator lets it be
 constexpr double kSkew = 1.0;        // s by which channels may lag each other
-constexpr double kMargin = 30.0;     // s that a sensor may be ahead of STATE when a log is played quickly
+constexpr double kMargin = 30.0;     // s that a sensor may be ahead of STATE, or behind, when a log is played quickly
 constexpr double kThinking = 20.0;   // s from a look to its answer; it takes less than one
 constexpr double kGap = 5.0;         // s without STATE: another trial begins
-constexpr double kLeap = 1.0;        // s back: another clock begins
+constexpr double kLeap = 1.0;        // s back: the clock is another, or was wild before
 
 /// "dvl" of "dvl.delay", "gyro.p" of "gyro.p.error".
 std::string signal_of(const NamedValue& number) { return number.name.substr(0, number.name.rfind('.')); }
@@ -51,10 +52,13 @@ void LiveSensorCheck::hear(const Dvl& dvl) {
                      corrections_.dvl.matrix() * dvl.v_WB_B + corrections_.dvl.bias});
 }
 
-/// A clock that is wild for a moment costs that moment only.
+/// A clock that is wild for a moment costs no more than it leapt: what is newer than a stamp that goes back is let go,
+/// and what is far from STATE is not heard at all.
 void LiveSensorCheck::keep(std::deque<Sample>& samples, const Sample& sample) const {
-  if (!pose_.empty() && seconds_between(pose_.back().utime, sample.utime) > kMargin) return;
-  if (!samples.empty() && seconds_between(sample.utime, samples.back().utime) > kLeap) samples.clear();
+  if (!pose_.empty() && std::abs(seconds_between(pose_.back().utime, sample.utime)) > kMargin) return;
+  if (!samples.empty() && seconds_between(sample.utime, samples.back().utime) > kLeap) {
+    while (!samples.empty() && samples.back().utime >= sample.utime) samples.pop_back();
+  }
   if (!samples.empty() && sample.utime <= samples.back().utime) return;
   samples.push_back(sample);
   while (seconds_between(samples.front().utime, sample.utime) > kKept + 2.0 * kMargin) samples.pop_front();

@@ -149,6 +149,12 @@ TEST_CASE("live diagnoser: a fault of a sensor is no force, and comes before all
   CHECK(ranking.candidates.front().numbers.front() == doctest::Approx(kLate * trial.dt).epsilon(0.1));
   CHECK(ranking.candidates[1].name == "current");
   CHECK(ranking.against.empty());
+
+  LiveDiagnoser strict{LiveSettings{.accept_log_odds = 1e4}, vehicle};  // a fault that convinces nobody
+  for (std::size_t k = kLate; k < trial.size(); ++k)
+    strict.hear(
+        Ahrs{.utime = utime_after(kStart, trial.t[k]), .w_WB_B = trial.nu[k - kLate].tail<3>(), .has_rates = true});
+  CHECK(listen(strict, trial).back().verdict != "effect");
 }
 
 TEST_CASE("live diagnoser: nothing is adopted on clean data") {

@@ -171,6 +171,22 @@ TEST_CASE("live sensor check: clocks that leap cost a moment, not the check") {
   }
 }
 
+TEST_CASE("live sensor check: a wild stamp costs no more than it leapt") {
+  const test::SyntheticOptions options{.seed = 3, .duration = 58.0, .dvl_rate = 0.0, .gyro_delay = 0.12};
+  const Recording recording = test::synthetic_recording(options, "trial");
+  for (const double seconds : {-3'600.0, -5.0, 5.0, 3'600.0}) {
+    CAPTURE(seconds);
+    Recording run = recording;
+    Ahrs& wild = run.ahrs[static_cast<std::size_t>(50.0 * options.gyro_rate)];
+    wild.utime = utime_after(wild.utime, seconds);
+    LiveSensorCheck check;
+    (void)listen(check, run, 0.0, &recording);
+    check.finish();
+    REQUIRE(check.faults().size() == 1);
+    CHECK(check.faults().front().numbers.front() == doctest::Approx(0.12).epsilon(0.1));
+  }
+}
+
 TEST_CASE("live sensor check: neither the order of arrival nor a reset changes what is said, nor when") {
   for (const double duration : {150.0, 700.0}) {
     const Recording recording =
