@@ -8,6 +8,7 @@
 #include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/pruning.hpp"
 #include "common/diagnosis/round.hpp"
+#include "common/identification/fit_from_priors.hpp"
 #include "common/identification/input_hold.hpp"
 #include "common/identification/profile.hpp"
 #include "common/identification/sparse.hpp"

@@ -19,7 +19,6 @@ namespace {
 constexpr double kLeastFreedom = 3.0;       // of a covariance from fewer windows than it has numbers
 constexpr double kReleaseStep = 0.02;       // of a parameter's scale, away from its bound
 constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
-constexpr std::size_t kCoarseWindows = 80;  // enough to come near; the last stage uses all
 constexpr double kSmallestSigma = 1e-5;     // m/s, rad/s: below any sensor's noise; keeps perfect data finite
 
 std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd& x) {
@@ -299,28 +298,6 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
   for (Eigen::Index i = 0; i < n; ++i) scale[i] = map[static_cast<std::size_t>(i)].scale;
   fit.freedom = std::max(clusters - static_cast<double>(n), kLeastFreedom);
   fit.covariance = small_sample * scale.asDiagonal() * (inverse * meat * inverse) * scale.asDiagonal();
-}
-
-FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings) {
-  // Short windows forgive wrong parameters (little time to diverge); each stage starts where the last one ended.
-  FitSettings stage = settings;
-  stage.window = 0.2 * settings.window;
-  stage.iterations = 8;
-  stage.tolerance = 1e-3;
-  stage.most_windows = kCoarseWindows;
-  const TrajectoryFit shortest{vehicle, trials, stage};
-  model::Model model = model::nominal_model(vehicle, trials[0].input_is_wrench);
-  const FitResult straight = shortest.fit(model);
-  FitResult best = straight;
-  // A vehicle that answers faster than it is commanded looks all wrong under a wrong hold, and no step leads out.
-  for (const double hold : {-0.5, 0.5}) {
-    model.input_hold = hold;
-    FitResult held = shortest.fit(model, &straight);
-    if (held.cost < best.cost) best = std::move(held);
-  }
-  stage.window = 0.5 * settings.window;
-  model = TrajectoryFit{vehicle, trials, stage}.fit(best.model).model;
-  return TrajectoryFit{vehicle, trials, settings}.fit(model);
 }
 
 }  // namespace fathom::identification

@@ -79,9 +79,4 @@ class TrajectoryFit {
   std::vector<WindowResidual> windows_;
 };
 
-/// Fits the base model from the priors alone: short windows first, then longer ones, then all data. Model::input_hold
-/// is the best of straight lines, held, and told afterwards.
-[[nodiscard]] FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials,
-                                        const FitSettings& settings);
-
 }  // namespace fathom::identification

@@ -7,6 +7,7 @@
 
 #include "common/base/spatial.hpp"
 #include "common/estimation/reconstruct.hpp"
+#include "common/identification/fit_from_priors.hpp"
 #include "common/identification/input_hold.hpp"
 #include "common/identification/sparse.hpp"
 #include "test/support/virtual_dive.hpp"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/identification/fit_from_priors.hpp"
 #include "common/identification/sparse.hpp"
 #include "test/support/virtual_dive.hpp"
 
