@@ -16,10 +16,10 @@
 namespace fathom::identification {
 namespace {
 
-constexpr double kLeastFreedom = 3.0;       // of a covariance from fewer windows than it has numbers
-constexpr double kReleaseStep = 0.02;       // of a parameter's scale, away from its bound
-constexpr double kTrimmedShare = 0.05;      // worst windows left out when the residual's scale is measured
-constexpr double kSmallestSigma = 1e-5;     // m/s, rad/s: below any sensor's noise; keeps perfect data finite
+constexpr double kLeastFreedom = 3.0;    // of a covariance from fewer windows than it has numbers
+constexpr double kReleaseStep = 0.02;    // of a parameter's scale, away from its bound
+constexpr double kTrimmedShare = 0.05;   // worst windows left out when the residual's scale is measured
+constexpr double kSmallestSigma = 1e-5;  // m/s, rad/s: below any sensor's noise; keeps perfect data finite
 
 std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd& x) {
   std::vector<int> held;
