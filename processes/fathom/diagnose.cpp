@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/diagnoser.hpp"
@@ -61,6 +62,9 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   progress.show("reading recordings", 0.0);
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
+  const std::size_t fitted_runs = options.train.size();
+  sort_by_time(std::span{recordings}.first(fitted_runs), std::span{paths}.first(fitted_runs));
+  sort_by_time(std::span{recordings}.subspan(fitted_runs), std::span{paths}.subspan(fitted_runs));
   for (Recording& recording : recordings) {
     if (!estimation::take_state_as_measured(recording)) continue;
     notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
@@ -84,7 +88,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
       train.push_back(std::move(first));
       validate.push_back(std::move(last));
     } else {
-      (i < options.train.size() ? train : validate).push_back(std::move(trials[i]));
+      (i < fitted_runs ? train : validate).push_back(std::move(trials[i]));
     }
   }
   if (options.validate.empty()) {

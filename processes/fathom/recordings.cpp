@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <set>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "common/base/error.hpp"
+#include "common/estimation/run_signals.hpp"
 #include "common/tables/import.hpp"
 #include "common/wire/log_reader.hpp"
 #include "common/wire/streams.hpp"
@@ -38,6 +41,22 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
     }
   }
   return recordings;
+}
+
+void sort_by_time(std::span<Recording> recordings, std::span<std::string> paths) {
+  struct Run {
+    Utime begin;
+    Recording recording;
+    std::string path;
+  };
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    runs.push_back({estimation::first_stamp(recordings[i]), std::move(recordings[i]), std::move(paths[i])});
+  std::ranges::sort(runs, {}, [](const Run& run) { return std::tie(run.begin, run.recording.name); });
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    recordings[i] = std::move(runs[i].recording);
+    paths[i] = std::move(runs[i].path);
+  }
 }
 
 std::string counts(const Recording& recording) {

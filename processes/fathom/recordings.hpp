@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace fathom::tool {
 [[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& paths, const std::string& map,
                                                      std::vector<std::string>& notes,
                                                      const std::optional<tables::SimulatedAxes>& simulated = {});
+
+/// Sorts recordings by their time, those that begin at once by their names, and their paths with them: which file was
+/// named first on a command line changes nothing.
+void sort_by_time(std::span<Recording> recordings, std::span<std::string> paths);
 
 /// "POSE_CAPTURE 5980, AHRS 5980": the streams that hold something.
 [[nodiscard]] std::string counts(const Recording& recording);

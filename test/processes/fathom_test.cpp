@@ -1,9 +1,12 @@
 // The offline tool: what bad input prints, and a whole diagnosis of a small made-up vehicle.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "common/tables/writer.hpp"
 #include "test/support/scratch.hpp"
@@ -144,6 +147,27 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   CHECK(held.says("last 30 %"));
   const auto other = nlohmann::json::parse(test::read_bytes(scratch.path("held/result.json")));
   CHECK(other.at("validate").at(0) == "run1 (last 30 %)");
+}
+
+TEST_CASE("fathom: which file is named first changes nothing") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
+  std::vector<std::string> runs;
+  for (unsigned seed = 3; seed <= 5; ++seed) {
+    const auto dive = test::make_dive(vehicle, {.duration = 20.0 + seed, .seed = seed, .wrench = true});
+    runs.push_back(scratch.path("run" + std::to_string(seed) + ".csv"));
+    tables::write_file(runs.back(), tables::to_csv(dive.trial));
+  }
+  std::string first;
+  for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{2, 0, 1}}) {
+    const Ran ran = shell(kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + runs[a] + " " +
+                          runs[b] + " " + runs[c] + " --out " + scratch.path("out"));
+    REQUIRE_MESSAGE(ran.code == 0, ran.text);
+    const std::string result = test::read_bytes(scratch.path("out/result.json"));
+    if (first.empty()) first = result;
+    CHECK(result == first);
+  }
 }
 
 }  // namespace fathom
