@@ -34,7 +34,7 @@ std::vector<Curve> promising(const Linearisation& base, std::span<const std::uni
     const FreeCurve& curve = *all[i];
     const std::vector<std::vector<double>> start{
         std::vector<double>(FreeCurve::kKnots, 0.1 * curve.parameters()[0].sigma)};
-    const Screened screened = screen(base, curve, 0, "", start);
+    const Screened screened = screen(base, curve, 0, "", start, 0.5 * kTelling);
     looked[i] = {&curve, screened.theta, reduction(total(base.window_cost()), total(screened.window_cost))};
   });
   std::vector<Curve> best;

@@ -230,7 +230,8 @@ Eigen::MatrixXd derivatives(const Linearisation& base, CandidateModel& candidate
 
 /// `refining`: the only start is a point found before, not merely the size of a first step away from nothing.
 Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
-                     const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining) {
+                     const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining,
+                     double worth) {
   CandidateModel candidate{base, effect, variant, variant_name};
   const std::vector<model::EffectParameter> parameters =
       model::parameters_of(effect, variant, *base.fit().model.vehicle);
@@ -291,7 +292,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       }
       const Eigen::VectorXd move = -normal.ldlt().solve(gradient);
       const double foretold = -0.5 * gradient.dot(move);
-      if (foretold < kNothing * cost_without) break;
+      if (foretold < worth * cost_without) break;
       std::vector<double> next = theta;
       for (std::size_t i = 0; i < k; ++i) next[i] += move[static_cast<Eigen::Index>(i)] * parameters[i].sigma;
       next = clamped(parameters, next);
@@ -331,13 +332,13 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
 }  // namespace
 
 Screened screen(const Linearisation& base, const model::Effect& effect, int variant, const std::string& variant_name,
-                std::span<const std::vector<double>> starts) {
-  return search_from(base, effect, variant, variant_name, starts, false);
+                std::span<const std::vector<double>> starts, double worth) {
+  return search_from(base, effect, variant, variant_name, starts, false, std::max(worth, kNothing));
 }
 
 Screened refine(const Linearisation& base, const Screened& rough) {
   const std::vector<std::vector<double>> start{rough.theta};
-  return search_from(base, *rough.effect, rough.variant, rough.variant_name, start, true);
+  return search_from(base, *rough.effect, rough.variant, rough.variant_name, start, true, kNothing);
 }
 
 }  // namespace fathom::diagnosis

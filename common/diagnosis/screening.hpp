@@ -58,9 +58,11 @@ struct Screened {
   Eigen::VectorXd signature;        ///< change of all residuals that only this candidate can make; unit norm
 };
 
-/// Searches the candidate's numbers from `starts`: from the best of them when there are many.
+/// Searches the candidate's numbers from `starts`: from the best of them when there are many. A step that the linear
+/// picture gives less than `worth` (a share of the cost) is not taken.
 [[nodiscard]] Screened screen(const Linearisation& base, const model::Effect& effect, int variant,
-                              const std::string& variant_name, std::span<const std::vector<double>> starts);
+                              const std::string& variant_name, std::span<const std::vector<double>> starts,
+                              double worth = 0.0);
 /// Goes on from what a thinned linearisation found.
 [[nodiscard]] Screened refine(const Linearisation& base, const Screened& rough);
 

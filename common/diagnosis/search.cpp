@@ -100,6 +100,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     prune(result, whole, settings, tried, progress);
   }
   if (result.accepted.empty()) result.after = result.before;
+  progress("intervals of what was found", 0.88);
   whole.add_covariance(result.before);
   whole.add_covariance(result.after);
   identification::add_profiles(whole, result.after);

@@ -32,16 +32,22 @@ class Evaluations final : public ceres::EvaluationCallback {
     Eigen::MatrixXd by_parameter, by_initial;
   };
 
-  void PrepareForEvaluation(bool jacobians, bool new_point) override {
-    if (!new_point && !(jacobians && !with_jacobians_)) return;
+  void PrepareForEvaluation(bool jacobians, bool /*new_point*/) override {
+    // The solver tries a step, takes it, and derives there.
+    const bool same = last_nu0_.size() == nu0_.size() && x_ == last_x_ && nu0_ == last_nu0_;
+    if (same && (with_jacobians_ || !jacobians)) return;
     with_jacobians_ = jacobians;
+    last_x_ = x_;
+    last_nu0_ = nu0_;
     model::Model model = model_;
     map_.unpack(x_, model);
     for_each_index(windows_.size(), threads_, [&](std::size_t w) {
       thread_local model::VelocityTrace trace;
       One& one = at_[w];
-      one.residual.resize(windows_[w].rows());
-      windows_[w].evaluate(model, nu0_[w], sigma_, trace, one.residual);
+      if (!same) {
+        one.residual.resize(windows_[w].rows());
+        windows_[w].evaluate(model, nu0_[w], sigma_, trace, one.residual);
+      }
       if (jacobians)
         windows_[w].jacobians(model, map_, nu0_[w], sigma_, one.residual, one.by_parameter, one.by_initial);
     });
@@ -58,6 +64,8 @@ class Evaluations final : public ceres::EvaluationCallback {
   const std::vector<Vector6d>& nu0_;
   int threads_;
   bool with_jacobians_{false};
+  Eigen::VectorXd last_x_;  ///< where at_ was worked out
+  std::vector<Vector6d> last_nu0_;
   std::vector<One> at_;
 };
 
