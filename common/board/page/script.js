@@ -41,8 +41,9 @@ function morph(old, fresh) {
 
 const is = (x) => typeof x === "number";
 const fixed = (x, digits) => (is(x) ? x.toFixed(digits).replace(/^-(0\.?0*)$/, "$1") : "–");
+const times = (scale, x) => (is(x) ? scale * x : null);  // null times anything would be a measured zero
 const short = (x) => (!is(x) ? "–" : x !== 0 && (Math.abs(x) < 1e-3 || Math.abs(x) >= 1e5) ? x.toExponential(2) : String(+x.toPrecision(4)));
-const ago = (age) => (age < 10 ? age.toFixed(1) : age.toFixed(0)) + " s";
+const ago = (age) => fixed(age, age < 10 ? 1 : 0) + " s";
 const cell = (kind, ...children) => el("td", { class: kind }, ...children);
 const row = (kind, ...cells) => el("tr", { class: kind }, ...cells);
 const table = (heads, rows) =>
@@ -112,7 +113,7 @@ const sections = {
         const words = p.state === "silent" ? p.state : p.age > 2 ? `${p.state}, ${ago(p.age)} ago` : p.state;
         return row(ended ? "soft" : p.healthy ? "" : "sick",
           cell("k", p.name), cell("k plain", p.host, el("span", { class: "soft" }, " " + p.pid)), cell("word", words),
-          cell("n", fixed(100 * p.cpu, 0) + " %"), cell("n", fixed(1e-6 * p.memory, 0) + " MB"),
+          cell("n", fixed(times(100, p.cpu), 0) + " %"), cell("n", fixed(times(1e-6, p.memory), 0) + " MB"),
           cell(p.dropped ? "n warn" : "n", p.dropped), cell(p.rejected ? "n warn" : "n", p.rejected),
           cell("", p.detail ? el("div", {}, p.detail.replace(/; *$/, "")) : null,
             p.returns ? el("div", { class: "warn" }, `started again ${p.returns === 1 ? "once" : p.returns + " times"}`) : null,
@@ -130,7 +131,7 @@ const sections = {
     return [el("p", {}, el("b", { class: s.valid ? "good" : "bad" }, s.valid ? "valid" : "NOT VALID"),
       el("span", { class: "soft" }, "; rests on " + (s.sources.map((x) => `${x.channel} ${fixed(x.age, 2)} s`).join(", ") || "nothing"))),
     table(["", ">", ">± 1σ", "", "last two minutes"], kinds.map(([name, unit, scale, digits, least], i) =>
-      row("", cell("k", name), cell("n", fixed(scale * s.values[i], digits)), cell("n soft", fixed(scale * s.sigma[i], digits)), cell("soft", unit),
+      row("", cell("k", name), cell("n", fixed(times(scale, s.values[i]), digits)), cell("n soft", fixed(times(scale, s.sigma[i]), digits)), cell("soft", unit),
         cell("chart", chart(all.history.t, all.history.values[i], scale, least)))))];
   },
 
@@ -169,7 +170,7 @@ const sections = {
     if (e.segment) said.push(el("p", {}, "to fly next: ", el("b", {}, e.segment), e.duration > 0 ? `, ${fixed(e.duration, 0)} s` : ""));
     said.push(e.candidates.length ? table(["candidate", ">log odds", "", ">explains"], e.candidates.slice(0, 8).map((c) =>
       row("", cell("k", c.name, c.variant ? el("span", { class: "soft" }, " " + c.variant) : null), cell("n", fixed(c.log_odds, 1)),
-        cell("wide", bar(c.log_odds, most, true)), cell("n", fixed(100 * c.error_reduction, 0) + " %")))) : el("p", { class: "soft" }, "no candidate yet"));
+        cell("wide", bar(c.log_odds, most, true)), cell("n", fixed(times(100, c.error_reduction), 0) + " %")))) : el("p", { class: "soft" }, "no candidate yet"));
     return said;
   },
 };
@@ -230,6 +231,7 @@ async function ask() {
       why = "The page cannot draw what it is told";
       draw(all);
       alive();
+      why = "The script of this page stands still";  // should it never come here again
     }
   } catch (error) {
     why += ` (${error.message})`;
