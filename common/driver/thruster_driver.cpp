@@ -145,7 +145,10 @@ class ThrusterDriver final : public devices::Output {
     const double now = steady_seconds();
     if (watch_) unhealthy = watch_->unhealthy(now, check_ ? check_->objection(now) : "", parser_->complaint());
     if (unhealthy.empty()) unhealthy = lacking_;
-    const std::string_view reason = gate_.reason(wall_clock());
+    const Utime utime = wall_clock();
+    if (unhealthy.empty() && gate_.ignores(utime))
+      unhealthy = "thrust is commanded and none is given, since this driver was not armed; arm again";
+    const std::string_view reason = gate_.reason(utime);
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {
       detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";

@@ -11,8 +11,24 @@ void ThrusterGate::hear(const WrenchCommand& command, Utime now) {
     contested_ = now;
     return;
   }
+  if (armed_ || seconds_between(heard_, now) > kPause) {
+    asked_.reset();
+    ignores_ = false;
+  }
   command_ = command;
   heard_ = now;
+  const bool of_now = std::abs(seconds_between(command.utime, now)) <= kPause;  // a replayed log's are not
+  if (armed_ || !of_now) return;
+  if (command.tau.isZero()) {  // who is told so asks for nothing meanwhile, and yet is not obeyed
+    asked_.reset();
+    return;
+  }
+  if (!asked_) asked_ = now;
+  ignores_ = ignores_ || seconds_between(*asked_, now) >= kInVain;
+}
+
+bool ThrusterGate::ignores(Utime now) const {
+  return ignores_ && !armed_ && command_ && seconds_between(heard_, now) <= kPause;
 }
 
 std::string_view ThrusterGate::objection(const Operator& order, Utime now) const {
@@ -29,6 +45,8 @@ void ThrusterGate::hear(const Operator& order, Utime now) {
     aborted_ = true;
     armed_ = false;
     command_.reset();
+    asked_.reset();
+    ignores_ = false;
     return;
   }
   if (const std::string_view why = objection(order, now); !why.empty()) {
@@ -41,6 +59,8 @@ void ThrusterGate::hear(const Operator& order, Utime now) {
   // What was asked before is not taken up; and a commander that has died makes room for its successor.
   if (!armed_ || seconds_between(heard_, now) > kPause) command_.reset();
   armed_ = true;
+  asked_.reset();
+  ignores_ = false;
   aborted_ = false;
   contested_.reset();
 }

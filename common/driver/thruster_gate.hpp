@@ -18,6 +18,7 @@ namespace fathom::driver {
 class ThrusterGate {
  public:
   static constexpr double kPause = 0.5;     ///< s
+  static constexpr double kInVain = 0.25;   ///< s: longer than what is on its way when an operator aborts
   static constexpr double kOrderAge = 5.0;  ///< s that an order's own time may be off
   /// Times are those of messages: wall-clock microseconds, or virtual ones with a simulator. An empty token never arms.
   explicit ThrusterGate(std::string token) : token_{std::move(token)} {}
@@ -29,6 +30,9 @@ class ThrusterGate {
   /// Empty while a command is obeyed.
   [[nodiscard]] std::string_view reason(Utime now) const;
   [[nodiscard]] bool armed() const { return armed_; }
+  /// Somebody has been asking for thrust for a while and believes to get it, but nobody has armed: as after a driver's
+  /// death, whose successor did not hear the order.
+  [[nodiscard]] bool ignores(Utime now) const;
   /// Orders that were not believed, and why the last one was not.
   [[nodiscard]] std::int64_t refused() const { return refused_; }
   [[nodiscard]] std::string_view refusal() const { return refusal_; }
@@ -43,6 +47,8 @@ class ThrusterGate {
   std::optional<WrenchCommand> command_;
   Utime heard_{};
   std::optional<Utime> contested_;  ///< when another commander was heard last
+  std::optional<Utime> asked_;      ///< since when thrust is asked for in vain
+  bool ignores_{false};
   std::int64_t refused_{};
   std::string_view refusal_;
 };

@@ -1,5 +1,7 @@
 #include "common/link/link.hpp"
 
+#include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +10,7 @@
 #include <chrono>
 #include <deque>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -26,6 +29,20 @@ constexpr std::size_t kMostWaiting = 256;  // messages to a line that does not t
 Utime wall_clock() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
+}
+
+// What waits in a line that is opened is of any age: a driver that stood still has not read it, and its successor would
+// take it for now. Behind the terminal's own buffer there is the device's, which fills it again when it is empty.
+void discard_waiting(int line) {
+  constexpr int kMost = 20;
+  int empty = 0;
+  for (int i = 0; i < kMost && empty < 2; ++i) {
+    int waiting = 0;
+    if (ioctl(line, FIONREAD, &waiting) != 0) return;
+    empty = waiting == 0 ? empty + 1 : 0;
+    tcflush(line, TCIFLUSH);
+    std::this_thread::sleep_for(milliseconds{1});
+  }
 }
 
 std::string remedy(const Endpoint& endpoint, const asio::error_code& error) {
@@ -126,6 +143,7 @@ void Link::State::open_serial() {
   if (!error) serial.set_option(Port::character_size(8), error);
   if (error.value() == ENOTTY) return went_down(endpoint.text + ": is no serial line; use file:// for a file");
   if (error) return went_down(remedy(endpoint, error));
+  discard_waiting(serial.native_handle());
   went_up();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <fathom_lcm/health_t.hpp>
 #include <filesystem>
 #include <limits>
@@ -37,6 +38,12 @@ void RecorderHealth::tell(std::int64_t written) {
   const auto now = Clock::now();
   if (now - last_ < std::chrono::seconds{1}) return;
   last_ = now;
+  say_health("running", std::to_string(written) + " messages written");
+}
+
+void RecorderHealth::end(const std::string& state, const std::string& reason) { say_health(state, reason); }
+
+void RecorderHealth::say_health(const std::string& state, const std::string& detail) {
   using std::chrono::duration_cast;
   fathom_lcm::health_t health{};
   const Usage::Figures used = usage_.measure();
@@ -44,11 +51,11 @@ void RecorderHealth::tell(std::int64_t written) {
   health.process = "recorder";
   health.host = host_name();
   health.pid = getpid();
-  health.state = "running";
+  health.state = state;
   health.received = received_;
   health.cpu = used.cpu;
   health.memory = used.memory;
-  health.detail = std::to_string(written) + " messages written";
+  health.detail = detail;
   say(bus_, "HEALTH", health);
 }
 
@@ -70,16 +77,22 @@ void record_live(const std::vector<Url>& in, const Url& out, const std::string& 
       ++written;
     }
   };
-  while (!stop.raised()) {
-    live.wait(stop.descriptor(), kWaitMs);
+  try {
+    while (!stop.raised()) {
+      live.wait(stop.descriptor(), kWaitMs);
+      write();
+      health.tell(written);
+      if (Clock::now() - kept < kKeepPeriod) continue;
+      log.keep();
+      kept = Clock::now();
+    }
     write();
-    health.tell(written);
-    if (Clock::now() - kept < kKeepPeriod) continue;
     log.keep();
-    kept = Clock::now();
+  } catch (const std::exception& error) {  // a full disk: who watches shall know at once
+    health.end("fault", error.what());
+    throw;
   }
-  write();
-  log.keep();
+  health.end("stopped", std::to_string(written) + " messages written");
 }
 
 }  // namespace fathom::runtime

@@ -18,8 +18,12 @@ class RecorderHealth {
   explicit RecorderHealth(Output& bus);
   void heard() { ++received_; }
   void tell(std::int64_t written);
+  /// Its last word: "stopped", or "fault" with the reason.
+  void end(const std::string& state, const std::string& reason);
 
  private:
+  void say_health(const std::string& state, const std::string& detail);
+
   Output& bus_;
   Usage usage_;
   std::int64_t received_{};

@@ -79,6 +79,7 @@ void run(const Arguments& arguments, const std::string& path, const std::vector<
     }
   }
   log.finish();
+  health.end("stopped", "");
 }
 
 }  // namespace

@@ -16,10 +16,12 @@
 #include "common/wire/log_reader.hpp"
 #include "common/wire/minds.hpp"
 #include "test/support/private_network.hpp"
+#include "test/survival/agree.hpp"
 
 namespace fathom {
 namespace {
 
+using test::check_agree;
 using test::on_a_network;
 using test::private_network;
 using test::Scratch;
@@ -93,24 +95,6 @@ Learnt learnt_in(const Scratch& scratch) {
     }
   }
   return learnt;
-}
-
-/// Two runs share no noise: each difference counts against what both say of their doubt. Of thirteen that are normal
-/// one in 1200 is beyond this.
-constexpr double kFar = 4.0;
-
-void check_agree(const ModelEstimate& a, const ModelEstimate& b) {
-  REQUIRE(a.parameters.size() == b.parameters.size());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.parameters.size(); ++i) {
-    const NamedValue &x = a.parameters[i], &y = b.parameters[i];
-    const double far = (x.value - y.value) / std::hypot(x.std, y.std);
-    CHECK_MESSAGE(std::abs(far) < kFar,
-                  x.name << ": " << x.value << " ± " << x.std << ", " << y.value << " ± " << y.std);
-    sum += far * far;
-  }
-  MESSAGE("parameters differ by " << std::sqrt(sum / static_cast<double>(a.parameters.size()))
-                                  << " standard deviations (rms of " << a.parameters.size() << ")");
 }
 
 /// Where the identifier began anew, it went on with its covariance: it knows at least what it had saved, which is never

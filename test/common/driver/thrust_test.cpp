@@ -147,3 +147,32 @@ TEST_CASE("gate: an abort needs no token, is at once, and holds until it is arme
   gate.hear(surge(3.2), at(3.2));
   CHECK(gate.wrench(at(3.2))(0) == 10.0);
 }
+
+TEST_CASE("gate: who asks for thrust in vain is told, until it is armed; what is on its way at an abort is not meant") {
+  ThrusterGate successor{kToken};  // of a driver that had been armed
+  double t = 1.0;
+  for (; t < 1.2; t += 0.05) successor.hear(surge(t), at(t));
+  CHECK_FALSE(successor.ignores(at(t)));
+  for (; t < 1.5; t += 0.05) successor.hear(surge(t), at(t));
+  CHECK(successor.ignores(at(t)));
+  for (; t < 2.5; t += 0.05) {  // the supervisor waits with zeros
+    WrenchCommand zero = surge(t);
+    zero.tau.setZero();
+    successor.hear(zero, at(t));
+  }
+  CHECK(successor.ignores(at(t)));
+  CHECK_FALSE(successor.ignores(at(t + 1.0)));  // and then gives up
+  successor.hear(surge(t), at(t));
+  CHECK(successor.ignores(at(t)));
+  successor.hear(arm(t), at(t));
+  CHECK_FALSE(successor.ignores(at(t)));
+  successor.hear(surge(t + 0.1), at(t + 0.1));
+  CHECK(successor.wrench(at(t + 0.1))(0) == 10.0);
+  successor.hear(Operator{.abort = true}, at(t + 0.2));
+  successor.hear(surge(t + 0.21), at(t + 0.21));
+  CHECK_FALSE(successor.ignores(at(t + 0.3)));
+
+  ThrusterGate replayed{kToken};  // commands of another time ask for nothing now
+  for (double s = 0.0; s < 2.0; s += 0.05) replayed.hear(surge(s), at(1000.0 + s));
+  CHECK_FALSE(replayed.ignores(at(1002.0)));
+}

@@ -2,6 +2,8 @@
 #include "common/link/link.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <chrono>
 
@@ -106,6 +108,26 @@ TEST_CASE("link: a pseudo-terminal passes bytes both ways") {
   link.send(binary);
   link.wait({}, 20);
   CHECK(instrument.wait(1.0) == binary);
+}
+
+TEST_CASE("link: what waited in a line before it was opened is not taken for news") {
+  const Scratch scratch;
+  Server instrument{"pty:" + scratch.path("tty")};
+  const std::string frame(220, 'o');  // old
+  std::size_t sent = 0;
+  const int stalled =
+      ::open(scratch.path("tty").c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);  // by a driver that stands still
+  REQUIRE(stalled >= 0);
+  for (int i = 0; i < 30; ++i) sent += instrument.send(frame);
+  CHECK(sent > 4096);  // more than the terminal's own buffer holds
+  Heard heard;
+  Link link{Endpoint::parse("serial://" + scratch.path("tty") + "?baud=115200", "test"), heard.received(),
+            heard.changed()};
+  ::close(stalled);
+  CHECK(until(link, [&] { return link.up(); }));
+  CHECK(instrument.send("new") == 3);
+  CHECK(until(link, [&] { return heard.bytes.find("new") != std::string::npos; }));
+  CHECK((heard.bytes == "new"));  // without thousands of letters should it fail
 }
 
 TEST_CASE("link: an instrument that goes and comes back is found again, and why it is gone is said") {
