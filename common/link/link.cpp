@@ -24,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr milliseconds kFirstPause{250};
 constexpr milliseconds kLongestPause{5000};
+constexpr milliseconds kStoodStill{1000};  // beyond what was asked: more than a busy machine costs
 constexpr std::size_t kMostWaiting = 256;  // messages to a line that does not take them
 
 Utime wall_clock() {
@@ -98,7 +99,9 @@ struct Link::State {
   std::uint64_t opened{};
   std::uint64_t generation{};  // handlers of a line that was closed are deaf
   milliseconds pause{kFirstPause};
+  Clock::time_point expected{Clock::time_point::max()};  // when the line shall have been served again
 
+  bool stood_still();
   void open();
   void went_up();
   void went_down(const std::string& why);
@@ -111,10 +114,22 @@ struct Link::State {
   void open_file();
   void took(std::size_t count) {
     woken = true;
+    if (stood_still()) return;
     pause = kFirstPause;  // it speaks; a line that only opens and closes is tried less and less often
     received(std::span{buffer}.first(count), wall_clock());
   }
 };
+
+/// A program that was halted, or starved, finds in its line what came meanwhile, of any age: the line is opened anew.
+bool Link::State::stood_still() {
+  const auto late = std::chrono::duration_cast<milliseconds>(Clock::now() - expected);
+  if (!is_up || endpoint.kind == Endpoint::Kind::kFile || late < kStoodStill) return false;
+  expected = Clock::time_point::max();
+  const std::string seconds = std::to_string(late.count() / 1000) + "." + std::to_string(late.count() % 1000 / 100);
+  went_down(endpoint.text + ": this program stood still for " + seconds +
+            " s and what came meanwhile is too old; the line is opened anew (is the machine overloaded?)");
+  return true;
+}
 
 void Link::State::open() {
   switch (endpoint.kind) {
@@ -291,6 +306,7 @@ Link::~Link() = default;
 void Link::wait(std::span<const int> descriptors, int limit_ms) {
   State& state = *state_;
   state.woken = false;
+  (void)state.stood_still();
   std::deque<asio::posix::stream_descriptor> watched;
   for (const int descriptor : descriptors) {
     watched.emplace_back(state.io, descriptor);
@@ -299,6 +315,7 @@ void Link::wait(std::span<const int> descriptors, int limit_ms) {
     });
   }
   const auto until = Clock::now() + milliseconds{limit_ms};
+  state.expected = until;
   if (state.io.stopped()) state.io.restart();
   while (!state.woken && state.io.run_one_until(until) > 0) {
   }

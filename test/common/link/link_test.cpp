@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <thread>
 
 #include "common/base/error.hpp"
 #include "common/link/raw_log.hpp"
@@ -128,6 +129,33 @@ TEST_CASE("link: what waited in a line before it was opened is not taken for new
   CHECK(instrument.send("new") == 3);
   CHECK(until(link, [&] { return heard.bytes.find("new") != std::string::npos; }));
   CHECK((heard.bytes == "new"));  // without thousands of letters should it fail
+}
+
+TEST_CASE("link: what came while the program stood still is not taken for news") {
+  const Scratch scratch;
+  for (const std::string& to : {"pty:" + scratch.path("tty"), std::string{"tcp:0"}}) {
+    CAPTURE(to);
+    Server instrument{to};
+    const std::string there = to == "tcp:0" ? instrument.name() : "serial://" + scratch.path("tty") + "?baud=115200";
+    const auto says = [&](std::string_view text) {
+      (void)instrument.wait(0.0);  // whoever wants to connect
+      return instrument.send(text) == text.size();
+    };
+    Heard heard;
+    Link link{Endpoint::parse(there, "test"), heard.received(), heard.changed()};
+    CHECK(until(link, [&] { return link.up(); }));
+    CHECK(until(link, [&] { return says("a") && !heard.bytes.empty(); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds{400});  // a busy machine
+    CHECK(says("b"));
+    CHECK(until(link, [&] { return heard.bytes.find('b') != std::string::npos; }));
+    CHECK(says("old"));
+    std::this_thread::sleep_for(std::chrono::milliseconds{1'300});
+    CHECK(until(link, [&] { return link.openings() == 2; }));
+    REQUIRE(heard.changes.size() >= 2);
+    CHECK(heard.changes[1].find("stood still for 1.") != std::string::npos);
+    CHECK(until(link, [&] { return says("new") && heard.bytes.find("new") != std::string::npos; }));
+    CHECK((heard.bytes.find("old") == std::string::npos));
+  }
 }
 
 TEST_CASE("link: an instrument that goes and comes back is found again, and why it is gone is said") {
