@@ -12,6 +12,7 @@ namespace {
 constexpr double kMaxRate = 100.0;            // 1/s: twenty times the bandwidth of a 2 s window
 constexpr double kPositionKnown = 5.0;        // m, std: worse than that says nothing about a tether
 constexpr double kWarmUpGap = 5.0;            // s without motion after which a warm-up starts over
+constexpr double kTurn = 2e-3;                // rad: smaller corrections of a turned sensor are not worth another pass
 constexpr Utime kLongestSilence = 2'000'000;  // us: after that the grid of commands begins anew
 constexpr double kWider = 2.0;                // times longer, and candidates are made for what was shown by then
 constexpr std::size_t kOldPerNew = 8;
@@ -20,7 +21,7 @@ constexpr std::size_t kMostSeen = 60'000;  // samples: ten minutes at 100 Hz, so
 }  // namespace
 
 LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle,
-                             const estimation::Corrections& corrections)
+                             const estimation::Corrections& corrections, const model::Site* site)
     : settings_{settings},
       vehicle_{std::make_unique<const model::Vehicle>(vehicle)},
       parameters_{[&] {
@@ -41,7 +42,8 @@ LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle&
         for (Eigen::Index i = 0; i < mean.size(); ++i) mean[i] = vehicle.priors[static_cast<std::size_t>(i)].mean;
         return mean;
       }()},
-      sensors_{corrections} {}
+      sensors_{corrections, site == nullptr ? std::optional<estimation::FlowWitnesses>{}
+                                            : estimation::FlowWitnesses{vehicle.mounts, *site}} {}
 
 identification::IntegralSettings LiveDiagnoser::integral_settings() const {
   identification::IntegralSettings s;
@@ -120,9 +122,10 @@ std::optional<EffectRanking> LiveDiagnoser::finish() {
     screening_ = screening();
     for (const LiveSample& sample : seen_) (void)screening_->use(sample);
   }
+  sensors_.finish();
+  turn_back(sensors_.turns());
   if (wider_) catch_up(seen_.size());
   if (screening_) screening_->close();
-  sensors_.finish();
   return newest_ > 0 ? std::optional{rank(newest_)} : ranking;
 }
 
@@ -133,10 +136,11 @@ std::optional<EffectRanking> LiveDiagnoser::release(bool all) {
       reject("no input");
       continue;
     }
+    sensors_.step(aligned->state);
+    turn_back(sensors_.turns());
     LiveSample sample = sample_of(*aligned);
     const Utime utime = sample.motion.utime;
     if (sample.motion.valid) newest_ = utime;
-    sensors_.step(aligned->state);
     if (screening_) {
       if (sample.motion.valid) note_commands(sample);
       if (const auto until = screening_->use(sample)) ranking = rank(*until);
@@ -168,7 +172,7 @@ LiveSample LiveDiagnoser::sample_of(const identification::StreamAligner::Aligned
     reject("no input");
   } else {
     sample.motion.valid = true;
-    sample.motion.nu = state.nu;
+    sample.motion.nu << turned_.dvl * state.nu.head<3>(), turned_.gyro * state.nu.tail<3>();
     sample.motion.down_B = state.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
     sample.p_WB = state.p_WB;
     sample.q_WB = state.q_WB;
@@ -221,8 +225,7 @@ void LiveDiagnoser::keep(LiveSample sample) {
   const double shown = seconds_between(seen_.front().motion.utime, sample.motion.utime);
   seen_.push_back(std::move(sample));
   if (!wider_ && valid && shown >= kWider * shown_) {
-    wider_ = screening();
-    caught_up_ = 0;
+    look_again();
     shown_ = shown;
   }
   if (wider_) catch_up(kOldPerNew);
@@ -232,9 +235,31 @@ void LiveDiagnoser::keep(LiveSample sample) {
   }
 }
 
+void LiveDiagnoser::look_again() {
+  wider_ = screening();
+  caught_up_ = 0;
+}
+
+// A sensor whose axes are turned makes motion that forces seem to couple. Nothing is accused until all that was seen
+// has been heard again, turned back.
+void LiveDiagnoser::turn_back(const LiveSensorCheck::Turns& turns) {
+  const Eigen::Matrix3d dvl = turns.dvl * turned_.dvl.transpose(), gyro = turns.gyro * turned_.gyro.transpose();
+  const auto matters = [](const Eigen::Matrix3d& R) { return !R.isIdentity(kTurn); };
+  if (!matters(dvl) && !matters(gyro)) return;
+  turned_ = turns;
+  for (LiveSample& sample : seen_) {
+    sample.motion.nu << (dvl * sample.motion.nu.head<3>()).eval(), (gyro * sample.motion.nu.tail<3>()).eval();
+  }
+  if (!screening_ || !all_seen_) return;
+  turning_ = true;
+  look_again();
+}
+
 void LiveDiagnoser::catch_up(std::size_t samples) {
   for (; samples > 0 && caught_up_ < seen_.size(); --samples) (void)wider_->use(seen_[caught_up_++]);
-  if (caught_up_ == seen_.size()) screening_ = std::move(wider_);
+  if (caught_up_ < seen_.size()) return;
+  screening_ = std::move(wider_);
+  turning_ = false;
 }
 
 }  // namespace fathom::diagnosis

@@ -50,9 +50,9 @@ struct LiveSettings {
 
 class LiveDiagnoser {
  public:
-  /// `corrections`: those that STATE is made with.
+  /// `corrections`: those that STATE is made with. `site`: where the tags are, if known.
   LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle,
-                const estimation::Corrections& corrections = {});
+                const estimation::Corrections& corrections = {}, const model::Site* site = nullptr);
   LiveDiagnoser(const LiveDiagnoser&) = delete;  // its passes point into it
   LiveDiagnoser& operator=(const LiveDiagnoser&) = delete;
 
@@ -65,6 +65,8 @@ class LiveDiagnoser {
   /// Compared with STATE: a sensor's fault is no force.
   void hear(const Ahrs& ahrs) { sensors_.hear(ahrs); }
   void hear(const Dvl& dvl) { sensors_.hear(dvl); }
+  void hear(const TagPose& tag) { sensors_.hear(tag); }
+  void hear(const OpticalFlow& flow) { sensors_.hear(flow); }
   /// What the identifier's model leaves, over the noise that it was told of. Counts by its time stamp.
   void hear(const ModelEstimate& model);
   /// The streams ended: what was waiting is used and judged.
@@ -91,6 +93,8 @@ class LiveDiagnoser {
   void forget_motion();
   [[nodiscard]] std::unique_ptr<LiveScreening> screening() const;
   void keep(LiveSample sample);
+  void look_again();
+  void turn_back(const LiveSensorCheck::Turns& turns);
   void catch_up(std::size_t samples);
   [[nodiscard]] EffectRanking rank(Utime utime);
   [[nodiscard]] EffectRanking by_forces(Utime utime);
@@ -115,6 +119,8 @@ class LiveDiagnoser {
   std::vector<LiveSuspicion> suspicions_;
   std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_;
   LiveSensorCheck sensors_;
+  LiveSensorCheck::Turns turned_;  // back, in all of seen_
+  bool turning_{false};            // the candidates at hand still rest on sensors that are turned
   struct Left {
     Utime utime{};
     double ratio{};

@@ -18,7 +18,7 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
   EffectRanking ranking = by_forces(utime);
   std::vector<EffectEvidence> faults = sensors_.faults();
   std::erase_if(faults, [&](const EffectEvidence& fault) { return fault.log_odds < settings_.accept_log_odds; });
-  if (faults.empty() || ranking.verdict == "collecting") return ranking;
+  if (faults.empty() || (ranking.verdict == "collecting" && !turning_)) return ranking;
   ranking.verdict = "effect";
   ranking.against.clear();
   rivals_.reset();
@@ -29,7 +29,7 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
 EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   EffectRanking ranking{.utime = utime, .verdict = "collecting"};
   rivals_.reset();
-  if (!screening_) return ranking;
+  if (!screening_ || turning_) return ranking;
   const LiveEvidence& evidence = screening_->evidence();
   if (evidence.blocks() < static_cast<std::size_t>(settings_.fewest_blocks)) return ranking;
   suspicions_ = evidence.judge();
@@ -103,6 +103,7 @@ void LiveDiagnoser::forget_motion() {
   all_seen_ = true;
   screening_.reset();
   wider_.reset();
+  turning_ = false;
   commands_end_.reset();
 }
 
@@ -113,6 +114,7 @@ void LiveDiagnoser::reset() {
   aligner_.reset();
   left_.clear();
   sensors_.reset();
+  turned_ = {};
   suspicions_.clear();
   rivals_.reset();
 }

@@ -38,7 +38,8 @@ std::vector<double> numbers_of(const EffectFound& fault, const NamedValue& numbe
 
 }  // namespace
 
-LiveSensorCheck::LiveSensorCheck(estimation::Corrections corrections) : corrections_{std::move(corrections)} {}
+LiveSensorCheck::LiveSensorCheck(estimation::Corrections corrections, std::optional<estimation::FlowWitnesses> flow)
+    : corrections_{std::move(corrections)}, flow_{std::move(flow)} {}
 
 void LiveSensorCheck::hear(const Ahrs& ahrs) {
   if (!ahrs.has_rates) return;
@@ -52,10 +53,19 @@ void LiveSensorCheck::hear(const Dvl& dvl) {
                      corrections_.dvl.matrix() * dvl.v_WB_B + corrections_.dvl.bias});
 }
 
+void LiveSensorCheck::hear(const TagPose& tag) { hear_picture(tag); }
+void LiveSensorCheck::hear(const OpticalFlow& flow) { hear_picture(flow); }
+
+template <class Message>
+void LiveSensorCheck::hear_picture(const Message& message) {
+  const bool wild = !states_.empty() && std::abs(seconds_between(states_.back().utime, message.utime)) > kMargin;
+  if (flow_ && !wild) flow_->hear(message);
+}
+
 /// A clock that is wild for a moment costs no more than it leapt: what is newer than a stamp that goes back is let go,
 /// and what is far from STATE is not heard at all.
 void LiveSensorCheck::keep(std::deque<Sample>& samples, const Sample& sample) const {
-  if (!pose_.empty() && std::abs(seconds_between(pose_.back().utime, sample.utime)) > kMargin) return;
+  if (!states_.empty() && std::abs(seconds_between(states_.back().utime, sample.utime)) > kMargin) return;
   if (!samples.empty() && seconds_between(sample.utime, samples.back().utime) > kLeap) {
     while (!samples.empty() && samples.back().utime >= sample.utime) samples.pop_back();
   }
@@ -65,12 +75,13 @@ void LiveSensorCheck::keep(std::deque<Sample>& samples, const Sample& sample) co
 }
 
 void LiveSensorCheck::step(const StateEstimate& state) {
-  if (!pose_.empty() && seconds_between(pose_.back().utime, state.utime) > kGap) {
-    pose_.clear();
+  if (!states_.empty() && seconds_between(states_.back().utime, state.utime) > kGap) {
+    states_.clear();
     first_.reset();
   }
-  pose_.push_back({.utime = state.utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .valid = state.valid});
-  while (seconds_between(pose_.front().utime, state.utime) > kKept + kMargin) pose_.pop_front();
+  states_.push_back(estimation::motion_of(state));
+  while (seconds_between(states_.front().utime, state.utime) > kKept + kMargin) states_.pop_front();
+  if (flow_) flow_->forget_before(utime_after(state.utime, -(kKept + kMargin)));
   if (!first_) {
     first_ = state.utime;
     next_look_ = kFirstLook;
@@ -81,8 +92,8 @@ void LiveSensorCheck::step(const StateEstimate& state) {
   next_look_ = kWider * shown;
   due_ = utime_after(state.utime, kThinking);
   try {
-    look_ = std::async(std::launch::async, [recording = until(state.utime)]() mutable {
-      const Recording own = std::move(recording);  // gone with the look, not with its answer
+    look_ = std::async(std::launch::async, [seen = until(state.utime)]() mutable {
+      const Seen own = std::move(seen);  // gone with the look, not with its answer
       return look(own);
     });
   } catch (const std::system_error&) {  // no thread to be had: the next look will do
@@ -90,14 +101,19 @@ void LiveSensorCheck::step(const StateEstimate& state) {
 }
 
 /// What every channel has told by then, however late or early it is.
-Recording LiveSensorCheck::until(Utime now) const {
+LiveSensorCheck::Seen LiveSensorCheck::until(Utime now) const {
   const Utime end = utime_after(now, -kSkew), begin = std::max(utime_after(end, -kKept), first_.value_or(now));
   const auto within = [&](const auto& sample) { return sample.utime >= begin && sample.utime <= end; };
-  Recording recording{.name = "trial"};
-  recording.pose_capture.reserve(pose_.size());
+  Seen seen;
+  Recording& recording = seen.sensors;
+  recording.name = "trial";
+  recording.pose_capture.reserve(states_.size());
   recording.ahrs.reserve(rates_.size());
   recording.dvl.reserve(velocities_.size());
-  std::ranges::copy_if(pose_, std::back_inserter(recording.pose_capture), within);
+  for (const estimation::MotionAt& at : states_) {
+    if (!within(at)) continue;
+    recording.pose_capture.push_back({.utime = at.utime, .p_WB = at.p_WB, .q_WB = at.q_WB, .valid = at.valid});
+  }
   for (const Sample& sample : rates_) {
     if (within(sample)) recording.ahrs.push_back({.utime = sample.utime, .w_WB_B = sample.x, .has_rates = true});
   }
@@ -109,16 +125,27 @@ Recording LiveSensorCheck::until(Utime now) const {
     recording.dvl.push_back({.utime = sample.utime, .v_WB_B = sample.x + turned * w});
   }
   recording.one_estimate = recording.dvl.empty();
-  return recording;
+  if (flow_) seen.pictures = flow_->seen(states_, begin, end);
+  return seen;
 }
 
 /// STATE stands for the motion capture; what the estimator makes of all sensors is none of them, and is not named.
-LiveSensorCheck::Found LiveSensorCheck::look(const Recording& recording) {
-  const auto checked = estimation::check_consistency(std::span(&recording, 1));
+LiveSensorCheck::Found LiveSensorCheck::look(const Seen& seen) {
+  auto checked = estimation::check_consistency(std::span(&seen.sensors, 1));
+  if (!seen.pictures.dvl.empty()) {
+    estimation::PairResult flow = estimation::compare_flow(std::span(&seen.pictures, 1));
+    std::ranges::move(flow.findings, std::back_inserter(checked.findings));
+    checked.pairs.emplace("optical_flow", std::move(flow));
+  }
   Found found;
   for (const auto& [signal, pair] : checked.pairs) {
     if (pair.checked) found.judged.push_back(signal);
   }
+  const auto turn = [&](const std::string& signal) -> Eigen::Matrix3d {
+    const estimation::PairResult& pair = checked.pairs.at(signal);
+    return pair.checked ? pair.faults.front().rotation : Eigen::Matrix3d::Identity();
+  };
+  found.turns = {.gyro = turn("gyro"), .dvl = turn("dvl")};
   for (const EffectFound& fault : sensor_faults(checked.findings)) {
     for (const NamedValue& number : fault.parameters) {
       const std::string signal = signal_of(number);
@@ -133,21 +160,25 @@ LiveSensorCheck::Found LiveSensorCheck::look(const Recording& recording) {
 }
 
 void LiveSensorCheck::take(Found found) {
-  std::erase_if(faults_, [&](const EffectEvidence& one) {
-    return std::ranges::find(found.judged, group_of(one.variant)) != found.judged.end();
-  });
+  const auto judged = [&](const std::string& signal) {
+    return std::ranges::find(found.judged, signal) != found.judged.end();
+  };
+  std::erase_if(faults_, [&](const EffectEvidence& one) { return judged(group_of(one.variant)); });
+  if (judged("gyro")) turns_.gyro = found.turns.gyro;
+  if (judged("dvl")) turns_.dvl = found.turns.dvl;
   faults_.insert(faults_.end(), found.faults.begin(), found.faults.end());
   std::ranges::stable_sort(faults_, std::greater{}, &EffectEvidence::log_odds);
 }
 
 void LiveSensorCheck::finish() {
   if (look_.valid()) take(look_.get());
-  if (!pose_.empty()) take(look(until(utime_after(pose_.back().utime, kSkew))));
+  if (!states_.empty()) take(look(until(utime_after(states_.back().utime, kSkew))));
 }
 
 void LiveSensorCheck::reset() {
   if (look_.valid()) (void)look_.get();
-  *this = LiveSensorCheck{std::move(corrections_)};
+  if (flow_) flow_->clear();
+  *this = LiveSensorCheck{std::move(corrections_), std::move(flow_)};
 }
 
 }  // namespace fathom::diagnosis

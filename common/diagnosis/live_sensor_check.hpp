@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/estimation/consistency.hpp"
+#include "common/estimation/flow_check.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/recording.hpp"
 #include "common/samples/sensors.hpp"
@@ -21,18 +22,30 @@ namespace fathom::diagnosis {
 class LiveSensorCheck {
  public:
   /// `corrections`: those that STATE is made with; what they mend is no finding.
-  explicit LiveSensorCheck(estimation::Corrections corrections = {});
+  /// `flow`: where the camera and the tags are, if they are known: only then TAG_POSE and OPTICAL_FLOW are compared.
+  explicit LiveSensorCheck(estimation::Corrections corrections = {},
+                           std::optional<estimation::FlowWitnesses> flow = {});
 
   void hear(const Ahrs& ahrs);
   void hear(const Dvl& dvl);
+  void hear(const TagPose& tag);
+  void hear(const OpticalFlow& flow);
   /// In the order of time.
   void step(const StateEstimate& state);
   /// Looks at all there is, at once.
   void finish();
   void reset();
 
-  /// sensor_latency, sensor_scale and lever_arm of AHRS and DVL, most certain first; the variant is the signal. What
-  /// was found stays until a later look can judge the same sensor.
+  /// How far the axes of gyro and DVL are turned against the body: true = R * logged. No effect of the water, and none
+  /// that a name accuses: what rests on the sensors is turned back.
+  struct Turns {
+    Eigen::Matrix3d gyro{Eigen::Matrix3d::Identity()}, dvl{Eigen::Matrix3d::Identity()};
+    bool operator==(const Turns&) const = default;
+  };
+  [[nodiscard]] const Turns& turns() const { return turns_; }
+
+  /// sensor_latency, sensor_scale and lever_arm of AHRS, DVL and optical flow, most certain first; the variant is the
+  /// signal. What was found stays until a later look can judge the same sensor.
   [[nodiscard]] const std::vector<EffectEvidence>& faults() const { return faults_; }
 
  private:
@@ -43,20 +56,28 @@ class LiveSensorCheck {
   struct Found {
     std::vector<EffectEvidence> faults;
     std::vector<std::string> judged;  // signals
+    Turns turns;
   };
   void keep(std::deque<Sample>& samples, const Sample& sample) const;
-  [[nodiscard]] Recording until(Utime end) const;
-  [[nodiscard]] static Found look(const Recording& recording);
+  struct Seen {
+    Recording sensors, pictures;
+  };
+  template <class Message>
+  void hear_picture(const Message& message);
+  [[nodiscard]] Seen until(Utime end) const;
+  [[nodiscard]] static Found look(const Seen& seen);
   void take(Found found);
 
   estimation::Corrections corrections_;
   std::deque<Sample> rates_, velocities_;
-  std::deque<PoseCapture> pose_;
+  std::deque<estimation::MotionAt> states_;
+  std::optional<estimation::FlowWitnesses> flow_;
   std::optional<Utime> first_;
   double next_look_{};  // s of the trial
   Utime due_{};
   std::future<Found> look_;
   std::vector<EffectEvidence> faults_;
+  Turns turns_;
 };
 
 }  // namespace fathom::diagnosis

@@ -41,7 +41,7 @@ struct Moment {
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
   Vector6d nu{Vector6d::Zero()};                      ///< m/s, rad/s
   Vector6d nu_dot{Vector6d::Zero()};                  ///< m/s^2, rad/s^2, in B
-  Vector6d nu_seen{Vector6d::Zero()};                 ///< nu as hidden sensor faults show it to gyro and velocity log
+  Vector6d nu_seen{Vector6d::Zero()};                 ///< nu as hidden sensor faults show it to gyro, velocity log and optical flow
   Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};      ///< m/s, the water in W
   model::ActuatorForces felt{};                       ///< N, of each thruster, as it reaches the water
   Vector6d tau_felt{Vector6d::Zero()};                ///< N, N m

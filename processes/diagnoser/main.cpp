@@ -5,7 +5,9 @@
 #include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/model_t.hpp>
+#include <fathom_lcm/optical_flow_t.hpp>
 #include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
 
 #include "common/diagnosis/live_diagnoser.hpp"
@@ -23,12 +25,12 @@ using namespace fathom;
 namespace {
 
 /// Where the site is known, and what the supervisor may do there.
-std::optional<diagnoser::Proposals> proposals_of(const runtime::Process& process, const model::Vehicle& vehicle) {
-  if (!process.has_config("site") || !process.has_config("supervisor")) return {};
-  const model::Site site = model::Site::load(process.config_path("site"));
+std::optional<diagnoser::Proposals> proposals_of(const runtime::Process& process, const model::Vehicle& vehicle,
+                                                 const std::optional<model::Site>& site) {
+  if (!site || !process.has_config("supervisor")) return {};
   const Config pipeline = Config::load(process.config_path("supervisor"));
   const planning::RehearsalSettings settings{
-      .supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), vehicle, site)};
+      .supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), vehicle, *site)};
   return diagnoser::Proposals{planning::LiveSeparation{vehicle, settings}};
 }
 
@@ -48,8 +50,11 @@ int main(int argc, char** argv) {
   return runtime::main("diagnoser", argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
-    std::optional<diagnoser::Proposals> proposals = proposals_of(process, vehicle);
-    diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle, corrections};
+    std::optional<model::Site> site;
+    if (process.has_config("site")) site = model::Site::load(process.config_path("site"));
+    std::optional<diagnoser::Proposals> proposals = proposals_of(process, vehicle, site);
+    diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle, corrections,
+                                       site ? &*site : nullptr};
     estimation::ThrusterForces forces{corrections.thrusters, vehicle};
     const auto say = [&](std::optional<EffectRanking> ranking) {
       if (!ranking) return;
@@ -76,6 +81,10 @@ int main(int argc, char** argv) {
     });
     compare<fathom_lcm::ahrs_t>(process, diagnoser, wire::kAhrs);
     compare<fathom_lcm::dvl_t>(process, diagnoser, wire::kDvl);
+    if (site && !vehicle.mounts.cameras.empty()) {
+      compare<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
+      compare<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
+    }
     process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
       const auto model = wire::decode(message);
       if (!model) return process.reject(wire::kModel);

@@ -8,6 +8,8 @@
 #include "common/base/error.hpp"
 #include "common/estimation/consistency.hpp"
 #include "common/estimation/corrections_file.hpp"
+#include "common/estimation/flow_check.hpp"
+#include "common/model/site.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -16,7 +18,7 @@ namespace fathom::tool {
 namespace {
 
 struct Options {
-  std::string vehicle, map, write;
+  std::string vehicle, site, map, write;
   std::vector<std::string> runs;
 };
 
@@ -34,10 +36,13 @@ void print(const std::vector<ConsistencyFinding>& findings) {
 void run(const Options& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
-  const std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
+  std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   estimation::ConsistencyResult result = estimation::check_consistency(recordings);
   estimation::check_thrusters(recordings, vehicle, result);
+  if (!options.site.empty()) {
+    estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), result);
+  }
   if (result.findings.empty()) {
     std::printf("the sensors agree with each other\n");
   } else {
@@ -55,6 +60,8 @@ void add_check(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
+  command->add_option("--site", options->site,
+                      "site file (YAML): optical flow is compared with the tags of its map, too");
   command->add_option("runs", options->runs, ".lcmlog or .csv files")->required();
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--write", options->write, "write the corrections for live processes to this file");

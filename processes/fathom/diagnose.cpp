@@ -12,10 +12,12 @@
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/diagnosis/force_unit.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
+#include "common/estimation/flow_check.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/estimation/state_as_measured.hpp"
+#include "common/model/site.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
 #include "processes/fathom/commands.hpp"
@@ -73,6 +75,9 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   progress.show("comparing the sensors with each other", kReadShare);
   estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);
   estimation::check_thrusters(recordings, vehicle, consistency);
+  if (!options.site.empty()) {
+    estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
+  }
 
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
@@ -139,7 +144,9 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
   command->add_option("--validate", options->validate, "files to judge by; without: the last 30 % of every run");
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
-  command->add_option("--site", options->site, "site file: what to fly there to tell look-alikes apart is computed");
+  command->add_option("--site", options->site,
+                      "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "
+                      "compared with the tags of its map");
   command->add_option("--config", options->config, "with --site: pipeline file (its namesake in ../pipelines/)");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")

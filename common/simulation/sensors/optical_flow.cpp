@@ -40,7 +40,7 @@ class OpticalFlowSensor final : public Sensor {
     if (distance >= nearest_ && distance <= farthest_) {
       const Eigen::Vector3d w = moment.nu.tail<3>();
       const Eigen::Matrix3d R_CB = camera_.mount.R_BS.transpose();
-      const Eigen::Vector3d v_C = R_CB * (moment.nu.head<3>() + w.cross(camera_.mount.p_BS));
+      const Eigen::Vector3d v_C = R_CB * (moment.nu_seen.head<3>() + w.cross(camera_.mount.p_BS));
       now = Picture{moment.utime, -v_C.head<2>() / distance};
       // What is left of the rotation where rates are known with an error: flow of a turning camera, x' = -w x ray.
       if (latest_->has_rates) {

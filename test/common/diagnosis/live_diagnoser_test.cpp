@@ -157,6 +157,32 @@ TEST_CASE("live diagnoser: a fault of a sensor is no force, and comes before all
   CHECK(listen(strict, trial).back().verdict != "effect");
 }
 
+// A velocity log turned by 2 degrees shows surge in sway, which forces alone call coupling.
+TEST_CASE("live diagnoser: a sensor that is turned accuses no water") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  test::VirtualDive dive = test::make_dive(vehicle, {.duration = kDuration, .seed = 33});
+  Trial& trial = dive.trial;
+  const Eigen::Matrix3d turned = rotation_from_euler({0.0, 0.0, 0.035});
+  for (Vector6d& nu : trial.nu) nu.head<3>() = turned * Eigen::Vector3d{nu.head<3>()};
+  const auto verdict = [&](bool heard) {
+    LiveDiagnoser diagnoser{LiveSettings{}, vehicle};
+    if (heard) {
+      for (std::size_t k = 0; k < trial.size(); ++k)
+        diagnoser.hear(Dvl{.utime = utime_after(kStart, trial.t[k]), .v_WB_B = trial.nu[k].head<3>()});
+    }
+    return listen(diagnoser, trial);
+  };
+  const std::vector<EffectRanking> alone = verdict(false), compared = verdict(true);
+  CAPTURE(told(alone.back()));
+  CAPTURE(told(compared.back()));
+  CHECK(alone.back().verdict != "adequate");
+  CHECK(compared.back().verdict == "adequate");
+  // From when the turn is known until all has been heard again, nothing is said.
+  const auto again = std::ranges::find_if(compared.begin() + 6, compared.end(),
+                                          [](const EffectRanking& one) { return one.verdict == "collecting"; });
+  CHECK(again != compared.end());
+}
+
 TEST_CASE("live diagnoser: nothing is adopted on clean data") {
   // The LBV150 has one vertical thruster: losing its thrust and the heave masses together explains nothing.
   for (const char* name : {"bluerov2", "seabotix_lbv150"}) {

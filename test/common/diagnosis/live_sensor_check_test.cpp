@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "test/support/synthetic_recording.hpp"
+#include "test/support/synthetic_pictures.hpp"
 #include "test/support/timing.hpp"
 
 using namespace fathom;
@@ -205,5 +205,55 @@ TEST_CASE("live sensor check: neither the order of arrival nor a reset changes w
         CHECK(check.faults()[i].numbers == faults[i].numbers);
       }
     }
+  }
+}
+
+TEST_CASE("live sensor check: a flow that reads too small is named while the trial runs; one that is right is not") {
+  for (const double factor : {1.0, 0.87}) {
+    CAPTURE(factor);
+    const test::Pictures pictures{{.seed = 4, .flow_factor = {1.0, factor}}};
+    LiveSensorCheck check{{}, estimation::FlowWitnesses{pictures.mounts, pictures.site}};
+    const Recording& recording = pictures.recording;
+    const std::size_t tags = recording.tag_pose.size() / recording.state.size();
+    for (int round = 0; round < 2; ++round) {  // the second after a reset
+      double named = 0.0;
+      for (std::size_t k = 0; k < recording.state.size(); ++k) {
+        for (std::size_t i = 0; i < tags; ++i) check.hear(recording.tag_pose[k * tags + i]);
+        check.hear(recording.optical_flow[k]);
+        const StateEstimate& state = recording.state[k];
+        check.hear(Ahrs{.utime = state.utime, .w_WB_B = state.nu.tail<3>(), .has_rates = true});
+        check.step(state);
+        if (named == 0.0 && !check.faults().empty()) {
+          named = seconds_between(recording.state.front().utime, state.utime);
+        }
+      }
+      check.finish();
+      if (factor == 1.0) {
+        CHECK(check.faults().empty());
+      } else {
+        CHECK(named == doctest::Approx(80.0).epsilon(0.01));  // asked at 60 s
+        REQUIRE(check.faults().size() == 1);
+        CHECK(check.faults().front().name == "sensor_scale");
+        CHECK(check.faults().front().variant == "optical_flow.v");
+        CHECK(check.faults().front().numbers.front() == doctest::Approx(factor - 1.0).epsilon(0.1));
+      }
+      check.reset();
+    }
+  }
+}
+
+TEST_CASE("live sensor check: how far a gyro is turned, and that one in place is not") {
+  for (const double turn : {0.0, 0.03}) {
+    test::SyntheticOptions options{.seed = 8, .duration = 130.0};
+    const Eigen::Matrix3d R = rotation_from_euler({0.0, turn, 0.0});
+    options.gyro_matrix = R;
+    LiveSensorCheck check;
+    (void)listen(check, test::synthetic_recording(options, "trial"));
+    check.finish();
+    CHECK(check.faults().empty());
+    CHECK(check.turns().gyro.isApprox(R.transpose(), turn == 0.0 ? 0.0 : 5e-3));
+    CHECK(check.turns().dvl == Eigen::Matrix3d::Identity());
+    check.reset();
+    CHECK(check.turns() == LiveSensorCheck::Turns{});
   }
 }

@@ -318,6 +318,17 @@ TEST_CASE("optical flow: the scene moves against the camera, over its distance, 
   CHECK(std::abs(sample.flow_C.y() - 0.3 / 0.63) < kExact);
 }
 
+TEST_CASE("optical flow: a hidden scale of the velocity reaches it") {
+  Bench bench{make_optical_flow, "noise: 0\nnearest: 0.1 m\nfarthest: 3 m\noutlier: 0\n", "tank"};
+  Vector6d nu = Vector6d::Zero();
+  nu[0] = 0.3;
+  Moment moment = moment_at({0, 0, 0.75}, Eigen::Vector3d::Zero(), nu);
+  moment.nu_seen[0] *= 0.8;
+  CHECK(bench.measure(moment).empty());
+  moment.utime += 10'000;
+  CHECK(std::abs(std::get<OpticalFlow>(bench.measure(moment).front()).flow_C.y() - 0.8 * 0.3 / 0.63) < kExact);
+}
+
 TEST_CASE("laser: the dot on the floor, tilted or not; triangulation's error grows with the square") {
   Bench bench{make_laser_range, "dot_noise: 0\nscale_error: 0\nfarthest: 3 m\noutlier: 0\n", "tank"};
   const auto level = std::get<LaserRange>(bench.measure(moment_at({0, 0, 0.75})).front());
