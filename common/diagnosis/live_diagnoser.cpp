@@ -256,7 +256,7 @@ void LiveDiagnoser::turn_back(const LiveSensorCheck::Turns& turns) {
 }
 
 void LiveDiagnoser::catch_up(std::size_t samples) {
-  for (; samples > 0 && caught_up_ < seen_.size(); --samples) (void)wider_->use(seen_[caught_up_++]);
+  for (; samples > 0 && caught_up_ < seen_.size(); --samples) (void)wider_->use(seen_[caught_up_++], true);
   if (caught_up_ < seen_.size()) return;
   screening_ = std::move(wider_);
   turning_ = false;

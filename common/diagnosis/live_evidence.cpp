@@ -97,7 +97,7 @@ void LiveEvidence::close_block() {
       open_parts_ = 0;
     }
   }
-  project();
+  projected_.resize(0, 0);
 }
 
 void LiveEvidence::project() {
@@ -189,7 +189,8 @@ double LiveEvidence::shrinkage(const Eigen::VectorXd& without, const Eigen::Vect
   return 1.0 / std::pow(std::max(smallest, kSmallestMassRatio), 2);
 }
 
-std::vector<LiveSuspicion> LiveEvidence::judge() const {
+std::vector<LiveSuspicion> LiveEvidence::judge() {
+  if (projected_.size() == 0) project();
   std::vector<LiveSuspicion> judged;
   if (blocks_.empty()) return judged;
   const auto& starts = candidates_.starts();
@@ -237,8 +238,9 @@ double LiveEvidence::likeness(const LiveSuspicion& a, const LiveSuspicion& b) co
   return aa > 0.0 && bb > 0.0 ? a.coefficients.dot(projected_ * b.coefficients) / std::sqrt(aa * bb) : 0.0;
 }
 
-bool LiveEvidence::structured() const {
+bool LiveEvidence::structured() {
   if (blocks_.empty()) return false;
+  if (projected_.size() == 0) project();
   Eigen::VectorXd base(base_ + 1);
   base << -imitation_.col(0), 1.0;
   return std::any_of(memory_.begin(), memory_.end(), [&](const AxisMemory& memory) {

@@ -37,16 +37,18 @@ class LiveEvidence {
   void add(int axis, const Eigen::Ref<const Eigen::VectorXd>& row, double applied);
   /// Call between instants, so that rows are compared with those two instants before (windows that share no sample).
   void next_instant();
-  /// One more part of a block is complete; sums are ready for judge().
+  /// One more part of a block is complete; what judge() told before no longer holds.
   void close_block();
+  /// Takes the base parameters out of all products, for judge(). Megabytes, and milliseconds: not for who is behind.
+  void project();
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
 
   /// Best numbers and odds per form, highest odds first.
-  [[nodiscard]] std::vector<LiveSuspicion> judge() const;
+  [[nodiscard]] std::vector<LiveSuspicion> judge();
   /// Cosine between what two candidates explain, the base parameters' share taken out.
   [[nodiscard]] double likeness(const LiveSuspicion& a, const LiveSuspicion& b) const;
   /// True when what the base model leaves on an axis has memory and is not negligible beside the applied wrench.
-  [[nodiscard]] bool structured() const;
+  [[nodiscard]] bool structured();
 
  private:
   struct Block {
@@ -60,7 +62,6 @@ class LiveEvidence {
     int pairs{};
     double applied{};
   };
-  void project();
   [[nodiscard]] double shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const;
   [[nodiscard]] double block_cost(const Block& block, const LiveStart* start, const Eigen::VectorXd& base,
                                   const Eigen::VectorXd& own) const;

@@ -30,7 +30,7 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   EffectRanking ranking{.utime = utime, .verdict = "collecting"};
   rivals_.reset();
   if (!screening_ || turning_) return ranking;
-  const LiveEvidence& evidence = screening_->evidence();
+  LiveEvidence& evidence = screening_->evidence();
   if (evidence.blocks() < static_cast<std::size_t>(settings_.fewest_blocks)) return ranking;
   suspicions_ = evidence.judge();
   std::erase_if(suspicions_, [&](const LiveSuspicion& s) {

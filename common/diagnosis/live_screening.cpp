@@ -48,7 +48,7 @@ LiveScreening::LiveScreening(const LiveBasis& basis, const std::deque<LiveSample
   row_.setZero(basis_.prior_mean.size() + 1 + columns_->columns());
 }
 
-std::optional<Utime> LiveScreening::use(const LiveSample& sample) {
+std::optional<Utime> LiveScreening::use(const LiveSample& sample, bool behind) {
   if (sample.commands_from) {
     past_.clear();
     past_begin_ = *sample.commands_from;
@@ -92,6 +92,7 @@ std::optional<Utime> LiveScreening::use(const LiveSample& sample) {
   const auto block = static_cast<std::int64_t>(seconds_between(origin_, rows->end) / basis_.block);
   const bool closed = block_ && block != *block_;
   if (closed) evidence_->close_block();
+  if (closed && !behind) evidence_->project();
   block_ = block;
   if (sample.has_position) places_.add(sample.p_WB);
   add(*rows);

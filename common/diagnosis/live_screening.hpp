@@ -48,12 +48,12 @@ class LiveScreening {
   LiveScreening(const LiveBasis& basis, const std::deque<LiveSample>& seen, const std::optional<Vector6d>& sigma);
 
   /// Takes the next sample. The first one of a new block hands out the instant up to which rows count; what came
-  /// before may be judged then.
-  std::optional<Utime> use(const LiveSample& sample);
+  /// before may be judged then. `behind`: nobody will.
+  std::optional<Utime> use(const LiveSample& sample, bool behind = false);
   /// The streams ended: what is in the open block counts too.
   void close() { evidence_->close_block(); }
 
-  [[nodiscard]] const LiveEvidence& evidence() const { return *evidence_; }
+  [[nodiscard]] LiveEvidence& evidence() { return *evidence_; }
   [[nodiscard]] const std::vector<LiveForm>& forms() const { return columns_->forms(); }
   [[nodiscard]] const Places& places() const { return places_; }
   /// Size of the rows' residual per axis, N and N m.

@@ -135,7 +135,7 @@ def memory(options):
         process = subprocess.Popen([os.path.join(ROOT, "scripts/live"), folder, options.site, options.vehicle,
                                     options.excitation, "lockstep", "1", str(options.seconds)], env=environment,
                                    stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-        pids, rows, begun = {}, [], time.time()
+        pids, rows, most, begun = {}, [], {}, time.time()
         while process.poll() is None:
             time.sleep(2.0)
             for pid in filter(str.isdigit, os.listdir("/proc")):
@@ -151,16 +151,17 @@ def memory(options):
                 try:
                     status = open(f"/proc/{pid}/status").read()
                     row[name] = int(status.split("VmRSS:")[1].split()[0]) / 1024.0
+                    most[name] = int(status.split("VmHWM:")[1].split()[0]) / 1024.0
                 except (OSError, IndexError):
                     pass
             if len(row) == len(names):
                 rows.append((time.time() - begun, row))
         if process.returncode != 0:
             sys.exit(process.stderr.read())
-        print("resident memory [MB] at shares of the run:")
+        print("resident memory [MB] at 10, 25, 50, 75, 100 % of the run, and the most at any time:")
         for name in names:
             print(f"{name:11s}", " ".join(f"{rows[min(len(rows) - 1, int(s * len(rows)))][1][name]:6.1f}"
-                                          for s in (0.1, 0.25, 0.5, 0.75, 1.0)))
+                                          for s in (0.1, 0.25, 0.5, 0.75, 1.0)), f" {most[name]:6.1f}")
         print(f"{options.seconds} s of virtual time in {time.time() - begun:.0f} s")
 
 
