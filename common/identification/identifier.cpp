@@ -195,7 +195,7 @@ void Identifier::use(const EffectSample& sample) {
 
 ModelEstimate Identifier::model() const {
   RecursiveReport report = estimator_.report();
-  add_scale(report);
+  add_systematic(report);
   ModelEstimate estimate;
   estimate.utime = model_utime_;
   estimate.updates = estimator_.state().updates;

@@ -42,15 +42,16 @@ struct IdentifierSettings {
   bool from_zero{false};         ///< begins with all parameters zero and one sigma, as the paper does
   double zero_sigma{10.0};       ///< of every parameter in its own unit (the paper's P_0 = sigma^2 I)
   double residual_memory{30.0};  ///< s over which MODEL's residual statistics look back
-  double velocity_scale{0.0};  ///< share by which u v w may be off in proportion: no residual shows it, intervals must
-  double freeze_delay{0.5};    ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
-  int adopt_after{0};          ///< rankings in a row that must accept an effect before it is adopted; 0: none ever is
-  double adopt_delay{2.0};     ///< s after its stamp that a ranking is judged: more than the diagnoser is late
-  double keep{600.0};          ///< s of motion that are kept to learn anew from when an effect is adopted
+  double velocity_scale{0.0};   ///< share by which u v w may be off in proportion: no residual shows it, intervals must
+  double velocity_offset{0.0};  ///< m/s by which each of u v w may be off all the time: drag makes a steady force of it
+  double freeze_delay{0.5};     ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
+  int adopt_after{0};           ///< rankings in a row that must accept an effect before it is adopted; 0: none ever is
+  double adopt_delay{2.0};      ///< s after its stamp that a ranking is judged: more than the diagnoser is late
+  double keep{600.0};           ///< s of motion that are kept to learn anew from when an effect is adopted
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
-  /// freeze_delay, adopt_after with adopt_delay and keep.
+  /// velocity_offset, freeze_delay, adopt_after with adopt_delay and keep.
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -117,7 +118,7 @@ class Identifier {
   void decide(Utime first);
   void take_effect(const model::Effect& effect, std::istringstream& text);
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
-  void add_scale(RecursiveReport& report) const;
+  void add_systematic(RecursiveReport& report) const;
   void release();
   void use(const EffectSample& sample);
   [[nodiscard]] std::optional<RowBlock> rows_of(const EffectSample& sample);

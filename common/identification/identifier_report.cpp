@@ -72,16 +72,24 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
 
 // Velocities that are all off by the same share s explain every force as well with masses and linear drag divided by
 // 1 + s, quadratic drag by its square: a direction in which data say nothing, known beforehand to `velocity_scale`.
-void Identifier::add_scale(RecursiveReport& report) const {
-  if (settings_.velocity_scale <= 0.0) return;
+// A heave speed that is off by a constant becomes, through linear drag, a weight: known to `velocity_offset`.
+void Identifier::add_systematic(RecursiveReport& report) const {
+  if (settings_.velocity_scale <= 0.0 && settings_.velocity_offset <= 0.0) return;
   ParameterVector along = ParameterVector::Zero(report.estimate.size());
+  ParameterVector steady = along;
+  const auto column = [&](model::BaseParameter one) {
+    const auto at = std::ranges::find(parameters_, one);
+    return at == parameters_.end() ? -1 : static_cast<Eigen::Index>(at - parameters_.begin());
+  };
+  const Eigen::Index Z_w = column(model::BaseParameter::Z_w), W_B = column(model::BaseParameter::W_B);
+  if (Z_w >= 0 && W_B >= 0) steady(W_B) = settings_.velocity_offset * report.estimate(Z_w);
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(parameters_.size()); ++i) {
     const model::BaseParameter parameter = parameters_[static_cast<std::size_t>(i)];
     if (model::axis(parameter) > 2 || model::index(parameter) >= model::index(model::BaseParameter::W_B)) continue;
     const bool quadratic = model::index(parameter) >= model::index(model::BaseParameter::X_uu);
     along(i) = settings_.velocity_scale * (quadratic ? 2.0 : 1.0) * report.estimate(i);
   }
-  report.covariance += along * along.transpose();
+  report.covariance += along * along.transpose() + steady * steady.transpose();
   report.sigma = report.covariance.diagonal().cwiseSqrt();
 }
 

@@ -141,7 +141,7 @@ def memory(options):
             for pid in filter(str.isdigit, os.listdir("/proc")):
                 try:
                     words = open(f"/proc/{pid}/cmdline").read().split("\0")
-                    name = os.path.basename(words[0])
+                    name = os.path.basename(words[0]).removeprefix("fathom-")
                     if name in names and any(folder in word for word in words):
                         pids[name] = pid
                 except OSError:

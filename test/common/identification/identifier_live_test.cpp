@@ -226,6 +226,24 @@ TEST_CASE("identifier: velocities that are all half a percent high leave no resi
   CHECK(b.model().parameters[12].std == doctest::Approx(a.model().parameters[12].std));  // W-B has no velocity in it
 }
 
+TEST_CASE("identifier: a heave speed that is off all the time becomes a weight, which the interval must know") {
+  auto blind = settings();
+  blind.noise_force = 0.05;
+  auto knowing = blind;
+  knowing.velocity_offset = 0.004;
+  Streams off = streams(200.0);
+  for (StateEstimate& state : off.states) state.nu[2] += 0.008;
+  Identifier a{blind, vehicle()}, b{knowing, vehicle()};
+  feed(a, off, 0.0, 1e9);
+  feed(b, off, 0.0, 1e9);
+  const auto deviations = [](const ModelEstimate& model) {
+    return std::abs(value(model, "W-B") - test::kTable[12]) / model.parameters[12].std;
+  };
+  CHECK(deviations(a.model()) > 3.0);
+  CHECK(deviations(b.model()) < 3.0);  // two standard deviations by construction
+  for (std::size_t i = 0; i < 12; ++i) CHECK(b.model().parameters[i].std == a.model().parameters[i].std);
+}
+
 TEST_CASE("identifier: a held input is right to the half step, wherever between the states it jumps") {
   // 100 Hz states, a force that jumps at or behind state times and holds: trapezoids would be half a step off.
   for (const double behind : {0.0, 0.0002, 0.003, 0.0098}) {
