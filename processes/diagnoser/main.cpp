@@ -1,5 +1,7 @@
 // diagnoser: states, thruster commands, battery voltage, and the sensors that states rest on in, the ranking of
 // candidate causes out.
+#include <malloc.h>
+
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
@@ -47,6 +49,8 @@ void compare(runtime::Process& process, diagnosis::LiveDiagnoser& diagnoser, con
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A pass or a look at the sensors needs tens of megabytes for a moment: large blocks go back to the system.
+  mallopt(M_MMAP_THRESHOLD, 128 * 1024);
   return runtime::main("diagnoser", argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
