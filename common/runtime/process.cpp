@@ -63,6 +63,7 @@ void Process::add_speech(const std::string& channel, const std::string& type) {
 }
 
 void Process::on_restart(std::function<void()> callback) { state_->restart = std::move(callback); }
+void Process::on_real_time(std::function<void(double)> callback) { state_->real_time = std::move(callback); }
 void Process::on_end(std::function<void()> callback) { state_->end = std::move(callback); }
 void Process::waits_with(Wait wait) { state_->wait = std::move(wait); }
 void Process::stop() { state_->ended = true; }
@@ -222,6 +223,7 @@ void Process::run_live() {
     if (!state_->wait) {
       state_->live->wait(state_->stop->descriptor(), kWaitMs);
     } else {
+  Clock::time_point last_call{};
       std::vector<int> descriptors = state_->live->descriptors();
       descriptors.push_back(state_->stop->descriptor());
       state_->wait(descriptors, state_->live->pending() ? 0 : kWaitMs);
@@ -237,6 +239,11 @@ void Process::run_live() {
   }
 }
 
+    const auto now = Clock::now();
+    if (state_->real_time && now - last_call >= std::chrono::milliseconds{100}) {
+      last_call = now;
+      state_->real_time(std::chrono::duration<double>(now.time_since_epoch()).count());
+    }
 // As run_live(), but messages wait until the simulator announces the phase that they belong to.
 void Process::run_lockstep() {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();  // even "latest" channels keep every message

@@ -69,6 +69,9 @@ class Process {
 
   /// Called when message time jumps back by more than a second: a log started over.
   void on_restart(std::function<void()> callback);
+  /// Called some ten times a second in real time, with seconds of a steady clock, whatever comes; never from a log nor
+  /// in lockstep, where nothing may depend on the wall's time.
+  void on_real_time(std::function<void(double now)> callback);
   /// Called once at the end of the input or at a stop, while publishing is still possible.
   void on_end(std::function<void()> callback);
 

@@ -73,6 +73,10 @@ int main(int argc, char** argv) {
     process.on_health([&]() -> runtime::Process::Condition {
       return {.unhealthy = "", .detail = std::string{name(supervisor.phase())} + ": " + supervisor.reason()};
     });
+    process.on_real_time([&](double now) {
+      supervisor.watch(now);
+      tell();
+    });
     process.on_restart([&] { supervisor.reset(); });
     process.run();
   });
