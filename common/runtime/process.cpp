@@ -68,6 +68,10 @@ void Process::on_end(std::function<void()> callback) { state_->end = std::move(c
 void Process::waits_with(Wait wait) { state_->wait = std::move(wait); }
 void Process::stop() { state_->ended = true; }
 void Process::on_health(std::function<Condition()> ask) { state_->condition = std::move(ask); }
+void Process::goes_by(const std::string& name) {
+  state_->known_as = name;
+  state_->twins = Twins{name, state_->host, getpid()};
+}
 void Process::tell_health() { report_health("running", ""); }
 void Process::log_info(const std::string& text) { state_->logger.info(text); }
 void Process::log_warning(const std::string& text) { state_->logger.warn(text); }
@@ -219,11 +223,11 @@ void Process::run_live() {
   state_->out.emplace(state_->arguments.out);
   state_->live.emplace(state_->arguments.in, subscriptions);
   introduce(wall_clock());
+  Clock::time_point last_call{};
   while (!state_->stop->raised() && !state_->ended) {
     if (!state_->wait) {
       state_->live->wait(state_->stop->descriptor(), kWaitMs);
     } else {
-  Clock::time_point last_call{};
       std::vector<int> descriptors = state_->live->descriptors();
       descriptors.push_back(state_->stop->descriptor());
       state_->wait(descriptors, state_->live->pending() ? 0 : kWaitMs);
@@ -235,15 +239,15 @@ void Process::run_live() {
         watch_twins(message->bytes);
       }
     }
-    if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
-  }
-}
-
     const auto now = Clock::now();
     if (state_->real_time && now - last_call >= std::chrono::milliseconds{100}) {
       last_call = now;
       state_->real_time(std::chrono::duration<double>(now.time_since_epoch()).count());
     }
+    if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
+  }
+}
+
 // As run_live(), but messages wait until the simulator announces the phase that they belong to.
 void Process::run_lockstep() {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();  // even "latest" channels keep every message

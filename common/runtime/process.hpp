@@ -87,6 +87,8 @@ class Process {
     std::string detail;
   };
   void on_health(std::function<Condition()> ask);
+  /// HEALTH says this name instead of the process's: of one that may run more than once on a bus, each its own.
+  void goes_by(const std::string& name);
   /// Says HEALTH now, not at the next full second: the condition has changed.
   void tell_health();
 

@@ -70,6 +70,7 @@ struct Process::State {
   Clock::time_point last_health{};
   std::string host{host_name()};
   Usage usage{};
+  std::string known_as{name};
   Twins twins{name, host, getpid()};
 };
 
