@@ -69,7 +69,7 @@ TEST_CASE("needs: a process that falls silent takes the thrust, then ends the tr
     CHECK(bus.loop.supervisor.reason().starts_with("not armed: " + victim + " is silent"));
     bus.alive.insert(victim);
     bus.run(1.0);
-    CHECK_FALSE(bus.loop.thrust());  // not without being armed
+    CHECK_FALSE(bus.loop.thrust());           // not without being armed
     bus.loop.plant.place({0.2, -0.1, 0.75});  // it has floated up
     bus.run(0.1);
     bus.loop.arm();
