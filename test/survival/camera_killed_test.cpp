@@ -98,7 +98,9 @@ TEST_CASE("drivers, pictures: camera_driver and vision are killed and halted, co
   }
   REQUIRE(!run.log.model.empty());
   REQUIRE(!still.log.model.empty());
-  test::check_agree(run.log.model.back(), still.log.model.back());
+  // Pictures are stamped as they arrive: on a busy machine late, by what no interval contains.
+  constexpr double kStamps = 0.1;
+  test::check_agree(run.log.model.back(), still.log.model.back(), kStamps);
 }
 
 }  // namespace fathom
