@@ -23,6 +23,10 @@ double heading_of(const StateEstimate& state) {
   return std::atan2(ahead.y(), ahead.x());
 }
 
+std::string words(const Needs::Trouble& trouble) {
+  return trouble.process + " " + trouble.what + "; " + trouble.remedy;
+}
+
 std::string joined(const std::vector<std::string>& parts) {
   std::string all;
   for (const std::string& part : parts) all += (all.empty() ? "" : "; ") + part;
@@ -59,7 +63,8 @@ Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle&
       fence_{settings.fence},
       hold_{settings.hold, settings.largest},
       designer_{settings.design, vehicle, settings.largest, settings.seed},
-      signals_(6) {
+      signals_(6),
+      needs_{settings.needs, settings.silence} {
   if (token_.empty()) throw InputError("supervisor: the operator's token is empty; give a --config file with operator");
   if (settings_.schedule.empty()) throw InputError("supervisor: the schedule is empty");
   for (const Mode& mode : settings_.schedule) {
@@ -79,25 +84,27 @@ void Supervisor::hear(const ModelEstimate& model) {
   since_model_ = 0.0;
 }
 
-void Supervisor::hear(const Health& health) {
-  if (std::find(settings_.needs.begin(), settings_.needs.end(), health.process) == settings_.needs.end()) return;
-  last_words_[health.process] = health.utime;
-  if (health.state == "running") {
-    unhealthy_.erase(health.process);
-  } else {
-    unhealthy_[health.process] = health.state;
-  }
-}
+void Supervisor::hear(const Health& health) { needs_.hear(health); }
 
-// By the clock of HEALTH itself: states may come faster than the wall's time goes.
-std::string Supervisor::silent() const {
-  constexpr double kSilence = 3.0;  // s behind the others
-  Utime newest = 0;
-  for (const auto& [process, utime] : last_words_) newest = std::max(newest, utime);
-  for (const auto& [process, utime] : last_words_) {
-    if (seconds_between(utime, newest) > kSilence) return process;
+// Where no STATE comes there is no step either; somebody must say that the trial is over.
+void Supervisor::watch(double now) {
+  constexpr double kAway = 1.0;  // s; it was this process that stood still
+  needs_.watch(now);
+  const double passed = watched_ ? now - *watched_ : 0.0;
+  watched_ = now;
+  if (state_.utime != state_seen_ || !armed_) {
+    state_came_ = now;
+  } else if (passed > kAway) {
+    state_came_ += passed;
   }
-  return "the identifier";
+  state_seen_ = state_.utime;
+  if (now - state_came_ <= settings_.patience) return;
+  if (const auto trouble = needs_.trouble()) {
+    stop(Phase::kAborted, words(*trouble));
+  } else {
+    stop(Phase::kLost, "no STATE came for " + std::to_string(std::lround(now - state_came_)) +
+                           " s: is the attitude sensor well? then arm again");
+  }
 }
 
 void Supervisor::stop(Phase phase, const std::string& reason) {
@@ -283,6 +290,7 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   const bool finite = state.p_WB.allFinite() && state.nu.allFinite() && state.q_WB.coeffs().allFinite();
   if (!finite || (has_state_ && state.utime <= state_.utime)) return output_;
   const double heading = heading_of(state);
+  const double gap = has_state_ ? seconds_between(state_.utime, state.utime) : 0.0;
   if (has_state_) turned_ += wrap_angle(heading - last_heading_);
   last_heading_ = heading;
   state_ = state;
@@ -298,26 +306,26 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
     if (!stopping || now() > kSayStopped) output_.command.reset();
     return output_;
   }
-  const auto ended = std::find_if(unhealthy_.begin(), unhealthy_.end(),
-                                  [](const auto& process) { return process.second != "unhealthy"; });
-  const auto sick = ended != unhealthy_.end() ? ended : unhealthy_.begin();
-  const bool usable = state.valid && unhealthy_.empty();
+  const auto trouble = needs_.trouble();
+  const bool usable = state.valid && !trouble;
   if (!usable && lost_since_ == 0) lost_since_ = state.utime;
   const bool too_long = !usable && seconds_between(lost_since_, state.utime) > settings_.patience;
-  if (ended != unhealthy_.end() || (too_long && !unhealthy_.empty())) {
-    stop(Phase::kAborted, sick->first + " is " + sick->second);
+  if (too_long && trouble) {
+    stop(Phase::kAborted, words(*trouble));
   } else if (const std::string why = state.valid ? fence_.outside(state, turned_) : ""; !why.empty()) {
     stop(Phase::kAborted, "left the envelope: " + why);
-  } else if (too_long) {
+  } else if (too_long || gap > settings_.patience) {
     stop(Phase::kLost, "the state was lost; arm again");
   } else if (usable && settings_.model_patience > 0.0 && phase_ == Phase::kExcite &&
              since_model_ > settings_.model_patience) {
-    stop(Phase::kAborted, silent() + " is silent: no MODEL came");
+    const std::string silent = needs_.behind();
+    stop(Phase::kAborted, (silent.empty() ? "the identifier" : silent) + " is silent: no MODEL came");
   }
   since_model_ = state.valid && phase_ == Phase::kExcite ? since_model_ + dt : 0.0;
   if (!armed_ || !usable) {  // without thrust until it is, not forever
     say(Vector6d::Zero(), Vector6d::Zero(), false);
     if (armed_) output_.excitation->phase = name(Phase::kLost);
+    if (armed_ && trouble) output_.excitation->reason = "no thrust: " + trouble->process + " " + trouble->what;
     return output_;
   }
   if (lost_since_ != 0) {  // back again: where a mode begins, not where it was cut

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "common/excitation/fence.hpp"
 #include "common/excitation/hold.hpp"
 #include "common/excitation/leaving.hpp"
+#include "common/excitation/needs.hpp"
 #include "common/excitation/paper_signal.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/commands.hpp"
@@ -51,7 +51,8 @@ struct SupervisorSettings {
   double order_age{5.0};           ///< s that an order may be old
   int flights{0};                  ///< proposed segments that may be flown at the end without an order
   double open_range{8.0};          ///< m around the start where the site has no walls
-  std::vector<std::string> needs;  ///< processes that must not be unhealthy
+  std::vector<std::string> needs;  ///< processes that must be well
+  double silence{5.0};             ///< s without HEALTH after which one of them counts as gone, in real time
   HoldSettings hold;
   FenceSettings fence;
   LeavingSettings leaving;
@@ -91,6 +92,8 @@ class Supervisor {
   void hear(const ModelEstimate& model);
   void hear(const Operator& order);
   void hear(const Health& health);
+  /// In real time alone, some ten times a second, by any steady clock [s]: what has ceased to come is missed here.
+  void watch(double now);
   /// What the diagnoser suspects is named beside a residual that does not fit; what it proposes may be flown.
   void hear(const EffectRanking& ranking);
   /// A log started over: disarmed, nothing known.
@@ -122,8 +125,6 @@ class Supervisor {
   void take_off();
   void land(const std::string& how);
   void finish(const std::string& reason);
-  /// Who keeps MODEL from coming.
-  [[nodiscard]] std::string silent() const;
   void stop(Phase phase, const std::string& reason);
   void enter(std::size_t mode);
   void begin();
@@ -158,8 +159,10 @@ class Supervisor {
   bool armed_{false};
   std::int64_t last_sequence_{};
   std::optional<Operator> pending_;  // an order to arm waits for the next state
-  std::map<std::string, std::string> unhealthy_;
-  std::map<std::string, Utime> last_words_;  ///< HEALTH of those that are needed
+  Needs needs_;
+  std::optional<double> watched_{};  // s
+  double state_came_{};              // s, as far as watch() has seen
+  Utime state_seen_{};
   StateEstimate state_;
   bool has_state_{false};
   double turned_{}, last_heading_{};

@@ -71,7 +71,8 @@ bool Supervisor::arm() {
   std::string why;
   if (!state_.valid) why = "the state is not valid";
   if (why.empty()) why = fence_.outside(state_, 0.0);
-  if (why.empty() && !unhealthy_.empty()) why = unhealthy_.begin()->first + " is " + unhealthy_.begin()->second;
+  if (const auto trouble = needs_.trouble(); why.empty() && trouble)
+    why = trouble->process + " " + trouble->what + "; " + trouble->remedy;
   if (!why.empty()) {
     reason_ = "not armed: " + why;
     return false;

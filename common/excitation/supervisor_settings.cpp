@@ -82,6 +82,7 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   s.order_age = config.positive("order_age", "s");
   s.open_range = config.positive("open_range", "m");
   s.needs = config.texts("needs");
+  if (config.has("silence")) s.silence = config.positive("silence", "s");
   s.fence = fence_from(config.section("fence"), vehicle, site);
   const Config hold = config.section("hold");
   s.hold.bandwidth = hold.positive("bandwidth", "rad/s");

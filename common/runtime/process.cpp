@@ -63,10 +63,15 @@ void Process::add_speech(const std::string& channel, const std::string& type) {
 }
 
 void Process::on_restart(std::function<void()> callback) { state_->restart = std::move(callback); }
+void Process::on_real_time(std::function<void(double)> callback) { state_->real_time = std::move(callback); }
 void Process::on_end(std::function<void()> callback) { state_->end = std::move(callback); }
 void Process::waits_with(Wait wait) { state_->wait = std::move(wait); }
 void Process::stop() { state_->ended = true; }
 void Process::on_health(std::function<Condition()> ask) { state_->condition = std::move(ask); }
+void Process::goes_by(const std::string& name) {
+  state_->known_as = name;
+  state_->twins = Twins{name, state_->host, getpid()};
+}
 void Process::tell_health() { report_health("running", ""); }
 void Process::log_info(const std::string& text) { state_->logger.info(text); }
 void Process::log_warning(const std::string& text) { state_->logger.warn(text); }
@@ -218,6 +223,7 @@ void Process::run_live() {
   state_->out.emplace(state_->arguments.out);
   state_->live.emplace(state_->arguments.in, subscriptions);
   introduce(wall_clock());
+  Clock::time_point last_call{};
   while (!state_->stop->raised() && !state_->ended) {
     if (!state_->wait) {
       state_->live->wait(state_->stop->descriptor(), kWaitMs);
@@ -232,6 +238,11 @@ void Process::run_live() {
       } else {
         watch_twins(message->bytes);
       }
+    }
+    const auto now = Clock::now();
+    if (state_->real_time && now - last_call >= std::chrono::milliseconds{100}) {
+      last_call = now;
+      state_->real_time(std::chrono::duration<double>(now.time_since_epoch()).count());
     }
     if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
   }

@@ -69,6 +69,9 @@ class Process {
 
   /// Called when message time jumps back by more than a second: a log started over.
   void on_restart(std::function<void()> callback);
+  /// Called some ten times a second in real time, with seconds of a steady clock, whatever comes; never from a log nor
+  /// in lockstep, where nothing may depend on the wall's time.
+  void on_real_time(std::function<void(double now)> callback);
   /// Called once at the end of the input or at a stop, while publishing is still possible.
   void on_end(std::function<void()> callback);
 
@@ -84,6 +87,8 @@ class Process {
     std::string detail;
   };
   void on_health(std::function<Condition()> ask);
+  /// HEALTH says this name instead of the process's: of one that may run more than once on a bus, each its own.
+  void goes_by(const std::string& name);
   /// Says HEALTH now, not at the next full second: the condition has changed.
   void tell_health();
 

@@ -17,7 +17,7 @@ void Process::report_health(const std::string& state, const std::string& reason)
   const auto now = Clock::now();
   fathom_lcm::health_t health{};
   health.utime = wall_clock();
-  health.process = state_->name;
+  health.process = state_->known_as;
   health.host = state_->host;
   health.pid = getpid();
   const Usage::Figures used = state_->usage.measure();

@@ -54,6 +54,7 @@ struct Process::State {
   std::vector<Config> sections{};  // handed out by config(), to be checked for unread keys
   std::function<void()> restart{};
   std::function<void()> end{};
+  std::function<void(double)> real_time{};
   Wait wait{};
   std::function<Condition()> condition{};
   bool ended{false};
@@ -69,6 +70,7 @@ struct Process::State {
   Clock::time_point last_health{};
   std::string host{host_name()};
   Usage usage{};
+  std::string known_as{name};
   Twins twins{name, host, getpid()};
 };
 

@@ -76,6 +76,8 @@ void run(runtime::Process& process, const Options& options) {
   process.waits_with([&](std::span<const int> descriptors, int milliseconds) {
     if (!server) {  // here, since --interface listens nowhere
       server = std::make_unique<board::Server>(options.host, options.port);
+      // Two people may look on: no board is another one's twin.
+      process.goes_by("board@" + runtime::host_name() + ":" + std::to_string(server->port()));
       process.log_info("look at http://" + (options.host == "0.0.0.0" ? runtime::host_name() : options.host) + ":" +
                        std::to_string(server->port()) + "/");
     }

@@ -1,4 +1,4 @@
-// camera_driver: pictures of a camera, a video or a folder as JPEG on CAMERA.
+// camera_driver: pictures of a camera (of this host or on the network), a video or a folder as JPEG on CAMERA.
 #include <poll.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "common/vision/jpeg.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
+#include "processes/camera_driver/network_camera.hpp"
 
 using namespace fathom;
 
@@ -158,7 +159,21 @@ class CameraDriver {
 int main(int argc, char** argv) {
   return runtime::main("camera_driver", argc, argv, [](runtime::Process& process) {
     process.publishes<fathom_lcm::camera_t>(wire::kCamera);
-    const Settings settings = Settings::from(process.config());
+    const Config config = process.config();
+    if (config.has("device") && config.text("device").starts_with("tcp:")) {
+      camera_driver::NetworkSettings settings{
+          .camera = config.text("camera"),
+          .endpoint = link::Endpoint::parse(config.text("device"), config.where("device")),
+          .latency = config.not_negative("latency", "s")};
+      std::unique_ptr<camera_driver::NetworkCamera> camera;  // not before it runs: --interface connects nowhere
+      process.waits_with([&](std::span<const int> descriptors, int milliseconds) {
+        if (!camera) camera = std::make_unique<camera_driver::NetworkCamera>(process, settings);
+        camera->wait(descriptors, milliseconds);
+      });
+      process.on_health([&] { return camera ? camera->condition() : runtime::Process::Condition{}; });
+      return process.run();
+    }
+    const Settings settings = Settings::from(config);
     std::unique_ptr<CameraDriver> driver;
     process.waits_with([&](std::span<const int> descriptors, int milliseconds) {
       if (!driver) driver = std::make_unique<CameraDriver>(process, settings);

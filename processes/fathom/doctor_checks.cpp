@@ -58,6 +58,16 @@ std::string round_trip() {
   return "what is sent does not come back";
 }
 
+Finding check_camera(const std::string& device) {
+  if (device.find("://") != std::string::npos) return {Grade::kWell, "camera", device + " (not tried)", ""};
+  if (!fs::exists(device)) return {Grade::kBad, "camera", device + " is not there", "plugged in? see: ls /dev/video*"};
+  if (access(device.c_str(), R_OK | W_OK) != 0) {
+    return {Grade::kBad, "camera", device + " may not be opened by you",
+            "sudo usermod -aG video $USER, then log in anew"};
+  }
+  return {Grade::kWell, "camera", device, ""};
+}
+
 Finding check_device(const std::string& driver, const std::string& link) {
   const auto colon = link.find("://");
   const std::string kind = link.substr(0, colon == std::string::npos ? 0 : colon);
@@ -205,6 +215,7 @@ std::vector<Finding> check_devices(const std::string& path) {
     if (!driver.ends_with("_driver") || !config.is_section(driver)) continue;
     const Config section = config.section(driver);
     if (section.has("link")) all.push_back(check_device(driver, section.text("link")));
+    if (section.has("device")) all.push_back(check_camera(section.text("device")));
   }
   if (all.empty())
     all.push_back({Grade::kRemark, "devices", path + " names no driver's link", "give the drivers' file"});

@@ -59,7 +59,8 @@ void order(const Options& options, bool enable, const std::string& word) {
     return console.excitation && (console.excitation->phase != before || console.excitation->reason != said);
   };
   console.listen(1.5, moved);
-  if (!console.excitation) throw InputError("no EXCITATION on the bus: is the supervisor running?");
+  if (!console.excitation)
+    throw InputError("no EXCITATION on the bus: are supervisor and estimator running? fathom status tells");
   print(*console.excitation);
   if (console.excitation->reason.find(excitation::kNotFlown) != std::string::npos)
     throw InputError("the supervisor goes on as before; see above");

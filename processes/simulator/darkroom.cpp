@@ -1,5 +1,7 @@
 #include "processes/simulator/darkroom.hpp"
 
+#include <string_view>
+
 #include "common/base/config.hpp"
 #include "common/vision/jpeg.hpp"
 
@@ -26,6 +28,13 @@ Darkroom::Darkroom(const model::Vehicle& vehicle, const model::Site& site, const
   const model::CameraMount& camera = vehicle.mounts.cameras.front();
   const auto& laser = vehicle.mounts.laser;
   renderer_.emplace(site, camera.lens, laser && laser->camera == camera.name ? laser : std::nullopt, look, setup.seed);
+}
+
+// What the line does not take is lost: no camera waits for who does not read.
+void Darkroom::send(const simulation::Exposure& exposure) {
+  const Camera picture = develop(exposure);
+  (void)line_->wait(0.0);
+  (void)line_->send(std::string_view{reinterpret_cast<const char*>(picture.jpeg.data()), picture.jpeg.size()});
 }
 
 Camera Darkroom::develop(const simulation::Exposure& exposure) {

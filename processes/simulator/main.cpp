@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
         const Config config = process.config();
         simulation::Simulator simulator{vehicle, site, config, options.setup};
         simulator::Darkroom darkroom{vehicle, site, config, options.setup};
+        if (!options.camera_at.empty()) darkroom.open_line(options.camera_at);
         std::optional<simulator::Instruments> instruments;
         if (!options.drivers.empty()) instruments.emplace(options.drivers, vehicle, simulator.sensors());
         simulator::Stage stage{process, simulator, darkroom, options, instruments ? &*instruments : nullptr};

@@ -19,6 +19,9 @@ void Options::add_to(CLI::App& app) {
       ->take_all()
       ->expected(1);
   app.add_flag("--camera", setup.pictures, "pictures on CAMERA in place of what is measured in them");
+  app.add_option("--camera-at", camera_at,
+                 "tcp:PORT: as --camera, and the camera sends its pictures there for camera_driver, in real time")
+      ->each([this](const std::string&) { setup.pictures = true; });
   app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
   app.add_flag("--until-done", until_done, "end when the supervisor says that it is done, aborted or lost");
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
@@ -68,6 +71,9 @@ void Options::check() const {
   }
   if (!drivers.empty() && (speed != 1.0 || !wait_for.empty())) {
     throw InputError("--bytes: instruments speak in real time; leave out --speed and --wait-for");
+  }
+  if (!camera_at.empty() && (speed != 1.0 || !wait_for.empty() || !drivers.empty())) {
+    throw InputError("--camera-at: a camera sends in real time; leave out --speed, --wait-for and --bytes");
   }
   if (speed == 0.0 && wait_for.empty()) {
     throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");

@@ -60,7 +60,11 @@ const char* speak(runtime::Process& process, Darkroom& darkroom, const simulatio
   return std::visit(
       [&](const auto& one) {
         if constexpr (std::is_same_v<std::decay_t<decltype(one)>, simulation::Exposure>) {
-          process.publish(channel_of(one), wire::encode(darkroom.develop(one)));
+          if (darkroom.has_line()) {
+            darkroom.send(one);
+          } else {
+            process.publish(channel_of(one), wire::encode(darkroom.develop(one)));
+          }
         } else {
           process.publish(channel_of(one), wire::encode(one));
         }

@@ -99,7 +99,7 @@ void Stage::hear(const fathom_lcm::health_t& health) {
 void Stage::wait(std::span<const int> descriptors, int milliseconds) {
   if (state_ == State::kRunning || state_ == State::kEnding) {
     if (milliseconds == 0) return;  // messages are here already
-    if (instruments_ != nullptr) {
+    if (has_lines()) {
       run_lines(descriptors, milliseconds);
     } else if (conductor_) {
       conduct(descriptors, milliseconds);
@@ -137,10 +137,11 @@ std::string Stage::missing() const {
 void Stage::begin() {
   state_ = State::kRunning;
   first_tick_ = last_answer_ = Clock::now();
-  if (instruments_ != nullptr) {
+  if (has_lines()) {
     const Utime planned = simulator_.origin(), origin = wall_utime();
     simulator_.begin_at(origin);
-    instruments_->begin_at(origin);
+    darkroom_.begin_at(origin);
+    if (instruments_ != nullptr) instruments_->begin_at(origin);
     for (Operator& order : schedule_) {
       order.utime += origin - planned;
       order.sequence += origin - planned;
@@ -158,14 +159,14 @@ Stage::Clock::time_point Stage::wall(Utime utime) const {
 void Stage::speak_when_due() {
   for (; !waiting_.empty() && wall(waiting_.front().due) <= Clock::now(); waiting_.pop_front()) {
     const simulation::Sample& sample = waiting_.front().sample;
-    if (!instruments_->say(sample)) speak(process_, darkroom_, sample);
+    if (instruments_ == nullptr || !instruments_->say(sample)) speak(process_, darkroom_, sample);
   }
 }
 
 // As run(), but everything at its own time: drivers stamp what arrives.
 void Stage::run_lines(std::span<const int> descriptors, int milliseconds) {
   const auto now = Clock::now();
-  instruments_->serve(seconds(now.time_since_epoch()));
+  if (instruments_ != nullptr) instruments_->serve(seconds(now.time_since_epoch()));
   speak_when_due();
   if (due() <= now) {
     if (seconds(now - due()) > kTooLate * static_cast<double>(simulator_.interval()) * 1e-6) ++late_;
@@ -243,7 +244,7 @@ void Stage::advance() {
   const std::vector<simulation::Sample>& samples = simulator_.step();
   said_.clear();
   give_orders();
-  if (instruments_ != nullptr) {
+  if (has_lines()) {
     for (std::size_t i = 0; i < samples.size(); ++i) waiting_.push_back({simulator_.due()[i], samples[i]});
     return tell_changes();
   }
@@ -266,7 +267,7 @@ runtime::Process::Condition Stage::condition() const {
   std::string unhealthy = simulator_.complaint();
   if (unhealthy.empty() && late_ > 0) {
     unhealthy = std::to_string(late_) + " control intervals came late; " +
-                (instruments_ != nullptr ? "this machine has too much else to do" : "lower --speed");
+                (has_lines() ? "this machine has too much else to do" : "lower --speed");
   }
   return {.unhealthy = unhealthy, .detail = text};
 }

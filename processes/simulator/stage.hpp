@@ -56,6 +56,8 @@ class Stage {
   void give_orders();
   void tell_changes();
   [[nodiscard]] bool interval_over() const;
+  /// Drivers hear it, and stamp what they hear with the wall's time.
+  [[nodiscard]] bool has_lines() const { return instruments_ != nullptr || darkroom_.has_line(); }
   [[nodiscard]] bool driven() const { return instruments_ != nullptr && instruments_->driven(); }
   /// Who must be here before the run begins, and is not; empty when all are.
   [[nodiscard]] std::string missing() const;

@@ -59,19 +59,24 @@ int main(int argc, char** argv) {
       if (!effects) return process.reject(wire::kEffects);
       supervisor.hear(*effects);
     });
-    process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
+    // Neither an operator's clock nor that of another host is ours: a jump in it starts nothing over.
+    process.listens_to<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
       const auto order = wire::decode(message);
       if (!order) return process.reject(wire::kOperator);
       supervisor.hear(*order);
       tell();
     });
-    process.on<fathom_lcm::health_t>(wire::kHealth, [&](const auto& message) {
+    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&](const auto& message) {
       const auto health = wire::decode(message);
       if (!health) return process.reject(wire::kHealth);
       supervisor.hear(*health);
     });
     process.on_health([&]() -> runtime::Process::Condition {
       return {.unhealthy = "", .detail = std::string{name(supervisor.phase())} + ": " + supervisor.reason()};
+    });
+    process.on_real_time([&](double now) {
+      supervisor.watch(now);
+      tell();
     });
     process.on_restart([&] { supervisor.reset(); });
     process.run();

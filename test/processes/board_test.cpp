@@ -2,11 +2,13 @@
 #include <doctest/doctest.h>
 #include <httplib.h>
 
+#include <algorithm>
 #include <atomic>
 #include <fathom_lcm/excitation_t.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
 
 #include "test/support/bus.hpp"
 #include "test/support/channels.hpp"
@@ -71,6 +73,8 @@ fathom_lcm::health_t health(const std::string& name, int pid) {
   message.state = "running";
   return message;
 }
+
+bool is_board(const Json& entry) { return entry["name"].get<std::string>().starts_with("board@"); }
 
 int connected(int port) {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -204,17 +208,50 @@ TEST_CASE(
   CHECK(well == 50);
   const Json own = board.until(bus, [&](const Json& all) {
     for (const Json& each : all.value("processes", Json::array())) {
-      if (each["name"] == "board" && each["received"] >= kSaid) return true;
+      if (is_board(each) && each["received"] >= kSaid) return true;
     }
     return false;
   });
   for (const Json& each : own["processes"]) {
-    if (each["name"] != "board") continue;
+    if (!is_board(each)) continue;
     CHECK(each["received"] >= kSaid);
     CHECK(each["dropped"] == 0);
     CHECK(each["memory"] < 100'000'000);
   }
   for (const int each : bad) ::close(each);
+}
+
+TEST_CASE("board: two on one bus are both well, and a true twin of one is still told") {
+  Bus bus;
+  const Running one{bus}, two{bus};
+  const auto boards = [](const Json& all) {
+    std::vector<Json> found;
+    for (const Json& each : all.value("processes", Json::array())) {
+      if (is_board(each)) found.push_back(each);
+    }
+    return found;
+  };
+  for (int i = 0; i < 40; ++i) bus.listen(0.1);  // longer than twins need to hear each other
+  for (const Running* board : {&one, &two}) {
+    const Json shown = board->until(bus, [&](const Json& all) { return boards(all).size() == 2; });
+    REQUIRE(boards(shown).size() == 2);
+    for (const Json& each : boards(shown)) {
+      CAPTURE(each.dump());
+      CHECK(each["healthy"] == true);
+      CHECK(each["second"] == false);
+      CHECK(each["state"] == "running");
+    }
+  }
+  CHECK(boards(one.json())[0]["name"] != boards(one.json())[1]["name"]);
+  fathom_lcm::health_t twin = health(boards(one.json())[0]["name"], 7);
+  twin.host = "elsewhere";
+  for (int i = 0; i < 20; ++i) {
+    bus.publish("HEALTH", twin);
+    bus.listen(0.1);
+  }
+  const Json told = one.json();
+  CHECK(std::any_of(told["processes"].begin(), told["processes"].end(),
+                    [](const Json& each) { return is_board(each) && each["second"] == true; }));
 }
 
 TEST_CASE("board: a client that does not go on cannot keep it from stopping") {

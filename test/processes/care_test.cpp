@@ -46,13 +46,16 @@ TEST_CASE("fathom repair-log: keeps what is before and behind the damage, counts
 
 TEST_CASE("fathom doctor: names what is missing, with the command that mends it") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("drivers.yaml"), "ahrs_driver: {link: 'serial:///dev/no-such-line?baud=9600'}\n");
+  test::write_bytes(scratch.path("drivers.yaml"),
+                    "ahrs_driver: {link: 'serial:///dev/no-such-line?baud=9600'}\n"
+                    "camera_driver: {camera: down, device: /dev/no-such-camera}\n");
   const auto ran = shell("PATH=/nowhere " + program("fathom") + " doctor --run /no/such/folder --config " +
                          scratch.path("drivers.yaml") + " --operator " + file("config/operators/simulated.yaml"));
   CHECK(ran.code == 1);
   CHECK_MESSAGE(ran.says("lcm-logger is missing (records); sudo apt-get install liblcm-bin"), ran.text);
   CHECK(ran.says("/no/such/folder: No such file or directory; mkdir -p /no/such/folder"));
   CHECK(ran.says("/dev/no-such-line is not there"));
+  CHECK(ran.says("/dev/no-such-camera is not there"));
   CHECK(ran.says("the one that everybody knows"));
   if (shell("unshare -rn true").code != 0) return;
   const auto alone = shell("unshare -rn " + program("fathom") + " doctor");

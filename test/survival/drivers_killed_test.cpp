@@ -8,67 +8,30 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "common/wire/log_reader.hpp"
 #include "test/support/private_network.hpp"
 #include "test/survival/agree.hpp"
+#include "test/survival/deeds.hpp"
 
 namespace fathom {
 namespace {
 
+using test::Deed;
+using test::deeds_in;
 using test::on_a_network;
 using test::private_network;
 using test::Scratch;
+using test::seconds;
+using test::Trial;
 
-/// Trials in deep water, where every driver has an instrument: `still` in lockstep, `out` by bytes, with `deeds` done
-/// meanwhile. They may use in_mode MODE, slay DRIVER [SIGNAL] and arm.
+/// Trials in deep water, where every driver has an instrument.
 std::string trials(const std::string& excitation, int limit, const std::string& environment, const std::string& deeds) {
   const std::string words = "deep seabotix_lbv150 " + excitation, end = " 7 " + std::to_string(limit);
-  const std::string live = environment + " FATHOM_BIN='" + FATHOM_BINARY_DIR +
-                           "/bin' FATHOM_LIVE_BUS=$LCM_DEFAULT_URL " + test::file("scripts/live");
-  return live + " $PWD/still " + words + " lockstep" + end + " >still.txt 2>&1 || cat still.txt\n" +  //
-         live + " $PWD/out " + words + " bytes" + end + " >live.txt 2>&1 & l=$!\n" +
-         "sleep 1; $fathom watch 2>watch.txt & w=$!\n"
-         "in_mode() { while kill -0 $l 2>/dev/null; do tail -n 1 watch.txt | grep -q \"excite *$1\" && return; sleep "
-         "0.05; "
-         "done; echo \"no mode $1\"; }\n"
-         "slay() { local p=fathom-$1 old at; old=$(pid $p); at=$(date +%s.%N); kill -${2:-9} $old || echo \"no $1\"; "
-         "until_new $p $old; echo \"slain $1 $at $(date +%s.%N)\"; }\n"
-         "arm() { $fathom arm --operator " +
-         test::file("config/operators/simulated.yaml") + "; }\n" + deeds + "wait $l; echo \"code $?\"; kill $w\n";
+  return test::trials(words + " lockstep" + end, words + " bytes" + end, environment, deeds);
 }
-
-struct Deed {
-  std::string name;
-  double died{}, back{};  ///< s since the epoch
-};
-
-std::vector<Deed> deeds_in(const std::string& text) {
-  std::vector<Deed> deeds;
-  std::istringstream lines{text};
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words{line};
-    std::string slain;
-    Deed deed;
-    if (words >> slain >> deed.name >> deed.died >> deed.back && slain == "slain") deeds.push_back(deed);
-  }
-  return deeds;
-}
-
-double seconds(Utime utime) { return 1e-6 * static_cast<double>(utime); }
-
-struct Trial {
-  Recording log;
-  double origin{};  ///< s since the epoch
-
-  explicit Trial(const std::string& folder) : log{wire::read_log(folder + "/run.lcmlog").recording} {
-    origin = seconds(nlohmann::json::parse(test::read_bytes(folder + "/truth.json"))["origin_utime"].get<Utime>());
-  }
-};
 
 /// Times of a channel's samples [s of the run], in their order; without those of the beginning, while lines come up.
 template <class Sample>

@@ -198,6 +198,49 @@ TEST_CASE(
   MESSAGE("thrust ended " << seconds_between(died, last_push) << " s after the supervisor's last command");
 }
 
+TEST_CASE("launch: in real time without a deputy, who brings nobody back, a needed process that dies ends the trial") {
+  if (!private_network()) return;
+  const Scratch scratch;
+  const auto ran = on_a_network(
+      scratch,
+      "share=${configs%procman}config programs=${deputy%deputy}\n"
+      "site=\"--config $share/vehicles/seabotix_lbv150.yaml --config $share/sites/tank.yaml\"\n"
+      "minds=\"--config $share/pipelines/tank.yaml --config $share/corrections/none.yaml\"\n"
+      "operator=\"--config $share/operators/simulated.yaml\"\n"
+      "identify() { ${programs}identifier $minds --config $share/vehicles/seabotix_lbv150.yaml 2>identifier.txt & "
+      "i=$!; }\n"
+      "${programs}estimator $minds $site 2>estimator.txt & identify\n"
+      "${programs}supervisor --config $share/pipelines/tank.yaml $site $operator 2>supervisor.txt &\n"
+      "${programs}recorder --file trial.lcmlog 2>recorder.txt & r=$!; sleep 1\n"
+      "${programs}simulator $operator --config $share/simulation/seabotix_lbv150.yaml $site --order 2=identify "
+      "--order 4=identify --order 6=identify >simulator.txt 2>&1 &\n"
+      "within 20 grep -q 'settles mode\\|goes to where' supervisor.txt; sleep 8; kill -9 $i; kill -0 $i\n"
+      "within 20 grep -q 'aborted: identifier is silent' supervisor.txt\n"
+      "arm() { $fathom arm --operator $share/operators/simulated.yaml; }\n"
+      "arm; echo \"armed $?\"; identify; sleep 2; arm; echo \"armed $?\"; kill -INT $r; wait $r; cat supervisor.txt\n",
+      90);
+  CHECK_FALSE(ran.says("not within"));
+  CHECK_MESSAGE(ran.says("aborted: identifier is silent: no HEALTH for 1"), ran.text);
+  CHECK(ran.says("not armed: identifier is silent: no HEALTH for 1"));
+  CHECK(ran.says("the sheriff's table tells why it does not run; then arm again"));
+  CHECK(ran.says("armed 0"));
+  const Recording run = wire::read_log(scratch.path("trial.lcmlog")).recording;
+  const auto lost = std::find_if(run.excitation.begin(), run.excitation.end(), [](const Excitation& each) {
+    return each.phase == "lost" && each.reason.starts_with("no thrust: identifier is silent");
+  });
+  const auto aborted = std::find_if(run.excitation.begin(), run.excitation.end(),
+                                    [](const Excitation& each) { return each.phase == "aborted"; });
+  REQUIRE(lost != run.excitation.end());
+  REQUIRE(aborted != run.excitation.end());
+  CHECK(seconds_between(run.model.front().utime, lost->utime) > 5.0);
+  constexpr double kLife = 0.5;  // s
+  for (const Thrusters& each : run.thrusters) {
+    const bool pushes = std::any_of(each.tau.begin(), each.tau.end(), [](double x) { return x != 0.0; });
+    if (seconds_between(lost->utime, each.utime) > kLife && each.utime < aborted->utime) CHECK_FALSE(pushes);
+  }
+  MESSAGE("no thrust " << seconds_between(lost->utime, aborted->utime) << " s before the abort");
+}
+
 TEST_CASE("launch: broken messages on every channel and a flood kill nobody, move nothing and are named") {
   if (!private_network()) return;
   const Scratch scratch;

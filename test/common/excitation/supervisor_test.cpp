@@ -70,7 +70,7 @@ TEST_CASE("supervisor: it does not arm on an invalid state, outside of the envel
   loop.run(0.1);
   loop.arm();
   loop.run(0.2);
-  CHECK(loop.supervisor.reason() == "not armed: identifier is unhealthy");
+  CHECK(loop.supervisor.reason() == "not armed: identifier is unhealthy; see to it, then arm again");
   loop.supervisor.hear(Health{.process = "identifier", .state = "running"});
   loop.arm();
   loop.run(0.2);
@@ -142,15 +142,24 @@ TEST_CASE("supervisor: beside a sick process there is no thrust; it goes on when
   loop.supervisor.hear(Health{.process = "estimator", .state = "unhealthy"});
   loop.run(loop.settings.supervisor.patience + 0.5);
   CHECK(loop.supervisor.phase() == Phase::kAborted);
-  CHECK(loop.supervisor.reason() == "estimator is unhealthy");
+  CHECK(loop.supervisor.reason() == "estimator is unhealthy; see to it, then arm again");
 
-  Loop dead;
-  dead.run(0.2);
-  dead.arm();
-  dead.run(20.0);
-  dead.supervisor.hear(Health{.process = "estimator", .state = "fault"});
-  dead.run(0.06);
-  CHECK(dead.supervisor.phase() == Phase::kAborted);  // it does not come back by itself
+  for (const bool back : {true, false}) {  // a deputy starts it again
+    CAPTURE(back);
+    Loop dead;
+    dead.run(0.2);
+    dead.arm();
+    dead.run(20.0);
+    dead.supervisor.hear(Health{.process = "estimator", .state = "fault", .detail = "no more memory"});
+    dead.run(0.06);
+    CHECK_FALSE(dead.thrust());
+    CHECK(dead.said->reason == "no thrust: estimator is fault: no more memory");
+    dead.run(3.0);
+    if (back) dead.supervisor.hear(Health{.process = "estimator", .state = "running"});
+    dead.run(dead.settings.supervisor.patience);
+    CHECK((dead.supervisor.phase() == Phase::kAborted) == !back);
+    CHECK(dead.thrust() == back);
+  }
 }
 
 TEST_CASE("supervisor: when states stop coming the last command dies by itself") {
@@ -185,8 +194,10 @@ TEST_CASE(
   CHECK(sick.thrust());
   sick.supervisor.hear(Health{.process = "estimator", .state = "fault"});
   sick.run(0.1);
-  CHECK(sick.supervisor.reason() == "estimator is fault");
   CHECK_FALSE(sick.thrust());
+  sick.run(sick.settings.supervisor.patience);
+  CHECK(sick.supervisor.reason() ==
+        "estimator is fault; start it, the sheriff's table tells why it does not run; then arm again");
 
   Loop broken;
   broken.run(0.2);

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "common/vision/jpeg.hpp"
+#include "common/vision/jpeg_stream.hpp"
 #include "common/vision/watch.hpp"
 #include "test/common/vision/scene.hpp"
 
@@ -31,6 +32,59 @@ TEST_CASE("JPEG: what was written is read, colour and grey") {
   CHECK(decode_jpeg(encode_jpeg(grey, 95), true, grey, back).empty());
   CHECK(back.empty());
   CHECK(grey.cols == 640);
+}
+
+TEST_CASE("JPEG: out of a stream come whole pictures, in whatever pieces they arrive and whatever is between") {
+  Renderer renderer{site(), lens(), std::nullopt, {}, 14};
+  std::vector<std::uint8_t> one = encode_jpeg(renderer.step(0.0, pose({0, 0, 0.4})), 90);
+  const std::vector<std::uint8_t> two = encode_jpeg(renderer.step(0.1, pose({0.1, 0, 0.4})), 90);
+  // A thumbnail in a segment of its own has an end before the end.
+  const std::vector<std::uint8_t> thumbnail{0xff, 0xe1, 0x00, 0x08, 0xff, 0xd8, 0xff, 0xd9, 0x00, 0x00};
+  one.insert(one.begin() + 2, thumbnail.begin(), thumbnail.end());
+  const std::string between = "\r\n--part\r\nContent-Type: image/jpeg\r\n\r\n";
+  std::vector<std::uint8_t> all;
+  const auto add = [&](const auto& bytes) { all.insert(all.end(), bytes.begin(), bytes.end()); };
+  add(between);
+  add(one);
+  add(between);
+  add(std::vector<std::uint8_t>(two.begin(), two.begin() + 5000));  // torn: the line was full
+  add(two);
+  add(one);
+  add(std::vector<std::uint8_t>(100, 0xff));
+  add(two);
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{4096}, all.size()}) {
+    CAPTURE(piece);
+    JpegStream stream;
+    std::vector<std::vector<std::uint8_t>> found;
+    for (std::size_t at = 0; at < all.size(); at += piece) {
+      stream.feed(std::span{all}.subspan(at, std::min(piece, all.size() - at)),
+                  [&](std::vector<std::uint8_t> bytes) { found.push_back(std::move(bytes)); });
+    }
+    REQUIRE(found.size() == 4);
+    CHECK(found[0] == one);
+    CHECK(found[1] == two);
+    CHECK(found[2] == one);
+    CHECK(found[3] == two);
+    CHECK(stream.torn() == 1);
+    CHECK_FALSE(stream.inside());
+  }
+}
+
+TEST_CASE("JPEG: a stream that never ends a picture is given up, and one that is opened anew begins anew") {
+  JpegStream stream;
+  int found = 0;
+  const auto count = [&](const std::vector<std::uint8_t>&) { ++found; };
+  stream.feed(std::vector<std::uint8_t>{0xff, 0xd8, 0xff, 0xda, 0x00, 0x02}, count);
+  const std::vector<std::uint8_t> endless(1U << 20U, 0x55);
+  for (int i = 0; i < 17; ++i) stream.feed(endless, count);
+  CHECK(stream.torn() == 1);
+  CHECK_FALSE(stream.inside());
+  stream.feed(std::vector<std::uint8_t>{0xff, 0xd8, 0xff}, count);
+  CHECK(stream.inside());
+  stream.restart();
+  stream.feed(std::vector<std::uint8_t>{0xff, 0xd9}, count);
+  CHECK(found == 0);
+  CHECK(stream.torn() == 2);
 }
 
 TEST_CASE("JPEG: damaged bytes are told as such, wherever the damage is") {

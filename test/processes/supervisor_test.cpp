@@ -1,0 +1,108 @@
+// The supervisor as a process on a bus in real time: whom it misses, and whose clock it does not believe.
+#include <doctest/doctest.h>
+
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+
+#include "common/wire/minds.hpp"
+#include "test/support/bus.hpp"
+
+namespace fathom {
+namespace {
+
+using test::Background;
+using test::Bus;
+using test::now;
+using test::program;
+using test::Scratch;
+
+/// Estimator, identifier and vehicle as far as the supervisor sees them: states in the tank's middle, HEALTH of each.
+struct Beside {
+  Bus bus;
+  Scratch scratch;
+  Background supervisor{scratch, "supervisor",
+                        program("supervisor") + " --config " + test::file("config/pipelines/tank.yaml") + " --config " +
+                            test::file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
+                            test::file("config/sites/tank.yaml") + " --config " +
+                            test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
+  bool vehicle{true};  // its driver says HEALTH
+
+  void health(const std::string& process, Utime utime) {
+    fathom_lcm::health_t message{};
+    message.utime = utime;
+    message.process = process;
+    message.host = "vehicle";
+    message.state = "running";
+    bus.publish("HEALTH", message);
+  }
+  void order(const std::string& token, Utime utime) {
+    fathom_lcm::operator_t message{};
+    message.utime = utime;
+    message.enable = true;
+    message.token = token;
+    message.sequence = utime;
+    bus.publish("OPERATOR", message);
+  }
+  void run(double seconds) {
+    for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
+      if (i % 20 == 0) {
+        for (const char* process : {"estimator", "identifier"}) health(process, now());
+        if (vehicle) health("thruster_driver", now());
+      }
+      StateEstimate state{.utime = now(), .valid = true};
+      state.p_WB = {0.0, 0.0, 0.75};
+      bus.publish("STATE", wire::encode(state));
+      bus.listen(0.05);
+    }
+  }
+  /// The newest that the supervisor said of itself.
+  [[nodiscard]] std::string said() const {
+    for (auto each = bus.health.rbegin(); each != bus.health.rend(); ++each) {
+      if (each->process == "supervisor") return each->detail;
+    }
+    return {};
+  }
+  [[nodiscard]] bool goes_on() const { return said().starts_with("approach: ") || said().starts_with("excite: "); }
+};
+
+constexpr char kToken[] = "only-for-simulation";
+
+}  // namespace
+
+TEST_CASE("supervisor: messages with another clock's time, and orders that nobody may give, leave a trial as it is") {
+  Beside beside;
+  beside.run(2.0);
+  beside.order(kToken, now());
+  beside.run(1.0);
+  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  constexpr Utime kMinute = 60'000'000;
+  for (int i = 0; i < 5; ++i) {  // a host whose clock is late, and somebody who tries
+    beside.health("board", now() - kMinute);
+    beside.order("guess", now() - kMinute);
+    beside.run(0.2);
+    CHECK_MESSAGE(beside.goes_on(), beside.said());
+  }
+}
+
+TEST_CASE(
+    "supervisor: a thruster driver that fell silent ends the trial, and it is not armed again before one speaks") {
+  Beside beside;
+  beside.run(2.0);
+  beside.order(kToken, now());
+  beside.run(1.0);
+  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  beside.vehicle = false;
+  beside.run(13.0);
+  CHECK_MESSAGE(beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1"), beside.said());
+  beside.order(kToken, now());
+  beside.run(0.5);
+  CHECK_MESSAGE(beside.said().find("not armed: thruster_driver is silent: no HEALTH for 1") != std::string::npos,
+                beside.said());
+  beside.vehicle = true;
+  beside.run(1.0);
+  beside.order(kToken, now());
+  beside.run(0.5);
+  CHECK_MESSAGE(beside.goes_on(), beside.said());
+}
+
+}  // namespace fathom
