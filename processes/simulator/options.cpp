@@ -30,6 +30,8 @@ void Options::add_to(CLI::App& app) {
   app.add_option("--bytes", drivers,
                  "a drivers' file: plays its instruments at the other ends of their links, in real time")
       ->type_name("FILE");
+  app.add_option("--manoeuvre", manoeuvre,
+                 "fly line, zigzag or circle here, open loop, and obey no commands; the run ends with it");
   app.add_option("--out-dir", out_dir, "where truth.json is written");
 }
 
@@ -69,6 +71,7 @@ void Options::check() const {
   if (!drivers.empty() && (speed != 1.0 || !wait_for.empty())) {
     throw InputError("--bytes: instruments speak in real time; leave out --speed and --wait-for");
   }
+  if (!drivers.empty() && !manoeuvre.empty()) throw InputError("--manoeuvre: leave out --bytes; nobody is commanded");
   if (speed == 0.0 && wait_for.empty()) {
     throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");
   }

@@ -21,8 +21,9 @@ struct Options {
   std::vector<std::string> wait_for;  ///< lockstep with these processes; empty: none is waited for
   std::vector<std::string> orders;    ///< "TIME=WORD"
   std::string out_dir;                ///< of truth.json; empty: not written
-  std::string drivers;  ///< file of the drivers that are fed with bytes; empty: their channels are spoken on
-  std::string token{};  ///< with which its own orders and those of others are believed
+  std::string drivers;    ///< file of the drivers that are fed with bytes; empty: their channels are spoken on
+  std::string manoeuvre;  ///< preset that is flown here, whatever is commanded; empty: commands are obeyed
+  std::string token{};    ///< with which its own orders and those of others are believed
 
   void add_to(CLI::App& app);
   /// The operator's orders in the order of their times (their utime). InputError for a bad one.
