@@ -211,10 +211,11 @@ void KinematicEstimator<N>::use(const Usbl& sample) {
 // A wide covariance lets an outlier of metres pass the gate; but the ranges of one message can be asked to agree.
 template <int N>
 void KinematicEstimator<N>::doubt_odd_ranges(const Ranges& sample, const model::KinematicPoint& point) {
-  for (std::size_t i = 0; i < ranges_.size(); ++i) {
-    const bool heard = i < sample.range.size() && i < sample.valid.size() && sample.valid[i] != 0;
-    ranges_[i] = heard ? sample.range[i] : 0.0;
-  }
+  const auto counts = [&](std::size_t i) {  // one that is left out neither witnesses nor is judged
+    return settings_->transponders[i].used && i < sample.range.size() && i < sample.valid.size() &&
+           sample.valid[i] != 0;
+  };
+  for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = counts(i) ? sample.range[i] : 0.0;
   const double sigma = std::sqrt(filter_.covariance().diagonal().template segment<2>(at::kPosition).maxCoeff());
   if (sigma < kWide * settings_->range_noise) return;
   const double depth = point.x[at::kPosition + 2] + point.down_B.dot(settings_->p_BA);
@@ -222,8 +223,7 @@ void KinematicEstimator<N>::doubt_odd_ranges(const Ranges& sample, const model::
   if (verdict.agreement == Agreement::kAllButOne) ranges_[verdict.odd] = 0.0;
   if (verdict.agreement == Agreement::kNone) std::fill(ranges_.begin(), ranges_.end(), 0.0);
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
-    const bool heard = i < sample.valid.size() && sample.valid[i] != 0;
-    if (!heard || ranges_[i] > 0.0) continue;
+    if (!counts(i) || ranges_[i] > 0.0) continue;
     ranges_[i] = -1.0;  // heard, but refused
     ++statistics_[kFirstRange + i].refused;
     statistics_[kFirstRange + i].surprise_sum += square(settings_->gate);

@@ -35,10 +35,12 @@ class WrenchSignal {
   std::vector<Vector6d> wrenches_;
 };
 
-WrenchSignal cells_of(const Recording& recording, const model::Vehicle& vehicle) {
+/// Of all load cells, or of those that measure `of`.
+WrenchSignal cells_of(const Recording& recording, const model::Vehicle& vehicle, const std::string& of = "") {
   WrenchSignal signal;
   const auto& cells = vehicle.hydrodynamics->load_cells;
-  if (cells.empty()) return signal;
+  const auto counts = [&](const model::LoadCell& cell) { return of.empty() || cell.of == of; };
+  if (std::none_of(cells.begin(), cells.end(), counts)) return signal;
   for (const Loads& one : recording.loads) {
     if (one.load.size() != cells.size()) {
       throw InputError(recording.name + ": LOADS has " + std::to_string(one.load.size()) +
@@ -46,6 +48,7 @@ WrenchSignal cells_of(const Recording& recording, const model::Vehicle& vehicle)
     }
     Vector6d wrench = Vector6d::Zero();
     for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!counts(cells[i])) continue;
       const Eigen::Vector3d force = one.load[i] * cells[i].axis_B;
       wrench.head<3>() += force;
       wrench.tail<3>() += cells[i].p_BL.cross(force);
@@ -88,6 +91,8 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
   if (states.size() < 3) throw InputError(recording.name + ": no SMOOTHED in this log; run fathom smooth first");
   if (!vehicle.hydrodynamics) throw InputError(vehicle.name + ": the vehicle file has no section hydrodynamics");
   const WrenchSignal cells = cells_of(recording, vehicle);
+  std::array<WrenchSignal, kPulls.size()> pulls;
+  for (std::size_t i = 0; i < pulls.size(); ++i) pulls[i] = cells_of(recording, vehicle, kPulls[i]);
   const bool cells_know_thrust =
       std::any_of(vehicle.hydrodynamics->load_cells.begin(), vehicle.hydrodynamics->load_cells.end(),
                   [](const model::LoadCell& one) { return one.of == "thrusters"; });
@@ -118,6 +123,9 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
         row.nu += states[k].nu;
         row.nu_dot += states[k].nu_dot;
         if (!cells.empty()) row.known += cells.at(states[k].utime);
+        for (std::size_t i = 0; i < pulls.size(); ++i) {
+          if (!pulls[i].empty()) row.pulls[i] += pulls[i].at(states[k].utime);
+        }
         if (!thrust.empty()) row.known += thrust.at(states[k].utime);
         const double sign = states[k].q_WB.dot(states[first].q_WB) < 0.0 ? -1.0 : 1.0;
         q += sign * states[k].q_WB.coeffs();
@@ -126,6 +134,7 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
       row.nu /= count;
       row.nu_dot /= count;
       row.known /= count;
+      for (Vector6d& pull : row.pulls) pull /= count;
       row.q_WB = Eigen::Quaterniond{Eigen::Vector4d(q.normalized())};
       stretch.push_back(row);
       if (k < states.size() && seconds_between(end, states[k].utime) > kGap * std::max(step, 0.5 * rows.dt)) break;
@@ -153,33 +162,39 @@ AxisCandidates candidates_of(int axis) {
   return candidates;
 }
 
-LaggedGram gram_of(const ManoeuvreRows& rows, int axis, const AxisCandidates& candidates, const model::Vehicle& vehicle,
-                   const RegressionSettings& settings) {
+Eigen::MatrixXd columns_of(const std::vector<ManoeuvreRows::Row>& stretch, int axis, const AxisCandidates& candidates,
+                           const model::Vehicle& vehicle, const Eigen::Vector3d& v_WF) {
   const model::Hydrodynamics& h = *vehicle.hydrodynamics;
   const auto columns = static_cast<Eigen::Index>(candidates.terms.size());
-  LaggedGram gram{columns + 1};
   Eigen::VectorXd scale(columns);
   for (Eigen::Index j = 0; j < columns; ++j) {
     scale[j] =
         model::manoeuvring_scale(*candidates.terms[static_cast<std::size_t>(j)], h.length, vehicle.water_density);
   }
-  for (const auto& stretch : rows.stretches) {
-    Eigen::MatrixXd z(static_cast<Eigen::Index>(stretch.size()), columns + 1);
-    for (std::size_t n = 0; n < stretch.size(); ++n) {
-      const auto& row = stretch[n];
-      const auto i = static_cast<Eigen::Index>(n);
-      // Steady water seen from a turning body accelerates by -w x v_F: its share of the added mass's force.
-      const Eigen::Vector3d v_F = row.q_WB.conjugate() * settings.v_WF;
-      Vector6d nu_r = row.nu;
-      nu_r.head<3>() -= v_F;
-      Vector6d b = model::hydrodynamic_wrench(vehicle, row.q_WB, row.nu, row.nu_dot, row.known);
-      b.head<3>() += h.added_mass.head<3>().cwiseProduct(row.nu.tail<3>().cross(v_F));
-      for (Eigen::Index j = 0; j < columns; ++j) {
-        z(i, j) = scale[j] * candidates.terms[static_cast<std::size_t>(j)]->value(nu_r);
-      }
-      z(i, columns) = b[axis];
+  Eigen::MatrixXd z(static_cast<Eigen::Index>(stretch.size()), columns + 1);
+  for (std::size_t n = 0; n < stretch.size(); ++n) {
+    const auto& row = stretch[n];
+    const auto i = static_cast<Eigen::Index>(n);
+    // Steady water seen from a turning body accelerates by -w x v_F: its share of the added mass's force.
+    const Eigen::Vector3d v_F = row.q_WB.conjugate() * v_WF;
+    Vector6d nu_r = row.nu;
+    nu_r.head<3>() -= v_F;
+    Vector6d b = model::hydrodynamic_wrench(vehicle, row.q_WB, row.nu, row.nu_dot, row.known);
+    b.head<3>() += h.added_mass.head<3>().cwiseProduct(row.nu.tail<3>().cross(v_F));
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      z(i, j) = scale[j] * candidates.terms[static_cast<std::size_t>(j)]->value(nu_r);
     }
-    gram.add(z, static_cast<int>(std::lround(std::max(2.0, settings.block / rows.dt))));
+    z(i, columns) = b[axis];
+  }
+  return z;
+}
+
+LaggedGram gram_of(const ManoeuvreRows& rows, int axis, const AxisCandidates& candidates, const model::Vehicle& vehicle,
+                   const RegressionSettings& settings) {
+  LaggedGram gram{static_cast<Eigen::Index>(candidates.terms.size()) + 1};
+  const int block = static_cast<int>(std::lround(std::max(2.0, settings.block / rows.dt)));
+  for (const auto& stretch : rows.stretches) {
+    gram.add(columns_of(stretch, axis, candidates, vehicle, settings.v_WF), block);
   }
   return gram;
 }

@@ -21,12 +21,16 @@ struct RegressionSettings {
   StepwiseSettings stepwise;
 };
 
+/// What pulls at the hull besides thrusters, when load cells measure it: names as in the vehicle file's `of`.
+inline constexpr std::array<const char*, 2> kPulls{"umbilical", "chain"};
+
 /// Rows of one manoeuvre, cut at gaps.
 struct ManoeuvreRows {
   struct Row {
     Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
     Vector6d nu{Vector6d::Zero()}, nu_dot{Vector6d::Zero()};
     Vector6d known{Vector6d::Zero()};  ///< N, N m: thrusters, umbilical and chain, as measured
+    std::array<Vector6d, kPulls.size()> pulls{Vector6d::Zero(), Vector6d::Zero()};  ///< what of it is theirs
   };
   std::string name;
   double dt{};                              ///< s
@@ -43,6 +47,10 @@ struct AxisCandidates {
   std::vector<const model::ManoeuvringTerm*> terms;
 };
 [[nodiscard]] AxisCandidates candidates_of(int axis);
+/// A column per candidate, and b.
+[[nodiscard]] Eigen::MatrixXd columns_of(const std::vector<ManoeuvreRows::Row>& stretch, int axis,
+                                         const AxisCandidates& candidates, const model::Vehicle& vehicle,
+                                         const Eigen::Vector3d& v_WF);
 [[nodiscard]] LaggedGram gram_of(const ManoeuvreRows& rows, int axis, const AxisCandidates& candidates,
                                  const model::Vehicle& vehicle, const RegressionSettings& settings);
 

@@ -29,6 +29,30 @@ struct Manoeuvre {
   double heading{0.0};                    ///< rad
 };
 
+/// The preset of that name: how long and with how much thrust it is flown.
+[[nodiscard]] Manoeuvre manoeuvre_preset(const std::string& name);
+
+/// Who flies it, open loop: only a zigzag looks at the heading.
+class ManoeuvrePilot {
+ public:
+  explicit ManoeuvrePilot(const Manoeuvre& manoeuvre) : manoeuvre_{manoeuvre} {}
+  /// Port and starboard [N] at `t` [s] from the start, at this yaw [rad]; zero when it is over. Times never fall.
+  [[nodiscard]] std::vector<double> thrust(double t, double yaw);
+  [[nodiscard]] const Manoeuvre& manoeuvre() const { return manoeuvre_; }
+
+ private:
+  Manoeuvre manoeuvre_;
+  double side_{1.0};  // to which a zigzag turns
+};
+
+/// How a vehicle without thrust comes to rest, on its chain if it has one; heading north.
+struct HangingRest {
+  double depth{};  ///< m
+  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
+};
+/// InputError when the vehicle file has no hydrodynamics.
+[[nodiscard]] HangingRest hanging_rest(const Vehicle& vehicle);
+
 /// Everything about one instant of a flight.
 struct FlightMoment {
   double t{};  ///< s

@@ -8,14 +8,21 @@ namespace fathom::simulation {
 namespace {
 
 constexpr double kLookBack = 2.0;  // s: longer than any delay of the registry
+constexpr double kTaut = 0.05;     // m/s at which an umbilical trails and pulls
 
 }  // namespace
 
 Body::Body(model::Model truth, const Hull& hull, const BatteryTruth& battery, const StartPose& start, Utime origin,
-           Utime step)
-    : truth_{std::move(truth)}, hull_{hull}, battery_{battery}, origin_{origin}, step_{step} {
+           Utime step, const std::optional<DerivativeTruth>& derivatives)
+    : truth_{std::move(truth)},
+      hull_{hull},
+      battery_{battery},
+      origin_{origin},
+      step_{step},
+      derivatives_{derivatives},
+      stream_{derivatives ? derivatives->seed : 0, "umbilical"} {
   now_.p = start.p_WB;
-  now_.q = Eigen::Quaterniond{rotation_from_euler({0.0, 0.0, start.heading})};
+  now_.q = Eigen::Quaterniond{rotation_from_euler({0.0, 0.0, start.heading})} * start.tilt;
   before_ = now_;
   force_.setZero(truth_.allocation.cols());
   memory_.assign(static_cast<std::size_t>(truth_.memory_size()), 0.0);
@@ -62,13 +69,30 @@ void Body::feel(model::Motion& motion, double dt) const {
   motion.w_memory += hull_.wrench(motion.p_WB, motion.R_WB, motion.nu);  // enters the balance as any other wrench
 }
 
+void Body::pull(double dt) {
+  if (!derivatives_ || derivatives_->pull <= 0.0) return;
+  const double kept = std::exp(-dt / derivatives_->memory);
+  process_ = kept * process_ + stream_.normal3(derivatives_->pull * std::sqrt(1.0 - kept * kept));
+  pull_W_ = std::min(1.0, now_.nu.head<3>().norm() / kTaut) * process_;
+}
+
+model::Attached Body::attached(const model::Motion& motion) const {
+  return model::attached(*truth_.vehicle, motion.p_WB, motion.R_WB, motion.nu, pull_W_, motion.v_WF_B);
+}
+
+Vector6d Body::slope(const model::Motion& motion) const {
+  return derivatives_ ? model::derivative_acceleration(truth_, motion, attached(motion))
+                      : model::acceleration(truth_, motion);
+}
+
 void Body::step() {
   const double h = static_cast<double>(step_) * 1e-6, half = 0.5 * h, t = seconds();
   remember(t);
+  pull(h);
   before_ = now_;
   model::Motion begin = motion(t, before_);
   feel(begin, 0.0);
-  slope_begin_ = model::acceleration(truth_, begin);
+  slope_begin_ = slope(begin);
   State middle;
   middle.nu = before_.nu + half * slope_begin_;
   middle.p = before_.p + half * (begin.R_WB * before_.nu.head<3>());
@@ -79,7 +103,7 @@ void Body::step() {
   }
   model::Motion halfway = motion(t + half, middle);
   feel(halfway, 0.0);
-  slope_middle_ = model::acceleration(truth_, halfway);
+  slope_middle_ = slope(halfway);
   now_.nu = before_.nu + h * slope_middle_;
   now_.p = before_.p + h * (halfway.R_WB * middle.nu.head<3>());
   now_.q = (before_.q * quaternion_from_rotation_vector(h * middle.nu.tail<3>())).normalized();
@@ -108,12 +132,17 @@ Moment Body::at(Utime utime) const {
   model::Motion felt = motion(moment.t, state);
   feel(felt, 0.0);
   moment.R_WB = felt.R_WB;
-  moment.nu_dot = model::acceleration(truth_, felt);
+  moment.nu_dot = slope(felt);
   moment.nu_seen = moment.nu;
   moment.v_WF = felt.R_WB * felt.v_WF_B;
   moment.felt = felt.force;
   moment.tau_felt = truth_.allocation * felt.force;
   moment.voltage = felt.voltage;
+  if (derivatives_) {
+    const model::Attached pulls = attached(felt);
+    moment.umbilical_B = pulls.F_umbilical_B;
+    moment.chain_B = pulls.F_chain_B;
+  }
   for (const model::ActiveEffect& active : truth_.effects) {
     if (!active.effect->name().starts_with("tether")) continue;
     model::Load load;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
-#include "common/model/dynamics.hpp"
+#include "common/model/derivative_motion.hpp"
 #include "common/simulation/contact.hpp"
+#include "common/simulation/random.hpp"
 #include "common/simulation/sensor.hpp"
 
 namespace fathom::simulation {
@@ -21,15 +23,24 @@ struct BatteryTruth {
 };
 
 struct StartPose {
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};  ///< m
-  double heading{};                               ///< rad
+  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};            ///< m
+  double heading{};                                         ///< rad
+  Eigen::Quaterniond tilt{Eigen::Quaterniond::Identity()};  ///< at heading north
+};
+
+/// The truth is that of the vehicle file's hydrodynamic derivatives, not of base parameters. The umbilical pulls at
+/// random besides: a first-order process of this size and memory; a slack one, of a vehicle at rest, does not.
+struct DerivativeTruth {
+  double pull{};    ///< N
+  double memory{};  ///< s
+  std::uint64_t seed{};
 };
 
 class Body {
  public:
   /// `truth.vehicle` has all six degrees of freedom and outlives the body. `step` [us].
   Body(model::Model truth, const Hull& hull, const BatteryTruth& battery, const StartPose& start, Utime origin,
-       Utime step);
+       Utime step, const std::optional<DerivativeTruth>& derivatives = std::nullopt);
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 
@@ -59,6 +70,9 @@ class Body {
   /// As felt, contacts included. The effects' memory advances by `dt` before.
   void feel(model::Motion& motion, double dt) const;
   void remember(double t);
+  void pull(double dt);
+  [[nodiscard]] model::Attached attached(const model::Motion& motion) const;
+  [[nodiscard]] Vector6d slope(const model::Motion& motion) const;
 
   model::Model truth_;
   Hull hull_;
@@ -72,6 +86,9 @@ class Body {
   std::vector<Eigen::VectorXd> history_;  ///< forces at past steps, for effects that look back
   std::size_t oldest_{};                  ///< of history_ that still counts
   model::InputSignal input_;
+  std::optional<DerivativeTruth> derivatives_;
+  RandomStream stream_;
+  Eigen::Vector3d process_{Eigen::Vector3d::Zero()}, pull_W_{Eigen::Vector3d::Zero()};  // N
 };
 
 }  // namespace fathom::simulation

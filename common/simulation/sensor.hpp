@@ -46,7 +46,8 @@ struct Moment {
   model::ActuatorForces felt{};                       ///< N, of each thruster, as it reaches the water
   Vector6d tau_felt{Vector6d::Zero()};                ///< N, N m
   Eigen::Vector3d tether_B{Eigen::Vector3d::Zero()};  ///< N, pull of the tether, in B
-  double voltage{};                                   ///< V; 0 when the vehicle has no battery in the simulation
+  Eigen::Vector3d umbilical_B{Eigen::Vector3d::Zero()}, chain_B{Eigen::Vector3d::Zero()};  ///< N at the attachment
+  double voltage{};  ///< V; 0 when the vehicle has no battery in the simulation
 };
 
 /// What an instrument is built from. `latest` is the newest AHRS sample that was taken: drivers remove lever arms with

@@ -5,6 +5,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/model/manoeuvres.hpp"
 #include "common/simulation/hidden.hpp"
 #include "common/simulation/truth.hpp"
 
@@ -61,8 +62,14 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
       allocation_{vehicle, largest_} {
   whole_.dof.fill(true);
   if (vehicle.hull.isZero()) throw InputError("vehicle " + vehicle.name + ": its file must state 'hull' for contacts");
-  model::Model truth = truth_of(config, vehicle_, whole_);
-  const StartPose start = start_of(config, site_, vehicle.hull);
+  const std::optional<DerivativeTruth> derivatives = derivatives_of(config, vehicle_, site_, setup.seed);
+  model::Model truth = derivatives ? derivative_model(vehicle_, whole_) : truth_of(config, vehicle_, whole_);
+  StartPose start = start_of(config, site_, vehicle.hull);
+  if (derivatives) {  // the chain decides how deep it hangs, and how much bow down
+    const model::HangingRest rest = model::hanging_rest(vehicle_);
+    start.p_WB.z() = rest.depth;
+    start.tilt = rest.q_WB;
+  }
   const BatteryTruth battery = battery_of(config);
   faults_ = std::make_unique<Faults>();
   const Occasion occasion{.vehicle = &vehicle_,
@@ -85,8 +92,8 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
   faults_->scratch = faults_->past;
   const double mass = truth.theta.head<3>().minCoeff();
   const double weight = vehicle.mass > 0.0 ? vehicle.mass * site.gravity : mass * site.gravity;
-  body_ =
-      std::make_unique<Body>(std::move(truth), Hull{site_, vehicle.hull, mass, weight}, battery, start, origin_, step);
+  body_ = std::make_unique<Body>(std::move(truth), Hull{site_, vehicle.hull, mass, weight}, battery, start, origin_,
+                                 step, derivatives);
   told_voltage_ = battery.full;
   truth_period_ = utime_after(0, 1.0 / config.positive("truth_rate", "Hz"));
   next_truth_ = origin_;

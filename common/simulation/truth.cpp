@@ -59,6 +59,27 @@ model::Model truth_of(const Config& config, const model::Vehicle& vehicle, const
   return truth;
 }
 
+std::optional<DerivativeTruth> derivatives_of(const Config& config, const model::Vehicle& vehicle,
+                                              const model::Site& site, std::uint64_t seed) {
+  if (!config.has("derivatives")) return std::nullopt;
+  if (config.has("truth")) config.fail("truth", "'truth' and 'derivatives' are two truths; state one");
+  model::require_derivatives(vehicle);
+  const Config stated = config.section("derivatives");
+  if (vehicle.hydrodynamics->chain && vehicle.hydrodynamics->chain->seabed != site.floor) {
+    stated.fail("umbilical_pull",
+                "the chain of " + vehicle.name + " drags on another seabed than the floor of " + site.name);
+  }
+  return DerivativeTruth{
+      .pull = stated.not_negative("umbilical_pull", "N"), .memory = stated.positive("pull_memory", "s"), .seed = seed};
+}
+
+model::Model derivative_model(const model::Vehicle& vehicle, const model::Vehicle& whole) {
+  model::Model truth = model::nominal_model(vehicle, false);
+  truth.vehicle = &whole;
+  truth.theta = model::nearest_base(vehicle);
+  return truth;
+}
+
 BatteryTruth battery_of(const Config& config) {
   if (!config.has("battery")) return {};
   const Config battery = config.section("battery");

@@ -19,6 +19,11 @@ namespace fathom::simulation {
 [[nodiscard]] double limit_of(const Config& config, const model::Vehicle& vehicle);
 /// Base parameters of the truth: those stated, else the vehicle file's means. `whole` has all six degrees of freedom.
 [[nodiscard]] model::Model truth_of(const Config& config, const model::Vehicle& vehicle, const model::Vehicle& whole);
+/// What the section `derivatives` says, where it stands in the place of `truth`.
+[[nodiscard]] std::optional<DerivativeTruth> derivatives_of(const Config& config, const model::Vehicle& vehicle,
+                                                            const model::Site& site, std::uint64_t seed);
+/// The base parameters nearest to the vehicle's derivatives.
+[[nodiscard]] model::Model derivative_model(const model::Vehicle& vehicle, const model::Vehicle& whole);
 [[nodiscard]] BatteryTruth battery_of(const Config& config);
 [[nodiscard]] StartPose start_of(const Config& config, const model::Site& site, const Eigen::Vector3d& hull);
 [[nodiscard]] bool carried_at(const Config& sensor, const model::Site& site);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/identification/manoeuvre_regression.hpp"
+#include "common/identification/residual_tracing.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -25,7 +25,7 @@ struct Options {
   std::vector<double> current;
   double rate{10.0};
   double significance{0.05}, f_in{}, f_out{};
-  bool table{false}, estimate{false}, plain{false};
+  bool table{false}, estimate{false}, plain{false}, trace{false};
 };
 
 std::string cell(const StepwiseResult& result, int column) {
@@ -84,6 +84,19 @@ void print_quality(const AxisRegression& axis, const std::vector<identification:
   if (runs.size() > 1) line("together", axis.together);
 }
 
+void print_trace(const std::vector<identification::TracedPull>& traced) {
+  std::printf("\nWhence the residual comes: had a force not been measured, and with it subtracted\n");
+  std::printf("%-12s %-5s %11s %11s %14s %14s  %s\n", "force", "axis", "rms without", "with", "phi without", "with",
+              "of the variance without; false terms");
+  for (const auto& one : traced) {
+    std::string gained;
+    for (const std::string& name : one.gained) gained += (gained.empty() ? "; " : ", ") + name;
+    std::printf("%-12s %-5s %11.3g %11.3g %14.3f %14.3f  %.0f %%%s\n", identification::kPulls[one.pull],
+                model::kAxisNames[static_cast<std::size_t>(one.axis)], one.before, one.after, one.phi_before,
+                one.phi_after, 100.0 * one.correlation * one.correlation, gained.c_str());
+  }
+}
+
 std::string coefficients_of(const std::vector<AxisRegression>& axes) {
   std::string text = "# Written by fathom regress.\ncoefficients:\n";
   for (const AxisRegression& axis : axes) {
@@ -133,6 +146,7 @@ void run(const Options& options) {
     print(axis, runs, vehicle);
     if (!options.table) print_quality(axis, runs);
   }
+  if (options.trace) print_trace(identification::trace_pulls(vehicle, runs, settings));
   if (!options.write.empty()) tables::write_file(options.write, coefficients_of(axes));
   if (!options.json.empty()) tables::write_file(options.json, regression_json(axes, runs, vehicle, settings));
 }
@@ -149,6 +163,7 @@ void add_regress(CLI::App& app) {
   command->add_option("--current", options->current, "north and east velocity of the water [m/s]")->expected(2);
   command->add_flag("--estimate-current", options->estimate, "find the water's velocity as well");
   command->add_flag("--plain", options->plain, "plain least squares, as if the residual were white");
+  command->add_flag("--trace", options->trace, "whence the residual comes: umbilical and chain, known and not");
   command->add_option("--significance", options->significance, "chance that any term is selected when none acts")
       ->check(CLI::Range(1e-12, 1.0));
   command->add_option("--f-in", options->f_in, "F from which a term enters, in place of --significance")

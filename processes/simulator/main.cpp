@@ -1,5 +1,6 @@
 // simulator: WRENCH_COMMAND, OPERATOR and EXCITATION (to know when a trial is over) in; every instrument's channel,
-// THRUSTERS, and TRUTH for plots out. With --bytes the drivers' channels stay silent: their instruments are played.
+// THRUSTERS, and TRUTH for plots out. With --manoeuvre a preset is flown instead of commands. With --bytes the drivers'
+// channels stay silent: their instruments are played.
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
@@ -23,6 +24,16 @@ void declare(runtime::Process& process) {
   process.publishes<fathom_lcm::lockstep_t>(runtime::kLockstep);
 }
 
+model::ManoeuvrePilot pilot_of(const std::string& name, const model::Vehicle& vehicle,
+                               const simulation::Simulator& simulator) {
+  if (vehicle.thrusters.size() != 2 || !vehicle.curve.empty()) {
+    throw InputError("--manoeuvre: flown with two thrusters that are told forces, and " + vehicle.name + " has others");
+  }
+  model::Manoeuvre manoeuvre = model::manoeuvre_preset(name);
+  manoeuvre.heading = euler_from_rotation(simulator.moment().R_WB).z();
+  return model::ManoeuvrePilot{manoeuvre};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -41,7 +52,9 @@ int main(int argc, char** argv) {
         if (!options.camera_at.empty()) darkroom.open_line(options.camera_at);
         std::optional<simulator::Instruments> instruments;
         if (!options.drivers.empty()) instruments.emplace(options.drivers, vehicle, simulator.sensors());
-        simulator::Stage stage{process, simulator, darkroom, options, instruments ? &*instruments : nullptr};
+        std::optional<model::ManoeuvrePilot> pilot;
+        if (!options.manoeuvre.empty()) pilot = pilot_of(options.manoeuvre, vehicle, simulator);
+        simulator::Stage stage{process, simulator, darkroom, options, instruments ? &*instruments : nullptr, pilot};
         declare(process);
         process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
           stage.count_command();

@@ -33,6 +33,8 @@ void Options::add_to(CLI::App& app) {
   app.add_option("--bytes", drivers,
                  "a drivers' file: plays its instruments at the other ends of their links, in real time")
       ->type_name("FILE");
+  app.add_option("--manoeuvre", manoeuvre,
+                 "fly line, zigzag or circle here, open loop, and obey no commands; the run ends with it");
   app.add_option("--out-dir", out_dir, "where truth.json is written");
 }
 
@@ -75,6 +77,7 @@ void Options::check() const {
   if (!camera_at.empty() && (speed != 1.0 || !wait_for.empty() || !drivers.empty())) {
     throw InputError("--camera-at: a camera sends in real time; leave out --speed, --wait-for and --bytes");
   }
+  if (!drivers.empty() && !manoeuvre.empty()) throw InputError("--manoeuvre: leave out --bytes; nobody is commanded");
   if (speed == 0.0 && wait_for.empty()) {
     throw InputError("--speed 0: say with --wait-for which processes to wait for, or nobody could keep up");
   }

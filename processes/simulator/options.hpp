@@ -23,6 +23,7 @@ struct Options {
   std::string out_dir;                ///< of truth.json; empty: not written
   std::string camera_at;  ///< "tcp:PORT": the camera sends its pictures there, to camera_driver; empty: on CAMERA
   std::string drivers;    ///< file of the drivers that are fed with bytes; empty: their channels are spoken on
+  std::string manoeuvre;  ///< preset that is flown here, whatever is commanded; empty: commands are obeyed
   std::string token{};    ///< with which its own orders and those of others are believed
 
   void add_to(CLI::App& app);

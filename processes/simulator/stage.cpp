@@ -42,14 +42,15 @@ double seconds(std::chrono::steady_clock::duration duration) { return std::chron
 }  // namespace
 
 Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options,
-             Instruments* instruments)
+             Instruments* instruments, const std::optional<model::ManoeuvrePilot>& pilot)
     : process_{process},
       simulator_{simulator},
       darkroom_{darkroom},
       options_{options},
       instruments_{instruments},
       schedule_{options.schedule()},
-      gate_{options.token} {
+      gate_{options.token},
+      pilot_{pilot} {
   if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
 }
 
@@ -231,14 +232,20 @@ void Stage::give_orders() {
 }
 
 void Stage::advance() {
-  const bool over = over_since_ && seconds_between(*over_since_, simulator_.now()) >= kAfterwards;
-  if (over || seconds_between(simulator_.origin(), simulator_.now()) >= options_.setup.duration - 1e-9) {
+  const double flown = seconds_between(simulator_.origin(), simulator_.now());
+  const bool over = (pilot_ && flown >= pilot_->manoeuvre().duration - 1e-9) ||
+                    (over_since_ && seconds_between(*over_since_, simulator_.now()) >= kAfterwards);
+  if (over || flown >= options_.setup.duration - 1e-9) {
     state_ = State::kEnding;
     if (!conductor_) process_.stop();
     return;
   }
   const Utime utime = simulator_.now();
   if (driven()) simulator_.drive(instruments_->told());
+  if (pilot_) {
+    const double yaw = euler_from_rotation(simulator_.moment().R_WB).z();
+    simulator_.drive(pilot_->thrust(flown, yaw));
+  }
   simulator_.command(
       {.utime = utime, .tau = gate_.wrench(utime), .life = 2.0 * static_cast<double>(simulator_.interval()) * 1e-6});
   const std::vector<simulation::Sample>& samples = simulator_.step();
@@ -255,12 +262,13 @@ void Stage::advance() {
 
 runtime::Process::Condition Stage::condition() const {
   const simulation::ContactCounts& contacts = simulator_.contacts();
-  const std::string_view reason = driven() ? "" : gate_.reason(simulator_.now());
+  const std::string_view reason = !commanded() ? "" : gate_.reason(simulator_.now());
   char text[160];
   std::snprintf(text, sizeof text, "t %.1f s, contacts: walls %d, floor %d, surface %d, %s%s",
                 seconds_between(simulator_.origin(), simulator_.now()), contacts.walls, contacts.floor,
                 contacts.surface,
                 driven()         ? "thrust by thruster_driver"
+                : pilot_         ? "thrust by a manoeuvre"
                 : reason.empty() ? "thrust as commanded"
                                  : "zero thrust: ",
                 std::string{reason}.c_str());
@@ -274,7 +282,8 @@ runtime::Process::Condition Stage::condition() const {
 
 // A change of what reaches the thrusters is said at once.
 void Stage::tell_changes() {
-  const std::string kind = (driven() ? "" : std::string{gate_.reason(simulator_.now())}) + "|" + simulator_.complaint();
+  const std::string kind =
+      (!commanded() ? "" : std::string{gate_.reason(simulator_.now())}) + "|" + simulator_.complaint();
   if (kind == told_) return;
   told_ = kind;
   if (!simulator_.complaint().empty()) process_.log_warning(simulator_.complaint());

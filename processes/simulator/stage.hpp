@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/driver/thruster_gate.hpp"
+#include "common/model/manoeuvres.hpp"
 #include "common/runtime/lockstep.hpp"
 #include "common/runtime/process.hpp"
 #include "common/simulation/simulator.hpp"
@@ -27,7 +28,7 @@ class Stage {
  public:
   /// `instruments`: null when the channels of all instruments are spoken on here.
   Stage(runtime::Process& process, simulation::Simulator& simulator, Darkroom& darkroom, const Options& options,
-        Instruments* instruments);
+        Instruments* instruments, const std::optional<model::ManoeuvrePilot>& pilot);
 
   /// A command has arrived, good or not.
   void count_command() { ++commands_; }
@@ -58,6 +59,8 @@ class Stage {
   [[nodiscard]] bool interval_over() const;
   /// Drivers hear it, and stamp what they hear with the wall's time.
   [[nodiscard]] bool has_lines() const { return instruments_ != nullptr || darkroom_.has_line(); }
+  /// Whether thrust is what WRENCH_COMMAND asks for.
+  [[nodiscard]] bool commanded() const { return !driven() && !pilot_; }
   [[nodiscard]] bool driven() const { return instruments_ != nullptr && instruments_->driven(); }
   /// Who must be here before the run begins, and is not; empty when all are.
   [[nodiscard]] std::string missing() const;
@@ -75,6 +78,7 @@ class Stage {
   std::size_t next_order_{};
   int own_orders_{};  ///< said by ourselves and still to come back
   driver::ThrusterGate gate_;
+  std::optional<model::ManoeuvrePilot> pilot_;  ///< flies in place of commands
   std::optional<runtime::Conductor> conductor_;
   State state_{State::kLooking};
   Clock::time_point began_{Clock::now()}, first_tick_{}, last_answer_{}, last_complaint_{};

@@ -1,6 +1,8 @@
 // Trials by the offline tool: a recorded manoeuvre smoothed, regressed, and its derivatives flown again.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -173,6 +175,67 @@ TEST_CASE("estimator: with `filter: ekf` it gives STATE from ranges, twice the s
   CHECK(a.p_WB == b.p_WB);
   CHECK((a.p_WB - trial.flight.back().p_WB).norm() < 0.6);  // m: filtered from ranges of 10 cm
   CHECK(a.valid);
+}
+
+TEST_CASE("simulator --manoeuvre: a circle on every channel, an estimator on line, and a log that can be smoothed") {
+  if (shell("unshare -rn ip link set lo up").code != 0) {
+    MESSAGE("skipped: this machine allows no private network (unshare -rn)");
+    return;
+  }
+  const Scratch scratch;
+  const std::string where = " --config " + file("config/sites/pap104_half.yaml");
+  const std::string fly = program("simulator") + " --config " + kVehicle + where + " --config " +
+                          file("config/simulation/pap104_half.yaml") + " --config " +
+                          file("config/operators/simulated.yaml") + " --out-dir " + scratch.path("truth");
+  const auto on_network = [](const std::string& script) {
+    return shell(
+        "timeout 60 unshare -rn sh -c \"ip link set lo up; ip route add 224.0.0.0/4 dev lo; "
+        "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'\n" +
+        script + "\"");
+  };
+  const auto ran = on_network(program("recorder") + " --lockstep --file " + scratch.path("circle.lcmlog") + " &\n" +
+                              program("estimator") + " --lockstep --config " + kPipeline + " --config " + kVehicle +
+                              where + " --config " + file("config/corrections/none.yaml") + " &\n" + fly +
+                              " --manoeuvre circle --seed 3 --speed 0 --wait-for recorder,estimator\ncode=\\$?\nwait\n"
+                              "exit \\$code");
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const Recording flown = wire::read_log(scratch.path("circle.lcmlog")).recording;
+  CHECK(flown.ahrs.size() == doctest::Approx(50 * 95).epsilon(0.01));
+  CHECK(flown.ranges.size() == doctest::Approx(95).epsilon(0.02));
+  CHECK(flown.depth.size() == doctest::Approx(950).epsilon(0.01));
+  REQUIRE(flown.loads.size() > 4700);
+  CHECK(flown.loads.front().load.size() == 8);
+  REQUIRE(flown.truth.size() > 4700);
+  // The estimator's filter, on line, beside the truth that nobody heard.
+  REQUIRE(flown.state.size() > 1000);
+  const StateEstimate& last = flown.state.back();
+  CHECK((last.p_WB - flown.truth.back().p_WB).norm() < 0.5);
+
+  const auto smoothed = shell(program("fathom") + " smooth " + scratch.path("circle.lcmlog") + " --out " +
+                              scratch.path("smooth.lcmlog") + " --config " + kPipeline);
+  REQUIRE_MESSAGE(smoothed.code == 0, smoothed.text);
+  const Recording result = wire::read_log(scratch.path("smooth.lcmlog")).recording;
+  REQUIRE(result.smoothed.size() == flown.ahrs.size());
+  double square = 0.0, n = 0.0;
+  for (const SmoothedState& one : result.smoothed) {
+    const auto truth = std::find_if(flown.truth.begin(), flown.truth.end(),
+                                    [&](const Truth& each) { return each.utime == one.utime; });
+    if (truth == flown.truth.end()) continue;
+    square += (one.p_WB - truth->p_WB).squaredNorm();
+    n += 1.0;
+  }
+  REQUIRE(n > 4000.0);
+  CHECK(std::sqrt(square / n) < 0.15);  // m
+
+  const auto wrong =
+      shell(program("simulator") + " --config " + file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
+            file("config/sites/deep.yaml") + " --config " + file("config/simulation/seabotix_lbv150.yaml") +
+            " --config " + file("config/operators/simulated.yaml") + " --manoeuvre circle");
+  CHECK(wrong.code == 1);
+  CHECK_MESSAGE(wrong.says("flown with two thrusters"), wrong.text);
+  const auto unknown = on_network(fly + " --manoeuvre loop");
+  CHECK(unknown.code == 1);
+  CHECK_MESSAGE(unknown.says("'loop' is no manoeuvre"), unknown.text);
 }
 
 }  // namespace fathom

@@ -37,7 +37,8 @@ report::Figure figure(const std::string& alt, const Curve& a, const char* style_
 
 void figures(const std::string& folder, unsigned seed) {
   const Setup s = setup();
-  const auto trial = test::record_trial(s.vehicle, s.instruments, {.manoeuvre = preset("circle"), .seed = seed});
+  const auto trial =
+      test::record_trial(s.vehicle, s.instruments, {.manoeuvre = model::manoeuvre_preset("circle"), .seed = seed});
   const auto result = estimation::smooth(trial.recording, s.instruments);
   Curve track_f{"tf"}, track_s{"ts"}, y_f{"yf"}, y_s{"ys"}, pitch_f{"pf"}, pitch_s{"ps"}, incline{"in"}, none{"no"},
       U{"u"}, V{"v"}, a_s{"as"}, a_f{"af"};

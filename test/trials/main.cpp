@@ -10,18 +10,11 @@
 
 namespace fathom::trials {
 
-model::Manoeuvre preset(const std::string& name) {
-  model::Manoeuvre manoeuvre;
-  manoeuvre.kind = model::manoeuvre_from(name);
-  if (manoeuvre.kind == model::ManoeuvreKind::kLine) manoeuvre.duration = 60.0;
-  if (manoeuvre.kind == model::ManoeuvreKind::kZigzag) manoeuvre.difference = 4.5;
-  return manoeuvre;
-}
-
 Setup setup() {
   Setup s{model::Vehicle::load(std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/pap104_half.yaml"),
           test::instruments_from_repository("pap104_half")};
-  const auto trial = test::record_trial(s.vehicle, s.instruments, {.manoeuvre = preset("circle"), .seed = 1000});
+  const auto trial =
+      test::record_trial(s.vehicle, s.instruments, {.manoeuvre = model::manoeuvre_preset("circle"), .seed = 1000});
   s.instruments = estimation::tune_process(trial.recording, s.instruments);
   return s;
 }
@@ -30,8 +23,8 @@ void record(const std::string& folder, unsigned seed) {
   const Setup s = setup();
   unsigned offset = 0;
   for (const char* name : {"line", "zigzag", "circle"}) {
-    const auto trial =
-        test::record_trial(s.vehicle, s.instruments, {.manoeuvre = preset(name), .seed = seed + offset++});
+    const auto trial = test::record_trial(s.vehicle, s.instruments,
+                                          {.manoeuvre = model::manoeuvre_preset(name), .seed = seed + offset++});
     const std::string path = folder + "/" + name + ".lcmlog";
     wire::write_log(trial.recording, path);
     std::printf("%s\n", path.c_str());

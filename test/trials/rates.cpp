@@ -91,12 +91,13 @@ void consistency(int seeds) {
   std::printf("errors: root mean square of position before and after 30 s; NEES and NIS per component, 1 is right\n");
   for (const char* name : {"line", "zigzag", "circle"}) {
     Setup s = base;  // the process noise is tuned on a run of the same kind that is not among the seeds
-    const auto apart = test::record_trial(s.vehicle, s.instruments, {.manoeuvre = preset(name), .seed = 2000});
+    const auto apart =
+        test::record_trial(s.vehicle, s.instruments, {.manoeuvre = model::manoeuvre_preset(name), .seed = 2000});
     s.instruments = estimation::tune_process(apart.recording, s.instruments);
     Errors mean;
     double lowest = 1e9, highest = 0.0;
     for (int seed = 1; seed <= seeds; ++seed) {
-      const Errors e = errors_of(s, {.manoeuvre = preset(name), .seed = static_cast<unsigned>(seed)});
+      const Errors e = errors_of(s, {.manoeuvre = model::manoeuvre_preset(name), .seed = static_cast<unsigned>(seed)});
       mean.nees += e.nees / seeds;
       mean.nis += e.nis / seeds;
       mean.filter_early += e.filter_early / seeds;
@@ -116,7 +117,7 @@ void variations() {
   const Setup base = setup();
   const auto show = [&](const char* name, const std::function<void(Setup&, test::TrialSettings&)>& change) {
     Setup s = base;
-    test::TrialSettings settings{.manoeuvre = preset("circle"), .seed = 1};
+    test::TrialSettings settings{.manoeuvre = model::manoeuvre_preset("circle"), .seed = 1};
     change(s, settings);
     line(name, errors_of(s, settings));
   };
@@ -140,7 +141,7 @@ void selection(int seeds) {
   identification::RegressionSettings settings;
   std::vector<identification::ManoeuvreRows> runs;
   for (const char* name : {"line", "zigzag", "circle"}) {
-    auto manoeuvre = preset(name);
+    auto manoeuvre = model::manoeuvre_preset(name);
     manoeuvre.duration = std::max(manoeuvre.duration, 95.0);
     const auto trial =
         test::record_trial(s.vehicle, s.instruments, {.manoeuvre = manoeuvre, .seed = 1, .noise = false});
@@ -205,8 +206,9 @@ void recovery(int seeds, double cell_gain) {
     std::vector<identification::ManoeuvreRows> runs;
     for (const char* name : {"line", "zigzag", "circle"}) {
       const auto number = static_cast<unsigned>(10 * seed) + static_cast<unsigned>(runs.size());
-      auto trial = test::record_trial(base.vehicle, base.instruments,
-                                      {.manoeuvre = preset(name), .seed = number, .cell_gain = cell_gain});
+      auto trial =
+          test::record_trial(base.vehicle, base.instruments,
+                             {.manoeuvre = model::manoeuvre_preset(name), .seed = number, .cell_gain = cell_gain});
       const auto instruments = estimation::tune_process(trial.recording, base.instruments);
       trial.recording.smoothed = estimation::smooth(trial.recording, instruments).smoothed;
       runs.push_back(identification::rows_of(trial.recording, base.vehicle, 10.0));

@@ -13,7 +13,6 @@ struct Setup {
   estimation::KalmanSettings instruments;
 };
 [[nodiscard]] Setup setup();
-[[nodiscard]] model::Manoeuvre preset(const std::string& name);
 
 /// line.lcmlog, zigzag.lcmlog, circle.lcmlog.
 void record(const std::string& folder, unsigned seed);

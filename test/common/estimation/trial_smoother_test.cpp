@@ -176,6 +176,23 @@ TEST_CASE_FIXTURE(Fixture, "bad input: a transponder in the wrong place is named
   }
 }
 
+TEST_CASE_FIXTURE(Fixture, "bad input: a transponder that is left out neither witnesses nor is judged") {
+  auto trial = record(6);
+  KalmanSettings settings = instruments;
+  settings.start = trial.flight.front().p_WB;  // to 2 m: ranges are asked to agree
+  settings.transponders[3].used = false;
+  Ranges& first = trial.recording.ranges.front();
+  for (std::size_t i = 0; i < first.range.size(); ++i) {
+    const Eigen::Vector3d p_WA = trial.flight.front().p_WB + trial.flight.front().q_WB * instruments.p_BA;
+    first.range[i] = (instruments.transponders[i].p_WT - p_WA).norm() + (i == 0 ? 5.0 : 0.0);
+    first.valid[i] = i == 2 ? 0 : 1;  // A, B and E do not agree, and two cannot tell who errs
+  }
+  const auto statistics = innovations(trial.recording, settings);
+  CHECK(statistics[kFirstRange].refused > 0);
+  CHECK(statistics[kFirstRange + 3].refused == 0);
+  CHECK(statistics[kFirstRange + 3].used == 0);
+}
+
 TEST_CASE_FIXTURE(Fixture, "bad input: one of three transponders in the wrong place, or two exchanged, is told of") {
   const auto trial = record(6);
   std::vector<std::string> notes;

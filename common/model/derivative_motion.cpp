@@ -1,0 +1,112 @@
+#include "common/model/derivative_motion.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/model/sensors/kinematic_point.hpp"
+
+namespace fathom::model {
+namespace {
+
+constexpr double kStiction =
+    0.02;  // m/s at which friction has two thirds of its size: a chain creeps, it does not stick
+constexpr double kSwept = 1.0 / 3.0;  // of a cable whose far end stands still: the mean of (s / L)^2
+constexpr std::array kSquares{"X_uu", "Y_v|v|", "Z_w|w|", "K_p|p|", "M_q|q|", "N_r|r|"};
+
+Vector6d at_origin(const Eigen::Vector3d& force, const Eigen::Vector3d& p) {
+  Vector6d wrench;
+  wrench << force, p.cross(force);
+  return wrench;
+}
+
+}  // namespace
+
+void require_derivatives(const Vehicle& vehicle) {
+  if (vehicle.hydrodynamics && vehicle.mass > 0.0 && vehicle.inertia.minCoeff() > 0.0 && vehicle.buoyancy > 0.0) return;
+  throw InputError(vehicle.name + ": a manoeuvre needs mass, inertia, buoyancy and hydrodynamics in the vehicle file");
+}
+
+Vector6d total_inertia(const Vehicle& vehicle) {
+  Vector6d mass = vehicle.hydrodynamics->added_mass;
+  mass.head<3>().array() += vehicle.mass;
+  mass.tail<3>() += vehicle.inertia;
+  return mass;
+}
+
+Vector6d rigid_wrench(const Vehicle& vehicle, const Eigen::Vector3d& down_B, const Vector6d& nu) {
+  const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
+  const Eigen::Vector3d lift = -vehicle.buoyancy * down_B;
+  Vector6d wrench;
+  wrench.head<3>() = vehicle.mass * kGravity * down_B + lift - vehicle.mass * w.cross(v);
+  wrench.tail<3>() = vehicle.hydrodynamics->p_BB.cross(lift) - w.cross(vehicle.inertia.cwiseProduct(w));
+  return wrench;
+}
+
+Attached attached(const Vehicle& vehicle, const Eigen::Vector3d& p_WB, const Eigen::Matrix3d& R_WB, const Vector6d& nu,
+                  const Eigen::Vector3d& pull_W, const Eigen::Vector3d& v_WF_B) {
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
+  Attached a;
+  if (h.umbilical) {
+    const Umbilical& u = *h.umbilical;
+    const Eigen::Vector3d v_U = v - v_WF_B + w.cross(u.p_BU);
+    const double k = 0.5 * vehicle.water_density * u.drag_coefficient * u.diameter * u.paid_out * kSwept;
+    a.F_umbilical_B = -k * v_U.norm() * v_U + R_WB.transpose() * pull_W;
+    a.umbilical = at_origin(a.F_umbilical_B, u.p_BU);
+  }
+  if (h.chain) {
+    const Chain& c = *h.chain;
+    const Eigen::Vector3d v_C = R_WB * (v + w.cross(c.p_BC));
+    const double height = c.seabed - (p_WB + R_WB * c.p_BC).z();
+    const double lifted = std::clamp(height, 0.0, c.length);
+    const double speed = std::hypot(v_C.x(), v_C.y());
+    const double rub = c.friction * c.weight * (c.length - lifted) * std::tanh(speed / kStiction);
+    Eigen::Vector3d F_W{0.0, 0.0, c.weight * lifted};
+    if (speed > 0.0) F_W.head<2>() -= rub / speed * v_C.head<2>();
+    a.F_chain_B = R_WB.transpose() * F_W;
+    a.chain = at_origin(a.F_chain_B, c.p_BC);
+  }
+  return a;
+}
+
+Vector6d derivative_acceleration(const Model& model, const Motion& motion, const Attached& attached) {
+  const Vehicle& vehicle = *model.vehicle;
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  const Vector6d inertia = total_inertia(vehicle);
+  Load load;
+  load.clear();
+  load.drag = manoeuvring_wrench(h.coefficients, motion.nu_r(), h.length, vehicle.water_density);
+  Vector6d force = motion.w_memory + load.drag + attached.umbilical + attached.chain +
+                   rigid_wrench(vehicle, motion.R_WB.row(2).transpose(), motion.nu);
+  for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
+  // Steady water seen in B turns with the body; accelerating water pushes as in the base model.
+  const Eigen::Vector3d w = motion.nu.tail<3>();
+  force.head<3>() -= h.added_mass.head<3>().cwiseProduct(w.cross(motion.v_WF_B));
+  force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
+  for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
+  force += load.wrench;
+  if (!load.has_inertia) return force.cwiseQuotient(inertia);
+  Matrix6d M = load.inertia();
+  M.diagonal() += inertia;
+  return M.partialPivLu().solve(force);
+}
+
+BaseTheta nearest_base(const Vehicle& vehicle) {
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  BaseTheta theta = BaseTheta::Zero();
+  theta.head<6>() = total_inertia(vehicle);
+  for (const ManoeuvringCoefficient& one : h.coefficients) {
+    const auto square = std::find(kSquares.begin(), kSquares.end(), one.term->name);
+    if (square == kSquares.end()) continue;
+    theta[index(BaseParameter::X_uu) + (square - kSquares.begin())] =
+        one.value * manoeuvring_scale(*one.term, h.length, vehicle.water_density);
+  }
+  theta[index(BaseParameter::W_B)] = vehicle.mass * kGravity - vehicle.buoyancy;
+  theta.segment<3>(index(BaseParameter::G_x)) = -vehicle.buoyancy * h.p_BB;
+  return theta;
+}
+
+}  // namespace fathom::model
