@@ -85,10 +85,8 @@ int main(int argc, char** argv) {
     });
     compare<fathom_lcm::ahrs_t>(process, diagnoser, wire::kAhrs);
     compare<fathom_lcm::dvl_t>(process, diagnoser, wire::kDvl);
-    if (site && !vehicle.mounts.cameras.empty()) {
-      compare<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
-      compare<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
-    }
+    compare<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
+    compare<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
     process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
       const auto model = wire::decode(message);
       if (!model) return process.reject(wire::kModel);
