@@ -43,7 +43,8 @@ long lacking(const std::vector<double>& t, double from, double to) {
 }  // namespace
 
 // Not run by itself yet: the camera stays away for 22 s after one of its deaths (--no-skip shows it).
-TEST_CASE("drivers, pictures: camera_driver and vision are killed and halted, come back, and only their time is lost" * doctest::skip()) {
+TEST_CASE("drivers, pictures: camera_driver and vision are killed and halted, come back, and only their time is lost" *
+          doctest::skip()) {
   if (!test::private_network()) return;
   const test::Scratch scratch;
   const std::string words = "tank seabotix_lbv150 optimal ";
