@@ -118,7 +118,8 @@ double drawn(const model::Effect& effect, const model::EffectParameter& paramete
   if (effect.name() == "payload_change" && name == "mass" && occasion.vehicle->mass > 0.0) {
     size = std::min(size, kMassShare * share * occasion.vehicle->mass);
   }
-  if (parameter.low < 0.0 && side < 0.5) size = -size;
+  const bool passive = effect.name() == "fluid_memory";  // memory that gives energy is none of water
+  if (parameter.low < 0.0 && side < 0.5 && !passive) size = -size;
   return std::clamp(size, parameter.low, parameter.high);
 }
 

@@ -52,7 +52,7 @@ const std::vector<Hidden>& hidden_effects() {
       {"thrust_loss", "shaft speed", {{0.8, 1.3}}},
       {"asymmetric_drag", "", {{-10.0, -7.0}}},
       {"cubic_drag", "X_uuu", {{80.0, 140.0}}},
-      {"fluid_memory", "u", {{10.0, 20.0}, {1.0, 3.0}}},
+      {"fluid_memory", "u", {{10.0, 20.0}, {10.0, 20.0}, {10.0, 20.0}, {1.0, 2.0}, {1.0, 2.0}, {1.0, 2.0}, {1.0, 3.0}}},
       {"restoring_moment", "", {{3.0, 5.0}, {3.0, 5.0}, {3.0, 5.0}}},
       {"compressibility", "", {{0.6, 1.0}}},
       {"payload_change", "", {{1.5, 3.0}, {-3.0, -2.0}, {60.0, 140.0}}},

@@ -175,7 +175,7 @@ TEST_CASE("cross_coupling: covers every pair that a symmetric hull has, and the 
 
 TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the step") {
   const model::Effect& effect = *model::find_effect("fluid_memory");
-  const std::vector<double> theta{10.0, 2.0};
+  const std::vector<double> theta{99.0, 10.0, 0.0, 0.0, 0.0, 0.0, 2.0};
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   model::Motion motion;
   motion.vehicle = &vehicle;
@@ -198,27 +198,26 @@ TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the s
   }
 }
 
-TEST_CASE("fluid_memory: on all axes it is each axis' own, in proportion to the drag in the vehicle file") {
+TEST_CASE("fluid_memory: on all axes that move each has its own strength") {
   const model::Effect& effect = *model::find_effect("fluid_memory");
   model::Vehicle vehicle;
   vehicle.dof = {true, false, true, false, false, true};
-  vehicle.parameters = {"m_X", "X_u", "X_u|u|", "Y_v", "Z_w", "N_r|r|"};
-  vehicle.priors = {{10.0, 1.0}, {-4.0, 1.0}, {-12.0, 1.0}, {-99.0, 1.0}, {-30.0, 1.0}, {-2.0, 1.0}};
   const auto names = effect.variants({.vehicle = &vehicle});
   const auto all = std::ranges::find(names, "all axes");
   REQUIRE(all != names.end());
-  const Vector6d share{1.0, 0.0, 3.0, 0.0, 0.0, 0.1};  // of 4 + 12 / 2 N at half a metre per second
+  const auto variant = static_cast<int>(all - names.begin());
+  CHECK(effect.numbers(variant) == 4);
+  CHECK(effect.numbers(2) == 2);
   model::Motion motion;
   motion.vehicle = &vehicle;
   motion.nu.setConstant(0.7);
   std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 6)), 0.0);
-  const std::vector<double> theta{10.0, 2.0};
+  const std::vector<double> theta{10.0, 5.0, 30.0, 5.0, 5.0, 1.0, 2.0};
   effect.settle(motion, theta, z);
-  effect.feel(motion, theta, static_cast<int>(all - names.begin()), z);
-  CHECK((motion.w_memory + 10.0 * 0.7 * share).norm() < 1e-12);
+  effect.feel(motion, theta, variant, z);
+  CHECK((motion.w_memory + 0.7 * Vector6d{10.0, 0.0, 30.0, 0.0, 0.0, 1.0}).norm() < 1e-12);
 
-  vehicle.parameters = {"m_X", "Z_w"};
-  vehicle.priors = {{10.0, 1.0}, {-30.0, 1.0}};
+  vehicle.dof = {true, false, false, false, false, false};
   CHECK_FALSE(std::ranges::count(effect.variants({.vehicle = &vehicle}), "all axes") > 0);  // one axis: its own form
 }
 
@@ -226,7 +225,7 @@ TEST_CASE("fluid_memory: follows a sine late and smaller, and takes energy") {
   // In a rollout: m u_dot = tau - k z. For u = sin(w t): z lags by atan(w T) and shrinks by 1 / sqrt(1 + w^2 T^2).
   constexpr double kOmega = 1.0, kT = 2.0, kK = 10.0;
   Bare bare{{true, false, false, false, false, false}};
-  bare.model.add(test::active("fluid_memory", {kK, kT}, 0));
+  bare.model.add(test::active("fluid_memory", {kK, 0.0, 0.0, 0.0, 0.0, 0.0, kT}, 0));
   const double gain = 1.0 / std::sqrt(1.0 + kOmega * kOmega * kT * kT), late = std::atan(kOmega * kT);
   const Trial trial = bare.run(60.0, [&](double t) {
     return along(0, 20.0 * kOmega * std::cos(kOmega * t) + kK * gain * std::sin(kOmega * t - late));
