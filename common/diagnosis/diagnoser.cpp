@@ -13,6 +13,7 @@
 #include "common/diagnosis/search.hpp"
 #include "common/diagnosis/verdict.hpp"
 #include "common/diagnosis/whiteness.hpp"
+#include "common/diagnosis/wiring.hpp"
 #include "common/identification/sparse.hpp"
 
 namespace fathom::diagnosis {
@@ -176,15 +177,25 @@ std::string too_short(std::span<const Trial> unseen, const Settings& settings) {
 }
 
 /// Takes back everything that was accepted.
-void take_back(SearchResult& found) {
+void take_back(SearchResult& found, const std::string& reason) {
   for (Judged& judged : found.accepted) {
-    judged.reason = "helps the runs that it was fitted to, and not the validation run";
+    judged.reason = reason;
     found.refused.push_back(judged);
   }
   found.accepted.clear();
   found.free_form.reset();  // it was measured beside what is taken back
-  found.taken_back = true;
   found.after = found.before;
+}
+
+/// Thrusters that are not those of the vehicle's file bend every number: asked where a model follows its thrust badly.
+std::optional<WiringFault> wrongly_wired(const model::Vehicle& vehicle, std::span<const Trial> train,
+                                         std::span<const AxisWhiteness> residual, const Settings& settings,
+                                         const Progress& progress) {
+  if (astray(residual).empty()) return {};
+  progress("asking whether thrusters are wired as filed", 0.98);
+  std::vector<Trial> fitted;
+  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  return wiring_fault(vehicle, fitted, settings.fit);
 }
 
 }  // namespace
@@ -207,12 +218,20 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   Predictions after = predict(found.after.model, windows);
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
   if (!found.accepted.empty() && judged && !carries_over(found, improvement(before, after, vehicle))) {
-    take_back(found);
+    take_back(found, "helps the runs that it was fitted to, and not the validation run");
+    found.taken_back = true;
     after = before;
   }
-  if (!found.accepted.empty()) found.explained = share_on(unseen, found, vehicle, settings);
   const Residuals residual_before = residuals_of(found.before.model, unseen);
-  const Residuals residual_after = residuals_of(found.after.model, unseen);
+  Residuals residual_after = residuals_of(found.after.model, unseen);
+  result.wiring =
+      wrongly_wired(vehicle, train, whiteness(found.after.model, unseen, residual_after), settings, progress);
+  if (result.wiring) {
+    take_back(found, "stands in for thrusters that are not those of the vehicle's file");
+    after = before;
+    residual_after = residual_before;
+  }
+  if (!found.accepted.empty()) found.explained = share_on(unseen, found, vehicle, settings);
   result.error_before = {force_rmse(vehicle, residual_before), before.summary(vehicle)};
   result.error_after = {force_rmse(vehicle, residual_after), after.summary(vehicle)};
   result.improvement = improvement(before, after, vehicle);

@@ -39,9 +39,13 @@ std::vector<Sides> sides_of(const model::Model& model, const Trial& trial, const
   return sides;
 }
 
-/// Weight of the samples up to `half` away from the middle in the mean acceleration that the slope of a straight line
-/// through 2 half + 1 velocities is: acceleration runs straight from sample to sample.
-std::vector<double> weights_of(std::size_t half) {
+}  // namespace
+
+std::size_t residual_span(double dt) {
+  return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / dt))) + 1;
+}
+
+std::vector<double> slope_weights(std::size_t half) {
   double squares = 0.0;
   for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * static_cast<double>(i * i);
   std::vector<double> weight(half + 1, 0.0);
@@ -54,20 +58,19 @@ std::vector<double> weights_of(std::size_t half) {
   return weight;
 }
 
-}  // namespace
-
-std::size_t residual_span(double dt) {
-  return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / dt))) + 1;
-}
-
 std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
   const std::size_t half = residual_span(trial.dt) / 2;
   double squares = 0.0;  // s^2, of the offsets
   for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
-  const std::vector<double> weight = weights_of(half);
+  const std::vector<double> weight = slope_weights(half);
   std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
   const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());
   const std::vector<Sides> sides = sides_of(model, trial, nu);
+  Eigen::Array<bool, 6, 1> asked;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    asked[static_cast<Eigen::Index>(axis)] =
+        model.vehicle->dof[axis] && (axis < 3 ? trial.observed.velocity : trial.observed.rates);
+  }
   for (std::size_t k = half; k + half < trial.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     bool valid = true;
@@ -81,7 +84,7 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
                 (!trial.observed.rates || trial.rates_valid[j] != 0);
       }
     }
-    if (valid) residuals[k] = sides[k].mass * (slope / squares) + still;
+    if (valid) residuals[k] = asked.select(sides[k].mass * (slope / squares) + still, residuals[k]);
   }
   return residuals;
 }

@@ -12,9 +12,14 @@ namespace fathom::diagnosis {
 /// Samples, an odd number, over which a wrench residual is the mean: residuals that far apart share no measurement.
 [[nodiscard]] std::size_t residual_span(double dt);
 
+/// Weight of the samples up to `half` away from the middle in the mean acceleration that the slope of a straight line
+/// through 2 half + 1 velocities is: acceleration runs straight from sample to sample.
+[[nodiscard]] std::vector<double> slope_weights(std::size_t half);
+
 /// Wrench residual X..N [N, N m] per sample, the mean over half a second: inertia times the slope of a straight line
 /// through the measured velocity, less the model's load averaged as that slope averages acceleration (so that a step of
-/// thrust within the span leaves nothing). NaN where the span meets an edge or an invalid sample.
+/// thrust within the span leaves nothing). NaN where the span meets an edge or an invalid sample, and on axes that are
+/// not simulated or not measured.
 [[nodiscard]] std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial);
 
 }  // namespace fathom::diagnosis

@@ -7,9 +7,13 @@
 #include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
+#include "common/diagnosis/listing.hpp"
+#include "common/diagnosis/whiteness.hpp"
 
 namespace fathom::diagnosis {
 namespace {
+
+const double kStrong = std::log(20.0);  // odds that a name is right; with less it is the likeliest, not shown
 
 std::string percent(double share) {
   char text[32];
@@ -24,103 +28,6 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
     text += words[i];
   }
   return text;
-}
-
-/// Numbers of one accepted effect, under names that stay apart when it was accepted in several forms.
-std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& found, bool several) {
-  std::vector<NamedValue> values;
-  const std::vector<NamedValue> all = found.after.parameters();
-  std::size_t place = all.size();
-  for (auto effect = found.after.model.effects.rbegin(); effect != found.after.model.effects.rend(); ++effect) {
-    place -= effect->theta.size();
-    if (effect->effect != judged.effect || effect->variant != judged.variant) continue;
-    for (std::size_t i = 0; i < effect->theta.size(); ++i) {
-      if (!judged.effect->is_told(judged.variant, i)) continue;
-      NamedValue value = all[place + i];
-      const std::string own{judged.effect->parameters()[i].name};
-      value.name = judged.variant_name.empty() || !several ? own : judged.variant_name + "." + own;
-      values.push_back(value);
-    }
-  }
-  return values;
-}
-
-/// What acts itself is no alternative to another.
-std::vector<std::string> alternatives_of(const Judged& judged, const SearchResult& found) {
-  std::vector<std::string> open = judged.alternatives;
-  std::erase_if(open, [&](const std::string& name) {
-    return std::ranges::any_of(found.accepted, [&](const Judged& other) { return other.effect->name() == name; });
-  });
-  return open;
-}
-
-void list_effects(const SearchResult& found, DiagnosisResult& result) {
-  for (const Judged& judged : found.accepted) {
-    const std::string name{judged.effect->name()};
-    const std::vector<std::string> alternatives = alternatives_of(judged, found);
-    const double log_odds = at_most_for(found.explained, judged.log_odds);
-    const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
-                                     [&](const Judged& j) { return j.effect == judged.effect; });
-    const std::vector<NamedValue> numbers = numbers_of(judged, found, judged.effect->variants_matter() || forms > 1);
-    const auto known = std::find_if(result.effects.begin(), result.effects.end(),
-                                    [&](const EffectFound& e) { return e.name == name; });
-    if (known != result.effects.end()) {
-      known->variant += ", " + judged.variant_name;
-      known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
-      known->log_odds = std::max(known->log_odds, log_odds);
-      known->error_reduction = 1.0 - (1.0 - known->error_reduction) * (1.0 - judged.error_reduction);
-      for (const std::string& other : alternatives) {
-        if (std::find(known->alternatives.begin(), known->alternatives.end(), other) == known->alternatives.end()) {
-          known->alternatives.push_back(other);
-        }
-      }
-      for (const std::string& other : judged.other_forms)
-        known->other_forms.push_back(judged.variant_name + " or " + other);
-      continue;
-    }
-    std::vector<std::string> other_forms;
-    for (const std::string& other : judged.other_forms) other_forms.push_back(judged.variant_name + " or " + other);
-    result.effects.push_back({.name = name,
-                              .variant = judged.variant_name,
-                              .accepted = true,
-                              .parameters = numbers,
-                              .log_odds = log_odds,
-                              .error_reduction = judged.error_reduction,
-                              .alternatives = alternatives,
-                              .other_forms = other_forms,
-                              .sentence = std::string(judged.effect->sentence())});
-  }
-}
-
-/// How many effects were asked.
-std::size_t list_candidates(const SearchResult& found, const model::Scene& scene, DiagnosisResult& result) {
-  for (const EffectFound& effect : result.effects) {
-    std::vector<std::string> aliases;
-    for (const Judged& judged : found.accepted) {
-      if (judged.effect->name() == effect.name)
-        aliases.insert(aliases.end(), judged.aliased_with.begin(), judged.aliased_with.end());
-    }
-    result.candidates.push_back(
-        {effect.name, effect.variant, effect.log_odds, effect.error_reduction, aliases, "accepted"});
-  }
-  for (const Judged& judged : found.refused) {
-    const std::string name{judged.effect->name()};
-    const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
-                                    [&](const CandidateTried& c) { return c.name == name; });
-    if (listed) continue;
-    std::string reason = judged.reason;
-    if (reason.empty()) reason = kWeaker;
-    result.candidates.push_back(
-        {name, judged.variant_name, judged.log_odds, judged.error_reduction, judged.aliased_with, reason});
-  }
-  const std::size_t asked = result.candidates.size();
-  for (const model::Effect* effect : model::all_effects()) {
-    const std::string name{effect->name()};
-    const bool listed = std::any_of(result.candidates.begin(), result.candidates.end(),
-                                    [&](const CandidateTried& c) { return c.name == name; });
-    if (!listed) result.candidates.push_back({name, "", 0.0, 0.0, {}, why_not_asked(*effect, scene)});
-  }
-  return asked;
 }
 
 std::string improvement_sentence(const DiagnosisResult& result) {
@@ -202,6 +109,25 @@ std::string foretold_sentence(const std::vector<Foretold>& axes) {
   return "5 s ahead the model foretells " + joined(words) + ". ";
 }
 
+std::string wiring_sentence(const WiringFault& fault) {
+  return "The thrusters do not seem to be those of the vehicle's file: with " + joined(fault.readings, ", or with ") +
+         ", the base model fitted anew would make " + percent(fault.error_reduction) +
+         " less error. No effect is named before the file is right: try the thrusters one by one, correct it and "
+         "diagnose again. ";
+}
+
+/// Where thrust is followed so badly that the file itself is in doubt: axes that are badly foretold, or where more is
+/// left than was applied.
+std::vector<std::string> not_followed(const DiagnosisResult& result, const std::vector<Foretold>& foretold) {
+  std::vector<std::string> axes = astray(result.residual_after);
+  std::erase_if(axes, [&](const std::string& name) {
+    const auto& all = result.residual_after;
+    return std::ranges::find(all, name, &AxisWhiteness::axis)->explained > 0.0 &&
+           std::ranges::find(foretold, name, &Foretold::axis) == foretold.end();
+  });
+  return axes;
+}
+
 std::string motion_for(const std::string& name) { return std::string(model::find_effect(name)->revealed_by()); }
 
 /// What to drive next: what tells look-alikes apart, else what sharpens the weakest number, else what would confirm
@@ -258,7 +184,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   // Worse than to assume the average: whatever is at work, the model does not explain it.
   const bool blind = std::ranges::any_of(foretold, &Foretold::blind);
   const Judged* promising = promising_of(found);
-  const bool structure = !left.empty() || found.free_form || found.taken_back || blind || promising != nullptr;
+  // Noise beside which thrust hardly matters is no model that explains the runs.
+  const std::vector<std::string> astray_axes = not_followed(result, foretold);
+  const bool structure = !left.empty() || found.free_form || found.taken_back || blind || !astray_axes.empty() ||
+                         promising != nullptr || result.wiring;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
@@ -269,6 +198,11 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
 
   std::string& text = result.paragraph;
+  if (result.wiring) {
+    text = wiring_sentence(*result.wiring);
+    result.manoeuvre = "Run each thruster alone for a second or two and see which way the vehicle goes.";
+    return;
+  }
   if (result.verdict == "unjudged") {
     text = "None of the " + std::to_string(asked) +
            " effects that were tried has evidence worth adding, which says little on so short a run. " + unjudged;
@@ -284,7 +218,11 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     }
     text += unjudged;
   } else {
-    text = "The motion shows what the base model lacks: " + joined(names) + ". ";
+    const double odds = std::ranges::min_element(result.effects, {}, &EffectFound::log_odds)->log_odds;
+    text = stand_ins        ? "The base model lacks something, a part of which these effects imitate: "
+           : odds < kStrong ? "Most likely the base model lacks: "
+                            : "The motion shows what the base model lacks: ";
+    text += joined(names) + ". ";
     for (const EffectFound& effect : result.effects) {
       text += effect.sentence + " ";
       if (!effect.other_forms.empty())
@@ -293,6 +231,11 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     text += unjudged.empty() ? improvement_sentence(result) : unjudged;
   }
   text += foretold_sentence(foretold);
+  if (!astray_axes.empty()) {
+    text += "Along " + joined(astray_axes) +
+            " less than half of the applied force is accounted for: are the thrusters' order, signs, places and units "
+            "those of the vehicle's file? ";
+  }
   if (stand_ins) {
     text += "Where " + joined(names) + " act" + (names.size() > 1 ? "" : "s") + ", only " + percent(found.explained) +
             " of the error that outlasts the noise is gone; a whole cause removes nearly all of it. So " +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/diagnosis/force_residual.hpp"
 
@@ -102,12 +103,32 @@ std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const 
       for (const auto& input : trials[r].input) applied.push_back((model.allocation * input)[axis]);
       applied_square += moments(applied).variance * m.count;
     }
+    if (weight == 0.0) continue;
     row.p_value = std::min(statistic_p * static_cast<double>(trials.size()), 1.0);  // the least of so many
-    row.autocorrelation_time_s = weight > 0.0 ? memory / weight : 0.0;
-    row.explained = applied_square > 0.0 ? 1.0 - residual_square / applied_square : 0.0;
+    row.autocorrelation_time_s = memory / weight;
+    row.explained =
+        applied_square > 0.0 ? 1.0 - residual_square / applied_square : std::numeric_limits<double>::quiet_NaN();
+    row.applied_rms = std::sqrt(applied_square / weight);
     rows.push_back(row);
   }
   return rows;
+}
+
+std::vector<std::string> astray(std::span<const AxisWhiteness> axes) {
+  constexpr double kFollowed = 0.5, kMuch = 0.5;
+  const auto turns = [](const AxisWhiteness& axis) { return axis.axis == "K" || axis.axis == "M" || axis.axis == "N"; };
+  std::vector<std::string> names;
+  for (const AxisWhiteness& axis : axes) {
+    double square = 0.0, count = 0.0;
+    for (const AxisWhiteness& other : axes) {
+      if (turns(other) != turns(axis)) continue;
+      square += other.applied_rms * other.applied_rms;
+      count += 1.0;
+    }
+    const bool driven = axis.applied_rms * axis.applied_rms >= kMuch * square / count && square > 0.0;
+    if (driven && axis.explained < kFollowed && axis.p_value < kNotRandom) names.push_back(axis.axis);
+  }
+  return names;
 }
 
 }  // namespace fathom::diagnosis

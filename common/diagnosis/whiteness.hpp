@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/base/spatial.hpp"
@@ -16,8 +17,12 @@ namespace fathom::diagnosis {
 /// P-value of Ljung and Box's portmanteau test over `rho[1..]` of a series with `count` samples (1978, eq. 2.5).
 [[nodiscard]] double ljung_box_p(std::span<const double> rho, double count);
 
-/// Whiteness, memory and explained share of the wrench residual, per simulated axis.
+/// Whiteness, memory and explained share of the wrench residual, per simulated axis on which there is one.
 [[nodiscard]] std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,
                                                    std::span<const std::vector<Vector6d>> residuals);
+
+/// Names of the axes along which less than half of the applied wrench is accounted for, what is left being no noise of
+/// the sensors. Only where much is applied, next to other forces or moments: where little is, any random force is more.
+[[nodiscard]] std::vector<std::string> astray(std::span<const AxisWhiteness> axes);
 
 }  // namespace fathom::diagnosis

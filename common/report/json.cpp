@@ -152,6 +152,8 @@ std::string to_json(const DiagnosisResult& result) {
   file["parameters"]["before"] = named(result.parameters_before);
   file["parameters"]["after"] = named(result.parameters_after);
   file["explained"] = result.explained;
+  if (result.wiring)
+    file["wiring"] = {{"readings", result.wiring->readings}, {"error_reduction", result.wiring->error_reduction}};
   file["residual"]["before"] = whiteness(result.residual_before);
   file["residual"]["after"] = whiteness(result.residual_after);
   file["residual"]["goes_with"] = associations(result.goes_with);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
@@ -17,7 +18,8 @@ struct Meaning {
   std::string words;
 };
 
-Meaning meaning(const std::string& verdict, bool partly) {
+Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
+  if (wiring) return {"unexplained", "The vehicle's file has other thrusters than the vehicle"};
   if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
   if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
   if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
@@ -27,6 +29,15 @@ Meaning meaning(const std::string& verdict, bool partly) {
   if (verdict == "unjudged")
     return {"ambiguous", "Too little data: nothing could be judged on motion that no fit has seen"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
+}
+
+/// Both parts of a divided run are one.
+std::string recordings(const DiagnosisResult& result) {
+  std::set<std::string> runs;
+  for (const auto* names : {&result.train, &result.validate}) {
+    for (const std::string& name : *names) runs.insert(name.substr(0, name.find(" (")));
+  }
+  return std::to_string(runs.size()) + (runs.size() == 1 ? " recorded run" : " recorded runs");
 }
 
 std::string tile(const std::string& big, const std::string& small) {
@@ -68,11 +79,12 @@ const char* kWords =
 
 std::string verdict_section(const DiagnosisReport& report) {
   const DiagnosisResult& result = report.result;
-  const Meaning said = meaning(result.verdict, !result.effects.empty() && result.explained < 1.0);
-  std::string html =
-      "<header><h1>Why does " + escape(result.vehicle) + " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " +
-      std::to_string(result.train.size() + result.validate.size()) + " recorded runs</p>\n<div class=\"badge " +
-      said.css + "\">" + escape(said.words) + "</div>\n" + lines(result.paragraph) + "<div class=\"tiles\">";
+  const Meaning said =
+      meaning(result.verdict, !result.effects.empty() && result.explained < 1.0, result.wiring.has_value());
+  std::string html = "<header><h1>Why does " + escape(result.vehicle) +
+                     " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
+                     "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" +
+                     lines(result.paragraph) + "<div class=\"tiles\">";
   if (std::isfinite(result.improvement.value)) {
     html += tile(percent(-result.improvement.value),
                  "change of the prediction error 5 s ahead (95 %: " + percent(-result.improvement.high) + " to " +
@@ -83,8 +95,9 @@ std::string verdict_section(const DiagnosisReport& report) {
     if (effect.accepted) found.push_back(effect_title(effect.name, effect.variant));
   }
   const std::size_t doubts = group_findings(result.consistency).size();
-  html += tile(std::to_string(found.size()), (found.size() == 1 ? "effect accepted" : "effects accepted") +
-                                                 std::string(found.empty() ? "" : ": ") + join(found, ", "));
+  html += tile(std::to_string(found.size()), (found.size() == 1 ? "effect " : "effects ") +
+                                                 std::string(result.verdict == "unexplained" ? "kept" : "accepted") +
+                                                 (found.empty() ? "" : ": ") + join(found, ", "));
   html += tile(std::to_string(doubts), doubts == 1 ? "doubt about a sensor" : "doubts about sensors");
   const bool judged = !result.error_after.prediction.empty();
   html += tile(join(result.validate, ", "), judged ? "judged on, not used in the fit" : "too short to judge on");

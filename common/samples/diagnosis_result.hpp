@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,8 @@ struct AxisWhiteness {
   std::string axis;  ///< "X" .. "N"
   double p_value{};  ///< of the whiteness test (Ljung-Box on residuals that share no measurement)
   double autocorrelation_time_s{};
-  double explained{};  ///< share of variance explained, of the applied wrench's axis
+  double explained{};    ///< share of variance explained, of the applied wrench's axis; NaN where none is applied
+  double applied_rms{};  ///< N or N m, of that wrench about its mean
 };
 
 /// Something that the residual of one axis goes with.
@@ -96,6 +98,12 @@ struct NotMeasured {
   std::vector<std::string> cannot_be_asked;  ///< effects that have no form without it
 };
 
+/// Thrusters that seem to be others, or to push the other way, than the vehicle's file says.
+struct WiringFault {
+  std::vector<std::string> readings;  ///< "T1 and T2 exchanged"; more than one where the data cannot tell them apart
+  double error_reduction{};           ///< of the base model's error, were the file so
+};
+
 struct Interval {
   double value{};
   double low{};  ///< 95 %
@@ -115,6 +123,7 @@ struct DiagnosisResult {
   std::vector<NotMeasured> not_measured;
   ModelError error_before;
   ModelError error_after;
+  std::optional<WiringFault> wiring{};
   double explained{1.0};  ///< by the accepted effects, of the lasting error on validation; 1 when there are none
   Interval improvement;   ///< relative reduction of the normalised 5 s prediction error on validation
   std::vector<NamedValue> parameters_before;

@@ -208,6 +208,38 @@ TEST_CASE(
   CHECK(says(result.paragraph, "foretells 30 % of the motion along Y"));  // beside what was found, too
 }
 
+TEST_CASE("verdict: a model that does not follow its thrust is not adequate, and the file is in doubt") {
+  const MadeUp made;
+  const auto concluded = [&](double explained, double p_half, double p_value = 1e-6, double applied = 5.0) {
+    DiagnosisResult result;
+    result.error_after.prediction = {{.horizon_s = 5.0, .r2 = {0.9, 0.3, 0.9, 0.9, 0.9, 0.9}}};
+    result.error_after.prediction[0].p_half[1] = p_half;
+    result.residual_after = {{"X", 0.3, 0.3, 0.9, 5.0}, {"Y", p_value, 2.0, explained, applied}};
+    conclude(made.found, made.left, made.scene(), result);
+    return result;
+  };
+  const DiagnosisResult astray = concluded(0.3, 1e-6);
+  CHECK(astray.verdict == "unexplained");
+  CHECK(says(astray.paragraph, "Along Y less than half of the applied force is accounted for"));
+  CHECK(says(astray.paragraph, "vehicle's file"));
+  CHECK(concluded(0.3, 0.2).verdict == "adequate");               // few windows tell nothing of a half
+  CHECK(concluded(-3.0, 0.2).verdict == "unexplained");           // but more is left than was there
+  CHECK(concluded(0.7, 1e-6).verdict == "adequate");              // a strong random force
+  CHECK(concluded(-3.0, 1e-6, 0.4).verdict == "adequate");        // the sensors' noise
+  CHECK(concluded(-3.0, 1e-6, 1e-6, 1.0).verdict == "adequate");  // an axis that hardly anything drives
+}
+
+TEST_CASE("verdict: thrusters that are not the file's come before all else") {
+  const MadeUp made;
+  DiagnosisResult result;
+  result.wiring = WiringFault{{"T1 and T2 exchanged", "T3 reversed"}, 0.97};
+  conclude(made.found, made.left, made.scene(), result);
+  CHECK(result.verdict == "unexplained");
+  CHECK(says(result.paragraph, "T1 and T2 exchanged, or with T3 reversed"));
+  CHECK(says(result.paragraph, "97 % less error"));
+  CHECK(says(result.manoeuvre, "each thruster alone"));
+}
+
 TEST_CASE("verdict: an alternative that was accepted beside it is none any more") {
   MadeUp made;
   made.accept("current", {0.1, 0.1}).alternatives = {"tether_tension", "wall_effect"};

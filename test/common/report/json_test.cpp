@@ -55,6 +55,14 @@ TEST_CASE("What was not measured stands with the effects that could not be asked
   CHECK(file["not_measured"][1]["cannot_be_asked"].empty());
 }
 
+TEST_CASE("Thrusters that are not the file's stand in the file where there is doubt, and nowhere else") {
+  auto report = fathom::test::made_up_report({.samples = 0});
+  CHECK_FALSE(json::parse(to_json(report.result)).contains("wiring"));
+  report.result.wiring = fathom::WiringFault{{"T1 and T2 exchanged"}, 0.97};
+  CHECK(json::parse(to_json(report.result))["wiring"] ==
+        json({{"readings", {"T1 and T2 exchanged"}}, {"error_reduction", 0.97}}));
+}
+
 TEST_CASE("Named values become objects with value, std and unit, and arrive unchanged") {
   const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
   const json& lag = file["effects"][0]["parameters"]["time_constant"];
