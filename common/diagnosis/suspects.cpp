@@ -1,6 +1,8 @@
 #include "common/diagnosis/suspects.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fathom::diagnosis {
 namespace {
@@ -13,6 +15,18 @@ bool always(const Trial&) { return true; }
 bool with_position(const Trial& trial) { return trial.observed.position; }
 bool with_attitude(const Trial& trial) { return trial.observed.attitude; }
 bool with_voltage(const Trial& trial) { return !trial.voltage.empty(); }
+
+constexpr int kSlow = 5;  // cycles in a run: quicker swings are asked as oscillations
+
+/// What swings with one to kSlow cycles in a run, each times `factor`.
+void add_slow(const Moment& at, double factor, Columns& row) {
+  const std::vector<double>& t = at.trial.t;
+  const double turn = 2.0 * std::numbers::pi * (t[at.k] - t.front()) / std::max(t.back() - t.front(), 1e-9);
+  for (int cycles = 1; cycles <= kSlow; ++cycles) {
+    row.push_back(factor * std::cos(cycles * turn));
+    row.push_back(factor * std::sin(cycles * turn));
+  }
+}
 
 void add(Columns& row, std::initializer_list<double> values) { row.insert(row.end(), values); }
 
@@ -42,6 +56,12 @@ constexpr std::array kSuspects{
             [](const Moment& at, int, Columns& row) {
               const double psi = heading(at);
               add(row, {std::sin(psi), std::cos(psi), std::sin(2.0 * psi), std::cos(2.0 * psi)});
+            }},
+    Suspect{"heading and time, like a force in the world that changes slowly", with_attitude,
+            [](const Moment& at, int, Columns& row) {
+              add(row, {std::sin(heading(at)), std::cos(heading(at))});
+              add_slow(at, std::sin(heading(at)), row);
+              add_slow(at, std::cos(heading(at)), row);
             }},
     Suspect{"speed", always,
             [](const Moment& at, int axis, Columns& row) {
@@ -76,6 +96,12 @@ constexpr std::array kSuspects{
             [](const Moment& at, int axis, Columns& row) {
               add(row, {at.tau[1][axis], at.tau[2][axis]});
             }},
+    Suspect{"thrust times turning, as of a rotor's spin", always,
+            [](const Moment& at, int, Columns& row) {
+              for (int force = 0; force < 3; ++force) {
+                for (int rate = 3; rate < 6; ++rate) row.push_back(at.tau[0][force] * at.nu[rate]);
+              }
+            }},
     Suspect{"voltage", with_voltage,
             [](const Moment& at, int axis, Columns& row) {
               add(row, {at.trial.voltage[at.k], at.trial.voltage[at.k] * at.tau[0][axis]});
@@ -84,6 +110,7 @@ constexpr std::array kSuspects{
             [](const Moment& at, int, Columns& row) {
               add(row, {time(at), time(at) * time(at)});
             }},
+    Suspect{"time, swinging slowly", always, [](const Moment& at, int, Columns& row) { add_slow(at, 1.0, row); }},
     Suspect{"time, as thrust or drag that changes", always,
             [](const Moment& at, int axis, Columns& row) {
               const double v = at.nu[axis];

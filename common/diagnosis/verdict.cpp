@@ -55,7 +55,9 @@ std::string memory_sentence(const DiagnosisResult& result) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g s", longest);
   return "In " + joined(axes) + " it remembers itself, for up to " + text +
-         ": like a random force, as of turbulence or of a swinging tether, that no model foretells. ";
+         ": like a random force, as of turbulence or of a swinging tether, that no model foretells; what nothing "
+         "recorded "
+         "goes with would look the same. ";
 }
 
 /// The accepted number that is known worst, relative to its size.
