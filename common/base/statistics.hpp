@@ -14,6 +14,11 @@ namespace fathom {
 [[nodiscard]] double huber_weight(double ratio, double limit = 1.5);
 /// Standard deviation of white noise on a smooth uniform series, from third differences: smooth motion drops out.
 [[nodiscard]] double white_noise_sigma(std::span<const double> series);
+/// The same at any stamps `t`, from divided differences: at unequal steps plain ones would take motion for noise.
+[[nodiscard]] double white_noise_sigma(std::span<const double> t, std::span<const double> series);
+/// Of a series of which only its steps are known, each from `before` to `t`; those that do not follow on are left out.
+[[nodiscard]] double white_noise_of_steps(std::span<const double> before, std::span<const double> t,
+                                          std::span<const double> steps);
 /// How many parts of equal weight say as much as these weights, none of them negative: (sum w)^2 / sum w^2 (Kish 1965,
 /// sec. 11.7); 0 when all are zero.
 [[nodiscard]] double effective_count(std::span<const double> weights);

@@ -78,6 +78,33 @@ PredictionTrace trace_of(const Trial& trial, const SearchResult& found, const st
   return trace;
 }
 
+/// Stretches between a run's gaps are one run to whoever looks at it: one row of nothing stands for each gap.
+void join(PredictionTrace& run, PredictionTrace&& next) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const auto append = [](auto& to, auto& from, const auto& between) {
+    if (from.empty()) return;
+    to.push_back(between);
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const std::size_t k : next.restarts) run.restarts.push_back(run.t.size() + 1 + k);
+  append(run.t, next.t, 0.5 * (run.t.back() + next.t.front()));
+  for (auto rows : {&PredictionTrace::measured, &PredictionTrace::before, &PredictionTrace::after,
+                    &PredictionTrace::residual_before, &PredictionTrace::residual_after, &PredictionTrace::tau})
+    append(run.*rows, next.*rows, std::array<double, 6>{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
+  append(run.position, next.position, std::array<double, 3>{kNaN, kNaN, kNaN});
+  append(run.heading, next.heading, kNaN);
+  append(run.voltage, next.voltage, kNaN);
+}
+
+/// Every run once, however many stretches it has.
+std::vector<std::string> names_of(std::span<const Trial> trials) {
+  std::vector<std::string> names;
+  for (std::size_t r = 0; r < trials.size(); ++r) {
+    if (r == 0 || !same_run(trials[r - 1], trials[r])) names.push_back(trials[r].name);
+  }
+  return names;
+}
+
 /// Whether what training promised is kept by runs that no fit has seen. A veto only: nothing is accepted for it.
 bool carries_over(const SearchResult& found, const Interval& change) {
   double left = 1.0;
@@ -209,8 +236,8 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   DiagnosisReport report;
   DiagnosisResult& result = report.result;
   result.vehicle = vehicle.name;
-  for (const Trial& trial : train) result.train.push_back(trial.name);
-  for (const Trial& trial : unseen) result.validate.push_back(trial.name);
+  result.train = names_of(train);
+  result.validate = names_of(unseen);
 
   progress("predicting the validation runs", 0.97);
   const std::vector<model::Window> windows = prediction_windows(unseen, lead_of(found.after.model));
@@ -248,7 +275,12 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   const std::vector<Association> left = left_in(train, unseen, found, vehicle, settings);
   conclude(found, left, model::scene_of(vehicle, train), result, judged ? "" : too_short(unseen, settings));
   for (std::size_t r = 0; r < unseen.size(); ++r) {
-    report.traces.push_back(trace_of(unseen[r], found, residual_before[r], residual_after[r]));
+    PredictionTrace trace = trace_of(unseen[r], found, residual_before[r], residual_after[r]);
+    if (r > 0 && same_run(unseen[r - 1], unseen[r])) {
+      join(report.traces.back(), std::move(trace));
+    } else {
+      report.traces.push_back(std::move(trace));
+    }
   }
   if (fitted != nullptr) *fitted = std::move(found.after);
   return report;

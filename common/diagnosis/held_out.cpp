@@ -29,9 +29,10 @@ std::vector<int> folds_by_run(std::span<const identification::WindowResidual> wi
   std::vector<int> folds;
   std::vector<const Trial*> runs;
   for (const auto& window : windows) {
-    const auto place = std::find(runs.begin(), runs.end(), window.window().trial);
+    const Trial* run = window.window().trial;
+    const auto place = std::ranges::find_if(runs, [&](const Trial* one) { return same_run(*one, *run); });
     folds.push_back(static_cast<int>(place - runs.begin()));
-    if (place == runs.end()) runs.push_back(window.window().trial);
+    if (place == runs.end()) runs.push_back(run);
   }
   if (runs.size() < kFewestRuns) folds.clear();
   return folds;

@@ -2,6 +2,7 @@
 // of their window, so that a window's three lines belong to body axes.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
@@ -20,14 +21,15 @@ constexpr double kRateSeen = 30.0;  // variance of a window's turn over that of 
 
 /// Mean variance of the attitude's white noise about one axis, rad^2.
 double attitude_variance(const PoseSeries& pose) {
+  if (pose.size() < 2) return 0.0;
+  const std::span<const double> before = std::span{pose.t}.first(pose.size() - 1), after = std::span{pose.t}.subspan(1);
   double variance = 0.0;
   for (int k = 0; k < 3; ++k) {
     std::vector<double> step;
     for (std::size_t i = 1; i < pose.size(); ++i) {
       step.push_back(rotation_vector_from_quaternion(pose.q_WB[i - 1].conjugate() * pose.q_WB[i])[k]);
     }
-    // Third differences of steps are fourth differences of the angle: variance 70 instead of 20.
-    variance += std::pow(white_noise_sigma(step), 2) * 20.0 / 70.0 / 3.0;
+    variance += std::pow(white_noise_of_steps(before, after, step), 2) / 3.0;
   }
   return variance;
 }
@@ -115,7 +117,7 @@ Eigen::Vector3d noise_density(const Series& rates, double step) {
   for (int k = 0; k < 3; ++k) {
     std::vector<double> part;
     for (const Eigen::Vector3d& x : rates.x) part.push_back(x[k]);
-    density[k] = std::pow(white_noise_sigma(part), 2) * std::max(typical_step(rates.t), step);
+    density[k] = std::pow(white_noise_sigma(rates.t, part), 2) * std::max(typical_step(rates.t), step);
   }
   return density;
 }
@@ -211,12 +213,14 @@ IncrementProblem acceleration_problem(const PoseSeries& pose) {
         const auto i0 = static_cast<std::size_t>(first);
         const auto im = static_cast<std::size_t>(first + count / 2);
         const auto i1 = static_cast<std::size_t>(first + count - 1);
-        const double half = 0.5 * (pose.t[i1] - pose.t[i0]);
+        // The middle sample need not lie in the middle of the time.
+        const double early = pose.t[im] - pose.t[i0], late = pose.t[i1] - pose.t[im], half = 0.5 * (early + late);
         double area = 0.0;
         std::vector<double> triangle(static_cast<std::size_t>(count));
         for (int s = 0; s < count; ++s) {
           const auto k = static_cast<std::size_t>(s);
-          triangle[k] = weight[k] * (half - std::abs(pose.t[i0 + k] - pose.t[i0] - half)) / (half * half);
+          const double t = pose.t[i0 + k];
+          triangle[k] = weight[k] / half * std::min((t - pose.t[i0]) / early, (pose.t[i1] - t) / late);
           area += triangle[k];
         }
         for (int s = 0; s < count; ++s) {
@@ -227,9 +231,10 @@ IncrementProblem acceleration_problem(const PoseSeries& pose) {
         }
         Eigen::Matrix<double, 3, Eigen::Dynamic> fixed(3, 3);
         const auto rotation = [&](std::size_t i) { return pose.q_WB[i].toRotationMatrix(); };
-        fixed = -R_BW * (rotation(i1) - 2.0 * rotation(im) + rotation(i0)) / (half * half);
-        const Eigen::Vector3d y = R_BW * ((pose.p_WB[i1] - 2.0 * pose.p_WB[im] + pose.p_WB[i0]) / (half * half) -
-                                          kGravity * Eigen::Vector3d::UnitZ());
+        fixed = -R_BW * ((rotation(i1) - rotation(im)) / late - (rotation(im) - rotation(i0)) / early) / half;
+        const Eigen::Vector3d y =
+            R_BW * (((pose.p_WB[i1] - pose.p_WB[im]) / late - (pose.p_WB[im] - pose.p_WB[i0]) / early) / half -
+                    kGravity * Eigen::Vector3d::UnitZ());
         frame.add(first, count, y, fixed);
       });
   frame.problem.lever = 0;

@@ -288,7 +288,7 @@ IncrementFit fit_increments(const IncrementProblem& problem, const Series& senso
   for (int k = 0; k < 3; ++k) {
     std::vector<double> part;
     for (const Eigen::Vector3d& x : sensor.x) part.push_back(x[k]);
-    const double sigma = white_noise_sigma(part);
+    const double sigma = white_noise_sigma(sensor.t, part);
     noise.segment<3>(3 * k).setConstant(sigma * sigma * sensor_step * problem.squared_weight);
   }
   fit.theta_upper = solve_all(-1, offset, &noise);

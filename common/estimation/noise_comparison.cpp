@@ -18,7 +18,7 @@ std::vector<ConsistencyFinding> compare_noise(std::span<const RunSignals> runs) 
       for (const Series& run : series) {
         std::vector<double> part;
         for (const Eigen::Vector3d& x : run.x) part.push_back(x[k]);
-        if (part.size() > 100) one.push_back(white_noise_sigma(part));
+        if (part.size() > 100) one.push_back(white_noise_sigma(run.t, part));
       }
       sigma[static_cast<std::size_t>(k)] = median(std::move(one));
     }

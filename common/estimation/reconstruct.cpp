@@ -6,7 +6,7 @@
 #include "common/base/error.hpp"
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
-#include "common/estimation/smoothing_derivative.hpp"
+#include "common/estimation/pose_derivatives.hpp"
 #include "common/estimation/steady_attitude.hpp"
 #include "common/estimation/trial_input.hpp"
 #include "common/estimation/wording.hpp"
@@ -15,79 +15,16 @@ namespace fathom::estimation {
 namespace {
 
 constexpr double kHighestRate = 50.0;  // Hz: at half of it, steps of 40 ms put masses 0.05 % off
-constexpr double kBandwidth = 1.0;     // Hz: underwater vehicles of this size answer slower
 constexpr double kDoubt = 0.4;         // s: half the window in which gyro and pose were compared
-constexpr double kGainTolerance = 0.03;
+constexpr double kFewSteps = 2.5;      // between samples that a spline joins
 constexpr double kMostlyThere = 0.05;  // least share of the grid that samples fill: else a clock has leapt
-
-/// One of two sources of three components, with its white noise.
-struct Source {
-  Series series;
-  Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};
-  [[nodiscard]] bool exists() const { return series.size() > 3; }
-};
 
 void measure_noise(Source& source) {
   for (int k = 0; k < 3; ++k) {
     std::vector<double> part;
     for (const Eigen::Vector3d& x : source.series.x) part.push_back(x[k]);
-    source.sigma[k] = white_noise_sigma(part);
+    source.sigma[k] = white_noise_sigma(source.series.t, part);
   }
-}
-
-/// Body velocity and body rates from the pose, where all samples under the window are valid.
-struct PoseDerivatives {
-  Source velocity, rates;
-};
-
-PoseDerivatives differentiate(const PoseSeries& pose) {
-  PoseDerivatives result;
-  const double step = typical_step(pose.t);
-  if (step <= 0.0) return result;
-  const SmoothingDerivative slope = smoothing_derivative(step, kBandwidth, kGainTolerance);
-  const int n = static_cast<int>(pose.size());
-  std::array<std::vector<double>, 3> position, angle;  // for the noise: body-fixed increments would hide it
-  for (int i = slope.half; i + slope.half < n; ++i) {
-    bool whole = true;
-    for (int k = i - slope.half; k <= i + slope.half && whole; ++k) {
-      const auto j = static_cast<std::size_t>(k);
-      whole = pose.valid[j] != 0 && (k == i - slope.half || pose.t[j] - pose.t[j - 1] < 1.8 * step);
-    }
-    if (!whole) continue;
-    const auto m = static_cast<std::size_t>(i);
-    Eigen::Vector3d v = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
-    for (int k = -slope.half; k <= slope.half; ++k) {
-      const auto j = static_cast<std::size_t>(i + k);
-      const double weight = slope.weight[static_cast<std::size_t>(k + slope.half)];
-      v += weight * pose.p_WB[j];
-      if (pose.has_attitude) w += weight * rotation_vector_from_quaternion(pose.q_WB[m].conjugate() * pose.q_WB[j]);
-    }
-    if (pose.has_position && pose.has_attitude) {
-      result.velocity.series.t.push_back(pose.t[m]);
-      result.velocity.series.x.push_back(pose.q_WB[m].conjugate() * v);
-    }
-    if (pose.has_attitude) {
-      result.rates.series.t.push_back(pose.t[m]);
-      result.rates.series.x.push_back(w);
-    }
-    const Eigen::Vector3d local =
-        i > 0 ? rotation_vector_from_quaternion(pose.q_WB[m - 1].conjugate() * pose.q_WB[m]) : Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      position[k].push_back(pose.p_WB[m][static_cast<int>(k)]);
-      angle[k].push_back(local[static_cast<int>(k)]);
-    }
-  }
-  Eigen::Vector3d sigma_p, sigma_a;
-  for (std::size_t k = 0; k < 3; ++k) {
-    sigma_p[static_cast<int>(k)] = white_noise_sigma(position[k]);
-    // First differences of white noise: fourth differences have variance 70, the third difference's rule divides by 20.
-    sigma_a[static_cast<int>(k)] = white_noise_sigma(angle[k]) * std::sqrt(20.0 / 70.0);
-  }
-  // Horizontal axes mix with heading.
-  sigma_p.head<2>().setConstant(std::sqrt(0.5 * sigma_p.head<2>().squaredNorm()));
-  result.velocity.sigma = slope.noise * sigma_p;
-  result.rates.sigma = slope.noise * sigma_a;
-  return result;
 }
 
 /// Evaluates a source on the grid.
@@ -96,7 +33,7 @@ void sample(const Source& source, const std::vector<double>& grid, std::vector<E
   x.assign(grid.size(), Eigen::Vector3d::Zero());
   ok.assign(grid.size(), 0);
   if (!source.exists()) return;
-  const Spline spline(source.series);
+  const Spline spline(source.series, std::max(source.bridged, kFewSteps * typical_step(source.series.t)));
   // The first and last stamp may lie a rounding beside the grid.
   constexpr double kEdge = 1e-5;  // s
   for (std::size_t i = 0; i < grid.size(); ++i) {

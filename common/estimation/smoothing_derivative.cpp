@@ -1,6 +1,7 @@
 #include "common/estimation/smoothing_derivative.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +40,20 @@ SmoothingDerivative smoothing_derivative(double step, double bandwidth, double t
     best = std::move(longer);
   }
   return best;
+}
+
+std::vector<double> slope_weights(std::span<const double> t) {
+  const double scale = std::max(-t.front(), t.back());
+  Eigen::Matrix<double, 5, Eigen::Dynamic> powers(5, static_cast<Eigen::Index>(t.size()));
+  powers.row(0).setOnes();
+  for (Eigen::Index i = 0; i < powers.cols(); ++i) {
+    for (Eigen::Index k = 1; k < 5; ++k) powers(k, i) = powers(k - 1, i) * t[static_cast<std::size_t>(i)] / scale;
+  }
+  const Eigen::Matrix<double, 5, 5> normal = powers * powers.transpose();
+  const Eigen::Matrix<double, 5, 1> slope = normal.ldlt().solve(Eigen::Matrix<double, 5, 1>::Unit(1)) / scale;
+  std::vector<double> weight(t.size());
+  Eigen::Map<Eigen::RowVectorXd>(weight.data(), powers.cols()) = slope.transpose() * powers;
+  return weight;
 }
 
 }  // namespace fathom::estimation

@@ -1,5 +1,6 @@
 #include "common/estimation/split.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -7,6 +8,15 @@
 
 namespace fathom::estimation {
 namespace {
+
+/// Calls use(valid, first, end) for one stretch of equal validity after the other.
+template <class Use>
+void stretches(const std::vector<std::uint8_t>& valid, Use use) {
+  for (std::size_t first = 0, end = 0; first < valid.size(); first = end) {
+    while (end < valid.size() && valid[end] == valid[first]) ++end;
+    use(valid[first] != 0, first, end);
+  }
+}
 
 Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::string& name) {
   const auto cut = [&](const auto& all, std::size_t each = 1) {
@@ -25,6 +35,7 @@ Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::stri
   result.velocity_valid = cut(trial.velocity_valid);
   result.rates_valid = cut(trial.rates_valid);
   result.input = cut(trial.input);
+  result.input_valid = cut(trial.input_valid);
   result.held = cut(trial.held, trial.parts());
   result.told = cut(trial.told, trial.parts());
   result.voltage = cut(trial.voltage);
@@ -42,6 +53,29 @@ std::pair<Trial, Trial> split(const Trial& trial, double held_out) {
   const std::string percent = std::to_string(std::lround(100.0 * held_out));
   return {part(trial, 0, at, trial.name + " (first " + std::to_string(std::lround(100.0 * (1.0 - held_out))) + " %)"),
           part(trial, at, trial.size(), trial.name + " (last " + percent + " %)")};
+}
+
+std::vector<Trial> known_stretches(const Trial& trial, double shortest) {
+  if (trial.input_valid.empty()) return {trial};
+  std::vector<Trial> known;
+  stretches(trial.input_valid, [&](bool valid, std::size_t first, std::size_t end) {
+    const bool whole = first == 0 && end == trial.size();
+    if (!valid || (!whole && static_cast<double>(end - first - 1) * trial.dt < shortest)) return;
+    known.push_back(whole ? trial : part(trial, first, end, trial.name));
+  });
+  return known;
+}
+
+InputGaps input_gaps(const Trial& trial) {
+  InputGaps gaps;
+  stretches(trial.input_valid, [&](bool valid, std::size_t first, std::size_t end) {
+    if (valid) return;
+    const double length = static_cast<double>(end - first + 1) * trial.dt;
+    ++gaps.count;
+    gaps.longest = std::max(gaps.longest, length);
+    gaps.total += length;
+  });
+  return gaps;
 }
 
 }  // namespace fathom::estimation

@@ -1,7 +1,9 @@
-// Holds out the end of a run where no separate validation run exists.
+// Parts of a run: its end, held out where no separate validation run exists, and the stretches between its gaps.
 #pragma once
 
+#include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "common/samples/trial.hpp"
 
@@ -9,5 +11,16 @@ namespace fathom::estimation {
 
 /// The first part and the last `held_out` share (0..1) of a run, named so. InputError when either would be empty.
 [[nodiscard]] std::pair<Trial, Trial> split(const Trial& trial, double held_out);
+
+/// The stretches of at least `shortest` s over which it is known what drove the vehicle, each a trial under the run's
+/// name whose time goes on: nothing that looks at one trial then reaches across a gap, nor remembers what was before.
+[[nodiscard]] std::vector<Trial> known_stretches(const Trial& trial, double shortest);
+
+/// What of a run's input was not recorded.
+struct InputGaps {
+  std::size_t count{};
+  double longest{}, total{};  ///< s
+};
+[[nodiscard]] InputGaps input_gaps(const Trial& trial);
 
 }  // namespace fathom::estimation

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/estimation/thruster_forces.hpp"
@@ -14,7 +15,10 @@ namespace {
 constexpr double kFaster = 0.75;       // of the grid's step: inputs closer than that are averaged over it
 constexpr double kPartOfDecay = 0.25;  // spread evenly over a part, inputs take 0.3 % off the quickest inertia
 constexpr int kMostParts = 8;
-constexpr double kSameTime = 1e-6;  // s: stamps are whole microseconds
+constexpr double kCommandLife = 0.3;  // s: drivers let go of an older command, so it may not be held for longer
+constexpr double kFewSteps = 2.5;     // of the input's own: rows of so slow an input are no gap
+constexpr double kRegular = 0.9;      // of the steps are short: the input is told at a rate, not when it changes
+constexpr double kSameTime = 1e-6;    // s: stamps are whole microseconds
 
 /// Input over time: thruster forces or the wrench, one row per sample of the stream.
 struct Input {
@@ -85,6 +89,56 @@ Eigen::VectorXd mean_held(const Input& input, double from, double end, bool ahea
   return sum / length;
 }
 
+/// Over which no input was recorded that was due. s on the trial's clock.
+struct Gap {
+  double begin, end;
+};
+
+/// Whether nothing was measured in the middle of a gap: then the whole recording pauses.
+bool silent(const Recording& recording, Utime origin, const Gap& gap) {
+  const double margin = 0.25 * (gap.end - gap.begin);
+  const Utime from = utime_after(origin, gap.begin + margin), to = utime_after(origin, gap.end - margin);
+  const auto says_nothing = [&](const auto& stream) {
+    const auto next = std::ranges::lower_bound(stream, from, {}, [](const auto& one) { return one.utime; });
+    return next == stream.end() || next->utime >= to;
+  };
+  return says_nothing(recording.pose_capture) && says_nothing(recording.ahrs) && says_nothing(recording.dvl);
+}
+
+/// Longer than a few steps, than what moves the vehicle may be spread over, and than a command lives. An input that is
+/// told only when it changes has gaps where the whole recording has one.
+std::vector<Gap> gaps_of(const Recording& recording, Utime origin, const Input& input, const Trial& trial) {
+  const double few = kFewSteps * trial.input_step;
+  const double longest = std::max(few, std::min(trial.input_part, kCommandLife));
+  std::vector<Gap> gaps;
+  std::size_t brief = 0;
+  for (std::size_t i = 1; i < input.t.size(); ++i) {
+    const Gap gap{input.t[i - 1], input.t[i]};
+    if (gap.end - gap.begin <= few + kSameTime) ++brief;
+    if (gap.end - gap.begin > longest + kSameTime) gaps.push_back(gap);
+  }
+  if (static_cast<double>(brief) < kRegular * static_cast<double>(input.t.size() - 1)) {
+    std::erase_if(gaps, [&](const Gap& gap) { return !silent(recording, origin, gap); });
+    return gaps;
+  }
+  constexpr double kForever = std::numeric_limits<double>::infinity();
+  if (input.t.size() > 1) {
+    gaps.insert(gaps.begin(), {-kForever, input.t.front() - longest});
+    gaps.push_back({input.t.back() + longest, kForever});
+  }
+  return gaps;
+}
+
+/// 0 within a gap, and where a mean over `reach` to both sides draws on one.
+std::vector<std::uint8_t> outside(const std::vector<Gap>& gaps, const std::vector<double>& grid, double reach) {
+  std::vector<std::uint8_t> valid(grid.size(), 1);
+  for (const Gap& gap : gaps) {
+    auto k = static_cast<std::size_t>(std::ranges::upper_bound(grid, gap.begin - reach + kSameTime) - grid.begin());
+    for (; k < grid.size() && grid[k] < gap.end + reach - kSameTime; ++k) valid[k] = 0;
+  }
+  return valid;
+}
+
 /// Parts of a step, each with a mean of its own: no more than there are inputs to tell of, nor than the vehicle's
 /// quickest axis can tell apart. A mean over a part acts as if spread over it, and a fit takes that off the inertia.
 int parts_of(const Trial& trial) {
@@ -118,6 +172,8 @@ void add_input(const Recording& recording, Utime origin, const ThrusterCorrectio
   trial.input_part = kPartOfDecay * model::quickest_decay(vehicle);
   trial.input_averaged = trial.input_step < kFaster * trial.dt;
   for (const double t : trial.t) trial.input.push_back(mean_around(input, t, trial.input_averaged ? trial.dt : 0.0));
+  const bool means = trial.input_averaged || averaging.samples > 1;
+  trial.input_valid = outside(gaps_of(recording, origin, input, trial), trial.t, means ? 0.5 * trial.dt : 0.0);
   const int parts = parts_of(trial);
   sample_held(input, averaging, false, parts, trial, trial.held);
   sample_held(input, averaging, true, parts, trial, trial.told);

@@ -30,6 +30,13 @@ Eigen::VectorXd mean_input(const Trial& trial, std::size_t centre, std::size_t h
   return sum / count;
 }
 
+/// Whether nothing was guessed of what the means and the next step at `centre` are made of.
+std::uint8_t all_known(const Trial& trial, std::size_t centre, std::size_t step) {
+  const auto begin = trial.input_valid.begin() + static_cast<std::ptrdiff_t>(centre - std::min(centre, step / 2));
+  const auto end = trial.input_valid.begin() + static_cast<std::ptrdiff_t>(std::min(centre + step, trial.size()));
+  return std::find(begin, end, std::uint8_t{0}) == end ? 1 : 0;
+}
+
 /// Of the parts of the next `step` samples' steps, `together` at a time, what the velocities near `centre` felt of
 /// them.
 void add_parts(const std::vector<Eigen::VectorXd>& held, std::size_t parts, std::size_t centre, std::size_t half,
@@ -92,6 +99,7 @@ Trial sparse(const Trial& trial, double dt) {
     out.velocity_valid.push_back(trial.velocity_valid[k]);
     out.rates_valid.push_back(trial.rates_valid[k]);
     out.input.push_back(mean_input(trial, k, step / 2));
+    if (!trial.input_valid.empty()) out.input_valid.push_back(all_known(trial, k, step));
     add_parts(held, parts, k, step / 2, step, together, out.held);
     add_parts(told, parts, k, step / 2, step, together, out.told);
     if (!trial.voltage.empty()) out.voltage.push_back(trial.voltage[k]);

@@ -32,10 +32,12 @@ struct Trial {
   std::vector<std::uint8_t> velocity_valid;
   std::vector<std::uint8_t> rates_valid;
   std::vector<Eigen::VectorXd> input;  ///< actuator forces [N] (order of the vehicle file), or the wrench [N, N m]
-  bool input_is_wrench{false};         ///< true: input has 6 entries, the wrench at the body origin in body axes
-  double input_step{};                 ///< s between inputs as they were recorded
-  bool input_averaged{false};          ///< they came faster than the grid: `input` are means around each time
-  double input_part{};                 ///< s over which inputs may be averaged for what the vehicle does; 0: any time
+  /// 0 where input is a guess across a gap too long to hold a command over; empty: known everywhere.
+  std::vector<std::uint8_t> input_valid;
+  bool input_is_wrench{false};  ///< true: input has 6 entries, the wrench at the body origin in body axes
+  double input_step{};          ///< s between inputs as they were recorded
+  bool input_averaged{false};   ///< they came faster than the grid: `input` are means around each time
+  double input_part{};          ///< s over which inputs may be averaged for what the vehicle does; 0: any time
   /// Mean over each of parts() equal parts of each step if inputs are held until the next one; empty: `input` itself.
   /// Inputs around a time count as the velocities there were averaged.
   std::vector<Eigen::VectorXd> held;
@@ -46,5 +48,12 @@ struct Trial {
   [[nodiscard]] std::size_t size() const { return t.size(); }
   [[nodiscard]] std::size_t parts() const { return held.size() > t.size() ? held.size() / t.size() : 1; }
 };
+
+/// Whether both are stretches of one run, between whose gaps they lie: of one name, one after the other.
+[[nodiscard]] inline bool same_run(const Trial& a, const Trial& b) {
+  if (&a == &b) return true;
+  if (a.name.empty() || a.name != b.name || a.t.empty() || b.t.empty()) return false;
+  return a.t.back() < b.t.front() || b.t.back() < a.t.front();
+}
 
 }  // namespace fathom

@@ -143,7 +143,7 @@ std::string to_csv(const Trial& trial) {
     }
     if (trial.observed.velocity && trial.velocity_valid[k] != 0) velocity.add(utime, trial.nu[k].head<3>());
     if (trial.observed.rates && trial.rates_valid[k] != 0) rates.add(utime, trial.nu[k].tail<3>());
-    if (inputs > 0) {
+    if (inputs > 0 && (trial.input_valid.empty() || trial.input_valid[k] != 0)) {
       input.add(utime, std::span<const double>(trial.input[k].data(), static_cast<std::size_t>(trial.input[k].size())));
     }
     if (!trial.voltage.empty()) voltage.add(utime, std::span<const double>(&trial.voltage[k], 1));

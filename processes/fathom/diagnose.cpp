@@ -17,6 +17,7 @@
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/wording.hpp"
 #include "common/model/site.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
@@ -29,7 +30,9 @@
 namespace fathom::tool {
 namespace {
 
-constexpr double kHeldOut = 0.3;  // of every run, when no validation run is given
+constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
+constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
+constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
 constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
 
 struct Options {
@@ -53,6 +56,60 @@ Trial reconstruct(const std::string& path, const Recording& recording, const est
     const std::string what = error.what(), name = recording.name + ": ";
     throw InputError(path + ": " + (what.starts_with(name) ? what.substr(name.size()) : what));
   }
+}
+
+/// Stretches of all runs over which it is known what drove the vehicle. InputError where no gap leaves `needed` s.
+class Stretches {
+ public:
+  Stretches(std::span<const Trial> runs, std::span<const std::string> paths, double needed) {
+    double longest = 0.0, lost = 0.0;
+    std::size_t gaps = 0;
+    for (const Trial& run : runs) {
+      whole_ += duration(run);
+      gaps += estimation::input_gaps(run).count;
+      lost += estimation::input_gaps(run).total;
+      for (Trial& stretch : estimation::known_stretches(run, kShortest)) {
+        longest = std::max(longest, duration(stretch));
+        kept_ += duration(stretch);
+        trials_.push_back(std::move(stretch));
+      }
+    }
+    if (gaps == 0 || longest > needed) return;
+    throw InputError(paths.front() + (runs.size() > 1 ? " and its fellows" : "") +
+                     estimation::text(": what drove the vehicle is missing for %.3g s of %.4g s", lost, whole_) +
+                     estimation::text(", and no stretch of %.3g s is left between the %.0f gaps", needed,
+                                      static_cast<double>(gaps)) +
+                     "; record motion and thrusters together without pauses, or log at a steady rate");
+  }
+  [[nodiscard]] const std::vector<Trial>& trials() const { return trials_; }
+  [[nodiscard]] double whole() const { return whole_; }
+  [[nodiscard]] double left_out() const { return whole_ - kept_; }
+
+ private:
+  static double duration(const Trial& trial) { return static_cast<double>(trial.size()) * trial.dt; }
+
+  std::vector<Trial> trials_;
+  double whole_{}, kept_{};  // s
+};
+
+std::vector<ConsistencyFinding> gap_findings(std::span<const Trial> runs) {
+  std::vector<ConsistencyFinding> findings;
+  for (const Trial& run : runs) {
+    const estimation::InputGaps gaps = estimation::input_gaps(run);
+    if (gaps.count == 0) continue;
+    findings.push_back({.run = run.name,
+                        .signal = "thrusters",
+                        .reference = "itself",
+                        .finding = "gap",
+                        .size = gaps.longest,
+                        .unit = "s",
+                        .evidence = std::to_string(gaps.count) +
+                                    estimation::text(" gaps, %.3g s in all, the longest %.3g s: what drove the vehicle "
+                                                     "is not known there",
+                                                     gaps.total, gaps.longest),
+                        .action = "left out: nothing is simulated across them"});
+  }
+  return findings;
 }
 
 DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
@@ -86,6 +143,8 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   }
   if (estimation::share_clock(recordings, trials))
     notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
+  std::vector<ConsistencyFinding> gaps = gap_findings(trials);
+  consistency.findings.insert(consistency.findings.end(), gaps.begin(), gaps.end());
   std::vector<Trial> train, validate;
   for (std::size_t i = 0; i < trials.size(); ++i) {
     if (options.validate.empty()) {
@@ -103,18 +162,25 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   diagnosis::Settings settings;
   settings.threads = options.threads;
   if (options.validate.empty()) settings.held_out = kHeldOut;
+  const Stretches fitting{train, paths, settings.fit.window};
+  const Stretches judging{validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest};
   identification::FitResult fitted;
   DiagnosisReport report = diagnosis::diagnose(
-      vehicle, train, validate, settings,
+      vehicle, fitting.trials(), judging.trials(), settings,
       [&](const std::string& what, double share) {
         progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
       },
       &fitted);
-  if (room) separate(vehicle, *room, train, fitted, report.result);
+  if (room) separate(vehicle, *room, fitting.trials(), fitted, report.result);
   report.result.consistency = std::move(consistency.findings);
   diagnosis::adopt_sensor_faults(report.result);
   if (auto finding = diagnosis::compare_inertia(vehicle, report.result.parameters_after))
     report.result.consistency.push_back(*std::move(finding));
+  const double left_out = (fitting.left_out() + judging.left_out()) / (fitting.whole() + judging.whole());
+  if (left_out > kNotable) {
+    report.result.paragraph += estimation::text(
+        " %.0f %% of the recordings was left out: what drove the vehicle was not recorded there.", 100.0 * left_out);
+  }
   return report;
 }
 

@@ -12,6 +12,7 @@
 #include "common/estimation/estimator.hpp"
 #include "common/estimation/process_tuning.hpp"
 #include "common/estimation/reconstruct.hpp"
+#include "common/estimation/split.hpp"
 #include "common/estimation/thruster_forces.hpp"
 #include "common/estimation/trial_smoother.hpp"
 #include "common/identification/base_regression.hpp"
@@ -198,8 +199,11 @@ void run(const Options& options) {
   if (options.validate.empty()) return;
   std::vector<Trial> trials;
   for (std::size_t i = options.train.size(); i < recordings.size(); ++i) {
-    trials.push_back(estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle));
+    const Trial run = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
+    for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
+      trials.push_back(std::move(stretch));
   }
+  if (trials.empty()) throw InputError("the validation runs have too many gaps in what drove the vehicle");
   std::printf("validation error, m/s and rad/s:\n");
   validate("complementary filter, recursive", vehicle, recursive, trials);
   validate("smoother, regression under AR(1)", vehicle, regression.parameters, trials);

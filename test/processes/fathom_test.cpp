@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -168,6 +170,40 @@ TEST_CASE("fathom: which file is named first changes nothing") {
     if (first.empty()) first = result;
     CHECK(result == first);
   }
+}
+
+TEST_CASE("fathom: gaps of whole rows are left out and told of; where they leave nothing, one line says so") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
+  const auto dive = test::make_dive(vehicle, {.duration = 60.0, .seed = 6, .wrench = true});
+  const std::string whole = tables::to_csv(dive.trial);
+  const auto torn = [&](auto lost) {
+    std::istringstream lines(whole);
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("t,") || !lost(std::stod(line))) text += line + "\n";
+    }
+    return text;
+  };
+  test::write_bytes(scratch.path("some.csv"), torn([](double t) { return t > 20.0 && t < 28.0; }));
+  test::write_bytes(scratch.path("many.csv"), torn([](double t) { return std::fmod(t, 8.0) > 6.0; }));
+  const std::string common =
+      kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --out " + scratch.path("out") + " --train ";
+  const Ran some = shell(common + scratch.path("some.csv"));
+  REQUIRE_MESSAGE(some.code == 0, some.text);
+  const auto result = nlohmann::json::parse(test::read_bytes(scratch.path("out/result.json")));
+  CHECK(result.at("train").size() == 1);
+  bool told = false;
+  for (const auto& finding : result.at("consistency"))
+    told = told || (finding.at("signal") == "thrusters" && finding.at("finding") == "gap");
+  CHECK(told);
+  CHECK(some.says("of the recordings was left out"));
+  const Ran many = shell(common + scratch.path("many.csv"));
+  CAPTURE(many.text);
+  CHECK(many.code == 1);
+  CHECK(many.says("many.csv: what drove the vehicle is missing for 10 s of 42.1 s"));
+  CHECK(many.lines() == 2);  // how far it had come, and why it goes no further
 }
 
 }  // namespace fathom

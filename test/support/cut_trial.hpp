@@ -23,6 +23,7 @@ inline Trial cut_trial(const Trial& trial, std::size_t begin, std::size_t end) {
   keep(part.velocity_valid);
   keep(part.rates_valid);
   keep(part.input);
+  keep(part.input_valid);
   keep(part.voltage);
   return part;
 }

@@ -24,6 +24,8 @@ struct SyntheticOptions {
   double force_noise{0.05};                                 // m/s^2
   std::array<double, 6> activity{1, 1, 1, 1, 1, 1};         // share of the usual amplitude: x y z roll pitch yaw
   bool accelerometer{false};
+  double uneven{0.0};   // share of a step by which steps differ, either way
+  double missing{0.0};  // share of the samples that were lost
   // Faults: logged = matrix * true(t - delay) + bias.
   Eigen::Matrix3d gyro_matrix{Eigen::Matrix3d::Identity()}, dvl_matrix{Eigen::Matrix3d::Identity()},
       force_matrix{Eigen::Matrix3d::Identity()};
@@ -92,7 +94,15 @@ inline Recording synthetic_recording(const SyntheticOptions& o, const std::strin
   };
   const auto stamps = [&](double rate, auto use) {
     const int count = rate > 0.0 ? static_cast<int>(o.duration * rate) : 0;
-    for (int i = 0; i < count; ++i) use(i / rate, utime_after(0, 2.0 + i / rate));
+    std::mt19937 chance(o.seed + 101u);
+    std::uniform_real_distribution<double> lost(0.0, 1.0), longer(-o.uneven, o.uneven);
+    double late = 0.0;  // s behind equal steps
+    for (int i = 0; i < count; ++i) {
+      if (i > 0) late += longer(chance) / rate;
+      if (lost(chance) < o.missing) continue;
+      const Utime utime = utime_after(0, 2.0 + i / rate + late);
+      use(late == 0.0 ? i / rate : seconds_between(utime_after(0, 2.0), utime), utime);
+    }
   };
   Recording recording;
   recording.name = name;

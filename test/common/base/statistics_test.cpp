@@ -29,6 +29,26 @@ TEST_CASE("white noise is measured on top of smooth motion") {
   CHECK(white_noise_sigma(series) == doctest::Approx(0.01).epsilon(0.05));  // scatter of 5000 samples: 2 %
 }
 
+TEST_CASE("white noise is measured at unequal steps, of which plain differences make noise of the motion") {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0.0, 0.001);
+  std::uniform_real_distribution<double> step(0.01, 0.03);
+  std::vector<double> t, series, before, after, steps;
+  for (int i = 0; i < 5000; ++i) {
+    t.push_back(i == 0 ? 0.0 : t.back() + step(random));
+    series.push_back(std::sin(0.5 * t.back()) + normal(random));
+    if (i == 0 || i == 2500) continue;  // a step is not known
+    before.push_back(t[t.size() - 2]);
+    after.push_back(t.back());
+    steps.push_back(series.back() - series[series.size() - 2]);
+  }
+  CHECK(white_noise_sigma(series) > 0.0013);
+  CHECK(white_noise_sigma(t, series) == doctest::Approx(0.001).epsilon(0.05));
+  CHECK(white_noise_of_steps(before, after, steps) == doctest::Approx(0.001).epsilon(0.05));
+  for (std::size_t i = 0; i < t.size(); ++i) t[i] = 0.02 * static_cast<double>(i);
+  CHECK(white_noise_sigma(t, series) == white_noise_sigma(series));
+}
+
 TEST_CASE("the jackknife of a mean is the standard error") {
   const std::array<double, 4> x{1.0, 2.0, 4.0, 7.0};
   std::array<double, 4> replicates{};

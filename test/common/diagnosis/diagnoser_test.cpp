@@ -9,6 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/prediction.hpp"
+#include "common/estimation/split.hpp"
 #include "test/support/cut_trial.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -187,4 +188,36 @@ TEST_CASE("diagnoser: a sound vehicle is not accused of the time for which its c
     CHECK_MESSAGE(result.verdict == "adequate", result.paragraph);
     CHECK(result.effects.empty());
   }
+}
+
+TEST_CASE("diagnoser: stretches of a run are one run to the reader, and what drove the gap between them is no matter") {
+  Laggard laggard;
+  for (auto* runs : {&laggard.train, &laggard.validate}) {
+    Trial run = std::move(runs->front());
+    run.input_valid.assign(run.size(), 1);
+    for (std::size_t k = 250; k < 280; ++k) {
+      run.input_valid[k] = 0;
+      run.input[k] *= -5.0;
+    }
+    *runs = estimation::known_stretches(run, 2.0);
+    REQUIRE(runs->size() == 2);
+  }
+  const DiagnosisReport report = laggard.report();
+  CHECK(report.result.train == std::vector<std::string>{"first part"});
+  CHECK(report.result.validate == std::vector<std::string>{"second part"});
+  REQUIRE_FALSE(report.result.effects.empty());
+  CHECK(report.result.effects[0].name == "thruster_lag");
+  REQUIRE(report.traces.size() == 1);
+  const PredictionTrace& trace = report.traces[0];
+  const std::size_t size = trace.t.size();
+  for (const auto* rows :
+       {&trace.measured, &trace.before, &trace.after, &trace.residual_before, &trace.residual_after, &trace.tau})
+    CHECK(rows->size() == size);
+  CHECK(std::ranges::is_sorted(trace.t));
+  CHECK(std::ranges::is_sorted(trace.restarts));
+  const auto gap = std::ranges::find_if(trace.tau, [](const auto& tau) { return std::isnan(tau[0]); });
+  REQUIRE(gap != trace.tau.end());
+  const auto after = static_cast<std::size_t>(gap - trace.tau.begin()) + 1;
+  CHECK(trace.t[after] - trace.t[after - 2] == doctest::Approx(3.1));
+  CHECK(std::ranges::find(trace.restarts, after) != trace.restarts.end());
 }

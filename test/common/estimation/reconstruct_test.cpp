@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -31,15 +32,18 @@ model::Vehicle one_thruster() {
   return vehicle;
 }
 
-/// Root mean square of nu less the truth; `shift` is the time of the truth at the trial's start.
+/// Root mean square of nu less the truth, where it is valid; `shift` is the time of the truth at the trial's start.
 Vector6d error_of(const Trial& trial, unsigned seed, double shift = 0.0) {
   const test::SyntheticMotion motion(seed);
   Vector6d sum = Vector6d::Zero();
+  double count = 0.0;
   for (std::size_t i = 0; i < trial.size(); ++i) {
+    if ((trial.velocity_valid[i] & trial.rates_valid[i]) == 0) continue;
     const double t = trial.t[i] + shift;
     sum += (trial.nu[i] - (Vector6d() << motion.v_B(t), motion.w_B(t)).finished()).cwiseAbs2();
+    ++count;
   }
-  return (sum / static_cast<double>(trial.size())).cwiseSqrt();
+  return (sum / count).cwiseSqrt();
 }
 
 void check_motion(const Vector6d& error) {
@@ -85,6 +89,29 @@ TEST_CASE("reconstruct: streams faster than 50 Hz are averaged, their means lie 
   const Trial trial = reconstruct(recording, Corrections{}, model::Vehicle{});
   CHECK(trial.dt == doctest::Approx(0.02));
   check_motion(error_of(trial, 3, 0.005));  // the middle of the first two samples
+}
+
+TEST_CASE("reconstruct: uneven steps and lost samples leave the motion as it was, with a velocity log and without") {
+  for (const double dvl_rate : {20.0, 0.0}) {
+    CAPTURE(dvl_rate);
+    const test::SyntheticOptions options{
+        .seed = 3, .duration = kDuration, .pose_rate = 50.0, .gyro_rate = 50.0, .dvl_rate = dvl_rate};
+    test::SyntheticOptions uneven = options, torn = options;
+    uneven.uneven = 0.5;
+    torn.missing = 0.05;
+    const Vector6d even = error_of(reconstruct(test::synthetic_recording(options), Corrections{}, {}), 3);
+    for (const test::SyntheticOptions& one : {uneven, torn}) {
+      const Recording recording = test::synthetic_recording(one);
+      const Trial trial = reconstruct(recording, Corrections{}, {});
+      const double late = seconds_between(utime_after(0, 2.0), recording.ahrs.front().utime);
+      const Vector6d error = error_of(trial, 3, late);
+      CAPTURE(error.transpose());
+      CAPTURE(even.transpose());
+      CHECK((error.array() < 1.25 * even.array() + 5e-4).all());
+      CHECK(std::ranges::count(trial.velocity_valid, 1) >
+            static_cast<std::ptrdiff_t>(0.96 * static_cast<double>(trial.size())));
+    }
+  }
 }
 
 TEST_CASE("reconstruct: corrections turn, scale, shift and move what was logged") {

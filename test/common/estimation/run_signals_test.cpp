@@ -202,4 +202,18 @@ TEST_CASE("run signals: an AHRS without motion capture gives the attitude") {
   }
 }
 
+TEST_CASE("run signals: a fast vehicle on uneven stamps does not leap, and a leap is seen among them") {
+  SyntheticOptions options{.seed = 12, .pose_rate = 50.0, .position_noise = 0.001, .activity = {10, 10, 1, 1, 1, 4}};
+  options.uneven = 0.5;
+  options.missing = 0.05;
+  options.duration = kDuration;
+  Recording recording = test::synthetic_recording(options);
+  CHECK(find(read(recording).findings, "pose_capture", "glitch") == nullptr);
+  recording.pose_capture[3000].p_WB.x() += 0.3;
+  const auto found = read(recording).findings;
+  const ConsistencyFinding* leap = find(found, "pose_capture", "glitch");
+  REQUIRE(leap != nullptr);
+  CHECK(leap->size == 1.0);
+}
+
 }  // namespace fathom

@@ -31,6 +31,20 @@ TEST_CASE("smoothing derivative: the slope of a quartic is exact") {
   }
 }
 
+TEST_CASE("smoothing derivative: the slope of a quartic is exact at unequal steps, and the same at equal ones") {
+  const auto quartic = [](double t) { return 2.0 + 3.0 * t - t * t + 4.0 * t * t * t + 5.0 * t * t * t * t; };
+  const std::vector<double> t{-0.2, -0.17, -0.13, -0.05, 0.0, 0.01, 0.09, 0.16};
+  const std::vector<double> weight = slope_weights(t);
+  double slope = 0.0;
+  for (std::size_t i = 0; i < t.size(); ++i) slope += weight[i] * quartic(t[i]);
+  CHECK(slope == doctest::Approx(3.0).epsilon(kRounding));
+  const SmoothingDerivative filter = smoothing_derivative(0.04, 1.0, 0.03);
+  std::vector<double> even;
+  for (int k = -filter.half; k <= filter.half; ++k) even.push_back(0.04 * k);
+  const std::vector<double> same = slope_weights(even);
+  for (std::size_t i = 0; i < even.size(); ++i) CHECK(same[i] == doctest::Approx(filter.weight[i]).epsilon(1e-8));
+}
+
 TEST_CASE("smoothing derivative: the longest window that keeps the bandwidth, five samples at least") {
   constexpr double kBandwidth = 1.0, kTolerance = 0.03;
   const double omega = 2.0 * std::numbers::pi * kBandwidth;

@@ -106,3 +106,75 @@ TEST_CASE("trial input: rows that go back in time or are no numbers have no part
   Trial none{.name = "rows", .dt = 0.1, .t = {0.0}};
   CHECK_THROWS_AS(add_input(recording, 0, {}, {}, {}, none), InputError);
 }
+
+namespace {
+
+/// Whether the input at a time is known.
+bool known(const Trial& trial, double t) {
+  return trial.input_valid[static_cast<std::size_t>(std::lround(t / trial.dt))] != 0;
+}
+
+void lose(Recording& recording, double from, double to) {
+  std::erase_if(recording.thrusters, [&](const Thrusters& one) {
+    return one.utime > utime_after(0, from) && one.utime < utime_after(0, to);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("trial input: what was not recorded is not known; a few lost rows are held over") {
+  Recording recording = rows(0.0, 0.02, 501);  // 10 s
+  lose(recording, 2.005, 3.995);               // from 2 s to 4 s
+  lose(recording, 6.005, 6.055);               // two rows
+  lose(recording, 7.005, 7.295);               // as long as a command lives
+  lose(recording, 8.005, 8.395);
+  const Trial trial = on_grid(recording, 0.02, 561);  // 11.2 s
+  CHECK(known(trial, 2.0));
+  CHECK_FALSE(known(trial, 2.02));
+  CHECK_FALSE(known(trial, 3.98));
+  CHECK(known(trial, 4.0));
+  CHECK(known(trial, 6.04));
+  CHECK(known(trial, 7.1));
+  CHECK_FALSE(known(trial, 8.2));
+  CHECK(known(trial, 10.2));  // the last command lives on
+  CHECK_FALSE(known(trial, 10.4));
+}
+
+TEST_CASE("trial input: what a quick vehicle would feel of a lost row is not held over") {
+  model::Vehicle quick;
+  quick.dof[0] = true;
+  quick.parameters = {"m_X", "X_u"};
+  quick.priors = {{.mean = 1.0, .sigma = 1.0}, {.mean = -20.0, .sigma = 1.0}};  // settles in 50 ms
+  Recording recording = rows(0.0, 0.02, 501);
+  lose(recording, 6.005, 6.095);
+  CHECK(known(on_grid(recording, 0.02, 501), 6.06));
+  CHECK_FALSE(known(on_grid(recording, 0.02, 501, {}, quick), 6.06));
+}
+
+TEST_CASE("trial input: means draw on nothing that was guessed") {
+  Recording recording = rows(0.0, 0.01, 1001);
+  lose(recording, 2.005, 3.995);
+  const Trial trial = on_grid(recording, 0.1, 100);
+  CHECK(trial.input_averaged);
+  CHECK(known(trial, 1.9));
+  CHECK_FALSE(known(trial, 2.0));
+  CHECK_FALSE(known(trial, 4.0));
+  CHECK(known(trial, 4.1));
+}
+
+TEST_CASE("trial input: commands that are logged when they change are known in between, while anything is recorded") {
+  Recording recording;
+  recording.name = "changes";
+  for (const double t : {0.0, 0.4, 0.9, 3.0, 3.2, 9.0, 9.3, 9.5, 17.0, 18.0})
+    recording.thrusters.push_back({.utime = utime_after(0, t), .force = {t}});
+  for (int k = 0; k < 400; ++k) recording.dvl.push_back({.utime = utime_after(0, 0.05 * k)});
+  const auto all_known = [&] {
+    const Trial trial = on_grid(recording, 0.1, 190);
+    return std::ranges::all_of(trial.input_valid, [](std::uint8_t one) { return one != 0; });
+  };
+  CHECK(all_known());
+  std::erase_if(recording.dvl,
+                [](const Dvl& one) { return one.utime > utime_after(0, 9.5) && one.utime < utime_after(0, 17.0); });
+  CHECK_FALSE(all_known());
+  CHECK_FALSE(known(on_grid(recording, 0.1, 190), 13.0));
+}

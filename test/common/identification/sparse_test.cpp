@@ -87,3 +87,14 @@ TEST_CASE("sparse: a recording that is no faster stays as it is") {
   CHECK(sparse(trial, 0.05).size() == trial.size());
   CHECK(sparse(trial, 0.05).dt == trial.dt);
 }
+
+TEST_CASE("sparse: a mean of what is known and what was guessed is a guess") {
+  Trial trial = ramp(0.01, 101);
+  trial.input_valid.assign(trial.size(), 1);
+  trial.input_valid[48] = 0;
+  const Trial coarse = sparse(trial, 0.05);
+  CHECK(coarse.input_valid[9] == 0);   // its step runs to 0.5 s
+  CHECK(coarse.input_valid[10] == 0);  // its mean begins at 0.48 s
+  CHECK(coarse.input_valid[8] == 1);
+  CHECK(coarse.input_valid[11] == 1);
+}
