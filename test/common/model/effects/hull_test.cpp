@@ -258,6 +258,7 @@ TEST_CASE("fluid_memory, cubic_drag, tether_drag, drag of boundaries: none feeds
     load.drag = -2.0 * motion.nu;
     for (int axis = 0; axis < 6; ++axis) model::find_effect("cubic_drag")->load(motion, std::vector{3.0}, axis, load);
     model::find_effect("tether_drag")->load(motion, std::vector{3.0, 1.0, 2.0, 3.0}, 0, load);
+    model::find_effect("tether_drag")->load(motion, std::vector{3.0, 1.0, 2.0, 3.0, -0.4, 0.1, -0.2}, 7, load);
     model::find_effect("bottom_effect")->load(motion, std::vector{3.0, 4.0}, 1, load);
     model::find_effect("wall_effect")->load(motion, std::vector{3.0, 0.4, 5.0}, 1, load);
     CHECK(load.wrench.dot(motion.nu) < 0.0);
