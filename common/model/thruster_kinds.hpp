@@ -1,0 +1,28 @@
+// Thrusters of two kinds, which often are two makes on two drivers: those that push up and down, and the others.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+
+#include "common/model/effect.hpp"
+#include "common/model/vehicle.hpp"
+
+namespace fathom::model {
+
+/// Force straight up or down, or a pure roll or pitch moment: the jet leaves vertically.
+[[nodiscard]] inline bool is_vertical(const Vehicle& vehicle, Eigen::Index actuator, Eigen::Index actuators) {
+  const bool wrench = vehicle.allocation.cols() != actuators;
+  if (wrench) return actuator == 2 || actuator == 3 || actuator == 4;
+  const auto column = vehicle.allocation.col(actuator);
+  return std::abs(column[2]) > column.head<2>().norm();
+}
+
+/// Whether a data set has both.
+[[nodiscard]] inline bool has_both_kinds(const Scene& scene) {
+  const Eigen::Index actuators = scene.force_rms.size();
+  Eigen::Index vertical = 0;
+  for (Eigen::Index i = 0; i < actuators; ++i) vertical += is_vertical(*scene.vehicle, i, actuators) ? 1 : 0;
+  return vertical > 0 && vertical < actuators;
+}
+
+}  // namespace fathom::model
