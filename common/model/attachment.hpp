@@ -1,4 +1,5 @@
-// Where on the vehicle a cable is made fast: at the origin, or at a place to be found.
+// Where on the vehicle a cable is made fast: at the origin, or at a place to be found. How high is sought where roll or
+// pitch is simulated, or moves a cable that drags; a level vehicle otherwise tells an anchor that is as much too deep.
 #pragma once
 
 #include <array>
@@ -19,10 +20,12 @@ constexpr std::array kAttachment{EffectParameter{"attached_x", "m", 0.3, -3.0, 3
 
 constexpr bool attachment_asked(int variant, std::size_t component) { return (variant >> component & 1) != 0; }
 
-/// The origin, and the place of which all components are sought that turn the vehicle about a simulated axis.
-[[nodiscard]] inline std::vector<std::string> attachment_forms(const Vehicle& vehicle) {
+/// The origin, and the place of which all components are sought that turn the vehicle about a simulated axis; its
+/// height also where it is `felt` otherwise.
+[[nodiscard]] inline std::vector<std::string> attachment_forms(const Vehicle& vehicle, bool felt = false) {
   const auto& dof = vehicle.dof;
-  const std::array acts{dof[4] || dof[5], dof[3] || dof[5], dof[3] || dof[4]};
+  const bool turns = dof[3] || dof[4] || dof[5];
+  const std::array acts{dof[4] || dof[5], dof[3] || dof[5], dof[3] || dof[4] || (turns && felt)};
   std::size_t form = 0;
   for (std::size_t i = 0; i < acts.size(); ++i) form |= acts[i] ? std::size_t{1} << i : 0;
   std::vector<std::string> names{""};

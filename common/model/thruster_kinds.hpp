@@ -25,4 +25,12 @@ namespace fathom::model {
   return vertical > 0 && vertical < actuators;
 }
 
+/// s: of the vertical ones where the others have `time` and these are `later` by some. No time is less than nothing;
+/// it comes there smoothly, so that a fit that ends there still knows how surely. Exactly `time` where none are later.
+[[nodiscard]] inline double time_of_vertical(double time, double later) {
+  constexpr double kNothing = 0.01;  // s
+  const double sum = time + later;
+  return later == 0.0 || sum > kNothing ? sum : kNothing * std::exp(sum / kNothing - 1.0);
+}
+
 }  // namespace fathom::model

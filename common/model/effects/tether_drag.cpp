@@ -25,6 +25,7 @@ constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^2/m", 5
                                  kAttachment[2]};
 constexpr std::size_t kAttached = 4;  // its first number
 constexpr int kBearings = 8;
+constexpr double kSwaying = 0.01;  // rad/s of roll and pitch, measured if not simulated: they move a high cleat
 
 class TetherDrag final : public Effect {
  public:
@@ -40,7 +41,8 @@ class TetherDrag final : public Effect {
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const bool seen = scene.position && scene.attitude && (dof[0] || dof[1] || dof[2]);
-    return seen ? attachment_forms(*scene.vehicle) : std::vector<std::string>{};
+    const bool sways = scene.nu_rms.segment<2>(3).norm() > kSwaying;
+    return seen ? attachment_forms(*scene.vehicle, sways) : std::vector<std::string>{};
   }
   bool takes_part(int variant, std::size_t number) const override {
     return number < kAttached || attachment_asked(variant, number - kAttached);

@@ -3,7 +3,6 @@
 // and down, which are often of another make (thruster_kinds.hpp). Ignores: jitter; a delay of its own per thruster.
 // Revealed by steps and fast reversals along every axis. Confused with thruster_lag (a delay shifts, a lag also rounds)
 // and, over a narrow band, with added mass.
-#include <algorithm>
 #include <array>
 
 #include "common/model/thruster_kinds.hpp"
@@ -35,7 +34,7 @@ class ThrusterDelay final : public Effect {
 
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {
     if (motion.input == nullptr) return;
-    const double later = variant == kTwoKinds ? std::max(theta[0] + theta[1], 0.0) : theta[0];
+    const double later = variant == kTwoKinds ? time_of_vertical(theta[0], theta[1]) : theta[0];
     if (later == theta[0]) {
       if (theta[0] != 0.0) motion.input->at(motion.t - theta[0], motion.force);
       return;

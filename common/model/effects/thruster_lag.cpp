@@ -20,7 +20,7 @@ constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0
 enum Form { kAlike, kTwoKinds, kShaft };
 
 /// s. What two kinds differ by is zero in the other forms.
-double of_vertical(EffectTheta theta) { return std::max(theta[0] + theta[1], 0.0); }
+double of_vertical(EffectTheta theta) { return time_of_vertical(theta[0], theta[1]); }
 double share_in(double dt, double time_constant) {
   return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }

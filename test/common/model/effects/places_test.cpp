@@ -135,6 +135,7 @@ TEST_CASE("tethers made fast astern: the same pull as at that place of the hull,
 TEST_CASE("tethers made fast astern: asked for are the arms that turn the vehicle about a simulated axis") {
   model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   model::Scene scene = scene_in_a_tank(vehicle);
+  scene.nu_rms.segment<2>(3).setZero();
   for (const char* name : {"tether_tension", "tether_drag"}) {
     const model::Effect& effect = *model::find_effect(name);
     const int at_origin = effect.numbers(0);
@@ -142,6 +143,10 @@ TEST_CASE("tethers made fast astern: asked for are the arms that turn the vehicl
     REQUIRE(effect.variants(scene).size() == 4);  // x and y
     CHECK(effect.variants(scene)[0].empty());
     CHECK(effect.numbers(3) == at_origin + 2);
+    scene.nu_rms[4] = 0.3;  // pitch as measured moves a cable that drags
+    CHECK(effect.numbers(static_cast<int>(effect.variants(scene).size()) - 1) ==
+          at_origin + (effect.name() == "tether_drag" ? 3 : 2));
+    scene.nu_rms.segment<2>(3).setZero();
     vehicle.dof.fill(true);
     REQUIRE(effect.variants(scene).size() == 8);
     CHECK(effect.numbers(7) == at_origin + 3);
