@@ -90,6 +90,10 @@ std::string why_not_asked(const Effect& effect, const Scene& scene) {
   model::Vehicle vehicle = *scene.vehicle;
   Scene other = full;
   other.vehicle = &vehicle;
+  if (!(vehicle.mass > 0.0)) {
+    vehicle.mass = 1.0;
+    if (has_form(effect, other)) return "not applicable: the vehicle file does not state the mass";
+  }
   if (vehicle.thrusters.size() < 2) {
     vehicle.thrusters.resize(2);
     vehicle.allocation.setOnes(6, 2);

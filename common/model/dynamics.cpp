@@ -136,7 +136,7 @@ Vector6d acceleration(const Model& model, const Motion& motion) {
   }
   Matrix6d M = load.inertia();
   M.diagonal() += inertia;
-  Vector6d right = force;
+  Vector6d right = force - M * motion.nu_dot_told;
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (dof[static_cast<std::size_t>(i)]) continue;
     M.row(i).setZero();

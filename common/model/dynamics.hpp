@@ -45,7 +45,8 @@ void settle(const Model& model, Motion motion, std::span<double> memory);
 [[nodiscard]] Vector6d hull_drag(const Model& model, const Vector6d& nu_r);
 /// Wrench of everything but inertia, applied thrust included: M nu_dot = generalised_force. Call after feel().
 [[nodiscard]] Vector6d generalised_force(const Model& model, const Motion& motion, Load& load);
-/// nu_dot [m/s^2, rad/s^2]; zero in degrees of freedom that the vehicle file leaves out. Call after feel().
+/// nu_dot [m/s^2, rad/s^2]; zero in degrees of freedom that the vehicle file leaves out, whose measured acceleration
+/// (Motion::nu_dot_told) pushes the others where effects couple them. Call after feel().
 [[nodiscard]] Vector6d acceleration(const Model& model, const Motion& motion);
 /// Wrench that acts on the vehicle and that the model lacks: M nu_dot minus generalised force. The inverse of
 /// acceleration(): residual_wrench(m, acceleration(m)) == 0 on the enabled degrees of freedom. Call after feel().

@@ -63,7 +63,8 @@ struct Motion {
   double t{};                                     ///< s from the run's start
   Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};  ///< m, NED
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
-  Vector6d nu{Vector6d::Zero()};                    ///< B in W, in B: m/s, rad/s
+  Vector6d nu{Vector6d::Zero()};           ///< B in W, in B: m/s, rad/s
+  Vector6d nu_dot_told{Vector6d::Zero()};  ///< m/s^2, rad/s^2: of axes that are not simulated, as measured; else zero
   Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};  ///< m/s, water velocity seen in B; effects add to it
   Eigen::Vector3d a_WF_B{Eigen::Vector3d::Zero()};  ///< m/s^2, acceleration of the water in W, seen in B (waves)
   Vector6d w_memory{Vector6d::Zero()};              ///< N, N m: wrench of what effects remember of past motion

@@ -169,12 +169,24 @@ class Rollout {
     return nu;
   }
 
+  /// Of the measurement, in the left-out degrees of freedom: its integral is exactly what was measured.
+  Vector6d told_slope(std::size_t from) const {
+    const std::size_t next = std::min(from + 1, trial_.size() - 1);
+    Vector6d slope = Vector6d::Zero();
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (!model_.vehicle->dof[static_cast<std::size_t>(i)])
+        slope[i] = (trial_.nu[next][i] - trial_.nu[from][i]) / trial_.dt;
+    }
+    return slope;
+  }
+
   void set_motion(std::size_t from, double offset, const Eigen::Vector3d& p, const Eigen::Quaterniond& q,
                   const Vector6d& nu) {
     motion_.t = trial_.t[from] + offset;
     motion_.p_WB = p;
     motion_.R_WB = q.toRotationMatrix();
     motion_.nu = nu;
+    if (!all_simulated_) motion_.nu_dot_told = told_slope(from);
     motion_.v_WF_B.setZero();
     motion_.a_WF_B.setZero();
     motion_.w_memory.setZero();

@@ -154,6 +154,9 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
   if (usable.empty()) throw InputError("--hide " + text + ": cannot act on this vehicle at this site");
   model::ActiveEffect active{.effect = effect};
   active.variant = usable[static_cast<std::size_t>(stream.uniform() * static_cast<double>(usable.size()))];
+  // A form without a name is the ordinary one: others are asked for.
+  const auto ordinary = std::find(variants.begin(), variants.end(), "");
+  if (ordinary != variants.end()) active.variant = static_cast<int>(ordinary - variants.begin());
   if (const auto wanted = given.find("variant"); wanted != given.end()) {
     const auto found = std::find(variants.begin(), variants.end(), wanted->second);
     if (found == variants.end() || wanted->second == "-") {

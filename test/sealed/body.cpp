@@ -66,6 +66,10 @@ Body::Body(const Craft& craft, const Mechanisms& mechanisms)
     memory_ += mechanism->memory();
     delay_ += mechanism->delay();
   }
+  own_delay_.setZero(allocation_.cols());
+  for (const auto& mechanism : mechanisms_) {
+    for (Eigen::Index i = 0; i < own_delay_.size(); ++i) own_delay_[i] += mechanism->delay_of(i);
+  }
   for (State* s : {&k1_, &k2_, &k3_, &k4_, &trial_}) *s = State::Zero(kMemory + memory_);
 }
 
@@ -95,6 +99,11 @@ void Body::rate(double t, const State& state, const Commands& commands, State& o
   stream_rate.head<3>() = -omega.cross(stream) + surge;
 
   commands.at(t - delay_, force_);
+  for (Eigen::Index i = 0; i < own_delay_.size(); ++i) {
+    if (own_delay_[i] == 0.0) continue;
+    commands.at(t - delay_ - own_delay_[i], late_);
+    force_[i] = late_[i];
+  }
   Terms terms;
   const auto memory_of = [&](std::size_t i) {
     return std::pair{
@@ -113,6 +122,12 @@ void Body::rate(double t, const State& state, const Commands& commands, State& o
 
   Matrix6 rigid = Matrix6::Zero();
   rigid.diagonal() << Vector3d::Constant(hull.mass + terms.mass), hull.inertia;
+  if (!terms.centre.isZero(0.0)) {  // Fossen 2011, eq. 3.44, and Steiner's theorem
+    const Matrix3d arm = cross_matrix(terms.centre);
+    rigid.topRightCorner<3, 3>() = -hull.mass * arm;
+    rigid.bottomLeftCorner<3, 3>() = hull.mass * arm;
+    rigid.bottomRightCorner<3, 3>() -= hull.mass * arm * arm;
+  }
   Matrix6 added = terms.added;
   added.diagonal() += hull.added;
   const Vector6 drag = terms.drag_factor.cwiseProduct(hull.linear + hull.quadratic.cwiseProduct(at.nu_r.cwiseAbs()));

@@ -38,7 +38,8 @@ class Body {
   const Mechanisms& mechanisms_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> allocation_;
   double delay_{};
-  std::vector<int> place_;  // of each mechanism's memory
+  Eigen::VectorXd own_delay_, late_;  // of single jets, beside the others; their forces
+  std::vector<int> place_;            // of each mechanism's memory
   int memory_{};
   Eigen::VectorXd force_;
   State k1_, k2_, k3_, k4_, trial_;

@@ -30,10 +30,11 @@ struct Water {
 /// What mechanisms add to the equation of motion.
 struct Terms {
   Vector6 wrench{Vector6::Zero()};
-  Matrix6 added{Matrix6::Zero()};        ///< to the added mass
-  Vector6 drag_factor{Vector6::Ones()};  ///< on the hull's own drag
-  double mass{};                         ///< kg, at the centre of mass
-  double net_weight{};                   ///< N
+  Matrix6 added{Matrix6::Zero()};                   ///< to the added mass
+  Vector6 drag_factor{Vector6::Ones()};             ///< on the hull's own drag
+  double mass{};                                    ///< kg, at the centre of mass
+  double net_weight{};                              ///< N
+  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  ///< m, of the hull's mass, from the origin
   Eigen::Vector3d first_moment{Eigen::Vector3d::Zero()};
 };
 
@@ -70,6 +71,8 @@ class Mechanism {
   virtual void begin_file(double /*from*/, double /*to*/, Random& /*random*/) {}
   [[nodiscard]] virtual int memory() const { return 0; }
   [[nodiscard]] virtual double delay() const { return 0.0; }
+  /// What one jet is late beside the others.
+  [[nodiscard]] virtual double delay_of(Eigen::Index /*jet*/) const { return 0.0; }
   /// From what was asked to what is delivered; `rate` is that of `z`.
   virtual void thrust(const Instant&, std::span<const double> /*z*/, std::span<double> /*rate*/,
                       Eigen::VectorXd& /*force*/) const {}
@@ -105,6 +108,8 @@ struct Entry {
 [[nodiscard]] const std::vector<Entry>& catalogue();
 /// Things that happen and that it does not list.
 [[nodiscard]] const std::vector<Entry>& foreign();
+/// Forms and effects that no number draws: only --only names them.
+[[nodiscard]] const std::vector<Entry>& further();
 /// Coloured noise: not an effect, and never to be named.
 [[nodiscard]] const Entry& coloured_noise();
 [[nodiscard]] const Entry* find_entry(const std::string& name);

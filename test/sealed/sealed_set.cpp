@@ -136,8 +136,10 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
     } else {
       entry = find_entry(wish.effect);
       if (entry == nullptr) throw std::runtime_error("no effect is called '" + wish.effect + "'");
-      const bool listed =
-          std::any_of(catalogue().begin(), catalogue().end(), [&](const Entry& e) { return &e == entry; });
+      const auto in = [&](const std::vector<Entry>& list) {
+        return std::ranges::any_of(list, [&](const Entry& e) { return &e == entry; });
+      };
+      const bool listed = in(catalogue()) || in(further());
       plan.kind = listed ? Kind::kSingle : entry == &coloured_noise() ? Kind::kNoise : Kind::kForeign;
     }
   }

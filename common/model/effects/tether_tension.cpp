@@ -1,19 +1,26 @@
 // Physics: a tether to a fixed anchor, slack up to its length L, then a spring: T = k max(|p_A - p| - L, 0) toward the
-// anchor, attached at Bo. Ignores: drag and weight of the tether, a point of attachment away from Bo, hysteresis.
-// Revealed by slow excursions to all sides. Confused with current (which follows speed and heading, not place) and W-B.
+// anchor. Made fast at Bo, or at a place p_BC in B that is to be found (attachment.hpp): it then ends at p + R_WB p_BC
+// and turns the vehicle by p_BC x T. Ignores: drag and weight of the tether, hysteresis. Revealed by slow excursions to
+// all sides, its place by pulls from ahead and abeam. Confused with current (which follows speed and heading, not
+// place) and W-B; the turning with restoring_moment and a thruster's gain.
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "common/model/effect.hpp"
+#include "common/model/attachment.hpp"
 
 namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kParameters{EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1000.0},
                                  EffectParameter{"slack_length", "m", 3.0, 0.0, 500.0},
-                                 EffectParameter{"anchor_N", "m", 5.0}, EffectParameter{"anchor_E", "m", 5.0},
-                                 EffectParameter{"anchor_D", "m", 3.0}};
+                                 EffectParameter{"anchor_N", "m", 5.0},
+                                 EffectParameter{"anchor_E", "m", 5.0},
+                                 EffectParameter{"anchor_D", "m", 3.0},
+                                 kAttachment[0],
+                                 kAttachment[1],
+                                 kAttachment[2]};
+constexpr std::size_t kAttached = 5;  // its first number
 
 constexpr double kStartStiffness = 0.5;  // N/m
 
@@ -28,9 +35,12 @@ class TetherTension final : public Effect {
   bool feels_place() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const bool seen = scene.position && scene.attitude;
-    return seen ? std::vector<std::string>{""} : std::vector<std::string>{};
+    return seen ? attachment_forms(*scene.vehicle) : std::vector<std::string>{};
   }
-  std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
+  bool takes_part(int variant, std::size_t number) const override {
+    return number < kAttached || attachment_asked(variant, number - kAttached);
+  }
+  std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     // Anchors: the middle of the water worked in, and eight directions half way out and just outside it. Slack so that
     // the tether is taut everywhere, in half of the water, or only far away.
     const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high);
@@ -38,24 +48,30 @@ class TetherTension final : public Effect {
     std::vector<std::vector<double>> starts;
     const auto add = [&](double bearing, double distance, double slack) {
       starts.push_back({kStartStiffness, slack, middle.x() + distance * std::cos(bearing),
-                        middle.y() + distance * std::sin(bearing), middle.z()});
+                        middle.y() + distance * std::sin(bearing), middle.z(), 0.0, 0.0, 0.0});
     };
-    for (const double slack : {0.0, 0.4, 0.7}) add(0.0, 0.0, slack * reach);
+    if (variant == 0) add(0.0, 0.0, 0.0);
+    for (const double slack : {0.4, 0.7}) add(0.0, 0.0, slack * reach);
     for (int k = 0; k < 8; ++k) {
       const double bearing = 0.25 * std::numbers::pi * k;
+      add(bearing, 1.2 * reach, 1.2 * reach);
+      if (variant != 0) continue;  // where it is made fast is found on the way: half of the starts do
       add(bearing, 0.5 * reach, 0.7 * reach);
       add(bearing, 1.2 * reach, 0.0);
-      add(bearing, 1.2 * reach, 1.2 * reach);
     }
     return starts;
   }
 
-  void load(const Motion& motion, EffectTheta theta, int, Load& load) const override {
-    const Eigen::Vector3d to_anchor = Eigen::Vector3d(theta[2], theta[3], theta[4]) - motion.p_WB;
+  void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
+    const Eigen::Vector3d p_BC = attachment(theta, variant, kAttached);
+    Eigen::Vector3d to_anchor = Eigen::Vector3d(theta[2], theta[3], theta[4]) - motion.p_WB;
+    if (variant != 0) to_anchor -= motion.R_WB * p_BC;
     const double distance = to_anchor.norm();
     const double stretch = distance - theta[1];
     if (stretch <= 0.0 || distance < 1e-9) return;
-    load.wrench.head<3>() += motion.R_WB.transpose() * to_anchor * (theta[0] * stretch / distance);
+    const Eigen::Vector3d pull = motion.R_WB.transpose() * to_anchor * (theta[0] * stretch / distance);
+    load.wrench.head<3>() += pull;
+    if (variant != 0) load.wrench.tail<3>() += p_BC.cross(pull);
   }
 };
 

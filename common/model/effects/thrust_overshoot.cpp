@@ -7,8 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/model/effect.hpp"
-#include "common/model/vehicle.hpp"
+#include "common/model/thruster_kinds.hpp"
 
 namespace fathom::model::effects {
 namespace {
@@ -17,14 +16,6 @@ constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.3, 0.0, 0.9
                                  EffectParameter{"time_constant", "s", 1.0, 0.05, 10.0}};
 
 enum Form { kAll, kHorizontal, kVertical };
-
-/// Force straight up or down, or a pure roll or pitch moment: the jet leaves vertically.
-bool is_vertical(const Vehicle& vehicle, Eigen::Index actuator, Eigen::Index actuators) {
-  const bool wrench = vehicle.allocation.cols() != actuators;
-  if (wrench) return actuator == 2 || actuator == 3 || actuator == 4;
-  const auto column = vehicle.allocation.col(actuator);
-  return std::abs(column[2]) > column.head<2>().norm();
-}
 
 class ThrustOvershoot final : public Effect {
  public:
@@ -35,10 +26,7 @@ class ThrustOvershoot final : public Effect {
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
-    int vertical = 0;
-    const auto actuators = scene.force_rms.size();
-    for (Eigen::Index i = 0; i < actuators; ++i) vertical += is_vertical(*scene.vehicle, i, actuators) ? 1 : 0;
-    const bool both = vertical > 0 && vertical < actuators;
+    const bool both = has_both_kinds(scene);
     return {"all", both ? "horizontal" : "-", both ? "vertical" : "-"};
   }
   bool variants_matter() const override { return true; }

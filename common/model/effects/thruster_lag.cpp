@@ -1,16 +1,31 @@
 // Physics: propeller and water need time to reach the new thrust: first order, T f_dot = f_c - f (Fossen 2011,
-// sec. 12.3). Ignores: that the time constant shrinks with shaft speed (Yoerger 1990). Revealed by reversals at
-// frequencies near 1/T. Confused with thruster_delay and, over a narrow band, with added mass.
+// sec. 12.3). Forms: for all thrusters alike; T + dT for those that push up and down, which are often of another make
+// (thruster_kinds.hpp); or it is the shaft that needs time, whose speed thrust goes with the square of: T n_dot = n_c -
+// n, f = n |n| (a regulated motor; Blanke et al. 2000). Thrust then starts slowly, and falls quickly when the shaft
+// stops; a reversal lingers at nothing. Ignores: that the time constant shrinks with shaft speed (Yoerger 1990), both
+// refinements at once. Revealed by reversals at frequencies near 1/T, the law by steps up and down. Confused with
+// thruster_delay and, over a narrow band, with added mass.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "common/model/effect.hpp"
 #include "common/model/effect_size.hpp"
+#include "common/model/thruster_kinds.hpp"
 
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0, 0.0, true}};
+constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0, 0.0, true},
+                                 EffectParameter{"vertical_longer", "s", 0.15, -3.0, 3.0}};
+enum Form { kAlike, kTwoKinds, kShaft };
+
+/// s. What two kinds differ by is zero in the other forms.
+double of_vertical(EffectTheta theta) { return time_of_vertical(theta[0], theta[1]); }
+double share_in(double dt, double time_constant) {
+  return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
+}
+/// Shaft speed of a force, up to a factor that plays no part.
+double shaft(double force) { return std::copysign(std::sqrt(std::abs(force)), force); }
 
 class ThrusterLag final : public Effect {
  public:
@@ -19,23 +34,44 @@ class ThrusterLag final : public Effect {
   std::string_view revealed_by() const override { return "steps and a sweep of thrust up to about 2 Hz"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
-  std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
-    const double slower = size_factor(*scene.vehicle, "s");
-    return {{0.08 * slower}, {0.3 * slower}, {0.9 * slower}};
+  bool takes_part(int variant, std::size_t number) const override { return number == 0 || variant == kTwoKinds; }
+  std::vector<std::string> variants(const Scene& scene) const override {
+    // Of a wrench nobody knows which shafts made it.
+    return {"", has_both_kinds(scene) ? "vertical thrusters apart" : "-", scene.input_is_wrench ? "-" : "shaft speed"};
   }
-  int state_size(const Vehicle&, int actuators) const override { return actuators; }
-  double run_in(EffectTheta theta) const override { return run_in_for(theta[0]); }
+  std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
+    const double slower = size_factor(*scene.vehicle, "s");
+    if (variant == kTwoKinds) return {{0.1 * slower, 0.3 * slower}, {0.4 * slower, -0.3 * slower}};
+    return {{0.08 * slower, 0.0}, {0.3 * slower, 0.0}, {0.9 * slower, 0.0}};
+  }
+  /// Thrust and, behind it, shaft speed of each: advance() is not told which of them the form asks for.
+  int state_size(const Vehicle&, int actuators) const override { return 2 * actuators; }
+  double run_in(EffectTheta theta) const override { return run_in_for(std::max(theta[0], of_vertical(theta))); }
 
   void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] = motion.force[static_cast<Eigen::Index>(i)];
+    const std::size_t n = z.size() / 2;
+    for (std::size_t i = 0; i < n; ++i) {
+      z[i] = motion.force[static_cast<Eigen::Index>(i)];
+      z[n + i] = shaft(z[i]);
+    }
   }
   void advance(const Motion& motion, EffectTheta theta, double dt, std::span<double> z) const override {
-    const double share = theta[0] > 0.0 ? -std::expm1(-dt / theta[0]) : 1.0;
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] += share * (motion.force[static_cast<Eigen::Index>(i)] - z[i]);
+    const std::size_t n = z.size() / 2;
+    const bool apart = of_vertical(theta) != theta[0];
+    const double share = share_in(dt, theta[0]), of_others = apart ? share_in(dt, of_vertical(theta)) : share;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const bool vertical = apart && is_vertical(*motion.vehicle, k, motion.force.size());
+      z[i] += (vertical ? of_others : share) * (motion.force[k] - z[i]);
+      z[n + i] += share * (shaft(motion.force[k]) - z[n + i]);
+    }
   }
-  void feel(Motion& motion, EffectTheta theta, int, std::span<const double> z) const override {
-    if (theta[0] <= 0.0) return;
-    for (std::size_t i = 0; i < z.size(); ++i) motion.force[static_cast<Eigen::Index>(i)] = z[i];
+  void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double> z) const override {
+    const std::size_t n = z.size() / 2;
+    if (theta[0] <= 0.0 && of_vertical(theta) <= 0.0) return;
+    for (std::size_t i = 0; i < n; ++i) {
+      motion.force[static_cast<Eigen::Index>(i)] = variant == kShaft ? z[n + i] * std::abs(z[n + i]) : z[i];
+    }
   }
 };
 

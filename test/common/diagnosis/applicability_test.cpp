@@ -52,6 +52,7 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
 TEST_CASE("applicability: what the data lacks, what the base model has, what the vehicle cannot do") {
   MadeUp made;
   CHECK(made.why("thruster_gain") == "not applicable: needs forces of single thrusters");
+  CHECK(made.why("centre_of_mass") == "not applicable: the vehicle file does not state the mass");
   CHECK(made.why("sensor_scale") == "not applicable: sensors are compared with each other");
   CHECK(made.why("lever_arm") == "not applicable: sensors are compared with each other");
   made.scene.position = made.scene.attitude = made.scene.rates = false;  // nothing to compare with

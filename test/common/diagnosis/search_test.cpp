@@ -38,6 +38,7 @@ const std::vector<Hidden>& hidden_effects() {
   static const std::vector<Hidden> kAll{
       {"thruster_lag", "", {{0.15, 0.35}}},
       {"thruster_delay", "", {{0.12, 0.3}}},
+      {"centre_of_mass", "", {{0.04, 0.06}, {-0.06, -0.04}, {0.03, 0.05}}},
       {"cross_coupling", "Y_r", {{4.0, 8.0}}},
       {"thrust_asymmetry", "", {{-0.3, -0.15}}},
       {"thruster_gain", "", {{-0.3, -0.2}}},

@@ -91,10 +91,10 @@ TEST_CASE("adoption: an accepted effect is listed, its numbers are learnt, and t
     feed(with, dive.trial, 0.0, 1e9, diagnoser(with, c.found));
     const ModelEstimate model = with.model();
     REQUIRE(model.effects == std::vector<std::string>{std::string{c.truth.effect->name()}});
-    REQUIRE(model.effect_numbers.size() == c.truth.theta.size());
+    REQUIRE(std::ssize(model.effect_numbers) == c.truth.effect->numbers(c.truth.variant));  // the leading ones
     CHECK(model.parameters.size() == vehicle.parameters.size());
     CHECK(model.covariance.size() == model.parameters.size() * model.parameters.size());
-    for (std::size_t i = 0; i < c.truth.theta.size(); ++i) {
+    for (std::size_t i = 0; i < model.effect_numbers.size(); ++i) {
       const NamedValue& p = model.effect_numbers[i];
       CAPTURE(p.name);
       CAPTURE(p.value);

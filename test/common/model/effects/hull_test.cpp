@@ -134,17 +134,18 @@ TEST_CASE("payload_change: heavier after its moment, and sinking by its weight")
   CHECK(slope(2, 150) == doctest::Approx(2.5 / 25.0));
 }
 
-TEST_CASE("payload_change, cross_coupling: what mass adds does no work") {
+TEST_CASE("payload_change, cross_coupling, centre_of_mass: what mass adds does no work") {
   std::mt19937 random{3};
   std::normal_distribution<double> normal;
   Bare bare{{true, true, true, true, true, true}};
   const auto names =
       model::find_effect("cross_coupling")->variants({.vehicle = &bare.vehicle, .nu_rms = Vector6d::Ones()});
-  std::vector<model::ActiveEffect> heavy{test::active("payload_change", {4.0, 0.0, 0.0})};
+  std::vector<model::ActiveEffect> heavy{test::active("payload_change", {4.0, 0.0, 0.0}),
+                                         test::active("centre_of_mass", {0.1, 0.2, -0.1}, 7)};
   for (std::size_t v = 0; v < names.size(); ++v) {
     if (names[v].ends_with("_dot")) heavy.push_back(test::active("cross_coupling", {0.6}, static_cast<int>(v)));
   }
-  REQUIRE(heavy.size() == 7);
+  REQUIRE(heavy.size() == 8);
   for (const model::ActiveEffect& effect : heavy) {
     model::Model model = bare.model;
     model.theta.head<6>() << 20, 25, 30, 1, 2, 3;
@@ -256,6 +257,7 @@ TEST_CASE("fluid_memory, cubic_drag, tether_drag, drag of boundaries: none feeds
     load.drag = -2.0 * motion.nu;
     for (int axis = 0; axis < 6; ++axis) model::find_effect("cubic_drag")->load(motion, std::vector{3.0}, axis, load);
     model::find_effect("tether_drag")->load(motion, std::vector{3.0, 1.0, 2.0, 3.0}, 0, load);
+    model::find_effect("tether_drag")->load(motion, std::vector{3.0, 1.0, 2.0, 3.0, -0.4, 0.1, -0.2}, 7, load);
     model::find_effect("bottom_effect")->load(motion, std::vector{3.0, 4.0}, 1, load);
     model::find_effect("wall_effect")->load(motion, std::vector{3.0, 0.4, 5.0}, 1, load);
     CHECK(load.wrench.dot(motion.nu) < 0.0);

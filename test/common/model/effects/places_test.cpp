@@ -1,6 +1,7 @@
 // Effects that depend on where the vehicle is: bottom, walls, a tether's length.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -97,6 +98,62 @@ TEST_CASE("tether_drag: proportional to the way to the fixed end, and to the squ
   CHECK(load_of("tether_drag", {2.0, 3.0, 4.0, 0.0}, 0, motion).wrench.isZero(0.0));
   motion.v_WF_B.y() = 0.5;  // drifting with the water
   CHECK(load_of("tether_drag", {2.0, 0.0, 0.0, 0.0}, 0, motion).wrench.isZero(0.0));
+}
+
+TEST_CASE("tethers made fast astern: the same pull as at that place of the hull, and its moment about the origin") {
+  constexpr int kAstern = 7;
+  const Eigen::Vector3d p_BC{-0.3, 0.05, -0.1};
+  model::Motion motion, at_cleat;
+  motion.p_WB = {3.0, 4.0, 1.0};
+  motion.R_WB = rotation_from_euler({0.2, -0.1, 0.9});
+  motion.nu << 0.4, -0.2, 0.1, 0.3, -0.2, 0.5;
+  at_cleat = motion;
+  at_cleat.p_WB += motion.R_WB * p_BC;
+  at_cleat.nu.head<3>() += motion.nu.tail<3>().cross(p_BC);
+  const std::vector<std::vector<double>> numbers{{1.5, 1.0, 0.5, -1.0, 0.0}, {2.0, 0.5, -1.0, 0.0}};
+  const std::array names{"tether_tension", "tether_drag"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    CAPTURE(names[i]);
+    const Eigen::Vector3d force = load_of(names[i], numbers[i], 0, at_cleat).wrench.head<3>();
+    std::vector<double> astern = numbers[i];
+    astern.insert(astern.end(), p_BC.begin(), p_BC.end());
+    const model::Load load = load_of(names[i], astern, kAstern, motion);
+    CHECK(force.norm() > 0.1);
+    CHECK((load.wrench.head<3>() - force).norm() < kRounding);
+    CHECK((load.wrench.tail<3>() - p_BC.cross(force)).norm() < kRounding);
+    CHECK((load_of(names[i], astern, 0, motion).wrench - load_of(names[i], numbers[i], 0, motion).wrench).isZero(0.0));
+  }
+  // By hand: a pull to starboard at the stern turns the bow to port; drag that is towed astern resists turning.
+  model::Motion level;
+  CHECK(load_of("tether_tension", {2.0, 0.0, -0.5, 3.0, 0.0, -0.5, 0.0, 0.0}, kAstern, level).wrench[5] ==
+        doctest::Approx(-0.5 * 2.0 * 3.0));
+  level.nu[5] = 0.4;
+  CHECK(load_of("tether_drag", {2.0, 5.0, 0.0, 0.0, -0.5, 0.0, 0.0}, kAstern, level).wrench[5] ==
+        doctest::Approx(-0.5 * 2.0 * 5.5 * 0.2 * 0.2));
+}
+
+TEST_CASE("tethers made fast astern: asked for are the arms that turn the vehicle about a simulated axis") {
+  model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Scene scene = scene_in_a_tank(vehicle);
+  scene.nu_rms.segment<2>(3).setZero();
+  for (const char* name : {"tether_tension", "tether_drag"}) {
+    const model::Effect& effect = *model::find_effect(name);
+    const int at_origin = effect.numbers(0);
+    vehicle.dof = {true, true, true, false, false, true};
+    REQUIRE(effect.variants(scene).size() == 4);  // x and y
+    CHECK(effect.variants(scene)[0].empty());
+    CHECK(effect.numbers(3) == at_origin + 2);
+    scene.nu_rms[4] = 0.3;  // pitch as measured moves a cable that drags
+    CHECK(effect.numbers(static_cast<int>(effect.variants(scene).size()) - 1) ==
+          at_origin + (effect.name() == "tether_drag" ? 3 : 2));
+    scene.nu_rms.segment<2>(3).setZero();
+    vehicle.dof.fill(true);
+    REQUIRE(effect.variants(scene).size() == 8);
+    CHECK(effect.numbers(7) == at_origin + 3);
+    CHECK(effect.starts(scene, 7).size() <= effect.starts(scene, 0).size());
+    vehicle.dof = {true, true, true, false, false, false};
+    CHECK(effect.variants(scene) == std::vector<std::string>{""});
+  }
 }
 
 TEST_CASE("effects of place: starts surround the water worked in, and nothing is asked without positions") {

@@ -124,6 +124,69 @@ TEST_CASE("thruster_misalignment: forms that this vehicle cannot feel are not as
   CHECK(names[16] == "-");
 }
 
+TEST_CASE("thruster_delay: vertical thrusters have a time of their own, and none is none") {
+  Fixture fixture;
+  constexpr int kTwoKinds = 1;
+  CHECK(model::find_effect("thruster_delay")->variants(fixture.scene).at(kTwoKinds) == "vertical thrusters apart");
+  std::vector<Eigen::VectorXd> ramp;
+  for (int k = 0; k <= 100; ++k) ramp.emplace_back(Eigen::VectorXd::Constant(4, 0.1 * k));  // 1 N/s
+  const model::InputSignal input{0.0, 0.1, ramp};
+  fixture.motion.input = &input;
+  fixture.motion.t = 5.0;
+  fixture.motion.force.setConstant(4, 5.0);
+  const Eigen::Vector4d apart = fixture.felt("thruster_delay", {0.15, 0.2}, kTwoKinds);  // the third pushes down
+  CHECK((apart - Eigen::Vector4d{4.85, 4.85, 4.65, 4.85}).norm() < kRounding * 10);
+  const Eigen::Vector4d sooner = fixture.felt("thruster_delay", {0.15, -0.15}, kTwoKinds);
+  CHECK((sooner - Eigen::Vector4d{4.85, 4.85, 5.0, 4.85}).norm() < 0.004);  // a hundredth of a second, at most
+  CHECK(fixture.felt("thruster_delay", {0.15, 0.0}, kTwoKinds) == fixture.felt("thruster_delay", {0.15, 0.0}, 0));
+  CHECK(fixture.felt("thruster_delay", {0.0, 0.0}, kTwoKinds) == fixture.motion.force);
+}
+
+TEST_CASE("thruster_lag: after a step each form follows its own exponential, whatever the steps in time") {
+  enum Form { kAlike, kTwoKinds, kShaft };
+  const Fixture fixture;
+  const model::Effect& effect = *model::find_effect("thruster_lag");
+  const auto after = [&](double from, double to, std::vector<double> theta, int form, double dt) {
+    model::Motion motion = fixture.motion;
+    std::vector<double> z(static_cast<std::size_t>(effect.state_size(fixture.vehicle, 4)));
+    motion.force.setConstant(4, from);
+    effect.settle(motion, theta, z);
+    motion.force.setConstant(4, to);
+    for (int k = 0; k < 12; ++k) effect.advance(motion, theta, dt, z);
+    effect.feel(motion, theta, form, z);
+    return motion.force;
+  };
+  for (const double dt : {0.01, 0.05, 0.5}) {
+    CAPTURE(dt);
+    const double t = 12.0 * dt, e = std::exp(-t / 0.3), slower = std::exp(-t / 0.8), quicker = std::exp(-t / 0.1);
+    CHECK(after(0.0, 9.0, {0.3, 0.0}, kAlike, dt)[1] == doctest::Approx(9.0 * (1.0 - e)));
+    const model::ActuatorForces apart = after(4.0, 9.0, {0.3, 0.5}, kTwoKinds, dt);
+    CHECK(apart[0] == doctest::Approx(9.0 - 5.0 * e));
+    CHECK(apart[2] == doctest::Approx(9.0 - 5.0 * slower));
+    CHECK(after(4.0, 9.0, {0.3, -0.2}, kTwoKinds, dt)[2] == doctest::Approx(9.0 - 5.0 * quicker));
+    const double rising = 3.0 * (1.0 - e), falling = 3.0 * e, turning = -2.0 + 5.0 * e;
+    CHECK(after(0.0, 9.0, {0.3, 0.0}, kShaft, dt)[1] == doctest::Approx(rising * rising));
+    CHECK(after(9.0, 0.0, {0.3, 0.0}, kShaft, dt)[1] == doctest::Approx(falling * falling));
+    CHECK(after(9.0, -4.0, {0.3, 0.0}, kShaft, dt)[2] == doctest::Approx(turning * std::abs(turning)));
+  }
+}
+
+TEST_CASE("thruster_lag, thruster_delay: forms that these thrusters cannot tell apart are not asked for") {
+  Fixture fixture;
+  const auto names = [&](const char* effect) { return model::find_effect(effect)->variants(fixture.scene); };
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "shaft speed"});
+  fixture.vehicle.thrusters.erase(fixture.vehicle.thrusters.begin() + 2);
+  model::Allocation level(6, 3);
+  level << fixture.vehicle.allocation.leftCols(2), fixture.vehicle.allocation.rightCols(1);
+  fixture.vehicle.allocation = level;
+  fixture.scene.force_rms = Eigen::Vector3d::Constant(5.0);
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "-", "shaft speed"});
+  CHECK(names("thruster_delay") == std::vector<std::string>{"", "-"});
+  fixture.scene.force_rms = Vector6d::Constant(5.0);
+  fixture.scene.input_is_wrench = true;
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "-"});
+}
+
 TEST_CASE("thrust_loss: bilinear in shaft speed and advance, in both directions") {
   Fixture fixture;
   fixture.motion.nu[0] = 0.5;
