@@ -203,6 +203,20 @@ std::string too_short(std::span<const Trial> unseen, const Settings& settings) {
   return words + text;
 }
 
+/// Without the numbers that the effects' forms have no use for.
+std::vector<NamedValue> told_parameters(const identification::FitResult& fit) {
+  std::vector<NamedValue> values = fit.parameters();
+  std::size_t place = values.size();
+  for (auto active = fit.model.effects.rbegin(); active != fit.model.effects.rend(); ++active) {
+    for (std::size_t i = active->theta.size(); i-- > 0;) {
+      --place;
+      if (!active->effect->is_told(active->variant, i))
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(place));
+    }
+  }
+  return values;
+}
+
 /// Takes back everything that was accepted.
 void take_back(SearchResult& found, const std::string& reason) {
   for (Judged& judged : found.accepted) {
@@ -269,7 +283,7 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
     result.improvement = {kNaN, kNaN, kNaN};
   }
   result.parameters_before = found.before.parameters();
-  result.parameters_after = found.after.parameters();
+  result.parameters_after = told_parameters(found.after);
   result.residual_before = whiteness(found.before.model, unseen, residual_before);
   result.residual_after = whiteness(found.after.model, unseen, residual_after);
   const std::vector<Association> left = left_in(train, unseen, found, vehicle, settings);

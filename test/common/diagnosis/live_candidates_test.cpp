@@ -169,7 +169,9 @@ TEST_CASE("live candidates: inertia enters as momentum") {
     REQUIRE(start != starts.end());
     const LiveForm& form = instant.form(*start);
     CAPTURE(form.variant_name);
-    CHECK(form.variant_name.find("_dot") != std::string::npos);
+    const bool centre = form.effect->name() == "centre_of_mass";
+    CHECK((centre || form.variant_name.find("_dot") != std::string::npos));
+    if (centre && column != start->column) continue;  // not linear: its numbers square in the moments of inertia
     model::Load load;
     form.effect->load(instant.motion, start->theta, form.variant, load);
     // Linear in its one number: the start's momentum, and that of one sigma.

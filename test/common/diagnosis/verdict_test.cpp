@@ -271,7 +271,7 @@ TEST_CASE("verdict: a found effect comes with numbers, sentence and the motion t
   made.accept("thruster_lag", {0.3});
   made.accept("current", {0.1, -0.05});
   made.refuse("tether_tension", -2.0, "log odds -2.0, 3.0 needed");
-  made.known_to(0.01, {0.02, 0.05, 0.25});
+  made.known_to(0.01, {0.02, 0.0, 0.05, 0.25});  // the second is of vertical thrusters, if apart
   const DiagnosisResult result = made.concluded();
   CHECK(result.verdict == "effect");
   REQUIRE(result.effects.size() == 2);
