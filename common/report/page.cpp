@@ -19,7 +19,7 @@ struct Meaning {
 };
 
 Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
-  if (wiring) return {"unexplained", "The vehicle's file has other thrusters than the vehicle"};
+  if (wiring) return {"unexplained", "The vehicle's file seems to have other thrusters than the vehicle"};
   if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
   if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
   if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
