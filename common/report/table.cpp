@@ -106,8 +106,7 @@ std::string scores(double log_odds, double error_reduction) {
 std::string score_head(const char* last) { return "  " + pad_right("", kNameWidth) + " " + kScoreTitles + last; }
 
 void accepted(Text& out, const DiagnosisResult& result) {
-  out.title(result.verdict == "unexplained" && !result.effects.empty() ? "Effects kept, not certain names"
-                                                                       : "Effects accepted");
+  out.title(result.verdict == "unexplained" && !result.effects.empty() ? "Effects kept" : "Effects accepted");
   if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(score_head("odds"));
   bool any = false;
   for (const auto& effect : result.effects) {
