@@ -45,7 +45,7 @@ std::size_t residual_span(double dt) {
   return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / dt))) + 1;
 }
 
-std::vector<double> slope_weights(std::size_t half) {
+std::vector<double> acceleration_weights(std::size_t half) {
   double squares = 0.0;
   for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * static_cast<double>(i * i);
   std::vector<double> weight(half + 1, 0.0);
@@ -62,7 +62,7 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
   const std::size_t half = residual_span(trial.dt) / 2;
   double squares = 0.0;  // s^2, of the offsets
   for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
-  const std::vector<double> weight = slope_weights(half);
+  const std::vector<double> weight = acceleration_weights(half);
   std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
   const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());
   const std::vector<Sides> sides = sides_of(model, trial, nu);

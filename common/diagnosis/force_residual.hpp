@@ -14,7 +14,7 @@ namespace fathom::diagnosis {
 
 /// Weight of the samples up to `half` away from the middle in the mean acceleration that the slope of a straight line
 /// through 2 half + 1 velocities is: acceleration runs straight from sample to sample.
-[[nodiscard]] std::vector<double> slope_weights(std::size_t half);
+[[nodiscard]] std::vector<double> acceleration_weights(std::size_t half);
 
 /// Wrench residual X..N [N, N m] per sample, the mean over half a second: inertia times the slope of a straight line
 /// through the measured velocity, less the model's load averaged as that slope averages acceleration (so that a step of

@@ -61,7 +61,7 @@ ThrustEvidence::ThrustEvidence(const model::Vehicle& vehicle, std::span<const Tr
     for (const Trial& trial : trials) {
       if (!(a < 3 ? trial.observed.velocity : trial.observed.rates)) continue;
       const std::size_t span = residual_span(trial.dt), half = span / 2;
-      const std::vector<double> weight = slope_weights(half);
+      const std::vector<double> weight = acceleration_weights(half);
       for (std::size_t k = half; k + half < trial.size(); k += span) {
         bool whole = true;
         for (std::size_t i = k - half; i <= k + half; ++i) whole = whole && valid(trial, i);

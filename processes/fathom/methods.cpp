@@ -15,6 +15,7 @@
 #include "common/estimation/split.hpp"
 #include "common/estimation/thruster_forces.hpp"
 #include "common/estimation/trial_smoother.hpp"
+#include "common/estimation/wording.hpp"
 #include "common/identification/base_regression.hpp"
 #include "common/identification/identifier.hpp"
 #include "processes/fathom/commands.hpp"
@@ -203,7 +204,12 @@ void run(const Options& options) {
     for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
       trials.push_back(std::move(stretch));
   }
-  if (trials.empty()) throw InputError("the validation runs have too many gaps in what drove the vehicle");
+  if (trials.empty()) {
+    throw InputError(options.validate.front() + (options.validate.size() > 1 ? " and its fellows" : "") +
+                     estimation::text(": no stretch of %.0f s over which it is known what drove the vehicle; record "
+                                      "motion and thrusters together without pauses",
+                                      diagnosis::kHorizons.back()));
+  }
   std::printf("validation error, m/s and rad/s:\n");
   validate("complementary filter, recursive", vehicle, recursive, trials);
   validate("smoother, regression under AR(1)", vehicle, regression.parameters, trials);

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/model/effect.hpp"
+#include "common/model/component_set.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
@@ -26,9 +26,6 @@ constexpr double kSmallestSpeed = 0.01;  // m/s, rad/s
 constexpr std::array<std::array<std::array<std::size_t, 2>, 2>, 3> kPairs{
     {{{{1, 5}, {2, 4}}}, {{{0, 5}, {2, 3}}}, {{{0, 4}, {1, 3}}}}};
 
-/// Its forms are the sets of components that are asked for: bit i of the variant is component i.
-constexpr bool asked(int variant, std::size_t component) { return (variant >> component & 1) != 0; }
-
 class CentreOfMass final : public Effect {
  public:
   std::string_view name() const override { return "centre_of_mass"; }
@@ -37,7 +34,7 @@ class CentreOfMass final : public Effect {
     return "turning on the spot, thrust along one axis at a time, and turning while moving ahead";
   }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
-  bool takes_part(int variant, std::size_t number) const override { return asked(variant, number); }
+  bool takes_part(int variant, std::size_t number) const override { return in_set(variant, number); }
   int amplitudes() const override { return 3; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
@@ -49,29 +46,23 @@ class CentreOfMass final : public Effect {
                return scene.nu_rms[static_cast<Eigen::Index>(axis)] > kSmallestSpeed;
              });
     };
-    std::size_t form = 0;
+    int form = 0;
     std::string name;
     for (std::size_t i = 0; i < kPairs.size(); ++i) {
       if (std::ranges::none_of(kPairs[i], acts)) continue;
-      form |= std::size_t{1} << i;
+      form |= 1 << i;
       name += (name.empty() ? "" : ", ") + std::string{kParameters[i].name};
     }
-    if (form == 0) return {};
-    std::vector<std::string> names(form, "-");
-    names.push_back(name);
-    return names;
+    return forms_of(form, name);
   }
   std::vector<std::vector<double>> starts(const Scene&, int variant) const override {
     std::vector<double> start(kParameters.size(), 0.0);
-    for (std::size_t i = 0; i < start.size(); ++i) start[i] = asked(variant, i) ? 0.01 : 0.0;
+    for (std::size_t i = 0; i < start.size(); ++i) start[i] = in_set(variant, i) ? 0.01 : 0.0;
     return {start};
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
-    Eigen::Vector3d r = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (asked(variant, i)) r[static_cast<Eigen::Index>(i)] = theta[i];
-    }
+    const Eigen::Vector3d r = components(theta, variant);
     if (r.isZero(0.0)) return;
     const double mass = motion.vehicle->mass;
     const Eigen::Matrix3d S = skew(r);

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/model/effect.hpp"
+#include "common/model/component_set.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
@@ -27,7 +27,9 @@ constexpr int kAxes = 6;  // z, and the relative velocity that was felt last, on
 constexpr std::size_t kTime = kAxes;
 
 /// Forms after those of one axis are of the axes whose bits are set in what is above kAxes.
-bool acts_on(int variant, int axis) { return variant < kAxes ? axis == variant : ((variant - kAxes) >> axis & 1) != 0; }
+bool acts_on(int variant, std::size_t axis) {
+  return variant < kAxes ? axis == static_cast<std::size_t>(variant) : in_set(variant - kAxes, axis);
+}
 
 class FluidMemory final : public Effect {
  public:
@@ -39,7 +41,7 @@ class FluidMemory final : public Effect {
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   bool takes_part(int variant, std::size_t number) const override {
-    return number == kTime || acts_on(variant, static_cast<int>(number));
+    return number == kTime || acts_on(variant, number);
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     std::vector<std::string> names;
@@ -56,10 +58,10 @@ class FluidMemory final : public Effect {
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     std::vector<double> start(kTime + 1, 0.0);
-    for (int axis = 0; axis < kAxes; ++axis) {
-      if (!acts_on(variant, axis)) continue;
-      start[static_cast<std::size_t>(axis)] =
-          0.2 * std::max(scene.tau_rms[axis], 1e-3) / std::max(scene.nu_rms[axis], 1e-2);
+    for (std::size_t axis = 0; axis < kTime; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      if (acts_on(variant, axis))
+        start[axis] = 0.2 * std::max(scene.tau_rms[a], 1e-3) / std::max(scene.nu_rms[a], 1e-2);
     }
     std::vector<std::vector<double>> starts;
     for (const double time_constant : {0.4, 1.5, 6.0}) {
@@ -88,7 +90,7 @@ class FluidMemory final : public Effect {
   }
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double> z) const override {
     for (std::size_t i = 0; i < kAxes; ++i) {
-      if (acts_on(variant, static_cast<int>(i))) motion.w_memory[static_cast<Eigen::Index>(i)] -= theta[i] * z[i];
+      if (acts_on(variant, i)) motion.w_memory[static_cast<Eigen::Index>(i)] -= theta[i] * z[i];
     }
   }
 };

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/model/effect.hpp"
+#include "common/model/component_set.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/model/wide_prior.hpp"
 
@@ -19,9 +19,6 @@ constexpr std::array kParameters{EffectParameter{"G_x", "N m", 5.0}, EffectParam
 constexpr double kFarStart = 1.0 / 3.0;  // of the G_z that a prior allows: of a vehicle that rights itself
 constexpr double kSmallestTilt = 0.01;   // rad: less and yaw feels nothing
 
-/// Its forms are the sets of components that are asked for: bit i of the variant is component i.
-constexpr bool asked(int variant, std::size_t component) { return (variant >> component & 1) != 0; }
-
 class RestoringMoment final : public Effect {
  public:
   std::string_view name() const override { return "restoring_moment"; }
@@ -30,7 +27,7 @@ class RestoringMoment final : public Effect {
   }
   std::string_view revealed_by() const override { return "tilted attitudes, each held for several seconds"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
-  bool takes_part(int variant, std::size_t number) const override { return asked(variant, number); }
+  bool takes_part(int variant, std::size_t number) const override { return in_set(variant, number); }
   int amplitudes() const override { return 3; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
@@ -38,33 +35,26 @@ class RestoringMoment final : public Effect {
     const auto& free = scene.vehicle->parameters;
     const bool yaw_feels = dof[5] && scene.tilt_rms > kSmallestTilt;
     const std::array acts{dof[4] || yaw_feels, dof[3] || yaw_feels, dof[3] || dof[4]};
-    std::size_t form = 0;
+    int form = 0;
     std::string name;
     for (std::size_t i = 0; i < 3; ++i) {
       const bool in_base = std::find(free.begin(), free.end(), kParameters[i].name) != free.end();
       if (!acts[i] || in_base) continue;
-      form |= std::size_t{1} << i;
+      form |= 1 << i;
       name += (name.empty() ? "" : ", ") + std::string{kParameters[i].name};
     }
-    if (form == 0) return {};
-    std::vector<std::string> names(form, "-");
-    names.push_back(name);
-    return names;
+    return forms_of(form, name);
   }
 
   /// Beside a pendulum that it does not know, a base model takes the inertia away, and no small pendulum helps.
   std::vector<std::vector<double>> far_starts(const Scene& scene, int variant) const override {
-    if (!asked(variant, 2)) return {};
+    if (!in_set(variant, 2)) return {};
     return {{0.0, 0.0, kFarStart * wide_prior(BaseParameter::G_z, *scene.vehicle).sigma}};
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
     const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
-    Eigen::Vector3d G = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (asked(variant, i)) G[static_cast<Eigen::Index>(i)] = theta[i];
-    }
-    load.wrench.tail<3>() += G.cross(down_B);
+    load.wrench.tail<3>() += components(theta, variant).cross(down_B);
   }
 };
 

@@ -45,7 +45,7 @@ class TetherDrag final : public Effect {
     return seen ? attachment_forms(*scene.vehicle, sways) : std::vector<std::string>{};
   }
   bool takes_part(int variant, std::size_t number) const override {
-    return number < kAttached || attachment_asked(variant, number - kAttached);
+    return number < kAttached || in_set(variant, number - kAttached);
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
     const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high);
@@ -63,7 +63,7 @@ class TetherDrag final : public Effect {
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
     if (theta[0] == 0.0) return;
-    const Eigen::Vector3d p_BC = attachment(theta, variant, kAttached);
+    const Eigen::Vector3d p_BC = components(theta, variant, kAttached);
     Eigen::Vector3d way = Eigen::Vector3d(theta[1], theta[2], theta[3]) - motion.p_WB;
     Eigen::Vector3d v_r = motion.nu_r().head<3>();
     if (variant != 0) {

@@ -38,7 +38,7 @@ class TetherTension final : public Effect {
     return seen ? attachment_forms(*scene.vehicle) : std::vector<std::string>{};
   }
   bool takes_part(int variant, std::size_t number) const override {
-    return number < kAttached || attachment_asked(variant, number - kAttached);
+    return number < kAttached || in_set(variant, number - kAttached);
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     // Anchors: the middle of the water worked in, and eight directions half way out and just outside it. Slack so that
@@ -63,7 +63,7 @@ class TetherTension final : public Effect {
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
-    const Eigen::Vector3d p_BC = attachment(theta, variant, kAttached);
+    const Eigen::Vector3d p_BC = components(theta, variant, kAttached);
     Eigen::Vector3d to_anchor = Eigen::Vector3d(theta[2], theta[3], theta[4]) - motion.p_WB;
     if (variant != 0) to_anchor -= motion.R_WB * p_BC;
     const double distance = to_anchor.norm();
