@@ -104,6 +104,11 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   whole.add_covariance(result.before);
   whole.add_covariance(result.after);
   identification::add_profiles(whole, result.after);
+  progress("the last digits, from places and headings", 0.94);
+  if (auto refined = with_poses(vehicle, train, settings, result.window, result.after)) {
+    result.after = *std::move(refined);
+    if (result.accepted.empty()) result.before = result.after;
+  }
   return result;
 }
 

@@ -19,14 +19,26 @@ VelocityView as_trace(VelocityDerivatives& derivatives, Eigen::Index column) {
       Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>{6 * kColumns, kColumns}};
 }
 
-}  // namespace
-
-bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
-  const bool finished = Rollout{model, *window.trial}.run(window, nu0, nu);
+/// True velocities become what the sensors say.
+void as_measured(const Model& model, const Window& window, VelocityTrace& nu) {
   VelocityView seen{nu};
   for (const ActiveEffect& active : model.effects) {
     if (active.effect->measures()) active.effect->measure(seen, window.trial->dt, active.theta, active.variant);
   }
+}
+
+}  // namespace
+
+bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
+  const bool finished = Rollout{model, *window.trial}.run(window, nu0, nu);
+  as_measured(model, window, nu);
+  return finished;
+}
+
+bool rollout(const Model& model, const Window& window, const Vector6d& nu0, const PoseShift& shift, VelocityTrace& nu,
+             PoseTrace& pose) {
+  const bool finished = Rollout{model, *window.trial}.run(window, nu0, nu, shift, &pose);
+  as_measured(model, window, nu);
   return finished;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
+#include <vector>
 
 #include "common/model/dynamics.hpp"
 #include "common/samples/trial.hpp"
@@ -22,6 +24,22 @@ struct Window {
 /// `nu` is what the sensors say: the effects that measure have been applied to it, while `nu0` is true. Returns false
 /// when the motion diverged (the rest is held).
 bool rollout(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu);
+
+/// Where a window begins, against the pose that was measured there. What follows the measurement is not turned.
+struct PoseShift {
+  Eigen::Vector3d p_W{Eigen::Vector3d::Zero()};     ///< m
+  Eigen::Vector3d turn_W{Eigen::Vector3d::Zero()};  ///< rad, rotation vector
+};
+
+/// Simulated poses, sample by sample.
+struct PoseTrace {
+  Eigen::Matrix3Xd p_WB;  ///< m
+  std::vector<Eigen::Quaterniond> q_WB;
+};
+
+/// The same from a pose beside the measured one, and the poses that it runs through.
+bool rollout(const Model& model, const Window& window, const Vector6d& nu0, const PoseShift& shift, VelocityTrace& nu,
+             PoseTrace& pose);
 
 /// Derivatives of a rollout's velocities: row 6 k + axis is sample k's. Columns: the base parameters in their order
 /// [velocity per unit], then the initial velocity.

@@ -18,10 +18,16 @@ constexpr double kTypicalSpeed = 0.5;   // m/s, rad/s, where quadratic drag is t
 constexpr double kAbsurd = 50.0;        // m/s or rad/s: no vehicle of ours moves like that
 constexpr int kMaxMemory = 256;
 
+constexpr double kPoseDamping = 0.4;         // of one step, where what a velocity does within it adds up in the pose
+constexpr double kShortestPoseStep = 0.005;  // s
+constexpr double kLargestPoseStep = 0.01;    // s: over half a minute, places tell masses to 1e-4
+
 /// Step that follows the fastest motion of the priors: the same for every theta, so that derivatives see no change of
 /// it.
-inline double largest_step(const Vehicle& vehicle) {
-  return std::clamp(kMostDamping * quickest_decay(vehicle), kShortestStep, kLargestStep);
+inline double largest_step(const Vehicle& vehicle, bool poses) {
+  const double quickest = quickest_decay(vehicle);
+  return poses ? std::clamp(kPoseDamping * quickest, kShortestPoseStep, kLargestPoseStep)
+               : std::clamp(kMostDamping * quickest, kShortestStep, kLargestStep);
 }
 
 /// What a step with decay z >= 0 makes of a constant slope, (1 - exp(-z)) / z, and of one that grows from 0 to 1 over
@@ -93,18 +99,26 @@ class Rollout {
     memory_.fill(0.0);
   }
 
-  bool run(const Window& window, const Vector6d& nu0, VelocityTrace& nu) {
+  bool run(const Window& window, const Vector6d& nu0, VelocityTrace& nu, const PoseShift& shift = {},
+           PoseTrace* pose = nullptr) {
     // Each part of a step has a mean input of its own, which only whole substeps can follow.
     const auto parts = static_cast<int>(trial_.parts());
     const double part = trial_.dt / parts;
-    const int substeps = parts * std::max(1, static_cast<int>(std::ceil(part / largest_step(*model_.vehicle) - 1e-9)));
+    const int substeps =
+        parts * std::max(1, static_cast<int>(std::ceil(part / largest_step(*model_.vehicle, pose != nullptr) - 1e-9)));
     const double h = trial_.dt / substeps;
     run_in(window.start, h);
     nu_ = measured_where_fixed(window.start, 0.0, nu0);
-    p_ = trial_.p_WB[window.start];
-    q_ = trial_.q_WB[window.start];
+    p_ = trial_.p_WB[window.start] + shift.p_W;
+    q_ = quaternion_from_rotation_vector(shift.turn_W) * trial_.q_WB[window.start];
     nu.resize(6, static_cast<Eigen::Index>(window.count));
     nu.col(0) = nu_;
+    if (pose != nullptr) {
+      follow_measured_attitude(window.start, 0.0);
+      pose->p_WB.resize(3, static_cast<Eigen::Index>(window.count));
+      pose->q_WB.resize(window.count);
+      record(*pose, 0);
+    }
     if (sensitivity_ != nullptr) sensitivity_->begin(model_, window.count);
     for (std::size_t k = 1; k < window.count; ++k) {
       const std::size_t from = window.start + k - 1;
@@ -113,10 +127,12 @@ class Rollout {
         for (std::size_t rest = k; rest < window.count; ++rest) {
           nu.col(static_cast<Eigen::Index>(rest)) = nu.col(static_cast<Eigen::Index>(k - 1));
           if (sensitivity_ != nullptr) sensitivity_->record(rest);
+          if (pose != nullptr) record(*pose, rest);
         }
         return false;
       }
       nu.col(static_cast<Eigen::Index>(k)) = nu_;
+      if (pose != nullptr) record(*pose, k);
       if (sensitivity_ != nullptr) sensitivity_->record(k);
     }
     return true;
@@ -209,11 +225,14 @@ class Rollout {
     const Vector6d k2 = felt_acceleration(from, offset + half, p_half, q_half, nu_half, half);
     if (sensitivity_ != nullptr)
       sensitivity_->advance(*this, {from, offset + half, p_half, q_half, nu_half, k2, decay, nu_, k1, shares}, h);
-    p_ += h * (q_half * nu_half.head<3>());
-    q_ = (q_ * quaternion_from_rotation_vector(h * nu_half.tail<3>())).normalized();
     const Vector6d change = k2 + decay.cwiseProduct(nu_half - nu_) - k1;
     const Vector6d slope = shares.whole.cwiseProduct(k1) + 2.0 * shares.growth.cwiseProduct(change);
-    nu_ = measured_where_fixed(from, offset + h, nu_ + h * slope);
+    const Vector6d nu_end = measured_where_fixed(from, offset + h, nu_ + h * slope);
+    // What settles within few steps is no straight line: Simpson's mean over the step.
+    const Vector6d mean = (nu_ + 4.0 * nu_half + nu_end) / 6.0;
+    p_ += h * (q_half * mean.head<3>());
+    q_ = (q_ * quaternion_from_rotation_vector(h * mean.tail<3>())).normalized();
+    nu_ = nu_end;
     follow_measured_attitude(from, offset + h);
   }
 
@@ -231,6 +250,11 @@ class Rollout {
     q_ = tilt_measured_ && heading_measured_ ? measured
          : tilt_measured_                    ? with_heading(measured, q_)
                                              : with_heading(q_, measured);
+  }
+
+  void record(PoseTrace& pose, std::size_t k) const {
+    pose.p_WB.col(static_cast<Eigen::Index>(k)) = p_;
+    pose.q_WB[k] = q_;
   }
 
   void run_in(std::size_t start, double h) {

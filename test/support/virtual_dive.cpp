@@ -1,5 +1,5 @@
 // Steps and slow sines on every free axis, a weak pull back to the start so that the dive stays in a tank's reach, and
-// midpoint integration at 10 ms: a tenth of what the code under test uses.
+// midpoint integration.
 #include "test/support/virtual_dive.hpp"
 
 #include <Eigen/QR>
@@ -13,7 +13,6 @@
 namespace fathom::test {
 namespace {
 
-constexpr double kStep = 0.01;  // s
 constexpr int kSines = 4;
 
 class Excitation {
@@ -75,7 +74,8 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
   Excitation excitation{dive.truth, random};
 
   const auto samples = static_cast<std::size_t>(std::lround(settings.duration / settings.dt)) + 1;
-  const int substeps = static_cast<int>(std::lround(settings.dt / kStep));
+  const int substeps = static_cast<int>(std::lround(settings.dt / settings.step));
+  const double h = settings.dt / substeps;
   const Eigen::MatrixXd allocation = dive.truth.allocation;
   Eigen::MatrixXd reachable = allocation;
   for (int i = 0; i < 6; ++i) {
@@ -132,20 +132,24 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     };
     if (k == 0) model::settle(dive.truth, motion_at(0.0, nu), memory);
     for (int s = 0; s < substeps; ++s) {
-      const double now = t + s * kStep;
+      const double now = t + s * h;
       model::Motion begin = motion_at(now, nu);
       model::feel(dive.truth, begin, memory, 0.0);
       // Memories are advanced to the instant at which they are asked, with the command of the time in between.
-      const Vector6d halfway = nu + 0.5 * kStep * model::acceleration(dive.truth, begin);
-      model::Motion early = motion_at(now + 0.25 * kStep, nu);
-      model::feel(dive.truth, early, memory, 0.5 * kStep);
-      model::Motion middle = motion_at(now + 0.5 * kStep, halfway);
+      const Vector6d halfway = nu + 0.5 * h * model::acceleration(dive.truth, begin);
+      model::Motion early = motion_at(now + 0.25 * h, nu);
+      model::feel(dive.truth, early, memory, 0.5 * h);
+      const Eigen::Quaterniond before = q;
+      const Eigen::Vector3d from = p;
+      p = from + 0.5 * h * (before * begin.nu.head<3>());
+      q = before * quaternion_from_rotation_vector(0.5 * h * begin.nu.tail<3>());
+      model::Motion middle = motion_at(now + 0.5 * h, halfway);
       model::feel(dive.truth, middle, memory, 0.0);
-      nu += kStep * model::acceleration(dive.truth, middle);
-      p += kStep * (q * halfway.head<3>());
-      q = (q * quaternion_from_rotation_vector(kStep * halfway.tail<3>())).normalized();
-      model::Motion late = motion_at(now + 0.75 * kStep, nu);
-      model::feel(dive.truth, late, memory, 0.5 * kStep);
+      nu += h * model::acceleration(dive.truth, middle);
+      p = from + h * (q * halfway.head<3>());
+      q = (before * quaternion_from_rotation_vector(h * halfway.tail<3>())).normalized();
+      model::Motion late = motion_at(now + 0.75 * h, nu);
+      model::feel(dive.truth, late, memory, 0.5 * h);
     }
   }
   model::VelocityView seen{measured};

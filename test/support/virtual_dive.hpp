@@ -13,6 +13,7 @@ namespace fathom::test {
 struct DiveSettings {
   double duration{120.0};  ///< s
   double dt{0.1};          ///< s between samples
+  double step{0.01};       ///< s of the integration: a tenth of what the code under test uses, mostly
   unsigned seed{1};
   double velocity_noise{0.005};  ///< m/s, std
   double rate_noise{0.005};      ///< rad/s

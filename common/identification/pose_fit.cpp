@@ -1,0 +1,305 @@
+#include "common/identification/pose_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/distributions.hpp"
+#include "common/base/parallel.hpp"
+#include "common/identification/outlier.hpp"
+#include "common/identification/pose_window.hpp"
+#include "common/identification/signal_weights.hpp"
+
+namespace fathom::identification {
+namespace {
+
+constexpr int kWeightRounds = 2;
+constexpr int kSteps = 6;              // of Gauss and Newton, per round of weights
+constexpr int kHalvings = 4;           // of a step that does not lower the cost
+constexpr double kSettled = 0.01;      // of the cost, which is a chi-square: far below one standard deviation
+constexpr double kFreeStart = 1.0;     // m/s, rad/s, m, rad: prior of a window's beginning, which the data outdoes
+constexpr double kLeastFreedom = 3.0;  // of a covariance from fewer stretches than it has numbers
+constexpr double kChance = 1e-3;       // of all numbers together, to lie apart by noise
+
+/// One window's share of the normal equations, its beginning eliminated.
+struct Reduced {
+  Eigen::MatrixXd H;         ///< n x n
+  Eigen::VectorXd g;         ///< n
+  Eigen::MatrixXd scores;    ///< n x blocks: gradient of each stretch
+  Eigen::MatrixXd follow;    ///< free starts x n: how the beginning follows the numbers
+  Eigen::VectorXd own_step;  ///< free starts: what it moves by itself
+};
+
+class PoseFit {
+ public:
+  PoseFit(const model::Vehicle& vehicle, std::span<const Trial> trials, const PoseFitSettings& settings,
+          const model::Model& model)
+      : settings_{settings},
+        model_{model},
+        map_{model},
+        windows_{pose_windows(vehicle, trials, settings.window)},
+        x_{map_.pack(model)} {
+    for (const PoseWindow& window : windows_) starts_.push_back(window.measured_start());
+    weights_ = ordinary_weights();
+  }
+
+  [[nodiscard]] bool any() const { return !windows_.empty(); }
+
+  /// False when it does not come to rest.
+  bool solve() {
+    const std::vector<Eigen::Index> none;
+    if (!descend(none)) return false;
+    for (int round = 0; round < kWeightRounds; ++round) {
+      weights_ = signal_weights(windows_, residuals(x_, starts_), settings_.block);
+      if (!descend(inside())) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
+  [[nodiscard]] const ParameterMap& map() const { return map_; }
+  [[nodiscard]] model::Model model() const { return model_at(x_); }
+
+  /// Sandwich over stretches, physical units; at least what the weights alone say, for few stretches can look too quiet.
+  /// `freedom`: stretches beyond free numbers.
+  [[nodiscard]] Eigen::MatrixXd covariance(double& freedom) const {
+    const auto n = static_cast<Eigen::Index>(map_.size());
+    Eigen::MatrixXd information = prior(), meat = information;
+    double clusters = 0.0;
+    for (const Reduced& window : linearise()) {
+      information += window.H;
+      meat += window.scores * window.scores.transpose();
+      clusters += static_cast<double>(window.scores.cols());
+    }
+    const auto free = static_cast<double>(inside().size());
+    const double small_sample = clusters > free + 1.0 ? clusters / (clusters - free) : 2.0;
+    const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::VectorXd scale(n);
+    for (Eigen::Index i = 0; i < n; ++i) scale[i] = map_[static_cast<std::size_t>(i)].scale;
+    freedom = std::max(clusters - free, kLeastFreedom);
+Eigen::MatrixXd covariance = small_sample * inverse * meat * inverse;
+    const Eigen::VectorXd wider = (inverse.diagonal().cwiseQuotient(covariance.diagonal())).cwiseMax(1.0).cwiseSqrt();
+    scale.array() *= wider.array();
+    return scale.asDiagonal() * covariance * scale.asDiagonal();
+  }
+
+ private:
+  [[nodiscard]] model::Model model_at(const Eigen::VectorXd& x) const {
+    model::Model model = model_;
+    map_.unpack(x, model);
+    return model;
+  }
+
+  /// Numbers that move: sought, and not on a bound.
+  [[nodiscard]] std::vector<Eigen::Index> inside() const {
+    std::vector<Eigen::Index> free;
+    for (std::size_t i = 0; i < map_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (map_[i].sought && !map_[i].at_bound(x_[k])) free.push_back(k);
+    }
+    return free;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd prior() const {
+    const auto n = static_cast<Eigen::Index>(map_.size());
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const FreeParameter& free = map_[static_cast<std::size_t>(i)];
+      information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
+    }
+    return information;
+  }
+
+  [[nodiscard]] Eigen::VectorXd prior_gradient(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd gradient(x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const FreeParameter& free = map_[static_cast<std::size_t>(i)];
+      gradient[i] = free.scale / free.prior_sigma * (x[i] * free.scale - free.prior_mean) / free.prior_sigma;
+    }
+    return gradient;
+  }
+
+  [[nodiscard]] std::vector<Eigen::VectorXd> residuals(const Eigen::VectorXd& x,
+                                                       const std::vector<WindowStart>& starts) const {
+    const model::Model model = model_at(x);
+    std::vector<Eigen::VectorXd> all(windows_.size());
+    for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) {
+      all[w].resize(windows_[w].rows());
+      windows_[w].evaluate(model, starts[w], all[w]);
+    });
+    return all;
+  }
+
+  [[nodiscard]] double cost(const Eigen::VectorXd& x, const std::vector<WindowStart>& starts) const {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const FreeParameter& free = map_[static_cast<std::size_t>(i)];
+      const double away = (x[i] * free.scale - free.prior_mean) / free.prior_sigma;
+      sum += 0.5 * away * away;
+    }
+    const std::vector<Eigen::VectorXd> all = residuals(x, starts);
+    for (std::size_t w = 0; w < windows_.size(); ++w) {
+      if (!all[w].allFinite()) return std::numeric_limits<double>::infinity();
+      sum += 0.5 * weights_[w].cwiseProduct(all[w]).squaredNorm();
+      sum += 0.5 * (starts[w] - windows_[w].measured_start()).squaredNorm() / (kFreeStart * kFreeStart);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] std::vector<Reduced> linearise() const {
+    const model::Model model = model_at(x_);
+    std::vector<Reduced> all(windows_.size());
+    for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) { all[w] = reduce(model, w); });
+    return all;
+  }
+
+  [[nodiscard]] Reduced reduce(const model::Model& model, std::size_t w) const {
+    const PoseWindow& window = windows_[w];
+    const auto n = static_cast<Eigen::Index>(map_.size());
+    const auto starts = static_cast<Eigen::Index>(window.free().size());
+    Eigen::VectorXd residual(window.rows());
+    window.evaluate(model, starts_[w], residual);
+    Eigen::MatrixXd J = window.jacobian(model, map_, starts_[w], residual);
+    J.array().colwise() *= weights_[w].array();
+    residual.array() *= weights_[w].array();
+    const auto by_start = J.rightCols(starts);
+    const WindowStart away = (starts_[w] - window.measured_start()) / (kFreeStart * kFreeStart);
+    Eigen::MatrixXd own = by_start.transpose() * by_start;
+    Eigen::VectorXd pull = by_start.transpose() * residual;
+    for (Eigen::Index s = 0; s < starts; ++s) {
+      own(s, s) += 1.0 / (kFreeStart * kFreeStart);
+      pull[s] += away[window.free()[static_cast<std::size_t>(s)]];
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> factors{own};
+    Reduced out;
+    out.follow = -factors.solve(by_start.transpose() * J.leftCols(n));
+    out.own_step = -factors.solve(pull);
+    // Without what another beginning would explain as well.
+    const Eigen::MatrixXd projected = J.leftCols(n) + by_start * out.follow;
+    const Eigen::VectorXd rest = residual + by_start * out.own_step;
+    out.H = projected.transpose() * projected;
+    out.g = projected.transpose() * rest;
+    const double dt = window.window().trial->dt;
+    const auto blocks = std::max(1L, std::lround(static_cast<double>(window.window().count) * dt / settings_.block));
+    out.scores = Eigen::MatrixXd::Zero(n, blocks);
+    for (Eigen::Index i = 0; i < window.rows(); ++i) {
+      const auto block =
+          static_cast<Eigen::Index>(window.row(i).sample) * blocks / static_cast<Eigen::Index>(window.window().count);
+      out.scores.col(block) += projected.row(i).transpose() * rest[i];
+    }
+    return out;
+  }
+
+  /// Moves `free` and all beginnings to where the cost is least.
+  bool descend(const std::vector<Eigen::Index>& free) {
+    double now = cost(x_, starts_);
+    for (int step = 0; step < kSteps && std::isfinite(now); ++step) {
+      const std::vector<Reduced> windows = linearise();
+      Eigen::MatrixXd H = prior();
+      Eigen::VectorXd g = prior_gradient(x_);
+      double gain = 0.0;
+      for (std::size_t w = 0; w < windows.size(); ++w) {
+        H += windows[w].H;
+        g += windows[w].g;
+      }
+      Eigen::VectorXd move = Eigen::VectorXd::Zero(x_.size());
+      if (!free.empty()) {
+        move(free) = -H(free, free).ldlt().solve(g(free));
+        gain = -0.5 * g.dot(move);
+      }
+      double share = 1.0, next = std::numeric_limits<double>::infinity();
+      Eigen::VectorXd x;
+      std::vector<WindowStart> starts;
+      for (int halving = 0; halving <= kHalvings; ++halving, share *= 0.5) {
+        x = within_bounds(x_ + share * move);
+        starts = starts_;
+        for (std::size_t w = 0; w < windows.size(); ++w) {
+          const Eigen::VectorXd follow = share * windows[w].own_step + windows[w].follow * (x - x_);
+          for (std::size_t s = 0; s < windows_[w].free().size(); ++s)
+            starts[w][windows_[w].free()[s]] += follow[static_cast<Eigen::Index>(s)];
+        }
+        next = cost(x, starts);
+        if (next < now) break;
+      }
+      if (!(next < now)) return gain < kSettled || now - next > -kSettled;
+      const double fell = now - next;
+      x_ = std::move(x);
+      starts_ = std::move(starts);
+      now = next;
+      if (gain < kSettled && fell < kSettled * static_cast<double>(windows.size())) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] Eigen::VectorXd within_bounds(Eigen::VectorXd x) const {
+    for (std::size_t i = 0; i < map_.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      x[k] = std::clamp(x[k], map_[i].low / map_[i].scale, map_[i].high / map_[i].scale);
+    }
+    return x;
+  }
+
+  [[nodiscard]] std::vector<Eigen::VectorXd> ordinary_weights() const {
+    std::vector<Eigen::VectorXd> weights;
+    for (const PoseWindow& window : windows_) {
+      Eigen::VectorXd weight(window.rows());
+      for (Eigen::Index i = 0; i < window.rows(); ++i) weight[i] = 1.0 / ordinary_noise(window.row(i).signal);
+      weights.push_back(std::move(weight));
+    }
+    return weights;
+  }
+
+  PoseFitSettings settings_;
+  const model::Model& model_;
+  ParameterMap map_;
+  std::vector<PoseWindow> windows_;
+  std::vector<WindowStart> starts_;
+  std::vector<Eigen::VectorXd> weights_;
+  Eigen::VectorXd x_;
+};
+
+/// Hausman's question, number by number: is the efficient estimate where the other one may lie?
+bool agree(const PoseFit& by_all, const FitResult& by_speeds) {
+  const Eigen::VectorXd before = by_all.map().pack(by_speeds.model);
+  double sought = 0.0;
+  for (std::size_t i = 0; i < by_all.map().size(); ++i) sought += by_all.map()[i].sought ? 1.0 : 0.0;
+  const double t_square = f_quantile(kChance / std::max(sought, 1.0), by_speeds.freedom);
+  for (std::size_t i = 0; i < by_all.map().size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double apart = (by_all.x()[k] - before[k]) * by_all.map()[i].scale;
+    const double form = by_all.map()[i].form_sigma;
+    if (apart * apart > t_square * (by_speeds.covariance(k, k) + form * form)) return false;
+  }
+  return true;
+}
+
+/// Ends of an interval that a profile found on each side, drawn in as the standard deviation was.
+std::vector<std::optional<std::array<double, 2>>> drawn_in(const FitResult& from, const FitResult& to) {
+  std::vector<std::optional<std::array<double, 2>>> ends(from.interval95.size());
+  const std::vector<NamedValue> before = from.parameters(), after = to.parameters();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (!from.interval95[i]) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    const double ratio = to.t95() * std::sqrt(to.covariance(k, k)) / (from.t95() * std::sqrt(from.covariance(k, k)));
+    ends[i] = {after[i].value - ratio * (before[i].value - (*from.interval95[i])[0]),
+               after[i].value + ratio * ((*from.interval95[i])[1] - before[i].value)};
+  }
+  return ends;
+}
+
+}  // namespace
+
+std::optional<FitResult> fit_with_poses(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                                        const PoseFitSettings& settings, const FitResult& by_speeds) {
+  PoseFit problem{vehicle, trials, settings, by_speeds.model};
+  if (!problem.any() || !problem.solve() || !agree(problem, by_speeds)) return {};
+  FitResult fit = by_speeds;
+  fit.model = problem.model();
+  fit.covariance = problem.covariance(fit.freedom);
+  if (!fit.covariance.allFinite()) return {};
+  fit.interval95 = drawn_in(by_speeds, fit);
+  return fit;
+}
+
+}  // namespace fathom::identification
