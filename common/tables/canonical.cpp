@@ -1,6 +1,7 @@
 // The canonical columns: a table that needs no map. docs/configuration.md lists them.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <set>
 
 #include "common/base/error.hpp"
@@ -64,7 +65,29 @@ class Shelf {
     return "";
   }
 
+  /// "f3" where "f4" and no "f3" is there; empty where the numbers go on from the first.
+  [[nodiscard]] std::string skipped(const std::string& name) const {
+    for (const std::string prefix : {"f", "pwm"}) {
+      if (!name.starts_with(prefix) || table_.find(prefix + "1") == nullptr) continue;
+      int number = 0;
+      const char *begin = name.data() + prefix.size(), *end = name.data() + name.size();
+      const auto [rest, error] = std::from_chars(begin, end, number);
+      if (error != std::errc{} || rest != end) continue;
+      for (int i = 2; i < number; ++i) {
+        const std::string before = prefix + std::to_string(i);
+        if (table_.find(before) == nullptr) return before;
+      }
+    }
+    return "";
+  }
+
   void must_be_empty() const {
+    for (const std::string& name : table_.names) {
+      const std::string before = left_.contains(name) ? skipped(name) : "";
+      if (!before.empty())
+        throw InputError(table_.path + ":1: column '" + before + "' is missing, and '" + name +
+                         "' is there; a thruster that was not driven has a column of zeros");
+    }
     std::string strangers;
     for (const std::string& name : table_.names) {
       if (left_.contains(name)) strangers += (strangers.empty() ? "'" : ", '") + name + "'" + meant(name);

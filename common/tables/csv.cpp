@@ -13,7 +13,8 @@ namespace fathom::tables {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kShownCell = 24;  // characters of a bad cell that a message repeats
+constexpr std::size_t kShownCell = 24;     // characters of a bad cell that a message repeats
+constexpr std::size_t kFirstBytes = 1024;  // that tell a text from what is none
 
 std::string_view trim(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -39,6 +40,15 @@ bool read_number(std::string_view cell, double& value) {
   if (error != std::errc{} || end != cell.data() + cell.size()) return false;
   if (!std::isfinite(value)) value = kMissing;
   return true;
+}
+
+/// A picture, a log or an archive begins with bytes that no text has.
+void check_text(std::string_view text, const std::string& path) {
+  const auto strange = [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\r' && c != '\n';
+  };
+  if (std::ranges::any_of(text.substr(0, kFirstBytes), strange))
+    throw InputError(path + ": this is no text; give a table with commas between its columns");
 }
 
 /// A table whose columns are parted by something else is one column to us, and its first row no number.
@@ -83,6 +93,7 @@ std::string CsvTable::where(std::size_t row) const {
 CsvTable parse_csv(std::string_view text, const std::string& path) {
   CsvTable table;
   table.path = path;
+  check_text(text, path);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   const auto expected_rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   std::size_t number = 0;

@@ -137,3 +137,11 @@ TEST_CASE("canonical: a trial is written with its gaps as empty cells") {
   CHECK(to_csv(trial) == "t,u,v,w,p,q,r,f1,f2,voltage\n0.000000,1,2,3,4,5,6,7,-8,12\n0.500000,,,,4,5,6,7,-8,11.5\n");
   CHECK_THROWS_WITH_AS(write_file("/nowhere/run.csv", "t\n"), "/nowhere/run.csv: cannot write this file", InputError);
 }
+
+TEST_CASE("canonical columns: a thruster that is left out is named") {
+  const CsvTable table = parse_csv("t,x,y,z,f1,f2,f4\n0,0,0,0,1,1,1\n", "run.csv");
+  CHECK_THROWS_WITH_AS(
+      (canonical_map(table)),
+      "run.csv:1: column 'f3' is missing, and 'f4' is there; a thruster that was not driven has a column of zeros",
+      InputError);
+}

@@ -64,3 +64,8 @@ TEST_CASE("csv: what is wrong is said in one line with the file's line") {
                          InputError);
   }
 }
+
+TEST_CASE("csv: what is no text is refused as such") {
+  CHECK_THROWS_WITH_AS(parse_csv(std::string_view("\x89PNG\x0d\x0a\x1a\x0a\0\0\0", 11), "run.csv"),
+                       doctest::Contains("run.csv: this is no text"), InputError);
+}
