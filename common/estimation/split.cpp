@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/base/error.hpp"
+#include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -76,6 +77,26 @@ InputGaps input_gaps(const Trial& trial) {
     gaps.total += length;
   });
   return gaps;
+}
+
+std::vector<ConsistencyFinding> gap_findings(std::span<const Trial> runs) {
+  std::vector<ConsistencyFinding> findings;
+  for (const Trial& run : runs) {
+    const InputGaps gaps = input_gaps(run);
+    if (gaps.count == 0) continue;
+    findings.push_back({.run = run.name,
+                        .signal = "thrusters",
+                        .reference = "itself",
+                        .finding = "gap",
+                        .size = gaps.longest,
+                        .unit = "s",
+                        .evidence = std::to_string(gaps.count) +
+                                    text(" gaps, %.3g s in all, the longest %.3g s: what drove the vehicle "
+                                         "is not known there",
+                                         gaps.total, gaps.longest),
+                        .action = "left out: nothing is simulated across them"});
+  }
+  return findings;
 }
 
 }  // namespace fathom::estimation

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "common/samples/diagnosis_result.hpp"
 #include "common/samples/trial.hpp"
 
 namespace fathom::estimation {
@@ -22,5 +24,7 @@ struct InputGaps {
   double longest{}, total{};  ///< s
 };
 [[nodiscard]] InputGaps input_gaps(const Trial& trial);
+/// One finding for each run that has any.
+[[nodiscard]] std::vector<ConsistencyFinding> gap_findings(std::span<const Trial> runs);
 
 }  // namespace fathom::estimation

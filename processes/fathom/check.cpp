@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "common/base/error.hpp"
 #include "common/estimation/consistency.hpp"
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/flow_check.hpp"
+#include "common/estimation/reconstruct.hpp"
+#include "common/estimation/split.hpp"
 #include "common/model/site.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
@@ -42,6 +45,15 @@ void run(const Options& options) {
   estimation::check_thrusters(recordings, vehicle, result);
   if (!options.site.empty()) {
     estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), result);
+  }
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    if (recordings[i].thrusters.empty()) continue;  // sensors alone can be compared too
+    try {
+      const Trial trial = estimation::reconstruct(recordings[i], result.corrections[i], vehicle);
+      std::ranges::copy(estimation::gap_findings({&trial, 1}), std::back_inserter(result.findings));
+    } catch (const InputError& error) {  // what fathom diagnose would say of it
+      std::fprintf(stderr, "not looked for gaps: %s\n", error.what());
+    }
   }
   if (result.findings.empty()) {
     std::printf("the sensors agree with each other\n");

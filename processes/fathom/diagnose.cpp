@@ -92,26 +92,6 @@ class Stretches {
   double whole_{}, kept_{};  // s
 };
 
-std::vector<ConsistencyFinding> gap_findings(std::span<const Trial> runs) {
-  std::vector<ConsistencyFinding> findings;
-  for (const Trial& run : runs) {
-    const estimation::InputGaps gaps = estimation::input_gaps(run);
-    if (gaps.count == 0) continue;
-    findings.push_back({.run = run.name,
-                        .signal = "thrusters",
-                        .reference = "itself",
-                        .finding = "gap",
-                        .size = gaps.longest,
-                        .unit = "s",
-                        .evidence = std::to_string(gaps.count) +
-                                    estimation::text(" gaps, %.3g s in all, the longest %.3g s: what drove the vehicle "
-                                                     "is not known there",
-                                                     gaps.total, gaps.longest),
-                        .action = "left out: nothing is simulated across them"});
-  }
-  return findings;
-}
-
 DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
@@ -143,7 +123,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   }
   if (estimation::share_clock(recordings, trials))
     notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
-  std::vector<ConsistencyFinding> gaps = gap_findings(trials);
+  std::vector<ConsistencyFinding> gaps = estimation::gap_findings(trials);
   consistency.findings.insert(consistency.findings.end(), gaps.begin(), gaps.end());
   std::vector<Trial> train, validate;
   for (std::size_t i = 0; i < trials.size(); ++i) {

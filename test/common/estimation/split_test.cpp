@@ -61,4 +61,16 @@ TEST_CASE("input gaps: counted, with their lengths from the last to the next inp
   CHECK(gaps.total == doctest::Approx(1.7));
 }
 
+TEST_CASE("input gaps: one finding for each run that has any") {
+  Trial whole = torn();
+  whole.input_valid.clear();
+  const std::vector<Trial> runs{whole, torn()};
+  const std::vector<ConsistencyFinding> findings = gap_findings(runs);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].run == runs[1].name);
+  CHECK(findings[0].signal == "thrusters");
+  CHECK(findings[0].finding == "gap");
+  CHECK(findings[0].size == doctest::Approx(1.1));
+}
+
 }  // namespace fathom::estimation
