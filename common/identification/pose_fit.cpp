@@ -199,9 +199,9 @@ Eigen::MatrixXd covariance = small_sample * inverse * meat * inverse;
       Eigen::MatrixXd H = prior();
       Eigen::VectorXd g = prior_gradient(x_);
       double gain = 0.0;
-      for (std::size_t w = 0; w < windows.size(); ++w) {
-        H += windows[w].H;
-        g += windows[w].g;
+      for (const Reduced& window : windows) {
+        H += window.H;
+        g += window.g;
       }
       Eigen::VectorXd move = Eigen::VectorXd::Zero(x_.size());
       if (!free.empty()) {

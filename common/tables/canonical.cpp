@@ -74,7 +74,7 @@ class Shelf {
       const auto [rest, error] = std::from_chars(begin, end, number);
       if (error != std::errc{} || rest != end) continue;
       for (int i = 2; i < number; ++i) {
-        const std::string before = prefix + std::to_string(i);
+        std::string before = prefix + std::to_string(i);
         if (table_.find(before) == nullptr) return before;
       }
     }
