@@ -1,7 +1,6 @@
 #include "common/driver/lever_arm.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace fathom::driver {
 namespace {
@@ -12,23 +11,29 @@ constexpr double kStale = 0.5;  // s
 
 void LeverArm::hear(const Ahrs& ahrs) { heard_[count_++ % kKept] = ahrs; }
 
-const Ahrs* LeverArm::nearest(Utime utime, bool Ahrs::*has) const {
-  const Ahrs* found = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+std::optional<Ahrs> LeverArm::at(Utime utime, bool Ahrs::*has) const {
+  const Ahrs* before = nullptr;
+  const Ahrs* after = nullptr;
   for (const Ahrs& each : heard_) {
-    const double apart = std::abs(seconds_between(each.utime, utime));
-    if (each.*has && apart <= kStale && apart < least) {
-      least = apart;
-      found = &each;
-    }
+    if (!(each.*has) || std::abs(seconds_between(each.utime, utime)) > kStale) continue;
+    if (each.utime <= utime && (before == nullptr || each.utime > before->utime)) before = &each;
+    if (each.utime >= utime && (after == nullptr || each.utime < after->utime)) after = &each;
   }
-  return found;
+  if (before == nullptr && after == nullptr) return {};
+  if (before == nullptr || after == nullptr || before->utime == after->utime)
+    return before != nullptr ? *before : *after;
+  const double share = seconds_between(before->utime, utime) / seconds_between(before->utime, after->utime);
+  Ahrs between = *before;
+  between.utime = utime;
+  between.w_WB_B += share * (after->w_WB_B - before->w_WB_B);
+  between.q_WB = before->q_WB.slerp(share, after->q_WB);
+  return between;
 }
 
 void LeverArm::remove(Dvl& sample) const {
   if (!needed() || !sample.valid) return;
-  const Ahrs* rates = nearest(sample.utime, &Ahrs::has_rates);
-  if (rates == nullptr) {
+  const std::optional<Ahrs> rates = at(sample.utime, &Ahrs::has_rates);
+  if (!rates) {
     sample.valid = false;
     sample.v_WB_B.setZero();
     return;
@@ -38,14 +43,14 @@ void LeverArm::remove(Dvl& sample) const {
 
 void LeverArm::remove(Depth& sample) const {
   if (!needed()) return;
-  const Ahrs* tilted = nearest(sample.utime, &Ahrs::has_attitude);
-  sample.z -= tilted != nullptr ? (tilted->q_WB * p_BS_).z() : p_BS_.z();
+  const std::optional<Ahrs> tilted = at(sample.utime, &Ahrs::has_attitude);
+  sample.z -= tilted ? (tilted->q_WB * p_BS_).z() : p_BS_.z();
 }
 
 void LeverArm::remove(Usbl& sample) const {
   if (!needed()) return;
-  const Ahrs* attitude = nearest(sample.utime, &Ahrs::has_attitude);
-  if (attitude == nullptr) {
+  const std::optional<Ahrs> attitude = at(sample.utime, &Ahrs::has_attitude);
+  if (!attitude) {
     sample.valid = false;
     return;
   }

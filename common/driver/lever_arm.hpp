@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "common/samples/sensors.hpp"
 
@@ -24,8 +25,9 @@ class LeverArm {
 
  private:
   static constexpr std::size_t kKept = 512;  ///< samples of AHRS: fixes come seconds after they were true
-  /// The one nearest in time that has what is asked for; null when it is not within half a second.
-  [[nodiscard]] const Ahrs* nearest(Utime utime, bool Ahrs::*has) const;
+  /// Rates and attitude at that time, between the samples around it that have what is asked for, or of the one
+  /// alone; nothing when none is within half a second.
+  [[nodiscard]] std::optional<Ahrs> at(Utime utime, bool Ahrs::*has) const;
 
   Eigen::Vector3d p_BS_;
   std::array<Ahrs, kKept> heard_{};

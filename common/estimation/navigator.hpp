@@ -39,6 +39,7 @@ struct AidSettings {
   double systematic{};  ///< m or m/s that no averaging removes: part of what is stated, not of the gains
   double delay{};       ///< s after its time that it counts: at least its latency and the channel's jitter
   double max_age{};     ///< s; older than that it is said to be silent
+  Eigen::Vector3d scale{Eigen::Vector3d::Ones()};  ///< of a velocity: true over what is read, along B
 };
 
 struct NavigatorSettings {

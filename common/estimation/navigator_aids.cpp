@@ -54,7 +54,7 @@ void Navigator::use(Memory& memory, std::size_t first, std::size_t last, const I
         use_laser(memory, one, input);
         break;
       case Source::kDvl:
-        use_velocity(memory, one, one.a, ones, noise * noise * ones, input);
+        use_velocity(memory, one, settings_.dvl.scale.cwiseProduct(one.a), ones, noise * noise * ones, input);
         break;
       case Source::kUsbl: {
         const Eigen::Vector3d variance = one.b.cwiseAbs2() + noise * noise * ones;
@@ -120,7 +120,8 @@ void Navigator::use_flow(Memory& memory, const Measurement& m, const Input& inpu
   const Eigen::Vector3d v_B = R_WB.transpose() * memory.filter.velocity();
   Eigen::Vector3d v_C = velocity_of_camera(v_B, input.w_B, *m.camera);
   v_C.head<2>() = across;
-  const Eigen::Vector3d seen = m.camera->R_BC * v_C - input.w_B.cross(m.camera->p_BC);
+  const Eigen::Vector3d seen =
+      settings_.flow.scale.cwiseProduct(m.camera->R_BC * v_C - input.w_B.cross(m.camera->p_BC));
   // What is not known of the height is an error of scale.
   const double height = std::sqrt(memory.filter.covariance()[2].pp) / distance * across.norm();
   const double sigma = std::hypot(settings_.flow.noise, distance * m.sigma) + height;

@@ -19,6 +19,10 @@ AidSettings aid_from(const Config& config, const std::string& key, bool velocity
   if (!vertical_alone) aid.cutoff = section.positive("cutoff", "rad/s");
   if (key != "flow") aid.vertical_cutoff = section.positive("vertical_cutoff", "rad/s");
   if (velocity) aid.damping = section.positive("damping", "");
+  if (velocity && section.has("scale")) {
+    aid.scale = section.vector3("scale", "");
+    if (!(aid.scale.minCoeff() > 0.0)) section.fail("scale", "'scale' is true over read, three numbers above zero");
+  }
   if (key != "flow") aid.vertical_damping = section.positive("vertical_damping", "");
   return aid;
 }

@@ -50,8 +50,9 @@ Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double 
   // way, and what rights the hull by itself is helped to come to rest.
   const Tilt tilt = tilt_of(state);
   const double calm = kCalm * settings_.largest_tilt;
-  const double tilted =
-      std::clamp((tilt.angle + kSoften * std::max(0.0, tilt.rate) - calm) / (settings_.largest_tilt - calm), 0.0, 1.0);
+  const double soon = tilt.angle + kSoften * std::max(0.0, tilt.rate);
+  const double tilted = std::clamp((soon - calm) / (settings_.largest_tilt - calm), 0.0, 1.0);
+  const Eigen::Vector3d lean{0.0, 0.0, settings_.half_length * std::sin(std::min(soon, settings_.largest_tilt))};
   if (tilted > 0.0) {
     bent.bent = true;
     for (const Eigen::Index axis : {0, 1, 3, 4, 5}) bent.tau[axis] *= 1.0 - tilted;
@@ -63,7 +64,7 @@ Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double 
   Eigen::Vector3d force_W = R_WB * asked_for.head<3>();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (const double side : {-1.0, 1.0}) {
-      const double room = side > 0.0 ? settings_.high[i] - state.p_WB[i] : state.p_WB[i] - settings_.low[i];
+      const double room = (side > 0.0 ? settings_.high[i] - state.p_WB[i] : state.p_WB[i] - settings_.low[i]) - lean[i];
       const double speed = side * v_W[i];
       const double u = urgency(room, speed, settings_.braking, settings_.band);
       if (u <= 0.0) continue;

@@ -18,6 +18,7 @@ struct FenceSettings {
   double band{0.25};          ///< m over which excitation is bent
   double braking{0.8};        ///< m/s^2 that the thrusters can surely give against the motion
   double turning{1.0};        ///< rad/s^2, likewise
+  double half_length{0.0};    ///< m, of the hull's longer side: what a tilted one reaches up and down
   double turns{1.5};          ///< of the tether to either side
   double largest_speed{1.5};  ///< m/s
   double largest_rate{3.0};   ///< rad/s

@@ -4,6 +4,7 @@
 
 #include "common/base/config.hpp"
 #include "common/excitation/supervisor.hpp"
+#include "common/model/expected_inertia.hpp"
 #include "common/model/parameters.hpp"
 #include "common/model/site.hpp"
 #include "common/model/wide_prior.hpp"
@@ -19,6 +20,15 @@ int axis_of(const std::string& mode) {
   return mode == "total" ? -1 : 6;
 }
 
+// A stated deceleration, or what the largest thrust on these axes gives the expected inertia, with something to spare.
+double surely(double stated, const Vector6d& largest, const Vector6d& inertia, Eigen::Index first, Eigen::Index end) {
+  constexpr double kSpare = 0.85;
+  for (Eigen::Index i = first; i < end; ++i) {
+    if (largest[i] > 0.0 && inertia[i] > 0.0) stated = std::min(stated, kSpare * largest[i] / inertia[i]);
+  }
+  return stated;
+}
+
 FenceSettings fence_from(const Config& config, const model::Vehicle& vehicle, const model::Site& site) {
   FenceSettings f;
   f.hard = config.positive("clearance", "m");
@@ -32,6 +42,7 @@ FenceSettings fence_from(const Config& config, const model::Vehicle& vehicle, co
   // The vehicle may point anywhere: a circle around its hull, and its height.
   const double across = 0.5 * vehicle.hull.head<2>().norm() + f.hard;
   const double up = 0.5 * vehicle.hull.z() + f.hard;
+  f.half_length = 0.5 * vehicle.hull.head<2>().maxCoeff();
   f.low = {site.south + across, site.west + across, site.surface + up};
   f.high = {site.north - across, site.east - across, site.floor - up};
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -57,11 +68,22 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
     const double value = largest.not_negative(axis, i < 3 ? "N" : "N m");
     if (vehicle.dof[i]) s.largest[static_cast<Eigen::Index>(i)] = value;
   }
+  // P* is for the paper's vehicle: that of a heavier one has larger parameters, and larger noise of the forces.
+  const Vector6d heavier = model::inertia_beside_lbv150(vehicle);
   const Config thresholds = config.section("thresholds");
+  double paper = 0.0, here = 0.0;
+  for (const std::string& mode : thresholds.keys()) {
+    const int axis = axis_of(mode);
+    if (axis < 0 || axis > 5) continue;
+    const double share = thresholds.positive(mode, "");
+    paper += share;
+    here += share * heavier[axis] * heavier[axis];
+  }
   for (const std::string& mode : s.optimal ? std::vector<std::string>{"total"} : config.texts("schedule")) {
     const int axis = axis_of(mode);
     if (axis > 5) config.fail("schedule", "no mode '" + mode + "'; known: surge, sway, heave, roll, pitch, yaw, total");
-    s.schedule.push_back({.name = mode, .axis = axis, .threshold = thresholds.positive(mode, "")});
+    const double larger = axis < 0 ? (paper > 0.0 ? here / paper : 1.0) : heavier[axis] * heavier[axis];
+    s.schedule.push_back({.name = mode, .axis = axis, .threshold = larger * thresholds.positive(mode, "")});
   }
   if (s.optimal) (void)config.texts("schedule");
   for (const std::string& mode : thresholds.keys()) (void)thresholds.positive(mode, "");
@@ -84,12 +106,15 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   s.needs = config.texts("needs");
   if (config.has("silence")) s.silence = config.positive("silence", "s");
   s.fence = fence_from(config.section("fence"), vehicle, site);
+  const Vector6d expected = model::expected_inertia(vehicle);
+  s.fence.braking = surely(s.fence.braking, s.largest, expected, 0, 3);
+  s.fence.turning = surely(s.fence.turning, s.largest, expected, 5, 6);
   const Config hold = config.section("hold");
   s.hold.bandwidth = hold.positive("bandwidth", "rad/s");
   s.hold.damping = hold.positive("damping", "");
   s.hold.trim_time = hold.positive("trim_time", "s");
-  s.hold.mass = vehicle.mass > 0.0 ? 1.2 * vehicle.mass : model::wide_prior(model::BaseParameter::m_X, vehicle).mean;
-  s.hold.inertia = model::wide_prior(model::BaseParameter::I_Z, vehicle).mean;
+  s.hold.mass = std::max(1.2 * vehicle.mass, expected.head<3>().mean());
+  s.hold.inertia = vehicle.mass > 0.0 ? model::wide_prior(model::BaseParameter::I_Z, vehicle).mean : expected[5];
   const Config leaving = config.section("leaving");
   s.leaving.largest_ratio = leaving.positive("largest_ratio", "");
   s.leaving.largest_mean = leaving.positive("largest_mean", "");
@@ -104,6 +129,7 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   s.design.rows_per_second = design.positive("rows_per_second", "Hz");
   s.design.noise << Eigen::Vector3d::Constant(design.positive("noise_force", "N")),
       Eigen::Vector3d::Constant(design.positive("noise_moment", "N m"));
+  s.design.noise.head<3>() = s.design.noise.head<3>().cwiseProduct(heavier.head<3>());
   return s;
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/model/effect_size.hpp"
+#include "common/model/expected_inertia.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -36,6 +37,8 @@ IntegralSettings integral_settings(const IdentifierSettings& settings, const mod
   s.max_gap = settings.max_gap;
   s.dof = vehicle.dof;
   s.sigma << Eigen::Vector3d::Constant(settings.noise_force), Eigen::Vector3d::Constant(settings.noise_moment);
+  const Vector6d mass = model::expected_inertia(vehicle);
+  for (Eigen::Index i = 0; i < 3; ++i) s.sigma[i] = std::hypot(s.sigma[i], settings.noise_acceleration * mass[i]);
   s.parameters = columns_of(vehicle);
   return s;
 }
@@ -43,6 +46,7 @@ IntegralSettings integral_settings(const IdentifierSettings& settings, const mod
 RecursiveSettings recursive_settings(const IdentifierSettings& settings, const model::Vehicle& vehicle) {
   const std::vector<model::BaseParameter> columns = columns_of(vehicle);
   const auto n = static_cast<Eigen::Index>(columns.size());
+  const Vector6d heavier = model::inertia_beside_lbv150(vehicle);
   RecursiveSettings s;
   s.mean.resize(n);
   s.sigma.resize(n);
@@ -55,7 +59,7 @@ RecursiveSettings recursive_settings(const IdentifierSettings& settings, const m
     }
     if (settings.from_zero) {
       s.mean(static_cast<Eigen::Index>(i)) = 0.0;
-      s.sigma(static_cast<Eigen::Index>(i)) = settings.zero_sigma;
+      s.sigma(static_cast<Eigen::Index>(i)) = settings.zero_sigma * heavier[model::axis(columns[i])];
     }
     s.signs[i] = static_cast<std::int8_t>(model::sign_constraint(columns[i]));
     if (settings.buoyant && columns[i] == model::BaseParameter::W_B) s.signs[i] = -1;
@@ -195,6 +199,7 @@ void Identifier::use(const EffectSample& sample) {
 
 ModelEstimate Identifier::model() const {
   RecursiveReport report = estimator_.report();
+  compensate(report);
   add_systematic(report);
   ModelEstimate estimate;
   estimate.utime = model_utime_;

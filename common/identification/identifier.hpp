@@ -29,21 +29,23 @@ class Config;
 namespace fathom::identification {
 
 struct IdentifierSettings {
-  double window{2.0};            ///< s, of the integral regressor
-  double stride{0.5};            ///< s between updates
-  double max_gap{0.35};          ///< s between states beyond which the window starts over
-  double memory{0.0};            ///< s that an update stays in memory; 0: for ever
-  double noise_force{0.5};       ///< N, sigma of a window's average
-  double noise_moment{0.1};      ///< N m
-  bool interpolate_input{true};  ///< false: a command holds until the next
-  double max_input_gap{0.5};     ///< s; a state between inputs further apart is not used
-  double max_skew{0.5};          ///< s by which one channel may lag the other without changing the result
-  bool buoyant{false};           ///< W-B is known to be negative
-  bool from_zero{false};         ///< begins with all parameters zero and one sigma, as the paper does
-  double zero_sigma{10.0};       ///< of every parameter in its own unit (the paper's P_0 = sigma^2 I)
+  double window{2.0};              ///< s, of the integral regressor
+  double stride{0.5};              ///< s between updates
+  double max_gap{0.35};            ///< s between states beyond which the window starts over
+  double memory{0.0};              ///< s that an update stays in memory; 0: for ever
+  double noise_force{0.5};         ///< N, sigma of a window's average
+  double noise_acceleration{0.0};  ///< m/s^2 likewise, of STATE's: times the expected mass it is a force
+  double noise_moment{0.1};        ///< N m
+  bool interpolate_input{true};    ///< false: a command holds until the next
+  double max_input_gap{0.5};       ///< s; a state between inputs further apart is not used
+  double max_skew{0.5};            ///< s by which one channel may lag the other without changing the result
+  bool buoyant{false};             ///< W-B is known to be negative
+  bool from_zero{false};           ///< begins with all parameters zero and one sigma, as the paper does
+  double zero_sigma{10.0};       ///< of every parameter in its own unit (the paper's P_0 = sigma^2 I), for its vehicle
   double residual_memory{30.0};  ///< s over which MODEL's residual statistics look back
   double velocity_scale{0.0};   ///< share by which u v w may be off in proportion: no residual shows it, intervals must
   double velocity_offset{0.0};  ///< m/s by which each of u v w may be off all the time: drag makes a steady force of it
+  double attitude_offset{0.0};  ///< rad by which roll and pitch may be off all the time: it turns the restoring moment
   double freeze_delay{0.5};     ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
   int adopt_after{0};           ///< rankings in a row that must accept an effect before it is adopted; 0: none ever is
   double adopt_delay{2.0};      ///< s after its stamp that a ranking is judged: more than the diagnoser is late
@@ -51,7 +53,7 @@ struct IdentifierSettings {
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
-  /// velocity_offset, freeze_delay, adopt_after with adopt_delay and keep.
+  /// velocity_offset, attitude_offset, noise_acceleration, freeze_delay, adopt_after with adopt_delay and keep.
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -118,6 +120,7 @@ class Identifier {
   void decide(Utime first);
   void take_effect(const model::Effect& effect, std::istringstream& text);
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
+  void compensate(RecursiveReport& report) const;
   void add_systematic(RecursiveReport& report) const;
   void release();
   void use(const EffectSample& sample);
@@ -137,6 +140,7 @@ class Identifier {
   [[nodiscard]] RecursiveSettings estimator_settings(const model::ActiveEffect* effect) const;
   void add_effect(ModelEstimate& estimate, const RecursiveReport& report) const;
   [[nodiscard]] int column(std::string_view parameter) const;
+  [[nodiscard]] int column(model::BaseParameter parameter) const;
 
   enum class InputKind { kUnknown, kForce, kWrench };
 

@@ -14,9 +14,10 @@ namespace fathom::identification {
 namespace {
 
 constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 2";
+constexpr char kHeader[] = "fathom identifier 3";
 
 void put(std::string& text, double value) {
   std::array<char, 32> number{};
@@ -66,31 +67,9 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
     estimate.residual_ratio[k] = r.square;
     const double variance = std::max(r.square - r.mean * r.mean, 1e-12);
     const double rho = std::clamp((r.product - r.mean * r.mean) / variance, 0.0, kLargestCorrelation);
-    estimate.residual_mean[k] = r.mean / std::sqrt(variance / r.weight * (1.0 + rho) / (1.0 - rho));
+    const double known = variance / r.weight * (1.0 + rho) / (1.0 - rho);
+    estimate.residual_mean[k] = r.mean / std::sqrt(known + kOfNoAccount * kOfNoAccount);
   }
-}
-
-// Velocities that are all off by the same share s explain every force as well with masses and linear drag divided by
-// 1 + s, quadratic drag by its square: a direction in which data say nothing, known beforehand to `velocity_scale`.
-// A heave speed that is off by a constant becomes, through linear drag, a weight: known to `velocity_offset`.
-void Identifier::add_systematic(RecursiveReport& report) const {
-  if (settings_.velocity_scale <= 0.0 && settings_.velocity_offset <= 0.0) return;
-  ParameterVector along = ParameterVector::Zero(report.estimate.size());
-  ParameterVector steady = along;
-  const auto column = [&](model::BaseParameter one) {
-    const auto at = std::ranges::find(parameters_, one);
-    return at == parameters_.end() ? -1 : static_cast<Eigen::Index>(at - parameters_.begin());
-  };
-  const Eigen::Index Z_w = column(model::BaseParameter::Z_w), W_B = column(model::BaseParameter::W_B);
-  if (Z_w >= 0 && W_B >= 0) steady(W_B) = settings_.velocity_offset * report.estimate(Z_w);
-  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(parameters_.size()); ++i) {
-    const model::BaseParameter parameter = parameters_[static_cast<std::size_t>(i)];
-    if (model::axis(parameter) > 2 || model::index(parameter) >= model::index(model::BaseParameter::W_B)) continue;
-    const bool quadratic = model::index(parameter) >= model::index(model::BaseParameter::X_uu);
-    along(i) = settings_.velocity_scale * (quadratic ? 2.0 : 1.0) * report.estimate(i);
-  }
-  report.covariance += along * along.transpose() + steady * steady.transpose();
-  report.sigma = report.covariance.diagonal().cwiseSqrt();
 }
 
 void Identifier::remember(const RowBlock& block) {
@@ -135,6 +114,7 @@ std::string Identifier::save_text() const {
   all(s.U);
   all(s.D);
   all(s.information);
+  all(s.derivatives);
   all(s.score0);
   all(s.score1);
   all(s.last_score);
@@ -185,6 +165,7 @@ void Identifier::decide(Utime first) {
     all(s.U);
     all(s.D);
     all(s.information);
+    all(s.derivatives);
     all(s.score0);
     all(s.score1);
     all(s.last_score);

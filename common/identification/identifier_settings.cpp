@@ -23,6 +23,8 @@ IdentifierSettings IdentifierSettings::from(const Config& config) {
   if (config.has("residual_memory")) s.residual_memory = config.positive("residual_memory", "s");
   if (config.has("velocity_scale")) s.velocity_scale = config.not_negative("velocity_scale", "");
   if (config.has("velocity_offset")) s.velocity_offset = config.not_negative("velocity_offset", "m/s");
+  if (config.has("attitude_offset")) s.attitude_offset = config.not_negative("attitude_offset", "rad");
+  if (config.has("noise_acceleration")) s.noise_acceleration = config.not_negative("noise_acceleration", "m/s^2");
   if (config.has("freeze_delay")) s.freeze_delay = config.not_negative("freeze_delay", "s");
   if (config.has("adopt_after")) {
     s.adopt_after = config.integer("adopt_after");

@@ -136,6 +136,9 @@ RowBlock IntegralRegressor::rows(std::size_t count) {
     for (Eigen::Index i = 0; i < row.h.size(); ++i) {
       row.h(i) = Y(axis, model::index(settings_.parameters[static_cast<std::size_t>(i)]));
     }
+    const auto inertia = std::ranges::find(settings_.parameters, static_cast<model::BaseParameter>(axis));
+    row.derivative =
+        inertia == settings_.parameters.end() ? -1 : static_cast<int>(inertia - settings_.parameters.begin());
     row.y = tau(axis);
     row.variance = settings_.sigma(axis) * settings_.sigma(axis);
   }

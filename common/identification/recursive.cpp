@@ -7,15 +7,10 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/identification/bierman.hpp"
 
 namespace fathom::identification {
 namespace {
-
-// Columns of U are walked in packets of four, so U is kept with its row count rounded up to packets.
-Eigen::Index padded(Eigen::Index n) { return (n + 3) / 4 * 4; }
-using Packet = Eigen::Array4d;
-using ConstPacketMap = Eigen::Map<const Packet>;
-using PacketMap = Eigen::Map<Packet>;
 
 constexpr double kLargestCorrelation = 0.995;  // beyond this the AR(1) factor says more about the sample than the noise
 
@@ -34,6 +29,8 @@ RecursiveEstimator::RecursiveEstimator(RecursiveSettings settings) : settings_(s
     }
     settings_.cap(i) = std::max(settings_.cap(i), settings_.sigma(i));
   }
+  sign_.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) sign_(i) = settings_.signs[static_cast<std::size_t>(i)];
   if (!(settings_.forgetting > 0.0 && settings_.forgetting <= 1.0)) {
     throw InputError("recursive estimator: forgetting must lie in (0, 1]");
   }
@@ -46,8 +43,10 @@ void RecursiveEstimator::reset() {
   state_.estimate = settings_.mean;
   state_.U = ParameterMatrix::Zero(padded(n), n);
   state_.U.diagonal().setOnes();
-  state_.D = settings_.sigma.cwiseAbs2();
+  state_.D = ParameterVector::Zero(padded(n));
+  state_.D.head(n) = settings_.sigma.cwiseAbs2();
   state_.information = ParameterVector::Zero(n);
+  state_.derivatives = ParameterVector::Zero(n);
   state_.score0 = ParameterVector::Zero(n);
   state_.score1 = ParameterVector::Zero(n);
   state_.last_score = ParameterVector::Zero(n);
@@ -96,52 +95,16 @@ void RecursiveEstimator::forget() {
   state_.steps_until_check = std::max(0.0, steps);
 }
 
-// One scalar row: Bierman's update of U and D with the gain built alongside; then, for frozen parameters, Schmidt's
+// One scalar row; then, for frozen parameters, Schmidt's
 // gain: they are not moved, and what the optimal update took from their variance is given back.
 void RecursiveEstimator::take(const Row& row) {
-  using Lane = std::array<double, kMaxParameters>;
   const Eigen::Index n = state_.estimate.size();
-  const Eigen::Index stride = state_.U.rows();
-  alignas(32) Lane h;
-  alignas(32) Lane f;
-  alignas(32) Lane g;
-  alignas(32) Lane lambda;
-  alignas(32) Lane gain;
+  alignas(32) std::array<double, kMaxParameters> h, gain;
   std::copy_n(row.h.data(), n, h.data());
-  std::fill(h.begin() + n, h.begin() + stride, 0.0);
+  std::fill(h.begin() + n, h.begin() + state_.U.rows(), 0.0);
   const double innovation = row.y - row.h.dot(state_.estimate);
-
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double* column = state_.U.data() + j * stride;
-    Packet sum = Packet::Zero();
-    for (Eigen::Index i = 0; i <= j; i += 4) sum += ConstPacketMap(column + i) * ConstPacketMap(h.data() + i);
-    f[static_cast<std::size_t>(j)] = sum.sum();
-  }
-  double alpha = row.variance;
   const double per_variance = 1.0 / row.variance;
-  double per_alpha = per_variance;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    const double before = alpha;
-    g[k] = state_.D(j) * f[k];
-    lambda[k] = -f[k] * per_alpha;
-    alpha += f[k] * g[k];
-    per_alpha = 1.0 / alpha;
-    state_.D(j) *= before * per_alpha;
-  }
-  // Bierman's inner loop with the two loops swapped, so that a packet of the gain stays in registers. Nothing special
-  // is needed at the diagonal: the gain of parameter i is zero until column i, whose unit entry starts it.
-  for (Eigen::Index i = 0; i < n; i += 4) {
-    Packet K = Packet::Zero();
-    double* entry = state_.U.data() + i * stride + i;
-    for (Eigen::Index j = i; j < n; ++j, entry += stride) {
-      PacketMap U(entry);
-      const Packet beta = U;
-      U = beta + lambda[static_cast<std::size_t>(j)] * K;
-      K += g[static_cast<std::size_t>(j)] * beta;
-    }
-    PacketMap(gain.data() + i) = K;
-  }
+  const double per_alpha = bierman_update(state_.U.data(), state_.D.data(), h.data(), n, row.variance, gain.data());
 
   const double step = innovation * per_alpha;
   if (!any_frozen_) {
@@ -196,8 +159,13 @@ void RecursiveEstimator::step(std::span<const Row> rows) {
   forget();
   const double keep = settings_.forgetting;
   state_.information *= keep;
+  state_.derivatives *= keep;
   score_.setZero();
-  for (const Row& row : rows) take(row);
+  for (const Row& row : rows) {
+    take(row);
+    if (row.derivative >= 0 && !state_.frozen[static_cast<std::size_t>(row.derivative)])
+      state_.derivatives(row.derivative) += 1.0 / row.variance;
+  }
   state_.score0 = keep * state_.score0 + score_.cwiseAbs2();
   state_.score1 = keep * state_.score1 + score_.cwiseProduct(state_.last_score);
   state_.last_score = score_;
@@ -215,50 +183,34 @@ ParameterMatrix RecursiveEstimator::covariance() const {
   return P;
 }
 
-// One column of P = U D U'; what lies below U's diagonal is zero, so whole packets may be walked.
-ParameterVector RecursiveEstimator::covariance_column(Eigen::Index j) const {
-  const Eigen::Index n = state_.estimate.size();
-  const Eigen::Index stride = state_.U.rows();
-  alignas(32) std::array<double, kMaxParameters> share;
-  for (Eigen::Index k = j; k < n; ++k) share[static_cast<std::size_t>(k)] = state_.D(k) * state_.U(j, k);
-  alignas(32) std::array<double, kMaxParameters> column;
-  for (Eigen::Index i = 0; i < n; i += 4) {
-    Packet sum = Packet::Zero();
-    for (Eigen::Index k = std::max(i, j); k < n; ++k) {
-      sum += share[static_cast<std::size_t>(k)] * ConstPacketMap(state_.U.data() + k * stride + i);
-    }
-    PacketMap(column.data() + i) = sum;
-  }
-  return Eigen::Map<const Eigen::VectorXd>(column.data(), n);
-}
-
 // A few violated signs are the usual case. The point nearest to the estimate where all of them are zero needs their
 // columns of P alone; when it obeys the others, and every one of them pushes the right way, it is the solution.
 ParameterVector RecursiveEstimator::projected() const {
-  if (obeys(state_.estimate, settings_.signs)) return state_.estimate;
   constexpr Eigen::Index kFew = 4;
   const Eigen::Index n = state_.estimate.size();
-  const auto sign = [&](Eigen::Index i) { return static_cast<double>(settings_.signs[static_cast<std::size_t>(i)]); };
   std::array<Eigen::Index, kFew> held{};
-  std::array<ParameterVector, kFew> columns;
+  alignas(32) std::array<std::array<double, kMaxParameters>, kFew> columns;
   Eigen::Index count = 0, ready = 0;
   ParameterVector x = state_.estimate;
+  if ((x.array() * sign_.array()).minCoeff() >= 0.0) return x;
   while (true) {
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (x(i) * sign(i) >= 0.0) continue;
+      if (x(i) * sign_(i) >= 0.0) continue;
       if (count == kFew) return project_on_signs(state_.estimate, covariance(), settings_.signs);
       held[static_cast<std::size_t>(count++)] = i;
     }
     if (count == ready) return x;
     for (; ready < count; ++ready) {
-      columns[static_cast<std::size_t>(ready)] = covariance_column(held[static_cast<std::size_t>(ready)]);
+      covariance_column(state_.U.data(), state_.D.data(), n, held[static_cast<std::size_t>(ready)],
+                        columns[static_cast<std::size_t>(ready)].data());
     }
     // The multipliers solve A l = -x_held with A the held block of P: symmetric and positive, so no pivots.
     std::array<std::array<double, kFew>, kFew> A;
     std::array<double, kFew> l;
     for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
       l[r] = -state_.estimate(held[r]);
-      for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c) A[r][c] = columns[c](held[r]);
+      for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c)
+        A[r][c] = columns[c][static_cast<std::size_t>(held[r])];
     }
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       for (std::size_t r = k + 1; r < static_cast<std::size_t>(count); ++r) {
@@ -270,10 +222,11 @@ ParameterVector RecursiveEstimator::projected() const {
     for (std::size_t k = static_cast<std::size_t>(count); k-- > 0;) {
       for (std::size_t c = k + 1; c < static_cast<std::size_t>(count); ++c) l[k] -= A[k][c] * l[c];
       l[k] /= A[k][k];
-      if (!(l[k] * sign(held[k]) >= 0.0)) return project_on_signs(state_.estimate, covariance(), settings_.signs);
+      if (!(l[k] * sign_(held[k]) >= 0.0)) return project_on_signs(state_.estimate, covariance(), settings_.signs);
     }
     x = state_.estimate;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) x += l[k] * columns[k];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+      x += l[k] * Eigen::Map<const Eigen::VectorXd, Eigen::Aligned32>(columns[k].data(), n);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) x(held[k]) = 0.0;
   }
 }
@@ -315,11 +268,12 @@ RecursiveReport RecursiveEstimator::report() const {
 
 void RecursiveEstimator::restore(const State& state) {
   const Eigen::Index n = settings_.mean.size();
-  const bool fits = state.estimate.size() == n && state.D.size() == n && state.U.rows() == padded(n) &&
-                    state.U.cols() == n && state.information.size() == n && state.score0.size() == n &&
-                    state.score1.size() == n && state.last_score.size() == n;
+  const bool fits = state.estimate.size() == n && state.D.size() == padded(n) && state.U.rows() == padded(n) &&
+                    state.U.cols() == n && state.information.size() == n && state.derivatives.size() == n &&
+                    state.score0.size() == n && state.score1.size() == n && state.last_score.size() == n;
   if (!fits) throw InputError("recursive estimator: saved state is of another number of parameters");
-  if (!state.estimate.allFinite() || !state.U.allFinite() || !state.D.allFinite() || !(state.D.minCoeff() > 0.0)) {
+  if (!state.estimate.allFinite() || !state.U.allFinite() || !state.D.allFinite() ||
+      !(state.D.head(n).minCoeff() > 0.0)) {
     throw InputError("recursive estimator: saved state is not finite or its covariance is not positive");
   }
   state_ = state;

@@ -43,12 +43,13 @@ class RecursiveEstimator {
   /// Everything that step() changes: copy it to save, hand it back to resume.
   struct State {
     ParameterVector estimate;  ///< unconstrained
-    ParameterMatrix U;         ///< unit upper triangular
+    ParameterMatrix U;         ///< unit upper triangular; rows, and D, rounded up to packets by zeros
     ParameterVector D;
     std::array<bool, kMaxParameters> frozen{};
     std::int64_t updates{};  ///< rows used
     std::array<AxisStatistics, 6> axes{};
     ParameterVector information;  ///< sum of h^2 / variance
+    ParameterVector derivatives;  ///< sum of 1 / variance over the rows that taught it as their derivative
     ParameterVector score0;       ///< sum of the squared score, score = sum over rows of h * residual / variance
     ParameterVector score1;       ///< sum of score times the score before
     ParameterVector last_score;
@@ -82,11 +83,11 @@ class RecursiveEstimator {
   void forget();
   void take(const Row& row);
   void add_outer(double factor, ParameterVector& v);
-  [[nodiscard]] ParameterVector covariance_column(Eigen::Index j) const;
   [[nodiscard]] ParameterVector inflation() const;
 
   RecursiveSettings settings_;
   State state_;
+  ParameterVector sign_;  // of the settings, 0 where free
   bool any_frozen_{};
   ParameterVector score_;
 };

@@ -17,10 +17,11 @@ using ParameterMatrix =
 
 /// One scalar equation.
 struct Row {
-  int axis{};         ///< 0..5 = X Y Z K M N
-  ParameterVector h;  ///< regressor
-  double y{};         ///< N or N m
-  double variance{};  ///< of y
+  int axis{};          ///< 0..5 = X Y Z K M N
+  ParameterVector h;   ///< regressor
+  double y{};          ///< N or N m
+  double variance{};   ///< of y
+  int derivative{-1};  ///< entry of h that is the axis's acceleration, the noisiest one; -1: none
 };
 
 /// The equations of one instant, at most one per axis.

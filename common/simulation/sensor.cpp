@@ -16,13 +16,17 @@ Timing::Timing(const Config& config, const std::string& name, std::uint64_t seed
     : rate_{config.positive("rate", "Hz")},
       latency_{utime_after(0, config.not_negative("latency", "s"))},
       stream_{seed, name + ".timing"} {
+  if (config.has("phase")) {
+    phase_ = config.not_negative("phase", "s");
+    if (phase_ * rate_ >= 1.0) config.fail("phase", "'phase' is below one period of 'rate'");
+  }
   if (!config.has("drop_out")) return;
   drop_out_ = probability(config, "drop_out");
   drop_out_length_ = config.positive("drop_out_length", "s");
 }
 
 Utime Timing::taken(Utime start, std::int64_t count) const {
-  return utime_after(start, static_cast<double>(count) / rate_);
+  return utime_after(start, phase_ + static_cast<double>(count) / rate_);
 }
 
 bool Timing::works(Utime utime) {

@@ -39,9 +39,9 @@ struct Moment {
   Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};  ///< m
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
   Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
-  Vector6d nu{Vector6d::Zero()};                      ///< m/s, rad/s
-  Vector6d nu_dot{Vector6d::Zero()};                  ///< m/s^2, rad/s^2, in B
-  Vector6d nu_seen{Vector6d::Zero()};                 ///< nu as hidden sensor faults show it to gyro, velocity log and optical flow
+  Vector6d nu{Vector6d::Zero()};       ///< m/s, rad/s
+  Vector6d nu_dot{Vector6d::Zero()};   ///< m/s^2, rad/s^2, in B
+  Vector6d nu_seen{Vector6d::Zero()};  ///< nu as hidden sensor faults show it to gyro, velocity log and optical flow
   Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};      ///< m/s, the water in W
   model::ActuatorForces felt{};                       ///< N, of each thruster, as it reaches the water
   Vector6d tau_felt{Vector6d::Zero()};                ///< N, N m
@@ -50,13 +50,27 @@ struct Moment {
   double voltage{};  ///< V; 0 when the vehicle has no battery in the simulation
 };
 
-/// What an instrument is built from. `latest` is the newest AHRS sample that was taken: drivers remove lever arms with
-/// it, unless instruments are `raw`: then a driver will do so, and each speaks for its own place.
+/// What AHRS tells at any instant, as drivers and vision know it: between its samples, with the errors of the newest.
+struct AhrsTold {
+  Ahrs newest{};
+  Eigen::Vector3d rate_error{Eigen::Vector3d::Zero()};                ///< rad/s, in B
+  Eigen::Quaterniond attitude_error{Eigen::Quaterniond::Identity()};  ///< told = true * error
+  [[nodiscard]] Eigen::Vector3d w_WB_B(const Moment& moment) const { return moment.nu.tail<3>() + rate_error; }
+  [[nodiscard]] Eigen::Quaterniond q_WB(const Moment& moment) const { return moment.q_WB * attitude_error; }
+  void hear(const Ahrs& sample, const Moment& moment) {
+    newest = sample;
+    rate_error = sample.w_WB_B - moment.nu.tail<3>();
+    attitude_error = moment.q_WB.conjugate() * sample.q_WB;
+  }
+};
+
+/// What an instrument is built from. Drivers remove lever arms with what `ahrs` tells, unless instruments are `raw`:
+/// then a driver will do so, and each speaks for its own place.
 struct Surroundings {
   const model::Vehicle* vehicle{};
   const model::Site* site{};
   std::uint64_t seed{};
-  const Ahrs* latest{};
+  const AhrsTold* ahrs{};
   bool raw{false};
 };
 
@@ -69,7 +83,7 @@ class Sensor {
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> drawn() const { return {}; }
 };
 
-/// Rate, latency, drop-outs.
+/// Rate, phase, latency, drop-outs.
 class Timing {
  public:
   Timing(const Config& config, const std::string& name, std::uint64_t seed);
@@ -81,6 +95,7 @@ class Timing {
 
  private:
   double rate_{};
+  double phase_{};  ///< s after the run's start of the first one
   Utime latency_{};
   double drop_out_{};         ///< chance per measurement that a drop-out begins
   double drop_out_length_{};  ///< s, mean; exponentially distributed

@@ -103,8 +103,8 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
     if (!sensors.has(kind.name)) continue;
     const Config one = sensors.section(kind.name);
     const Timing timing{one, kind.name, setup.seed};
-    auto sensor = kind.make(
-        one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .latest = &latest_, .raw = setup.raw});
+    auto sensor =
+        kind.make(one, {.vehicle = &vehicle_, .site = &site_, .seed = setup.seed, .ahrs = &ahrs_, .raw = setup.raw});
     using Pictures = SensorKind::Pictures;
     const bool replaced = kind.pictures == (setup.pictures ? Pictures::kWithout : Pictures::kWith);
     if (!carried_at(one, site_) || replaced) sensor.reset();
@@ -181,7 +181,7 @@ void Simulator::take(Slot& slot, Utime until) {
     taken_.clear();
     slot.sensor->measure(moment, taken_);
     for (const Sample& sample : taken_) {
-      if (const auto* ahrs = std::get_if<Ahrs>(&sample)) latest_ = *ahrs;
+      if (const auto* ahrs = std::get_if<Ahrs>(&sample)) ahrs_.hear(*ahrs, moment);
       if (const auto* battery = std::get_if<Battery>(&sample)) told_voltage_ = battery->voltage;
     }
     const Utime due = utime + slot.timing.latency() + (failures_.empty() ? 0 : spoil(slot, utime));

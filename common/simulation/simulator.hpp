@@ -93,8 +93,8 @@ class Simulator {
   model::ThrusterAllocation allocation_;
   std::unique_ptr<Body> body_;
   std::unique_ptr<Faults> faults_;  ///< hidden effects that alter what sensors say
-  Ahrs latest_{};                   ///< newest AHRS sample taken
-  double told_voltage_{};           ///< V, newest BATTERY sample taken
+  AhrsTold ahrs_{};
+  double told_voltage_{};  ///< V, newest BATTERY sample taken
   Utime truth_period_{}, next_truth_{};
   std::vector<Slot> slots_;
   std::vector<Pending> pending_;

@@ -73,6 +73,7 @@ void Stage::hear(const Operator& order) {
     return;
   }
   gate_.hear(order, simulator_.now());
+  if (order.abort) schedule_.resize(next_order_);  // nobody's schedule arms again what an operator has stopped
 }
 
 void Stage::hear(const fathom_lcm::lockstep_ack_t& ack) {
@@ -228,6 +229,7 @@ void Stage::give_orders() {
     process_.publish(wire::kOperator, wire::encode(order));
     said_.emplace_back(wire::kOperator);
     process_.log_info("operator: " + (order.abort ? std::string{"abort"} : order.order));
+    if (order.abort) schedule_.resize(next_order_);
   }
 }
 

@@ -8,6 +8,7 @@
     test/bench/live.py agreement 1..30             effects drawn: does `fathom diagnose` say of the log what was said live?
 """
 import argparse
+import contextlib
 import json
 import os
 import random
@@ -35,6 +36,13 @@ def result(folder):
         return json.load(file)
 
 
+def folder_of(options, seed):
+    """A folder for one trial: of --keep when that is given, else one that is gone afterwards."""
+    if options.keep:
+        return contextlib.nullcontext(os.path.join(options.keep, str(seed)))
+    return tempfile.TemporaryDirectory()
+
+
 def seeds_of(text):
     first, last = text.split("..")
     return range(int(first), int(last) + 1)
@@ -42,10 +50,10 @@ def seeds_of(text):
 
 def seeds(options):
     ended, covered, within, all_named, settled, adopted, contacts = [], 0, {}, 0, 0, {}, 0
-    errors = {}
+    errors, missed = {}, {}
     rms, normalised, wall, sure = [], [], [], 0.0
     for seed in seeds_of(options.what):
-        with tempfile.TemporaryDirectory() as folder:
+        with folder_of(options, seed) as folder:
             begun = time.time()
             hide = [word for effect in options.hide for word in ("--hide", effect)]
             ran = trial(options, folder, seed, *hide)
@@ -59,7 +67,10 @@ def seeds(options):
         covered += sum(one["inside_interval"] for one in p.values())
         all_named += len(p)
         for name, one in p.items():
-            errors.setdefault(name, []).append(100.0 * one["relative_error"])
+            if not one["inside_interval"]:
+                missed[name] = missed.get(name, 0) + 1
+            if one["relative_error"] is not None:  # none where the truth is zero
+                errors.setdefault(name, []).append(100.0 * one["relative_error"])
         settled += r["settled"]
         contacts += sum(truth["contacts"].values())
         ended.append(r["seconds"])
@@ -70,11 +81,12 @@ def seeds(options):
         worst = max(abs(errors[name][-1]) for name in WELL if name in errors)
         print(f"seed {seed}: {r['phase']}, {'' if r['settled'] else 'not '}settled after {r['seconds']:.0f} s; "
               f"{sum(one['inside_interval'] for one in p.values())} of {len(p)} intervals hold; "
-              f"worst of the ten well revealed {worst:.2f} %; adopted {r['adopted_effects']}", flush=True)
+              f"worst of the well revealed {worst:.2f} %; adopted {r['adopted_effects']}"
+              f"{'' if r['settled'] else '; ' + r['reason']}", flush=True)
     n = len(ended)
     print(f"\n{n} seeds: settled {settled}, ended after {statistics.mean(ended):.0f} s on average (longest "
           f"{max(ended):.0f}), contacts {contacts}, wall clock {statistics.mean(wall):.1f} s each")
-    print(f"95 % intervals that hold the truth: {covered} of {all_named} ({100.0 * covered / all_named:.1f} %)")
+    print(f"95 % intervals that hold the truth: {covered} of {all_named} ({100.0 * covered / all_named:.1f} %); missed {missed}")
     print(f"in the model at the end: {adopted}")
     print(f"{'':8s} {'mean error':>10s} {'rms':>8s} {'largest':>8s}   within 5 %")
     for name, values in errors.items():
@@ -239,6 +251,7 @@ def main():
     parser.add_argument("--hide", action="append", default=[])
     parser.add_argument("--limit", type=float, default=1500)
     parser.add_argument("--seconds", type=float, default=None)
+    parser.add_argument("--keep", help="folder to keep the trials of `seeds` in, one for each seed")
     parser.add_argument("--bin", default=os.path.join(ROOT, "build/release/bin"))
     options = parser.parse_args()
     options.bin = os.path.abspath(options.bin)

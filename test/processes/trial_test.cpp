@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "common/base/event_log.hpp"
 #include "common/wire/log_reader.hpp"
@@ -78,7 +79,11 @@ TEST_CASE(
   CHECK(modes[1] == "surge");
   CHECK(live.model.back().modes.size() == 5);
   CHECK(live.excitation.back().frozen.size() >= 3);
-  CHECK(live.model.back().frozen == live.excitation.back().frozen);
+  // What was wished half a second before (freeze_delay) is obeyed.
+  const Utime wished = utime_after(live.model.back().utime, -0.5);
+  const auto behind = std::ranges::upper_bound(live.excitation, wished, {}, &Excitation::utime);
+  REQUIRE(behind != live.excitation.begin());
+  CHECK(live.model.back().frozen == std::prev(behind)->frozen);
   for (const Thrusters& t : live.thrusters) {
     if (seconds(t.utime) < 1.0) CHECK(std::all_of(t.tau.begin(), t.tau.end(), [](double x) { return x == 0.0; }));
   }
@@ -97,7 +102,8 @@ TEST_CASE(
 TEST_CASE("trial: an abort stops the thrusters at once and for good") {
   if (!private_network()) return;
   const Scratch scratch;
-  const auto ran = trial(scratch, "run.lcmlog", "--duration 15 --seed 4 --order 1=identify --order 8=abort");
+  const auto ran =
+      trial(scratch, "run.lcmlog", "--duration 15 --seed 4 --order 1=identify --order 8=abort --order 10=identify");
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   const Recording live = wire::read_log(scratch.path("run.lcmlog")).recording;
   bool pushed = false;

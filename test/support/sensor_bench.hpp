@@ -46,7 +46,7 @@ inline const model::Vehicle& lbv() {
 struct Bench {
   model::Vehicle vehicle;
   model::Site site;
-  Ahrs latest{};
+  simulation::AhrsTold told{};
   std::unique_ptr<simulation::Sensor> sensor;
   std::vector<simulation::Sample> samples;
 
@@ -55,16 +55,17 @@ struct Bench {
       : vehicle{lbv()}, site{site_of_file(place)} {
     if (change) change(vehicle);
     const Config config = Config::parse("rate: 100 Hz\nlatency: 0 s\n" + text, "bench.yaml");
-    sensor = make(config, {.vehicle = &vehicle, .site = &site, .seed = seed, .latest = &latest});
+    sensor = make(config, {.vehicle = &vehicle, .site = &site, .seed = seed, .ahrs = &told});
   }
   /// Attitude and rates as a perfect AHRS tells them, then the measurement.
   const std::vector<simulation::Sample>& measure(const simulation::Moment& moment) {
-    latest = {.utime = moment.utime,
-              .w_WB_B = moment.nu.tail<3>(),
-              .q_WB = moment.q_WB,
-              .has_rates = true,
-              .has_specific_force = true,
-              .has_attitude = true};
+    told.hear({.utime = moment.utime,
+               .w_WB_B = moment.nu.tail<3>(),
+               .q_WB = moment.q_WB,
+               .has_rates = true,
+               .has_specific_force = true,
+               .has_attitude = true},
+              moment);
     samples.clear();
     sensor->measure(moment, samples);
     return samples;

@@ -13,7 +13,7 @@ class DepthSensor final : public Sensor {
  public:
   DepthSensor(const Config& config, const Surroundings& around)
       : p_BP_{around.vehicle->mounts.depth->p_BS},
-        latest_{around.latest},
+        ahrs_{around.ahrs},
         raw_{around.raw},
         noise_{config.not_negative("noise", "m")},
         resolution_{config.not_negative("resolution", "m")},
@@ -24,7 +24,7 @@ class DepthSensor final : public Sensor {
   void measure(const Moment& moment, std::vector<Sample>& samples) override {
     double z = moment.p_WB.z() + (moment.R_WB * p_BP_).z() + offset_ + noise_ * stream_.normal();
     if (resolution_ > 0.0) z = resolution_ * std::round(z / resolution_);
-    if (!raw_) z -= latest_->has_attitude ? (latest_->q_WB * p_BP_).z() : p_BP_.z();
+    if (!raw_) z -= ahrs_->newest.has_attitude ? (ahrs_->q_WB(moment) * p_BP_).z() : p_BP_.z();
     samples.emplace_back(Depth{.utime = moment.utime, .z = z});
   }
 
@@ -32,7 +32,7 @@ class DepthSensor final : public Sensor {
 
  private:
   Eigen::Vector3d p_BP_;
-  const Ahrs* latest_;
+  const AhrsTold* ahrs_;
   bool raw_;
   double noise_, resolution_;
   RandomStream stream_;

@@ -21,7 +21,7 @@ class DvlSensor final : public Sensor {
   DvlSensor(const Config& config, const Surroundings& around)
       : mount_{around.vehicle->mounts.dvl->mount},
         site_{around.site},
-        latest_{around.latest},
+        ahrs_{around.ahrs},
         raw_{around.raw},
         noise_{config.not_negative("beam_noise", "m/s")},
         loss_{probability(config, "beam_loss")},
@@ -60,12 +60,13 @@ class DvlSensor final : public Sensor {
     }
     Dvl sample{.utime = moment.utime, .valid = false};
     const bool arm = !raw_ && !mount_.p_BS.isZero();
-    const bool rates = arm && latest_->has_rates && std::abs(seconds_between(latest_->utime, moment.utime)) <= kFresh;
+    const bool rates =
+        arm && ahrs_->newest.has_rates && std::abs(seconds_between(ahrs_->newest.utime, moment.utime)) <= kFresh;
     if (good >= 3 && (rates || !arm)) {
       const Eigen::Matrix3d normal = rows.transpose() * rows;
       const Eigen::Vector3d v = normal.ldlt().solve(rows.transpose() * along);
       sample.v_WB_B = mount_.R_BS * v;
-      if (arm) sample.v_WB_B -= latest_->w_WB_B.cross(mount_.p_BS);
+      if (arm) sample.v_WB_B -= ahrs_->w_WB_B(moment).cross(mount_.p_BS);
       sample.altitude = altitude / good;
       sample.valid = true;
     }
@@ -79,7 +80,7 @@ class DvlSensor final : public Sensor {
  private:
   model::Mount mount_;
   const model::Site* site_;
-  const Ahrs* latest_;
+  const AhrsTold* ahrs_;
   bool raw_;
   double noise_, loss_, nearest_, farthest_;
   RandomStream stream_;

@@ -21,7 +21,7 @@ class OpticalFlowSensor final : public Sensor {
   OpticalFlowSensor(const Config& config, const Surroundings& around)
       : camera_{around.vehicle->mounts.cameras.front()},
         site_{around.site},
-        latest_{around.latest},
+        ahrs_{around.ahrs},
         period_{1.0 / config.positive("rate", "Hz")},
         noise_{config.not_negative("noise", "")},
         nearest_{config.not_negative("nearest", "m")},
@@ -43,8 +43,8 @@ class OpticalFlowSensor final : public Sensor {
       const Eigen::Vector3d v_C = R_CB * (moment.nu_seen.head<3>() + w.cross(camera_.mount.p_BS));
       now = Picture{moment.utime, -v_C.head<2>() / distance};
       // What is left of the rotation where rates are known with an error: flow of a turning camera, x' = -w x ray.
-      if (latest_->has_rates) {
-        const Eigen::Vector3d wrong = R_CB * (latest_->w_WB_B - w);
+      if (ahrs_->newest.has_rates) {
+        const Eigen::Vector3d wrong = R_CB * ahrs_->rate_error;
         now->flow += Eigen::Vector2d{wrong.y(), -wrong.x()};
       }
     }
@@ -68,7 +68,7 @@ class OpticalFlowSensor final : public Sensor {
 
   model::CameraMount camera_;
   const model::Site* site_;
-  const Ahrs* latest_;
+  const AhrsTold* ahrs_;
   double period_, noise_, nearest_, farthest_, outlier_;
   RandomStream stream_;
   std::optional<Picture> before_;

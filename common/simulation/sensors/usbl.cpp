@@ -15,7 +15,7 @@ class UsblSensor final : public Sensor {
   UsblSensor(const Config& config, const Surroundings& around)
       : p_BS_{around.vehicle->mounts.usbl->p_BS},
         p_WR_{around.site->transceiver.value_or(Eigen::Vector3d::Zero())},
-        latest_{around.latest},
+        ahrs_{around.ahrs},
         raw_{around.raw},
         range_noise_{config.not_negative("range_noise", "m")},
         bearing_noise_{config.not_negative("bearing_noise", "rad")},
@@ -36,14 +36,14 @@ class UsblSensor final : public Sensor {
     const Eigen::Vector3d astray{stream_.uniform(-1.0, 1.0), stream_.uniform(-1.0, 1.0), stream_.uniform(-1.0, 1.0)};
     const Eigen::Vector3d to = moment.p_WB + moment.R_WB * p_BS_ - p_WR_;
     const double range = to.norm();
-    if (range > farthest_ || (!raw_ && !latest_->has_attitude)) return;
+    if (range > farthest_ || (!raw_ && !ahrs_->newest.has_attitude)) return;
     const double azimuth = std::atan2(to.y(), to.x()) + azimuth_error;
     const double elevation = std::asin(range > 0.0 ? to.z() / range : 1.0) + elevation_error;
     const Eigen::Vector3d seen{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                std::sin(elevation)};
     Usbl sample{.utime = moment.utime, .valid = true};
     sample.p_WB = p_WR_ + (range + range_error) * seen;
-    if (!raw_) sample.p_WB -= latest_->q_WB * p_BS_;
+    if (!raw_) sample.p_WB -= ahrs_->q_WB(moment) * p_BS_;
     if (wild) sample.p_WB += outlier_size_ * astray;
     const double across = range * bearing_noise_;
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -59,7 +59,7 @@ class UsblSensor final : public Sensor {
 
  private:
   Eigen::Vector3d p_BS_, p_WR_;
-  const Ahrs* latest_;
+  const AhrsTold* ahrs_;
   bool raw_;
   double range_noise_, bearing_noise_, outlier_, outlier_size_, farthest_;
   RandomStream stream_;

@@ -145,6 +145,21 @@ TEST_CASE("lever arm: a port behind and below the origin, level and bow up") {
   CHECK(bow_up.z == doctest::Approx(5.0 - 0.5 - 0.2 * 0.8660254).epsilon(1e-6));  // the stern hangs half a metre lower
 }
 
+TEST_CASE("lever arm: between two samples of AHRS the rates and the attitude are between theirs") {
+  LeverArm arm{{0.5, 0.0, 0.0}};
+  const auto turned = [](double heading) { return Eigen::Quaterniond{rotation_from_euler({0.0, 0.0, heading})}; };
+  // Heard late, and in the wrong order.
+  arm.hear(Ahrs{
+      .utime = kStart + 10'000, .w_WB_B = {0, 0, 0.4}, .q_WB = turned(0.2), .has_rates = true, .has_attitude = true});
+  arm.hear(Ahrs{.utime = kStart, .w_WB_B = {0, 0, 0.2}, .q_WB = turned(0.0), .has_rates = true, .has_attitude = true});
+  Dvl sample{.utime = kStart + 2'500, .v_WB_B = {1.0, 0.125, 0.0}};
+  arm.remove(sample);
+  CHECK(sample.v_WB_B.isApprox(Eigen::Vector3d{1.0, 0.0, 0.0}));  // 0.25 rad/s times 0.5 m
+  Usbl fix{.utime = kStart + 5'000, .p_WB = {0.5 * std::cos(0.1), 0.5 * std::sin(0.1), 3.0}, .valid = true};
+  arm.remove(fix);
+  CHECK((fix.p_WB - Eigen::Vector3d{0.0, 0.0, 3.0}).norm() < 1e-9);
+}
+
 TEST_CASE("lever arm: of many samples the one at the measurement's own time counts, however late it comes") {
   LeverArm arm{{0.0, 0.0, -1.0}};  // a transponder above the origin
   for (int k = 0; k <= 200; ++k) {

@@ -59,6 +59,47 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("fence: a tilted hull reaches farther up, and is kept farther from the surface") {
+  FenceSettings settings = tank();
+  const Eigen::Vector3d p{0.0, 0.0, 0.62};  // 7 cm inside the band of a level hull
+  StateEstimate state = at(p);
+  state.q_WB = Eigen::Quaterniond{rotation_from_euler({0.0, 0.35, 0.0})};
+  const Eigen::Vector3d up_B = state.q_WB.conjugate() * Eigen::Vector3d{0.0, 0.0, -5.0};
+  Vector6d tau = Vector6d::Zero();
+  tau.head<3>() = up_B;
+  const auto up = [&](const Fence& fence) {
+    return -(state.q_WB * fence.bend(tau, state, 0.0, 11.0, 0.2, largest()).tau.head<3>()).z();
+  };
+  const double level = up(Fence{settings});
+  settings.half_length = 0.25;  // its bow is 8.6 cm above where a level one's is
+  CHECK(up(Fence{settings}) < level - 0.2);
+  // Level, nothing changes.
+  const StateEstimate upright = at(p);
+  CHECK(Fence{settings}.bend(tau, upright, 0.0, 11.0, 0.2, largest()).tau ==
+        Fence{tank()}.bend(tau, upright, 0.0, 11.0, 0.2, largest()).tau);
+}
+
+TEST_CASE("supervisor settings: a heavier vehicle brakes as its thrust allows, and P* grows with its mass squared") {
+  const std::string root = FATHOM_SOURCE_DIR;
+  const model::Site site = model::Site::load(root + "/config/sites/tank.yaml");
+  const Config pipeline = Config::load(root + "/config/pipelines/tank.yaml");
+  const auto of = [&](const std::string& name) {
+    return SupervisorSettings::from(pipeline.section("supervisor"), test::vehicle_from_repository(name), site);
+  };
+  const SupervisorSettings paper = of("seabotix_lbv150"), heavy = of("bluerov2");
+  CHECK(paper.fence.braking == doctest::Approx(0.85 * 10.0 / 10.898));  // just below the 0.8 that is stated
+  CHECK(heavy.fence.braking == doctest::Approx(0.85 * 10.0 / 26.1));
+  REQUIRE(paper.schedule.size() == 5);
+  const std::array printed{0.08, 0.25, 0.25, 0.5, 0.3};  // yaw, surge, sway, heave, total
+  for (std::size_t i = 0; i < 5; ++i) CHECK(paper.schedule[i].threshold == doctest::Approx(printed[i]));
+  const double X = 17.0 / 9.7532, Y = 24.2 / 8.6636, Z = 26.1 / 10.898;
+  CHECK(heavy.schedule[0].threshold == doctest::Approx(0.08));
+  CHECK(heavy.schedule[1].threshold == doctest::Approx(0.25 * X * X));
+  CHECK(heavy.schedule[3].threshold == doctest::Approx(0.5 * Z * Z));
+  CHECK(heavy.schedule[4].threshold ==
+        doctest::Approx(0.3 * (0.08 + 0.25 * X * X + 0.25 * Y * Y + 0.5 * Z * Z) / 1.08));
+}
+
 TEST_CASE("fence: the tether is not wound up beyond its turns") {
   const Fence fence{tank()};
   StateEstimate state = at({0.0, 0.0, 0.75});

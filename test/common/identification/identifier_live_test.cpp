@@ -244,6 +244,60 @@ TEST_CASE("identifier: a heave speed that is off all the time becomes a weight, 
   for (std::size_t i = 0; i < 12; ++i) CHECK(b.model().parameters[i].std == a.model().parameters[i].std);
 }
 
+TEST_CASE("identifier: noise of the accelerations draws masses to zero; where it is stated it is given back") {
+  // White noise of 3 cm/s at 20 Hz: by the regressor's own account 44 sigma^2 dt / T^3, 4.5 cm/s^2 in a window of 1 s.
+  Streams noisy = streams(300.0);
+  std::mt19937 engine{11};
+  std::normal_distribution<double> normal{0.0, 0.03};
+  for (StateEstimate& state : noisy.states) {
+    for (const int k : {0, 1, 2}) state.nu(k) += normal(engine);
+  }
+  auto blind = settings();
+  blind.noise_force = 0.01;  // all of the residual is the acceleration's
+  auto knowing = blind;
+  knowing.noise_acceleration = 0.06;
+  model::Vehicle sized = vehicle();
+  for (std::size_t i = 0; i < 4; ++i) sized.priors[i].mean = test::kTable[i];
+  Identifier a{blind, sized}, b{knowing, sized};
+  feed(a, noisy, 0.0, 1e9);
+  feed(b, noisy, 0.0, 1e9);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double truth = test::kTable[i];
+    const double drawn = truth - a.model().parameters[i].value, left = truth - b.model().parameters[i].value;
+    CAPTURE(i);
+    CAPTURE(drawn);
+    CAPTURE(left);
+    CHECK(drawn > 0.007 * truth);
+    CHECK(std::abs(left) < 0.3 * drawn);
+    CHECK(std::abs(left) < 2.5 * b.model().parameters[i].std);
+  }
+  // Only as much as the residual shows: without the noise the statement alone changes next to nothing.
+  Identifier c{knowing, sized};
+  feed(c, streams(300.0), 0.0, 1e9);
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(c.model().parameters[i].value == doctest::Approx(test::kTable[i]).epsilon(0.005));
+}
+
+TEST_CASE("identifier: settings for the paper's vehicle grow with the mass that is expected") {
+  auto s = settings();
+  s.noise_acceleration = 0.1;
+  s.noise_force = 0.3;
+  model::Vehicle heavy = vehicle();
+  for (std::size_t i = 0; i < 3; ++i) heavy.priors[i].mean = 4.0 * test::kTable[i];
+  const ModelEstimate light = Identifier{s, vehicle()}.model(), start = Identifier{s, heavy}.model();
+  CHECK(metric(start, "surge").sum == doctest::Approx(16.0 * metric(light, "surge").sum));
+  CHECK(metric(start, "yaw").sum == doctest::Approx(metric(light, "yaw").sum));
+  // A window's noise on X: 0.3 N and 0.1 m/s^2 times 39 kg; the other axes, with other masses, hardly matter to it.
+  Identifier identifier{s, heavy};
+  feed(identifier, streams(60.0), 0.0, 1e9);
+  auto alone = s;
+  alone.noise_acceleration = 0.0;
+  alone.noise_force = std::hypot(0.3, 0.1 * 4.0 * test::kTable[0]);
+  Identifier same{alone, heavy};
+  feed(same, streams(60.0), 0.0, 1e9);
+  CHECK(metric(identifier.model(), "surge").sum == doctest::Approx(metric(same.model(), "surge").sum).epsilon(0.01));
+}
+
 TEST_CASE("identifier: a held input is right to the half step, wherever between the states it jumps") {
   // 100 Hz states, a force that jumps at or behind state times and holds: trapezoids would be half a step off.
   for (const double behind : {0.0, 0.0002, 0.003, 0.0098}) {

@@ -85,6 +85,38 @@ TEST_CASE("optical flow: a hidden scale of the velocity reaches it") {
   CHECK(std::abs(std::get<OpticalFlow>(bench.measure(moment).front()).flow_C.y() - 0.8 * 0.3 / 0.63) < kExact);
 }
 
+TEST_CASE("optical flow: the rotation taken out is that of the picture, whatever the age of the newest rates") {
+  Bench bench{make_optical_flow, "noise: 0\nnearest: 0.1 m\nfarthest: 3 m\noutlier: 0\n", "tank"};
+  const auto turning = [](double q, Utime after) {
+    Vector6d nu = Vector6d::Zero();
+    nu[0] = 0.3;
+    nu[4] = q;
+    Moment moment = moment_at({0, 0, 0.75}, Eigen::Vector3d::Zero(), nu);
+    moment.utime += after;
+    return moment;
+  };
+  const auto flow_with = [&](double gyro_error) {
+    const auto tell = [&](const Moment& moment) {
+      bench.told.hear({.utime = moment.utime,
+                       .w_WB_B = moment.nu.tail<3>() + Eigen::Vector3d{0.0, gyro_error, 0.0},
+                       .q_WB = moment.q_WB,
+                       .has_rates = true},
+                      moment);
+    };
+    bench.samples.clear();
+    tell(turning(0.1, -9'000));  // 9 ms ago it turned otherwise
+    bench.sensor->measure(turning(0.4, 0), bench.samples);
+    tell(turning(0.4, 1'000));
+    bench.sensor->measure(turning(0.4, 10'000), bench.samples);
+    return std::get<OpticalFlow>(bench.samples.back()).flow_C;
+  };
+  // Forward over the floor, and the camera's arm of 0.12 m below turns with it.
+  const Eigen::Vector2d right = flow_with(0.0);
+  CHECK(std::abs(right.y() - (0.3 + 0.4 * 0.12) / 0.63) < kExact);
+  CHECK(std::abs(right.x()) < kExact);
+  CHECK(std::abs((flow_with(0.02) - right).norm() - 0.02) < kExact);  // the gyro's own error does remain
+}
+
 TEST_CASE("laser: the dot on the floor, tilted or not; triangulation's error grows with the square") {
   Bench bench{make_laser_range, "dot_noise: 0\nscale_error: 0\nfarthest: 3 m\noutlier: 0\n", "tank"};
   const auto level = std::get<LaserRange>(bench.measure(moment_at({0, 0, 0.75})).front());
