@@ -96,6 +96,7 @@ class Folder final : public Source {
       const std::string problem = vision::decode_jpeg(bytes, true, grey, bgr);
       if (problem.empty()) {
         frame.picture = bgr.empty() ? grey : bgr;
+        frame.halved_colour = vision::halves_colour(bytes);
         frame.jpeg = std::move(bytes);
       } else {
         frame.problem = path.string() + ": " + problem;
@@ -146,6 +147,7 @@ class Video final : public Source {
     frame.time = live_ ? std::chrono::duration<double>(now - first_).count() : static_cast<double>(count_) / rate_;
     ++count_;
     frame.picture = plain(picture).clone();
+    frame.halved_colour = true;  // videos have 4:2:0, cameras 4:2:2 or 4:2:0; OpenCV does not say
     return frame;
   }
   [[nodiscard]] double rate() const override { return rate_; }

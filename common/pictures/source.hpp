@@ -14,6 +14,7 @@ struct Frame {
   std::string name;                ///< the file's, or six digits of a video's count
   double time{};                   ///< s since the first picture
   cv::Mat picture;                 ///< 8 bit, grey or colour in OpenCV's order; empty when `problem` says why
+  bool halved_colour{false};       ///< colour has half the resolution of brightness
   std::string problem;             ///< one line; empty when all is well
   std::vector<std::uint8_t> jpeg;  ///< the file's own bytes, where it is a JPEG
 };

@@ -117,7 +117,8 @@ class CameraDriver {
         .camera = settings_.camera,
         .width = frame.picture.cols,
         .height = frame.picture.rows};
-    sample.jpeg = frame.jpeg.empty() ? vision::encode_jpeg(frame.picture, settings_.quality) : std::move(frame.jpeg);
+    sample.jpeg = frame.jpeg.empty() ? vision::encode_jpeg(frame.picture, settings_.quality, frame.halved_colour)
+                                     : std::move(frame.jpeg);
     process_.publish(wire::kCamera, wire::encode(sample));
   }
 

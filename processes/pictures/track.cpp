@@ -132,6 +132,7 @@ void run(const Options& options) {
       continue;
     }
     vision::Picture picture{.utime = utime_after(0, frame->time), .grey = in_grey(frame->picture)};
+    picture.halved_colour = frame->halved_colour;
     if (frame->picture.channels() == 3) picture.bgr = frame->picture;
     const vision::Sight& sight = front_end.step(picture, std::nullopt);
     if (sight.picture == vision::PictureState::kOtherSize && !told_size) {
