@@ -60,6 +60,22 @@ struct LensPrior {
   }
 };
 
+// What is not modelled (a port, a floor that is not flat, a video's coder) is the same in every picture of a sequence,
+// and pulls at a focal length by many of its sigmas where all pictures are taken from one height and tilt: there it
+// trades against the height and hardly shows. So a given one is left only for something that explains clearly more.
+constexpr double kBelieved = 2.0;  // sigmas
+constexpr double kWeak = 0.02;     // sigma as a share of the focal length: a lens that was calibrated is known better
+constexpr double kEarned = 1.1;    // what is left with the given one, over what is left without
+
+double typical(const Reprojection& error) {
+  std::vector<double> left;
+  for (const Residual& each : error.residuals) left.push_back(each.error.norm());
+  if (left.empty()) return 0.0;
+  const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
+  std::nth_element(left.begin(), middle, left.end());
+  return *middle;
+}
+
 Block block(const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
   const Eigen::Vector3d turn = rotation_vector_from_quaternion(Eigen::Quaterniond{R});
   return {turn.x(), turn.y(), turn.z(), p.x(), p.y(), p.z()};
@@ -71,7 +87,9 @@ Eigen::Matrix3d rotation(const Block& b) {
 
 class Adjustment {
  public:
-  Adjustment(const SurveyStart& start, const std::vector<View>& views, const CalibrationSettings& settings)
+  /// `focal_kept`: it is as given.
+  Adjustment(const SurveyStart& start, const std::vector<View>& views, const CalibrationSettings& settings,
+             bool focal_kept)
       : site_{start.site},
         surveyed_{start.surveyed},
         lens_{*site_.lens},
@@ -81,6 +99,7 @@ class Adjustment {
     for (const model::Tag& tag : site_.tags) tags_[tag.id] = block(tag.R_WT, tag.p_WT);
     add_corners(views);
     add_priors();
+    if (settings.lens && focal_kept) problem_.SetManifold(f_.data(), new ceres::SubsetManifold(4, {0, 1}));
   }
 
   Calibration solve() {
@@ -196,10 +215,22 @@ Calibration calibrate(const model::Site& site, const std::vector<View>& views, c
   if (!site.lens) throw InputError("calibration begins with a lens: state 'camera' in the site's file");
   const SurveyStart start = start_survey(site, views, settings.size);
   if (start.site.tags.empty()) throw InputError("no tags are known: state 'tags' in the site's file, or --size");
-  Adjustment adjustment{start, views, settings};
-  Calibration result = adjustment.solve();
+  const auto solved = [&](bool focal_kept) {
+    Calibration result = Adjustment{start, views, settings, focal_kept}.solve();
+    result.after = reproject(result.site, views);
+    return result;
+  };
+  Calibration result = solved(false);
+  const double moved = std::abs(result.site.lens->focal() - site.lens->focal());
+  const double sigma = result.lens_sigma[0];
+  if (settings.lens && settings.given && (moved > kBelieved * sigma || sigma > kWeak * site.lens->focal())) {
+    Calibration kept = solved(true);
+    if (typical(kept.after) < kEarned * typical(result.after)) {
+      kept.undetermined_focal = result.site.lens->focal();
+      result = std::move(kept);
+    }
+  }
   result.before = reproject(start.site, views);
-  result.after = reproject(result.site, views);
   return result;
 }
 
