@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -149,6 +150,7 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
     return std::make_unique<Folder>(std::move(files), folder_rate);
   }
   if (kPictures.contains(ending(path))) return std::make_unique<Folder>(std::vector<fs::path>{path}, folder_rate);
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it, in one line
   cv::VideoCapture capture;
   try {
     capture.open(path);

@@ -63,6 +63,7 @@ struct LensPrior {
 // What is not modelled (a port, a floor that is not flat, a video's coder) is the same in every picture of a sequence,
 // and pulls at a focal length by many of its sigmas where all pictures are taken from one height and tilt: there it
 // trades against the height and hardly shows. So a given one is left only for something that explains clearly more.
+constexpr int kLeastViews = 3;     // of a plane: each leaves two equations for the lens's four numbers (Zhang 2000)
 constexpr double kBelieved = 2.0;  // sigmas
 constexpr double kWeak = 0.02;     // sigma as a share of the focal length: a lens that was calibrated is known better
 constexpr double kEarned = 1.1;    // what is left with the given one, over what is left without
@@ -215,6 +216,12 @@ Calibration calibrate(const model::Site& site, const std::vector<View>& views, c
   if (!site.lens) throw InputError("calibration begins with a lens: state 'camera' in the site's file");
   const SurveyStart start = start_survey(site, views, settings.size);
   if (start.site.tags.empty()) throw InputError("no tags are known: state 'tags' in the site's file, or --size");
+  const auto shown = std::count_if(views.begin(), views.end(), [](const View& view) { return !view.tags.empty(); });
+  if (settings.lens && shown < kLeastViews) {
+    throw InputError("a lens is told by " + std::to_string(kLeastViews) +
+                     " pictures of tags at least, tilted and near and far; there " +
+                     (shown == 1 ? "is 1" : "are " + std::to_string(shown)));
+  }
   const auto solved = [&](bool focal_kept) {
     Calibration result = Adjustment{start, views, settings, focal_kept}.solve();
     result.after = reproject(result.site, views);

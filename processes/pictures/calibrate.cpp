@@ -48,9 +48,12 @@ std::vector<vision::View> look(const Options& options, model::Site& site) {
       site.lens->cy = 0.5 * (grey.rows - 1);
     }
     if (grey.cols != site.lens->width || grey.rows != site.lens->height) {
-      throw InputError(frame->name + ": " + std::to_string(grey.cols) + " x " + std::to_string(grey.rows) +
-                       " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
-                       std::to_string(site.lens->height));
+      const std::string problem = frame->name + ": " + std::to_string(grey.cols) + " x " + std::to_string(grey.rows) +
+                                  " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
+                                  std::to_string(site.lens->height);
+      if (views.empty()) throw InputError(problem);
+      std::fprintf(stderr, "fathom: %s; the picture is left out\n", problem.c_str());
+      continue;
     }
     views.push_back({frame->name, detector.step(grey)});
     std::erase_if(views.back().tags, [](const vision::TagSighting& tag) {
@@ -71,6 +74,9 @@ void run(const Options& options) {
   if (!options.families.empty()) site.search.families = options.families;
   if (options.map_sigma > 0.0) site.search.map_sigma = options.map_sigma;  // what may disagree with the map, too
   if (site.name.empty()) site.name = "surveyed";
+  for (const int id : site.doubtful_tags) {
+    std::fprintf(stderr, "fathom: %s: two tags have the number %d; neither is used\n", options.site.c_str(), id);
+  }
   const Mounted camera = mounted(options.vehicle, options.camera);
   if (camera.lens) site.lens = camera.lens;
   const bool site_has_lens = site.lens.has_value();
@@ -129,6 +135,8 @@ void run(const Options& options) {
     if (was != nullptr) std::printf(", moved %.1f mm", 1e3 * (tag.p_WT - was->p_WT).norm());
     std::printf("\n");
   }
+  if (!result.converged)
+    throw InputError("the adjustment did not converge: nothing is written; is the lens to begin with far off?");
   write_site(options.out, result, options.source, options.site);
   if (settings.lens) {
     std::printf("for %s: %s\n",
@@ -163,7 +171,8 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--focal-sigma", options->focal_sigma, "how well it is known, as a share of it (0.1)")
       ->check(CLI::PositiveNumber);
   command->add_option("--every", options->every, "use every n-th picture")->check(CLI::PositiveNumber);
-  command->add_option("--hold-out", options->held_out, "keep every n-th picture back and judge by it");
+  command->add_option("--hold-out", options->held_out, "keep every n-th picture back and judge by it")
+      ->check(CLI::Range(2, 1'000'000));
   command->add_option("--families", options->families, "families of tags in place of the site's");
   command->add_flag("--not-flat", options->not_flat, "the tags do not lie in one plane");
   command->callback([options] { run(*options); });

@@ -124,11 +124,14 @@ void run(const Options& options) {
     vision::Picture picture{.utime = utime_after(0, frame->time), .grey = in_grey(frame->picture)};
     picture.halved_colour = frame->halved_colour;
     if (frame->picture.channels() == 3) picture.bgr = frame->picture;
-    const vision::Sight& sight = front_end.step(picture, std::nullopt);
+    vision::Sight sight = front_end.step(picture, std::nullopt);
     if (sight.picture == vision::PictureState::kOtherSize && !told_size) {
       told_size = true;
       std::fprintf(stderr, "fathom: %s is %d x %d, the calibration is for %d x %d: such pictures give no measurement\n",
                    frame->name.c_str(), picture.grey.cols, picture.grey.rows, lens->width, lens->height);
+    }
+    if (sight.picture != vision::PictureState::kGood) {  // as the process: nothing is told by a picture that stands
+      sight = {.picture = sight.picture, .tags = sight.tags, .flow = {.utime = sight.flow.utime}};
     }
     tables.write(frame->name, frame->time, sight);
     summary.add(sight);
