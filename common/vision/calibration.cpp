@@ -77,6 +77,12 @@ double typical(const Reprojection& error) {
   return *middle;
 }
 
+// Of a tag that the border cuts not all corners can be believed.
+std::vector<TagSighting> whole(std::vector<TagSighting> tags) {
+  std::erase_if(tags, [](const TagSighting& tag) { return std::ranges::find(tag.sound, false) != tag.sound.end(); });
+  return tags;
+}
+
 Block block(const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
   const Eigen::Vector3d turn = rotation_vector_from_quaternion(Eigen::Quaterniond{R});
   return {turn.x(), turn.y(), turn.z(), p.x(), p.y(), p.z()};
@@ -133,7 +139,10 @@ class Adjustment {
 
  private:
   void add_corners(const std::vector<View>& views) {
-    const Reprojection start = reproject(site_, views);
+    // Where new tags were only placed one after the other, what fits is seen after the adjustment.
+    model::Site rough = site_;
+    if (surveyed_.size() < site_.tags.size()) rough.search.map_sigma = std::max(rough.search.map_sigma, settings_.size);
+    const Reprojection start = reproject(rough, views);
     std::set<std::size_t> used;
     for (const Residual& each : start.residuals) used.insert(each.view);
     for (const std::size_t v : used) {
@@ -166,7 +175,6 @@ class Adjustment {
     } else if (!fixed.empty()) {
       problem_.SetManifold(k_.data(), new ceres::SubsetManifold(5, fixed));
     }
-    bool anchored = false;
     for (auto& [id, b] : tags_) {
       if (!problem_.HasParameterBlock(b.data())) continue;
       if (!settings_.map) {
@@ -178,8 +186,7 @@ class Adjustment {
       const double height = surveyed(id) ? std::min(up, settings_.map_sigma) : up;
       const Block sigma{turn, turn, surveyed(id) ? 0.1 : 10.0, across, across, height};
       problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior, 6, 6>(new Prior{b, sigma}), nullptr, b.data());
-      if (!anchored && surveyed_.empty()) problem_.SetParameterBlockConstant(b.data());
-      anchored = true;
+      if (surveyed_.empty() && id == site_.tags.front().id) problem_.SetParameterBlockConstant(b.data());  // the origin
     }
   }
 
@@ -212,9 +219,11 @@ class Adjustment {
 
 }  // namespace
 
-Calibration calibrate(const model::Site& site, const std::vector<View>& views, const CalibrationSettings& settings) {
+Calibration calibrate(const model::Site& site, const std::vector<View>& pictures, const CalibrationSettings& settings) {
+  std::vector<View> views = pictures;
+  for (View& view : views) view.tags = whole(std::move(view.tags));
   if (!site.lens) throw InputError("calibration begins with a lens: state 'camera' in the site's file");
-  const SurveyStart start = start_survey(site, views, settings.size);
+  const SurveyStart start = start_survey(site, views, settings.size, settings.flat);
   if (start.site.tags.empty()) throw InputError("no tags are known: state 'tags' in the site's file, or --size");
   const auto shown = std::count_if(views.begin(), views.end(), [](const View& view) { return !view.tags.empty(); });
   if (settings.lens && shown < kLeastViews) {
@@ -246,7 +255,7 @@ Reprojection reproject(const model::Site& site, const std::vector<View>& views) 
   TagLocator locator{site, site.lens, {}};
   const Projection projection{*site.lens};
   for (std::size_t v = 0; v < views.size(); ++v) {
-    std::vector<TagSighting> tags = views[v].tags;
+    std::vector<TagSighting> tags = whole(views[v].tags);
     locator.reset();
     result.poses.emplace_back();
     const auto fix = locator.step(0, tags, std::nullopt);

@@ -64,7 +64,7 @@ struct Calibration {
 };
 
 /// InputError when there is too little to go by.
-[[nodiscard]] Calibration calibrate(const model::Site& site, const std::vector<View>& views,
+[[nodiscard]] Calibration calibrate(const model::Site& site, const std::vector<View>& pictures,
                                     const CalibrationSettings& settings);
 
 /// With lens and map of `site` as they are.

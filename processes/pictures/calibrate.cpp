@@ -56,9 +56,6 @@ std::vector<vision::View> look(const Options& options, model::Site& site) {
       continue;
     }
     views.push_back({frame->name, detector.step(grey)});
-    std::erase_if(views.back().tags, [](const vision::TagSighting& tag) {
-      return std::ranges::find(tag.sound, false) != tag.sound.end();
-    });
   }
   return views;
 }
@@ -102,7 +99,8 @@ void run(const Options& options) {
               result.converged ? "converged" : ("not converged: " + result.message).c_str());
   int seen = 0;
   for (const vision::View& view : views) {
-    for (const vision::TagSighting& tag : view.tags) seen += site.tag(tag.id) != nullptr ? 4 : 0;
+    for (const vision::TagSighting& tag : view.tags)
+      seen += site.tag(tag.id) != nullptr && std::ranges::find(tag.sound, false) == tag.sound.end() ? 4 : 0;
   }
   if (result.n_corners < seen * 4 / 5) {
     std::printf(
@@ -110,10 +108,11 @@ void run(const Options& options) {
         "than --map-sigma?\n",
         seen, seen - result.n_corners);
   }
-  print("before", result.before);
+  if (!result.before.per_view.empty()) print("before", result.before);
   print("after", result.after);
   if (!held.empty()) {
-    print("held out, before", vision::reproject(site, held));
+    const vision::Reprojection before = vision::reproject(site, held);
+    if (!before.per_view.empty()) print("held out, before", before);
     print("held out, after", vision::reproject(result.site, held));
   }
   const model::Lens& lens = *result.site.lens;

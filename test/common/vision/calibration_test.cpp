@@ -76,7 +76,10 @@ TEST_CASE("calibration: a survey from nothing but the size finds where the tags 
   blank.lens = lens();
   blank.search = truth.search;
   const Calibration found = calibrate(blank, views, {.lens = false, .size = 0.15});
+  CHECK(found.converged);
   REQUIRE(found.site.tags.size() >= 20);
+  CHECK(found.site.tags.front().p_WT.norm() == 0.0);  // the origin stays where it is, and level
+  CHECK(found.site.tags.front().R_WT.isApprox(Eigen::Matrix3d::Identity()));
   for (const model::Tag& a : found.site.tags) {
     for (const model::Tag& b : found.site.tags) {
       const double wanted = (truth.tag(a.id)->p_WT - truth.tag(b.id)->p_WT).norm();
