@@ -13,7 +13,6 @@
 #include <filesystem>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
-#include <utility>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -70,8 +69,8 @@ double seconds(auto time) { return std::chrono::duration<double>(time.time_since
 
 class V4l2Camera final : public Camera {
  public:
-  V4l2Camera(const CameraSettings& settings, cv::VideoCapture capture)
-      : device_{settings.device}, streams_{std::move(capture)} {
+  V4l2Camera(const CameraSettings& settings, const cv::VideoCapture& capture)
+      : device_{settings.device}, streams_{capture} {
     using cv::VideoWriter;
     const auto& f = settings.format;
     // The format first: it decides which sizes there are.
@@ -178,7 +177,7 @@ std::unique_ptr<Camera> open_camera(const CameraSettings& settings) {
     throw InputError(settings.device + ": busy, or a camera that OpenCV cannot read; who has it: fuser -v " +
                      settings.device);
   }
-  return std::make_unique<V4l2Camera>(settings, std::move(capture));
+  return std::make_unique<V4l2Camera>(settings, capture);
 }
 
 }  // namespace fathom::pictures
