@@ -1,16 +1,8 @@
 #include "common/pictures/source.hpp"
 
-#include <fcntl.h>
-#include <linux/videodev2.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -64,19 +56,6 @@ bool before(const std::string& a, const std::string& b) {
   return a.size() - i < b.size() - k || (a.size() - i == b.size() - k && a < b);
 }
 
-// 8 bit, one or three channels.
-cv::Mat plain(const cv::Mat& picture) {
-  cv::Mat result = picture;
-  if (picture.depth() == CV_16U) {
-    picture.convertTo(result, CV_8U, 1.0 / 257.0);
-  } else if (picture.depth() != CV_8U) {
-    cv::normalize(picture, result, 0.0, 255.0, cv::NORM_MINMAX, CV_8U);
-  }
-  if (result.channels() == 4) cv::cvtColor(result, result, cv::COLOR_BGRA2BGR);
-  if (result.channels() == 2) cv::extractChannel(result, result, 0);
-  return result;
-}
-
 class Folder final : public Source {
  public:
   Folder(std::vector<fs::path> files, double rate) : files_{std::move(files)}, rate_{rate} {}
@@ -96,6 +75,7 @@ class Folder final : public Source {
       const std::string problem = vision::decode_jpeg(bytes, true, grey, bgr);
       if (problem.empty()) {
         frame.picture = bgr.empty() ? grey : bgr;
+        frame.halved_colour = vision::halves_colour(bytes);
         frame.jpeg = std::move(bytes);
       } else {
         frame.problem = path.string() + ": " + problem;
@@ -124,40 +104,32 @@ class Folder final : public Source {
 
 class Video final : public Source {
  public:
-  Video(const cv::VideoCapture& capture, std::string name, double rate, bool live)
-      : capture_{capture}, name_{std::move(name)}, rate_{rate}, live_{live} {}
+  Video(const cv::VideoCapture& capture, std::string name, double rate)
+      : capture_{capture}, name_{std::move(name)}, rate_{rate} {}
 
   std::optional<Frame> next() override {
     Frame frame;
     cv::Mat picture;
     if (!capture_.read(picture) || picture.empty()) {
-      if (count_ == 0) {
-        throw InputError(
-            name_ + ": no picture comes out of it; " +
-            (live_ ? "who else has this camera: fuser -v " + name_ : "is it a video that OpenCV can read?"));
-      }
+      if (count_ == 0) throw InputError(name_ + ": no picture comes out of it; is it a video that OpenCV can read?");
       return {};
     }
     char text[32];
     std::snprintf(text, sizeof text, "%06zu", count_);
     frame.name = text;
-    const auto now = std::chrono::steady_clock::now();
-    if (count_ == 0) first_ = now;
-    frame.time = live_ ? std::chrono::duration<double>(now - first_).count() : static_cast<double>(count_) / rate_;
+    frame.time = static_cast<double>(count_) / rate_;
     ++count_;
     frame.picture = plain(picture).clone();
+    frame.halved_colour = true;  // as videos have it (4:2:0); OpenCV does not say
     return frame;
   }
   [[nodiscard]] double rate() const override { return rate_; }
-  [[nodiscard]] bool live() const override { return live_; }
 
  private:
   cv::VideoCapture capture_;
   std::string name_;
   double rate_;
-  bool live_;
   std::size_t count_{};
-  std::chrono::steady_clock::time_point first_;
 };
 
 }  // namespace
@@ -178,6 +150,7 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
     return std::make_unique<Folder>(std::move(files), folder_rate);
   }
   if (kPictures.contains(ending(path))) return std::make_unique<Folder>(std::vector<fs::path>{path}, folder_rate);
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it, in one line
   cv::VideoCapture capture;
   try {
     capture.open(path);
@@ -187,65 +160,19 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
   if (!capture.isOpened()) throw InputError(path + ": neither a folder of pictures nor a video that OpenCV can read");
   const double stated = capture.get(cv::CAP_PROP_FPS);
   const bool sensible = std::isfinite(stated) && stated > 0.01 && stated < 10000.0;
-  return std::make_unique<Video>(capture, path, rate > 0.0 ? rate : (sensible ? stated : kFolderRate), false);
+  return std::make_unique<Video>(capture, path, rate > 0.0 ? rate : (sensible ? stated : kFolderRate));
 }
 
-namespace {
-
-std::string cameras_here() {
-  std::string names;
-  std::error_code error;
-  for (int i = 0; i < 64; ++i) {
-    const std::string path = "/dev/video" + std::to_string(i);
-    if (fs::exists(path, error)) names += (names.empty() ? "" : ", ") + path;
+cv::Mat plain(const cv::Mat& picture) {
+  cv::Mat result = picture;
+  if (picture.depth() == CV_16U) {
+    picture.convertTo(result, CV_8U, 1.0 / 257.0);
+  } else if (picture.depth() != CV_8U) {
+    cv::normalize(picture, result, 0.0, 255.0, cv::NORM_MINMAX, CV_8U);
   }
-  return names.empty() ? "this host has no /dev/video*; is the camera plugged in?" : "there are " + names;
-}
-
-// OpenCV says only that it failed.
-void need_camera(const std::string& device) {
-  const int opened = ::open(device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  const int why = errno;
-  if (opened < 0) {
-    if (why == ENOENT || why == ENXIO || why == ENODEV)
-      throw InputError(device + ": no such device; " + cameras_here());
-    if (why == EACCES || why == EPERM) {
-      throw InputError(device + ": no permission; cameras belong to the group video: sudo usermod -aG video " +
-                       std::string{"$USER, and log in again"});
-    }
-    if (why == EBUSY) throw InputError(device + ": busy; another program has this camera: fuser -v " + device);
-    throw InputError(device + ": cannot be opened: " + std::strerror(why));
-  }
-  v4l2_capability able{};
-  const bool answered = ioctl(opened, VIDIOC_QUERYCAP, &able) == 0;
-  const std::uint32_t all =
-      answered && (able.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? able.device_caps : able.capabilities;
-  ::close(opened);
-  if (!answered) throw InputError(device + ": no camera (V4L2); a video or a folder is told as 'pictures'");
-  if ((all & V4L2_CAP_VIDEO_CAPTURE) == 0) {
-    throw InputError(device + ": takes no pictures (a camera's other device, or no camera); " + cameras_here());
-  }
-}
-
-}  // namespace
-
-std::unique_ptr<Source> open_camera(const std::string& device, int width, int height, double rate) {
-  need_camera(device);
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it, in one line
-  cv::VideoCapture capture;
-  try {
-    capture.open(device, cv::CAP_V4L2);
-  } catch (const cv::Exception&) {
-    capture.release();
-  }
-  if (!capture.isOpened()) {
-    throw InputError(device + ": busy, or a camera that OpenCV cannot read; who has it: fuser -v " + device);
-  }
-  if (width > 0) capture.set(cv::CAP_PROP_FRAME_WIDTH, width);
-  if (height > 0) capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
-  if (rate > 0.0) capture.set(cv::CAP_PROP_FPS, rate);
-  capture.set(cv::CAP_PROP_BUFFERSIZE, 1);
-  return std::make_unique<Video>(capture, device, rate, true);
+  if (result.channels() == 4) cv::cvtColor(result, result, cv::COLOR_BGRA2BGR);
+  if (result.channels() == 2) cv::extractChannel(result, result, 0);
+  return result;
 }
 
 cv::Mat in_grey(const cv::Mat& picture) {

@@ -1,4 +1,4 @@
-// Pictures from a folder, a video file or a camera of the machine, one after the other.
+// Pictures from a folder or a video file, one after the other.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,8 @@ struct Frame {
   std::string name;                ///< the file's, or six digits of a video's count
   double time{};                   ///< s since the first picture
   cv::Mat picture;                 ///< 8 bit, grey or colour in OpenCV's order; empty when `problem` says why
+  bool halved_colour{false};       ///< colour has half the resolution of brightness
+  std::optional<double> age;       ///< s, since the kernel stamped it; of a camera's pictures alone
   std::string problem;             ///< one line; empty when all is well
   std::vector<std::uint8_t> jpeg;  ///< the file's own bytes, where it is a JPEG
 };
@@ -24,7 +26,6 @@ class Source {
   /// Nothing: the end.
   virtual std::optional<Frame> next() = 0;
   [[nodiscard]] virtual double rate() const = 0;  ///< Hz
-  [[nodiscard]] virtual bool live() const { return false; }
 };
 
 /// Folder (its pictures in the order of their names, numbers by value), single picture, or video. `rate` [Hz]: of a
@@ -32,8 +33,8 @@ class Source {
 /// there is nothing to read.
 [[nodiscard]] std::unique_ptr<Source> open(const std::string& path, double rate);
 
-/// A camera: "/dev/video0". 0: what the camera likes.
-[[nodiscard]] std::unique_ptr<Source> open_camera(const std::string& device, int width, int height, double rate);
+/// 8 bit, one or three channels.
+[[nodiscard]] cv::Mat plain(const cv::Mat& picture);
 
 /// The picture itself when it is grey.
 [[nodiscard]] cv::Mat in_grey(const cv::Mat& picture);

@@ -60,6 +60,29 @@ struct LensPrior {
   }
 };
 
+// What is not modelled (a port, a floor that is not flat, a video's coder) is the same in every picture of a sequence,
+// and pulls at a focal length by many of its sigmas where all pictures are taken from one height and tilt: there it
+// trades against the height and hardly shows. So a given one is left only for something that explains clearly more.
+constexpr int kLeastViews = 3;     // of a plane: each leaves two equations for the lens's four numbers (Zhang 2000)
+constexpr double kBelieved = 2.0;  // sigmas
+constexpr double kWeak = 0.02;     // sigma as a share of the focal length: a lens that was calibrated is known better
+constexpr double kEarned = 1.1;    // what is left with the given one, over what is left without
+
+double typical(const Reprojection& error) {
+  std::vector<double> left;
+  for (const Residual& each : error.residuals) left.push_back(each.error.norm());
+  if (left.empty()) return 0.0;
+  const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
+  std::nth_element(left.begin(), middle, left.end());
+  return *middle;
+}
+
+// Of a tag that the border cuts not all corners can be believed.
+std::vector<TagSighting> whole(std::vector<TagSighting> tags) {
+  std::erase_if(tags, [](const TagSighting& tag) { return std::ranges::find(tag.sound, false) != tag.sound.end(); });
+  return tags;
+}
+
 Block block(const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
   const Eigen::Vector3d turn = rotation_vector_from_quaternion(Eigen::Quaterniond{R});
   return {turn.x(), turn.y(), turn.z(), p.x(), p.y(), p.z()};
@@ -71,7 +94,9 @@ Eigen::Matrix3d rotation(const Block& b) {
 
 class Adjustment {
  public:
-  Adjustment(const SurveyStart& start, const std::vector<View>& views, const CalibrationSettings& settings)
+  /// `focal_kept`: it is as given.
+  Adjustment(const SurveyStart& start, const std::vector<View>& views, const CalibrationSettings& settings,
+             bool focal_kept)
       : site_{start.site},
         surveyed_{start.surveyed},
         lens_{*site_.lens},
@@ -81,6 +106,7 @@ class Adjustment {
     for (const model::Tag& tag : site_.tags) tags_[tag.id] = block(tag.R_WT, tag.p_WT);
     add_corners(views);
     add_priors();
+    if (settings.lens && focal_kept) problem_.SetManifold(f_.data(), new ceres::SubsetManifold(4, {0, 1}));
   }
 
   Calibration solve() {
@@ -113,7 +139,10 @@ class Adjustment {
 
  private:
   void add_corners(const std::vector<View>& views) {
-    const Reprojection start = reproject(site_, views);
+    // Where new tags were only placed one after the other, what fits is seen after the adjustment.
+    model::Site rough = site_;
+    if (surveyed_.size() < site_.tags.size()) rough.search.map_sigma = std::max(rough.search.map_sigma, settings_.size);
+    const Reprojection start = reproject(rough, views);
     std::set<std::size_t> used;
     for (const Residual& each : start.residuals) used.insert(each.view);
     for (const std::size_t v : used) {
@@ -146,7 +175,6 @@ class Adjustment {
     } else if (!fixed.empty()) {
       problem_.SetManifold(k_.data(), new ceres::SubsetManifold(5, fixed));
     }
-    bool anchored = false;
     for (auto& [id, b] : tags_) {
       if (!problem_.HasParameterBlock(b.data())) continue;
       if (!settings_.map) {
@@ -158,8 +186,7 @@ class Adjustment {
       const double height = surveyed(id) ? std::min(up, settings_.map_sigma) : up;
       const Block sigma{turn, turn, surveyed(id) ? 0.1 : 10.0, across, across, height};
       problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior, 6, 6>(new Prior{b, sigma}), nullptr, b.data());
-      if (!anchored && surveyed_.empty()) problem_.SetParameterBlockConstant(b.data());
-      anchored = true;
+      if (surveyed_.empty() && id == site_.tags.front().id) problem_.SetParameterBlockConstant(b.data());  // the origin
     }
   }
 
@@ -192,14 +219,34 @@ class Adjustment {
 
 }  // namespace
 
-Calibration calibrate(const model::Site& site, const std::vector<View>& views, const CalibrationSettings& settings) {
+Calibration calibrate(const model::Site& site, const std::vector<View>& pictures, const CalibrationSettings& settings) {
+  std::vector<View> views = pictures;
+  for (View& view : views) view.tags = whole(std::move(view.tags));
   if (!site.lens) throw InputError("calibration begins with a lens: state 'camera' in the site's file");
-  const SurveyStart start = start_survey(site, views, settings.size);
+  const SurveyStart start = start_survey(site, views, settings.size, settings.flat);
   if (start.site.tags.empty()) throw InputError("no tags are known: state 'tags' in the site's file, or --size");
-  Adjustment adjustment{start, views, settings};
-  Calibration result = adjustment.solve();
+  const auto shown = std::count_if(views.begin(), views.end(), [](const View& view) { return !view.tags.empty(); });
+  if (settings.lens && shown < kLeastViews) {
+    throw InputError("a lens is told by " + std::to_string(kLeastViews) +
+                     " pictures of tags at least, tilted and near and far; there " +
+                     (shown == 1 ? "is 1" : "are " + std::to_string(shown)));
+  }
+  const auto solved = [&](bool focal_kept) {
+    Calibration result = Adjustment{start, views, settings, focal_kept}.solve();
+    result.after = reproject(result.site, views);
+    return result;
+  };
+  Calibration result = solved(false);
+  const double moved = std::abs(result.site.lens->focal() - site.lens->focal());
+  const double sigma = result.lens_sigma[0];
+  if (settings.lens && settings.given && (moved > kBelieved * sigma || sigma > kWeak * site.lens->focal())) {
+    Calibration kept = solved(true);
+    if (typical(kept.after) < kEarned * typical(result.after)) {
+      kept.undetermined_focal = result.site.lens->focal();
+      result = std::move(kept);
+    }
+  }
   result.before = reproject(start.site, views);
-  result.after = reproject(result.site, views);
   return result;
 }
 
@@ -208,7 +255,7 @@ Reprojection reproject(const model::Site& site, const std::vector<View>& views) 
   TagLocator locator{site, site.lens, {}};
   const Projection projection{*site.lens};
   for (std::size_t v = 0; v < views.size(); ++v) {
-    std::vector<TagSighting> tags = views[v].tags;
+    std::vector<TagSighting> tags = whole(views[v].tags);
     locator.reset();
     result.poses.emplace_back();
     const auto fix = locator.step(0, tags, std::nullopt);

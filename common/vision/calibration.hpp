@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,16 @@ struct View {
 };
 
 struct CalibrationSettings {
-  bool lens{true};            ///< adjust focal lengths, centre and distortion
-  int distortion{2};          ///< coefficients that are adjusted: 0, 2 (k1 k2), 4 (all of a fisheye, k1 k2 p1 p2), 5
-  bool map{true};             ///< adjust the tags' places; else they are exact: a board
-  bool flat{true};            ///< tags lie in one plane to within flat_sigma and flat_turn
-  double map_sigma{1e-2};     ///< m, of the places in the map
-  double flat_sigma{3e-3};    ///< m, out of the plane
-  double flat_turn{0.02};     ///< rad, of a tag's tilt against the plane
-  double corner_sigma{0.3};   ///< px
+  bool lens{true};           ///< adjust focal lengths, centre and distortion
+  int distortion{2};         ///< coefficients that are adjusted: 0, 2 (k1 k2), 4 (all of a fisheye, k1 k2 p1 p2), 5
+  bool map{true};            ///< adjust the tags' places; else they are exact: a board
+  bool flat{true};           ///< tags lie in one plane to within flat_sigma and flat_turn
+  double map_sigma{1e-2};    ///< m, of the places in the map
+  double flat_sigma{3e-3};   ///< m, out of the plane
+  double flat_turn{0.02};    ///< rad, of a tag's tilt against the plane
+  double corner_sigma{0.3};  ///< px
+  /// A lens that is given is kept as far as pictures can be explained by it as well; else it is but a beginning.
+  bool given{true};
   double focal_sigma{0.1};    ///< share of the focal length that is given
   double centre_sigma{20.0};  ///< px
   double size{0.0};           ///< m, of tags that are not in the map; 0: such tags are left out
@@ -55,10 +58,13 @@ struct Calibration {
   std::string message;
   int n_views{}, n_corners{};
   std::array<double, 4> lens_sigma{};  ///< px, of fx fy cx cy; 0 where not adjusted
+  /// The focal length that fits as well as the one that was given and kept, for these pictures cannot tell; else
+  /// nothing.
+  std::optional<double> undetermined_focal{};
 };
 
 /// InputError when there is too little to go by.
-[[nodiscard]] Calibration calibrate(const model::Site& site, const std::vector<View>& views,
+[[nodiscard]] Calibration calibrate(const model::Site& site, const std::vector<View>& pictures,
                                     const CalibrationSettings& settings);
 
 /// With lens and map of `site` as they are.

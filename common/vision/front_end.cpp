@@ -46,6 +46,7 @@ FrontEndSettings FrontEndSettings::from(const Config& config) {
     positive(laser, "least_contrast", "", s.laser.least_contrast);
     positive(laser, "largest", "", s.laser.largest);
     positive(laser, "pixel_sigma", "", s.laser.pixel_sigma);
+    positive(laser, "halved_sigma", "", s.laser.halved_sigma);
   }
   return s;
 }
@@ -167,7 +168,9 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   if (!lens_) return sight_;
   std::optional<Eigen::Matrix3d> fixed;
   if (sight_.fix && !sight_.fix->ambiguous) fixed = sight_.fix->pose.R_WC;
-  if (laser_ && !picture.bgr.empty()) sight_.laser = laser_->step(picture.bgr);
+  if (laser_ && !picture.bgr.empty()) {
+    sight_.laser = laser_->step(picture.bgr, picture.grey, picture.halved_colour);
+  }
   if (!down_C && fixed) down_C = fixed->row(2);
   find_range(down_C);
 

@@ -32,6 +32,7 @@ struct FrontEndSettings {
 struct Picture {
   Utime utime{};
   cv::Mat grey, bgr;
+  bool halved_colour{false};  ///< colour came with half the resolution of `grey`
 };
 
 /// Everything that one picture told.

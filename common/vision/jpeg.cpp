@@ -56,7 +56,7 @@ bool decode(std::span<const std::uint8_t> bytes, bool colour, Errors& errors, cv
   jpeg_read_header(&info, TRUE);
   grey_file = info.jpeg_color_space == JCS_GRAYSCALE;
   info.out_color_space = colour && !grey_file ? JCS_EXT_BGR : JCS_GRAYSCALE;
-  info.do_fancy_upsampling = FALSE;
+  info.do_fancy_upsampling = TRUE;  // where colour is halved, blocks of it would move the laser's dot
   info.dct_method = JDCT_IFAST;
   if (static_cast<double>(info.image_width) * info.image_height > kMostPixels) {
     std::snprintf(errors.text.data(), errors.text.size(), "%u x %u pixels are too many", info.image_width,
@@ -96,7 +96,28 @@ std::string decode_jpeg(std::span<const std::uint8_t> bytes, bool colour, cv::Ma
   return {};
 }
 
-std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality) {
+bool halves_colour(std::span<const std::uint8_t> bytes) {
+  Errors errors;
+  jpeg_decompress_struct info{};
+  info.err = listen(errors);
+  if (bytes.empty()) return false;
+  if (setjmp(errors.out) != 0) {  // NOLINT(cert-err52-cpp)
+    jpeg_destroy_decompress(&info);
+    return false;
+  }
+  jpeg_create_decompress(&info);
+  jpeg_mem_src(&info, bytes.data(), bytes.size());
+  jpeg_read_header(&info, TRUE);
+  bool halved = false;
+  for (int i = 1; i < info.num_components; ++i) {
+    halved = halved || info.comp_info[i].h_samp_factor < info.max_h_samp_factor ||
+             info.comp_info[i].v_samp_factor < info.max_v_samp_factor;
+  }
+  jpeg_destroy_decompress(&info);
+  return halved;
+}
+
+std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality, bool halved_colour) {
   Errors errors;
   jpeg_compress_struct info{};
   unsigned char* bytes = nullptr;
@@ -115,9 +136,10 @@ std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality) {
   info.in_color_space = picture.channels() == 3 ? JCS_EXT_BGR : JCS_GRAYSCALE;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, quality, TRUE);
-  // Colour at full resolution: the laser's dot is a few pixels of it, and blocks of 16 pixels would move it by half of
-  // one.
+  // Colour at full resolution where there is any: the laser's dot is a few pixels of it, and blocks of 16 pixels would
+  // move it by half of one.
   for (int i = 0; i < info.num_components; ++i) info.comp_info[i].h_samp_factor = info.comp_info[i].v_samp_factor = 1;
+  if (halved_colour) info.comp_info[0].h_samp_factor = 2;
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
     auto* row = const_cast<JSAMPROW>(picture.ptr(static_cast<int>(info.next_scanline)));

@@ -13,7 +13,12 @@ namespace fathom::vision {
 /// is well, else what is wrong: nothing may be read from the picture then.
 [[nodiscard]] std::string decode_jpeg(std::span<const std::uint8_t> bytes, bool colour, cv::Mat& grey, cv::Mat& bgr);
 
-/// `picture`: grey or colour in OpenCV's order, 8 bit.
-[[nodiscard]] std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality);
+/// Whether colour has less resolution than brightness, as cameras mostly send it (4:2:0, 4:2:2). False for what is no
+/// JPEG.
+[[nodiscard]] bool halves_colour(std::span<const std::uint8_t> bytes);
+
+/// `picture`: grey or colour in OpenCV's order, 8 bit. `halved_colour`: it has no more than that (4:2:2), and the file
+/// says so.
+[[nodiscard]] std::vector<std::uint8_t> encode_jpeg(const cv::Mat& picture, int quality, bool halved_colour = false);
 
 }  // namespace fathom::vision

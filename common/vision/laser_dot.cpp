@@ -5,13 +5,17 @@
 #include <array>
 #include <cmath>
 
+#include "common/vision/bright_spot.hpp"
+
 namespace fathom::vision {
 namespace {
 
 constexpr int kSaturated = 250;
 constexpr double kRival = 0.6;        // share of the strongest from which another spot is a rival
 constexpr double kOutstanding = 8.0;  // spreads of the strip's excess
-constexpr double kRoundest = 3.0;     // ratio of a dot's axes; seen slanting it is an ellipse
+constexpr double kReach = 2.5;        // sigmas of a dot's place by colour that its place by brightness may be off
+constexpr double kAlone = 2.0;     // times the contrast asked for, where colour is blurred and brightness shows no dot
+constexpr double kRoundest = 3.0;  // ratio of a dot's axes; seen slanting it is an ellipse
 
 // How much a pixel is more than daylight: greener than `tint`, the water's share of green, which white paper and dark
 // floor have alike, or brighter than the picture's white. The first shows on a floor; on paper the dot clips, JPEG
@@ -152,6 +156,22 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
   return std::sqrt(large) < 0.5 * settings_.largest && std::sqrt(large / small) < kRoundest;
 }
 
+// Where colour is blurred: the dot's middle by colour and by brightness, each as well as it is known. Two that disagree
+// by more than both say are both known less. Returns the error along the line [px].
+double LaserFinder::sharpen(const cv::Mat& grey, LaserDot& dot) const {
+  const double colour = settings_.halved_sigma;
+  const auto spot = find_bright_spot(grey, dot.pixel, settings_.largest / 4.0, kReach * colour);
+  if (!spot) {
+    if (dot.contrast < kAlone * settings_.least_contrast) dot.state = LaserState::kDark;
+    return colour;
+  }
+  const double bright = std::max(spot->sigma, settings_.pixel_sigma);
+  const double w_colour = 1.0 / (colour * colour), w_bright = 1.0 / (bright * bright);
+  const double chi2 = (spot->pixel - dot.pixel).squaredNorm() / 2.0 / (colour * colour + bright * bright);
+  dot.pixel = (w_colour * dot.pixel + w_bright * spot->pixel) / (w_colour + w_bright);
+  return std::sqrt(std::max(chi2, 1.0) / (w_colour + w_bright));
+}
+
 // Distance along the beam where it comes nearest to the pixel's line of sight.
 double LaserFinder::along_beam(const Eigen::Vector2d& pixel) const {
   const Ray ray = projection_.ray(pixel);
@@ -162,7 +182,7 @@ double LaserFinder::along_beam(const Eigen::Vector2d& pixel) const {
   return (between.dot(mount_.axis_C) - cosine * between.dot(ray.direction)) / bottom;
 }
 
-LaserDot LaserFinder::step(const cv::Mat& bgr) {
+LaserDot LaserFinder::step(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour) {
   LaserDot dot;
   if (bgr.channels() != 3) {
     dot.state = LaserState::kNoColour;
@@ -197,6 +217,9 @@ LaserDot LaserFinder::step(const cv::Mat& bgr) {
     dot.state = LaserState::kNotRound;
     return dot;
   }
+  dot.state = LaserState::kFound;
+  const double pixel_sigma = halved_colour ? sharpen(grey, dot) : settings_.pixel_sigma;
+  if (dot.state != LaserState::kFound) return dot;
   const double s = along_beam(dot.pixel);
   const Eigen::Vector3d p_C = mount_.p_CE + s * mount_.axis_C;
   if (!(s > 0.0) || p_C.z() < settings_.nearest || p_C.z() > settings_.farthest) {
@@ -211,8 +234,7 @@ LaserDot LaserFinder::step(const cv::Mat& bgr) {
   const double step = 1e-3 * s;
   const Eigen::Vector2d moved = projection_.pixel(p_C + step * mount_.axis_C);
   dot.p_CL = p_C;
-  dot.sigma_range = settings_.pixel_sigma * step / std::max((moved - on_line).norm(), 1e-9);
-  dot.state = LaserState::kFound;
+  dot.sigma_range = pixel_sigma * step / std::max((moved - on_line).norm(), 1e-9);
   return dot;
 }
 

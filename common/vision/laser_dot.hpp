@@ -18,6 +18,7 @@ struct LaserSettings {
   double least_contrast{18.0};  ///< above what daylight shows along the beam's line, in brightness
   double largest{9.0};          ///< px, radius of a dot
   double pixel_sigma{0.3};      ///< px, error of its middle along the line
+  double halved_sigma{0.9};     ///< px, the same by its colour alone, where colour has half the picture's resolution
 };
 
 enum class LaserState { kFound, kNoColour, kDark, kTwo, kNotRound, kOffLine, kOutOfRange };
@@ -34,8 +35,10 @@ struct LaserDot {
 class LaserFinder {
  public:
   LaserFinder(const model::Lens& lens, const model::LaserMount& mount, const LaserSettings& settings);
-  /// `bgr`: colours in OpenCV's order; a grey picture has no green.
-  LaserDot step(const cv::Mat& bgr);
+  /// `bgr`: colours in OpenCV's order; a grey picture has no green. `grey`: the same picture's brightness.
+  /// `halved_colour`: the picture came with colour at half resolution; brightness, which has all of it, then says where
+  /// the dot is that colour found.
+  LaserDot step(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour);
   [[nodiscard]] const std::vector<Eigen::Vector2d>& line() const { return line_; }
 
  private:
@@ -46,6 +49,7 @@ class LaserFinder {
   void find_daylight(const cv::Mat& bgr);
   void measure_strip(const cv::Mat& bgr);
   [[nodiscard]] bool refine(const cv::Mat& bgr, LaserDot& dot) const;
+  double sharpen(const cv::Mat& grey, LaserDot& dot) const;
   [[nodiscard]] double along_beam(const Eigen::Vector2d& pixel) const;
 
   Projection projection_;

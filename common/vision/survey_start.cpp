@@ -1,8 +1,11 @@
 #include "common/vision/survey_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 
+#include "common/base/spatial.hpp"
 #include "common/vision/tag_locator.hpp"
 
 namespace fathom::vision {
@@ -30,6 +33,16 @@ std::optional<Pose> place(const Projection& projection, const TagSighting& tag, 
   return best;
 }
 
+// Height of the known tags, where all of them lie level and at one.
+std::optional<double> level_of(const std::vector<model::Tag>& tags) {
+  constexpr double kLevel = 0.9998, kSameHeight = 0.02;  // cosine of a degree; m
+  for (const model::Tag& tag : tags) {
+    if (tag.R_WT(2, 2) < kLevel || std::abs(tag.p_WT.z() - tags.front().p_WT.z()) > kSameHeight) return {};
+  }
+  if (tags.empty()) return {};
+  return tags.front().p_WT.z();
+}
+
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
@@ -37,7 +50,7 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size) {
+SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size, bool flat) {
   SurveyStart start{.site = site, .surveyed = {}};
   for (const model::Tag& tag : site.tags) start.surveyed.push_back(tag.id);
   if (size <= 0.0) return start;
@@ -50,6 +63,7 @@ SurveyStart start_survey(const model::Site& site, const std::vector<View>& views
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
     start.site.tags.push_back({.id = most->first, .size = size});
   }
+  const std::optional<double> level = flat ? level_of(start.site.tags) : std::nullopt;
   // Each round places the tags that were seen together with known ones.
   const Projection projection{*site.lens};
   for (bool more = true; more;) {
@@ -75,6 +89,11 @@ SurveyStart start_survey(const model::Site& site, const std::vector<View>& views
         tag.p_WT[axis] = median(values);
       }
       tag.R_WT = poses[poses.size() / 2].R_WC;
+      // One tag's tilt is known to some degrees only: told by it, its neighbours would hang in the water.
+      if (level) {
+        tag.p_WT.z() = *level;
+        tag.R_WT = rotation_from_euler({0.0, 0.0, std::atan2(tag.R_WT(1, 0), tag.R_WT(0, 0))});
+      }
       start.site.tags.push_back(tag);
       more = true;
     }

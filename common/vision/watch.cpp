@@ -30,6 +30,7 @@ bool Watch::see(const Camera& sample) {
   ++counts_["pictures"];
   const bool colour = front_end_.laser() != nullptr;
   std::string problem = decode_jpeg(sample.jpeg, colour, picture_.grey, picture_.bgr);
+  picture_.halved_colour = colour && halves_colour(sample.jpeg);
   readable_ = problem.empty();
   if (!readable_) {
     ++counts_["corrupt"];

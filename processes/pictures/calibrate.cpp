@@ -12,15 +12,16 @@
 #include "common/vision/calibration.hpp"
 #include "common/vision/calibration_drawing.hpp"
 #include "processes/pictures/commands.hpp"
+#include "processes/pictures/mounted.hpp"
 #include "processes/pictures/site_file.hpp"
 
 namespace fathom::pictures {
 namespace {
 
 struct Options {
-  std::string source, site, out, picture, what{"all"};
+  std::string source, site, out, picture, vehicle, camera, what{"all"};
   int distortion{2}, every{1}, held_out{0};
-  double size{0.0}, map_sigma{0.0}, focal{0.0};
+  double size{0.0}, map_sigma{0.0}, focal{0.0}, focal_sigma{0.1};
   bool not_flat{false};
   std::vector<std::string> families;
 };
@@ -47,14 +48,14 @@ std::vector<vision::View> look(const Options& options, model::Site& site) {
       site.lens->cy = 0.5 * (grey.rows - 1);
     }
     if (grey.cols != site.lens->width || grey.rows != site.lens->height) {
-      throw InputError(frame->name + ": " + std::to_string(grey.cols) + " x " + std::to_string(grey.rows) +
-                       " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
-                       std::to_string(site.lens->height));
+      const std::string problem = frame->name + ": " + std::to_string(grey.cols) + " x " + std::to_string(grey.rows) +
+                                  " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
+                                  std::to_string(site.lens->height);
+      if (views.empty()) throw InputError(problem);
+      std::fprintf(stderr, "fathom: %s; the picture is left out\n", problem.c_str());
+      continue;
     }
     views.push_back({frame->name, detector.step(grey)});
-    std::erase_if(views.back().tags, [](const vision::TagSighting& tag) {
-      return std::ranges::find(tag.sound, false) != tag.sound.end();
-    });
   }
   return views;
 }
@@ -68,7 +69,14 @@ void run(const Options& options) {
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
   if (!options.families.empty()) site.search.families = options.families;
+  if (options.map_sigma > 0.0) site.search.map_sigma = options.map_sigma;  // what may disagree with the map, too
   if (site.name.empty()) site.name = "surveyed";
+  for (const int id : site.doubtful_tags) {
+    std::fprintf(stderr, "fathom: %s: two tags have the number %d; neither is used\n", options.site.c_str(), id);
+  }
+  const Mounted camera = mounted(options.vehicle, options.camera);
+  if (camera.lens) site.lens = camera.lens;
+  const bool site_has_lens = site.lens.has_value();
   std::vector<vision::View> views = look(options, site), held;
   if (options.held_out > 1) {
     std::vector<vision::View> kept;
@@ -82,22 +90,40 @@ void run(const Options& options) {
                                        .distortion = options.distortion,
                                        .map = options.what != "lens",
                                        .flat = !options.not_flat,
-                                       .map_sigma = options.map_sigma > 0.0 ? options.map_sigma : site.search.map_sigma,
+                                       .map_sigma = site.search.map_sigma,
+                                       .given = site_has_lens,
+                                       .focal_sigma = options.focal_sigma,
                                        .size = options.size};
   const vision::Calibration result = vision::calibrate(site, views, settings);
   std::printf("%d pictures, %d corners; %s\n", result.n_views, result.n_corners,
               result.converged ? "converged" : ("not converged: " + result.message).c_str());
-  print("before", result.before);
+  int seen = 0;
+  for (const vision::View& view : views) {
+    for (const vision::TagSighting& tag : view.tags)
+      seen += site.tag(tag.id) != nullptr && std::ranges::find(tag.sound, false) == tag.sound.end() ? 4 : 0;
+  }
+  if (result.n_corners < seen * 4 / 5) {
+    std::printf(
+        "of %d corners of tags in the map %d were left out: they contradict it or each other; is it known no better "
+        "than --map-sigma?\n",
+        seen, seen - result.n_corners);
+  }
+  if (!result.before.per_view.empty()) print("before", result.before);
   print("after", result.after);
   if (!held.empty()) {
-    print("held out, before", vision::reproject(site, held));
+    const vision::Reprojection before = vision::reproject(site, held);
+    if (!before.per_view.empty()) print("held out, before", before);
     print("held out, after", vision::reproject(result.site, held));
   }
   const model::Lens& lens = *result.site.lens;
   std::printf("focal %.2f %.2f px (sigma %.2f %.2f), centre %.2f %.2f px (sigma %.2f %.2f)\n", lens.fx, lens.fy,
               result.lens_sigma[0], result.lens_sigma[1], lens.cx, lens.cy, result.lens_sigma[2], result.lens_sigma[3]);
   const double moved = std::abs(lens.focal() / site.lens->focal() - 1.0);
-  if (settings.lens && (moved > 0.25 || result.lens_sigma[0] > 0.1 * lens.fx)) {
+  if (result.undetermined_focal) {
+    std::printf(
+        "these pictures do not determine the focal length: %.0f px would explain them as well; it stays as given\n",
+        *result.undetermined_focal);
+  } else if (settings.lens && (moved > 0.25 || result.lens_sigma[0] > 0.1 * lens.fx)) {
     std::printf("these pictures hardly determine the focal length: add some from other distances and tilts\n");
   }
   std::printf("distortion %.5f %.5f %.5f %.5f %.5f\n", lens.distortion[0], lens.distortion[1], lens.distortion[2],
@@ -108,7 +134,14 @@ void run(const Options& options) {
     if (was != nullptr) std::printf(", moved %.1f mm", 1e3 * (tag.p_WT - was->p_WT).norm());
     std::printf("\n");
   }
-  write_site(options.out, result, options.source);
+  if (!result.converged)
+    throw InputError("the adjustment did not converge: nothing is written; is the lens to begin with far off?");
+  write_site(options.out, result, options.source, options.site);
+  if (settings.lens) {
+    std::printf("for %s: %s\n",
+                camera.lens ? (options.vehicle + ", camera '" + camera.name + "'").c_str() : "a vehicle file",
+                lens_keys(lens).c_str());
+  }
   if (!options.picture.empty()) write(options.picture, vision::draw_calibration(result, site));
   std::printf("written: %s%s%s\n", options.out.c_str(), options.picture.empty() ? "" : ", ", options.picture.c_str());
 }
@@ -120,6 +153,8 @@ void add_calibrate(CLI::App& app) {
   CLI::App* command = app.add_subcommand("calibrate", "lens and map of tags from a sequence of pictures");
   command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
   command->add_option("--site", options->site, "what is known: tags or board, a lens to begin with");
+  command->add_option("--vehicle", options->vehicle, "vehicle file whose camera's lens is the one to begin with");
+  command->add_option("--camera", options->camera, "which of the vehicle's cameras; left out: the first");
   command->add_option("--out", options->out, "site file to write: lens and tags as adjusted")->required();
   command->add_option("--picture", options->picture, "PNG: what is left of every corner, and the map");
   command
@@ -132,8 +167,11 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--map-sigma", options->map_sigma, "m, how well the map is known; left out: the site's")
       ->check(CLI::PositiveNumber);
   command->add_option("--focal", options->focal, "px, a focal length to begin with")->check(CLI::PositiveNumber);
+  command->add_option("--focal-sigma", options->focal_sigma, "how well it is known, as a share of it (0.1)")
+      ->check(CLI::PositiveNumber);
   command->add_option("--every", options->every, "use every n-th picture")->check(CLI::PositiveNumber);
-  command->add_option("--hold-out", options->held_out, "keep every n-th picture back and judge by it");
+  command->add_option("--hold-out", options->held_out, "keep every n-th picture back and judge by it")
+      ->check(CLI::Range(2, 1'000'000));
   command->add_option("--families", options->families, "families of tags in place of the site's");
   command->add_flag("--not-flat", options->not_flat, "the tags do not lie in one plane");
   command->callback([options] { run(*options); });

@@ -1,9 +1,12 @@
 #include "processes/pictures/site_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <set>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -27,41 +30,75 @@ double map_error(const vision::Calibration& calibration) {
   return std::max(kLeast, calibration.after.high * distances[distances.size() / 2] / calibration.site.lens->focal());
 }
 
+std::string text(const char* format, auto... values) {
+  std::array<char, 256> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, values...);
+  return buffer.data();
+}
+
+// What of a site's file is not written anew, comments and all. A block begins with a key at the line's beginning; lines
+// of comment right above belong to it.
+std::string kept_of(const std::string& original) {
+  static const std::set<std::string> written{"site", "tag_search", "camera", "tags", "poster"};
+  std::ifstream in{original};
+  std::string kept, waiting;
+  bool keep = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line.front() == '#') {
+      waiting += line + "\n";
+      continue;
+    }
+    const auto colon = line.find(':');
+    if (line.front() != ' ' && line.front() != '-' && colon != std::string::npos)
+      keep = !written.contains(line.substr(0, colon));
+    if (keep) kept += waiting + line + "\n";
+    waiting.clear();
+  }
+  return kept;
+}
+
 }  // namespace
 
-void write_site(const std::string& path, const vision::Calibration& calibration, const std::string& source) {
-  std::FILE* out = std::fopen(path.c_str(), "w");
-  if (out == nullptr) throw InputError(path + ": cannot be written; check that the folder exists and is yours");
-  const model::Site& site = calibration.site;
-  const model::Lens& lens = *site.lens;
-  std::fprintf(out,
-               "# Written by fathom calibrate from %s: %d pictures, %d corners, reprojection %.3f px before, %.3f px "
-               "after (medians).\n",
-               std::filesystem::path{source}.filename().c_str(), calibration.n_views, calibration.n_corners,
-               calibration.before.median, calibration.after.median);
-  std::fprintf(out, "site: %s\ntag_search: {families: [", site.name.c_str());
-  for (std::size_t i = 0; i < site.search.families.size(); ++i) {
-    std::fprintf(out, "%s%s", i > 0 ? ", " : "", site.search.families[i].c_str());
-  }
-  std::fprintf(out, "], map_sigma: %.1f mm", 1e3 * map_error(calibration));
-  if (site.search.least_margin) std::fprintf(out, ", least_margin: %g", *site.search.least_margin);
-  std::fprintf(out, "}\ncamera:\n  width: %d\n  height: %d\n  focal: %.3f %.3f\n  centre: %.3f %.3f\n", lens.width,
-               lens.height, lens.fx, lens.fy, lens.cx, lens.cy);
-  if (lens.kind == model::Lens::Kind::kFisheye) std::fprintf(out, "  lens: fisheye\n");
+std::string lens_keys(const model::Lens& lens) {
+  const bool fisheye = lens.kind == model::Lens::Kind::kFisheye;
   const auto& k = lens.distortion;
-  std::fprintf(out, "  distortion: %.7f %.7f %.7f %.7f", k[0], k[1], k[2], k[3]);
-  std::fprintf(out, lens.kind == model::Lens::Kind::kFisheye ? "\n" : " %.7f\n", k[4]);
+  std::string keys = text("width: %d, height: %d, focal: %.3f %.3f, centre: %.3f %.3f", lens.width, lens.height,
+                          lens.fx, lens.fy, lens.cx, lens.cy);
+  keys += text(", distortion: %.7f %.7f %.7f %.7f", k[0], k[1], k[2], k[3]);
+  keys += fisheye ? ", lens: fisheye" : text(" %.7f", k[4]);
   if (lens.port) {
-    std::fprintf(out, "  port: {distance: %.6f m, thickness: %.6f m, index_window: %.5f, index_water: %.5f}\n",
+    keys += text(", port: {distance: %.6f m, thickness: %.6f m, index_window: %.5f, index_water: %.5f}",
                  lens.port->distance, lens.port->thickness, lens.port->index_window, lens.port->index_water);
   }
-  std::fprintf(out, "tags:\n");
+  return keys;
+}
+
+void write_site(const std::string& path, const vision::Calibration& calibration, const std::string& source,
+                const std::string& original) {
+  const model::Site& site = calibration.site;
+  std::string out = text(
+      "# Written by fathom calibrate from %s: %d pictures, %d corners, reprojection %.3f px before, %.3f px after\n"
+      "# (medians).\n",
+      std::filesystem::path{source}.filename().c_str(), calibration.n_views, calibration.n_corners,
+      calibration.before.median, calibration.after.median);
+  out += "site: " + site.name + "\n";
+  if (!original.empty()) out += kept_of(original);
+  out += "tag_search: {families: [";
+  for (std::size_t i = 0; i < site.search.families.size(); ++i) out += (i > 0 ? ", " : "") + site.search.families[i];
+  out += text("], map_sigma: %.1f mm", 1e3 * map_error(calibration));
+  if (site.search.least_margin) out += text(", least_margin: %g", *site.search.least_margin);
+  out += "}\ncamera: {" + lens_keys(*site.lens) + "}\ntags:\n";
   for (const model::Tag& tag : site.tags) {
     const Eigen::Vector3d e = euler_from_rotation(tag.R_WT) * 180.0 / M_PI;
-    std::fprintf(out, "  - {id: %d, size: %.6f m, position: %.5f %.5f %.5f m, rotation: %.4f %.4f %.4f deg}\n", tag.id,
-                 tag.size, tag.p_WT.x(), tag.p_WT.y(), tag.p_WT.z(), e.x(), e.y(), e.z());
+    out += text("  - {id: %d, size: %.6f m, position: %.5f %.5f %.5f m, rotation: %.4f %.4f %.4f deg}\n", tag.id,
+                tag.size, tag.p_WT.x(), tag.p_WT.y(), tag.p_WT.z(), e.x(), e.y(), e.z());
   }
-  if (std::fclose(out) != 0) throw InputError(path + ": writing failed; is the disk full?");
+  std::ofstream file{path};
+  if (!file) throw InputError(path + ": cannot be written; check that the folder exists and is yours");
+  file << out;
+  file.close();
+  if (!file) throw InputError(path + ": writing failed; is the disk full?");
+  static_cast<void>(model::Site::load_for_pictures(path));  // what follows shall not be the first to find it unreadable
 }
 
 }  // namespace fathom::pictures

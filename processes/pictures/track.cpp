@@ -1,6 +1,7 @@
 // fathom track: the front end of the vision process over recorded pictures, without LCM.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -8,11 +9,11 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/model/mounts.hpp"
 #include "common/model/site.hpp"
 #include "common/pictures/source.hpp"
 #include "common/vision/drawing.hpp"
 #include "processes/pictures/commands.hpp"
+#include "processes/pictures/mounted.hpp"
 #include "processes/pictures/track_tables.hpp"
 
 namespace fathom::pictures {
@@ -23,28 +24,6 @@ struct Options {
   double rate{0.0};
   std::vector<std::string> families;
 };
-
-/// What the vehicle file says of one camera.
-struct Mounted {
-  std::optional<model::Lens> lens;
-  std::optional<model::LaserMount> laser;
-  Eigen::Matrix3d R_BC{Eigen::Matrix3d::Identity()};
-};
-
-Mounted mounted(const Options& options) {
-  Mounted result;
-  if (options.vehicle.empty()) return result;
-  const Config file = Config::load(options.vehicle);
-  if (!file.has("sensors")) throw InputError(options.vehicle + ": has no section 'sensors'");
-  const model::Mounts mounts = model::Mounts::from(file.section("sensors"));
-  if (mounts.cameras.empty()) throw InputError(options.vehicle + ": has no cameras");
-  const model::CameraMount* camera = options.camera.empty() ? &mounts.cameras.front() : mounts.camera(options.camera);
-  if (camera == nullptr) throw InputError(options.vehicle + ": no camera is called '" + options.camera + "'");
-  result.lens = camera->lens;
-  result.R_BC = camera->mount.R_BS;
-  if (mounts.laser && mounts.laser->camera == camera->name) result.laser = mounts.laser;
-  return result;
-}
 
 class Summary {
  public:
@@ -93,6 +72,13 @@ class Summary {
   std::vector<double> errors_;
 };
 
+bool differ(const model::Lens& a, const model::Lens& b) {
+  constexpr double kSame = 1e-3;  // px, as files round
+  return a.kind != b.kind || a.width != b.width || a.height != b.height || std::abs(a.fx - b.fx) > kSame ||
+         std::abs(a.fy - b.fy) > kSame || std::abs(a.cx - b.cx) > kSame || std::abs(a.cy - b.cy) > kSame ||
+         a.distortion != b.distortion || a.port.has_value() != b.port.has_value();
+}
+
 std::string drawing_name(const std::string& folder, const std::string& frame) {
   return (std::filesystem::path{folder} / (std::filesystem::path{frame}.stem().string() + ".jpg")).string();
 }
@@ -101,8 +87,12 @@ void run(const Options& options) {
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
   if (!options.families.empty()) site.search.families = options.families;
-  const Mounted camera = mounted(options);
+  const Mounted camera = mounted(options.vehicle, options.camera);
   std::optional<model::Lens> lens = camera.lens ? camera.lens : site.lens;
+  if (camera.lens && site.lens && differ(*camera.lens, *site.lens)) {
+    std::fprintf(stderr, "fathom: %s and %s state different lenses; that of the vehicle file is used\n",
+                 options.vehicle.c_str(), options.site.c_str());
+  }
   vision::FrontEndSettings settings;
   // Recorded pictures can wait: search and flow at full resolution, unless the configuration says otherwise.
   settings.detector.decimation = 1.0;
@@ -132,12 +122,16 @@ void run(const Options& options) {
       continue;
     }
     vision::Picture picture{.utime = utime_after(0, frame->time), .grey = in_grey(frame->picture)};
+    picture.halved_colour = frame->halved_colour;
     if (frame->picture.channels() == 3) picture.bgr = frame->picture;
-    const vision::Sight& sight = front_end.step(picture, std::nullopt);
+    vision::Sight sight = front_end.step(picture, std::nullopt);
     if (sight.picture == vision::PictureState::kOtherSize && !told_size) {
       told_size = true;
       std::fprintf(stderr, "fathom: %s is %d x %d, the calibration is for %d x %d: such pictures give no measurement\n",
                    frame->name.c_str(), picture.grey.cols, picture.grey.rows, lens->width, lens->height);
+    }
+    if (sight.picture != vision::PictureState::kGood) {  // as the process: nothing is told by a picture that stands
+      sight = {.picture = sight.picture, .tags = sight.tags, .flow = {.utime = sight.flow.utime}};
     }
     tables.write(frame->name, frame->time, sight);
     summary.add(sight);

@@ -150,6 +150,33 @@ TEST_CASE("tank: calibrating on half of the frames explains the other half") {
   CHECK(after < 0.5 * before);
 }
 
+TEST_CASE("tank: a survey from nothing but the tags' size and a lens lies within centimetres of the tape measure's") {
+  constexpr double kTape = 0.025;  // m, of distances up to 1.1 m; measured 13 mm
+  const model::Site author = model::Site::load_for_pictures(kSites + "tank_tag16h5.yaml");
+  model::Site blank;
+  blank.search = {.families = author.search.families};
+  blank.lens = author.lens;
+  vision::TagDetector detector{{.families = blank.search.families, .decimation = 1.0}};
+  const auto source = pictures::open(kData + "tank_tag16h5", 10.0);
+  std::vector<vision::View> views;
+  while (auto frame = source->next()) views.push_back({frame->name, detector.step(pictures::in_grey(frame->picture))});
+  const vision::Calibration survey = vision::calibrate(blank, views, {.size = author.tags.front().size});
+  CHECK(survey.converged);
+  int compared = 0;
+  double worst = 0.0;
+  for (const model::Tag& a : survey.site.tags) {
+    for (const model::Tag& b : survey.site.tags) {
+      if (a.id >= b.id || author.tag(a.id) == nullptr || author.tag(b.id) == nullptr) continue;
+      ++compared;
+      const double taped = (author.tag(a.id)->p_WT - author.tag(b.id)->p_WT).norm();
+      worst = std::max(worst, std::abs((a.p_WT - b.p_WT).norm() - taped));
+    }
+  }
+  MESSAGE("distances between surveyed tags " << compared << ", off by at most [m] " << worst);
+  CHECK(compared >= 6);
+  CHECK(worst < kTape);
+}
+
 TEST_CASE("tank: optical flow agrees with the derivative of the tags' pose") {
   // The rotation between pictures is that of the tags' poses, for want of a gyro; shifts, scale and time are the
   // flow's.

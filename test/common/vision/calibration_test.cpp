@@ -15,15 +15,16 @@ using namespace test_scene;
 
 constexpr double kNoise = 0.2;  // px
 
-std::vector<View> views_of(const model::Site& truth, const model::Lens& lens, int n) {
+/// `variety`: of tilts [rad], and of heights.
+std::vector<View> views_of(const model::Site& truth, const model::Lens& lens, int n, double variety = 0.4) {
   std::mt19937 random{7};
   std::normal_distribution<double> noise{0.0, kNoise};
   const Projection projection{lens};
   std::vector<View> views;
   for (int i = 0; i < n; ++i) {
     // Turned and tilted, from near and far: what makes the focal length visible.
-    const Pose at = pose({0.3 * std::sin(i), 0.3 * std::cos(1.7 * i), 0.1 + 0.04 * (i % 15)}, 0.4 * std::sin(2.1 * i),
-                         0.4 * std::cos(1.3 * i), 0.7 * i);
+    const Pose at = pose({0.3 * std::sin(i), 0.3 * std::cos(1.7 * i), 0.1 + 0.1 * variety * (i % 15)},
+                         variety * std::sin(2.1 * i), variety * std::cos(1.3 * i), 0.7 * i);
     View view{.name = std::to_string(i)};
     for (const model::Tag& tag : truth.tags) {
       const double h = 0.5 * tag.size;
@@ -75,13 +76,49 @@ TEST_CASE("calibration: a survey from nothing but the size finds where the tags 
   blank.lens = lens();
   blank.search = truth.search;
   const Calibration found = calibrate(blank, views, {.lens = false, .size = 0.15});
+  CHECK(found.converged);
   REQUIRE(found.site.tags.size() >= 20);
+  CHECK(found.site.tags.front().p_WT.norm() == 0.0);  // the origin stays where it is, and level
+  CHECK(found.site.tags.front().R_WT.isApprox(Eigen::Matrix3d::Identity()));
   for (const model::Tag& a : found.site.tags) {
     for (const model::Tag& b : found.site.tags) {
       const double wanted = (truth.tag(a.id)->p_WT - truth.tag(b.id)->p_WT).norm();
       CHECK(std::abs((a.p_WT - b.p_WT).norm() - wanted) < 8e-3);  // m: a chain of tags over 2 m, 0.2 px at 1 m
     }
   }
+}
+
+TEST_CASE("calibration: a focal length that the pictures cannot tell stays as given, one that they can is found") {
+  // One height and nearly one tilt, and a lens that two coefficients do not describe.
+  model::Lens truth = lens();
+  truth.fx = truth.fy = 1100;
+  truth.distortion = {0.5, -1.0, 0.01, -0.01, 30.0};
+  model::Site floor = site();
+  for (model::Tag& tag : floor.tags) {  // several in a narrow view
+    tag.size *= 0.4;
+    tag.p_WT.head<2>() *= 0.4;
+  }
+  std::vector<View> views;
+  for (const View& view : views_of(floor, truth, 60, 0.05)) {
+    if (view.tags.size() > 1) views.push_back(view);
+  }
+  REQUIRE(views.size() > 20);
+  floor.lens = truth;
+  floor.lens->distortion = {};
+  const Calibration kept = calibrate(floor, views, {.map_sigma = 0.01});
+  REQUIRE(kept.undetermined_focal);
+  CHECK(std::abs(*kept.undetermined_focal / truth.fx - 1.0) > 0.01);
+  CHECK(kept.site.lens->fx == truth.fx);
+  CHECK(kept.site.lens->distortion[0] != 0.0);
+  CHECK(kept.after.median < 0.5 * kept.before.median);
+  // No more than a beginning: then it is what fits best.
+  CHECK_FALSE(calibrate(floor, views, {.map_sigma = 0.01, .given = false}).undetermined_focal);
+
+  const model::Lens other = lens();
+  floor.lens->fx = floor.lens->fy = 0.92 * other.fx;
+  const Calibration found = calibrate(floor, views_of(floor, other, 40), {.map_sigma = 0.01});
+  CHECK_FALSE(found.undetermined_focal);
+  CHECK(found.site.lens->fx == doctest::Approx(other.fx).epsilon(0.01));
 }
 
 TEST_CASE("calibration: nothing to go by is said") {

@@ -108,7 +108,8 @@ TEST_CASE("laser: the dot's range is the truth, at every distance, tilted, over 
   for (int i = 0; i < 60; ++i) {
     const Pose at = pose({0.02 * i - 0.6, 0.013 * i - 0.4, 0.1 + 0.015 * i}, 0.002 * i, 0.1 - 0.003 * i, 0.1 * i);
     const auto truth = renderer.dot(at);
-    const LaserDot dot = finder.step(renderer.step(0.1 * i, at));
+    const cv::Mat& bgr = renderer.step(0.1 * i, at);
+    const LaserDot dot = finder.step(bgr, grey_of(bgr), false);
     if (!truth) continue;
     if (dot.state != LaserState::kFound) continue;
     ++found;
@@ -129,7 +130,7 @@ TEST_CASE("laser: JPEG does not move the dot, wherever it lies between the borde
     const Pose at = pose({0.2, 0.2 + 0.003 * i, 0.4 + 0.004 * i});
     cv::Mat grey, bgr;
     REQUIRE(decode_jpeg(encode_jpeg(renderer.step(0.1 * i, at), 90), true, grey, bgr).empty());
-    const LaserDot dot = finder.step(bgr);
+    const LaserDot dot = finder.step(bgr, grey, false);
     if (dot.state != LaserState::kFound) continue;
     squares += (dot.pixel - projection.pixel(*renderer.dot(at))).squaredNorm();
     ++n;
@@ -143,7 +144,8 @@ TEST_CASE("laser: nothing is found where there is no dot, a second one, or no co
   LaserFinder finder{lens(), laser(), {}};
   for (int i = 0; i < 60; ++i) {
     const Pose at = pose({0.02 * i - 0.6, 0.013 * i - 0.4, 0.1 + 0.015 * i}, 0.002 * i, 0.1 - 0.003 * i, 0.1 * i);
-    CHECK(finder.step(dark.step(0.1 * i, at)).state != LaserState::kFound);
+    const cv::Mat& bgr = dark.step(0.1 * i, at);
+    for (const bool halved : {false, true}) CHECK(finder.step(bgr, grey_of(bgr), halved).state != LaserState::kFound);
   }
   Renderer renderer{site(), lens(), laser(), {}, 12};
   const Pose at = pose({0.1, 0.1, 0.5});
@@ -151,8 +153,8 @@ TEST_CASE("laser: nothing is found where there is no dot, a second one, or no co
   const Eigen::Vector2d own = Projection{lens()}.pixel(*renderer.dot(at));
   const int u = static_cast<int>(own.x()), v = static_cast<int>(own.y());
   two(cv::Rect{u - 8, v - 8, 17, 17}).copyTo(two(cv::Rect{u + 32, v - 8, 17, 17}));  // its reflection
-  CHECK(finder.step(two).state == LaserState::kTwo);
-  CHECK(finder.step(grey_of(two)).state == LaserState::kNoColour);
+  CHECK(finder.step(two, grey_of(two), false).state == LaserState::kTwo);
+  CHECK(finder.step(grey_of(two), grey_of(two), false).state == LaserState::kNoColour);
 }
 
 }  // namespace fathom::vision

@@ -34,6 +34,16 @@ TEST_CASE("JPEG: what was written is read, colour and grey") {
   CHECK(grey.cols == 640);
 }
 
+TEST_CASE("JPEG: whether colour is halved is read from the file") {
+  Renderer renderer{site(), lens(), laser(), {}, 13};
+  const cv::Mat& bgr = renderer.step(0.0, pose({0, 0, 0.4}));
+  CHECK_FALSE(halves_colour(encode_jpeg(bgr, 90)));
+  CHECK(halves_colour(encode_jpeg(bgr, 90, true)));
+  CHECK_FALSE(halves_colour(encode_jpeg(grey_of(bgr), 90, true)));
+  CHECK_FALSE(halves_colour(std::vector<std::uint8_t>{0xff, 0xd8, 0xff}));
+  CHECK_FALSE(halves_colour({}));
+}
+
 TEST_CASE("JPEG: out of a stream come whole pictures, in whatever pieces they arrive and whatever is between") {
   Renderer renderer{site(), lens(), std::nullopt, {}, 14};
   std::vector<std::uint8_t> one = encode_jpeg(renderer.step(0.0, pose({0, 0, 0.4})), 90);
