@@ -183,6 +183,7 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
   score.floor = truth.at("floor").at("truth");
   score.base = truth.at("floor").at("base").is_number() ? truth.at("floor").at("base").get<double>() : kUnknown;
   score.seconds = run.value("seconds", kUnknown);
+  score.processor = run.value("processor", kUnknown);
   score.megabytes = run.value("megabytes", kUnknown);
   if (result.empty()) {
     score.outcome = "failed";
@@ -241,6 +242,7 @@ Json to_json(const Score& score) {
             {"floor", finite(score.floor)},
             {"base", finite(score.base)},
             {"seconds", finite(score.seconds)},
+            {"processor", finite(score.processor)},
             {"megabytes", finite(score.megabytes)},
             {"deviations", score.deviations},
             {"over_bound", score.over_bound},
