@@ -36,10 +36,13 @@ ParameterMap::ParameterMap(const model::Model& model) {
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const model::ActiveEffect& active = model.effects[e];
     const std::size_t count = active.effect->parameters().size();
+    const auto same = std::ranges::count(model.effects, active.effect, &model::ActiveEffect::effect);
+    const bool several = same > 1 && !active.variant_name.empty();  // the gains of two thrusters
+    const std::string form = several ? active.variant_name + "." : "";
     for (std::size_t c = 0; c < count; ++c) {
       const model::EffectParameter parameter = model::parameter_of(*active.effect, active.variant, c, vehicle);
       FreeParameter free{.effect = static_cast<int>(e), .component = static_cast<int>(c)};
-      free.name = std::string(active.effect->name()) + "." + std::string(parameter.name);
+      free.name = std::string(active.effect->name()) + "." + form + std::string(parameter.name);
       free.unit = std::string(active.effect->unit(active.variant, c));
       free.prior_sigma = std::max(parameter.sigma, kPriorOpen * std::abs(active.theta[c]));
       free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameter.sigma);

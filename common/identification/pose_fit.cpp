@@ -5,11 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "common/base/distributions.hpp"
 #include "common/base/parallel.hpp"
-#include "common/identification/outlier.hpp"
 #include "common/identification/pose_window.hpp"
 #include "common/identification/signal_weights.hpp"
+#include "common/identification/two_estimates.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -20,7 +19,6 @@ constexpr int kHalvings = 4;           // of a step that does not lower the cost
 constexpr double kSettled = 0.01;      // of the cost, which is a chi-square: far below one standard deviation
 constexpr double kFreeStart = 1.0;     // m/s, rad/s, m, rad: prior of a window's beginning, which the data outdoes
 constexpr double kLeastFreedom = 3.0;  // of a covariance from fewer stretches than it has numbers
-constexpr double kChance = 1e-3;       // of all numbers together, to lie apart by noise
 
 /// One window's share of the normal equations, its beginning eliminated.
 struct Reduced {
@@ -57,12 +55,10 @@ class PoseFit {
     return true;
   }
 
-  [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
-  [[nodiscard]] const ParameterMap& map() const { return map_; }
   [[nodiscard]] model::Model model() const { return model_at(x_); }
 
-  /// Sandwich over stretches, physical units; at least what the weights alone say, for few stretches can look too quiet.
-  /// `freedom`: stretches beyond free numbers.
+  /// Sandwich over stretches, physical units; at least what the weights alone say, for few stretches can look too
+  /// quiet. `freedom`: stretches beyond free numbers.
   [[nodiscard]] Eigen::MatrixXd covariance(double& freedom) const {
     const auto n = static_cast<Eigen::Index>(map_.size());
     Eigen::MatrixXd information = prior(), meat = information;
@@ -78,7 +74,7 @@ class PoseFit {
     Eigen::VectorXd scale(n);
     for (Eigen::Index i = 0; i < n; ++i) scale[i] = map_[static_cast<std::size_t>(i)].scale;
     freedom = std::max(clusters - free, kLeastFreedom);
-Eigen::MatrixXd covariance = small_sample * inverse * meat * inverse;
+    Eigen::MatrixXd covariance = small_sample * inverse * meat * inverse;
     const Eigen::VectorXd wider = (inverse.diagonal().cwiseQuotient(covariance.diagonal())).cwiseMax(1.0).cwiseSqrt();
     scale.array() *= wider.array();
     return scale.asDiagonal() * covariance * scale.asDiagonal();
@@ -259,43 +255,15 @@ Eigen::MatrixXd covariance = small_sample * inverse * meat * inverse;
   Eigen::VectorXd x_;
 };
 
-/// Hausman's question, number by number: is the efficient estimate where the other one may lie?
-bool agree(const PoseFit& by_all, const FitResult& by_speeds) {
-  const Eigen::VectorXd before = by_all.map().pack(by_speeds.model);
-  double sought = 0.0;
-  for (std::size_t i = 0; i < by_all.map().size(); ++i) sought += by_all.map()[i].sought ? 1.0 : 0.0;
-  const double t_square = f_quantile(kChance / std::max(sought, 1.0), by_speeds.freedom);
-  for (std::size_t i = 0; i < by_all.map().size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const double apart = (by_all.x()[k] - before[k]) * by_all.map()[i].scale;
-    const double form = by_all.map()[i].form_sigma;
-    if (apart * apart > t_square * (by_speeds.covariance(k, k) + form * form)) return false;
-  }
-  return true;
-}
-
-/// Ends of an interval that a profile found on each side, drawn in as the standard deviation was.
-std::vector<std::optional<std::array<double, 2>>> drawn_in(const FitResult& from, const FitResult& to) {
-  std::vector<std::optional<std::array<double, 2>>> ends(from.interval95.size());
-  const std::vector<NamedValue> before = from.parameters(), after = to.parameters();
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (!from.interval95[i]) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    const double ratio = to.t95() * std::sqrt(to.covariance(k, k)) / (from.t95() * std::sqrt(from.covariance(k, k)));
-    ends[i] = {after[i].value - ratio * (before[i].value - (*from.interval95[i])[0]),
-               after[i].value + ratio * ((*from.interval95[i])[1] - before[i].value)};
-  }
-  return ends;
-}
-
 }  // namespace
 
 std::optional<FitResult> fit_with_poses(const model::Vehicle& vehicle, std::span<const Trial> trials,
                                         const PoseFitSettings& settings, const FitResult& by_speeds) {
   PoseFit problem{vehicle, trials, settings, by_speeds.model};
-  if (!problem.any() || !problem.solve() || !agree(problem, by_speeds)) return {};
+  if (!problem.any() || !problem.solve()) return {};
   FitResult fit = by_speeds;
   fit.model = problem.model();
+  if (!agree(by_speeds, fit.model)) return {};
   fit.covariance = problem.covariance(fit.freedom);
   if (!fit.covariance.allFinite()) return {};
   fit.interval95 = drawn_in(by_speeds, fit);

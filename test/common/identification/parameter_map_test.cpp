@@ -110,3 +110,17 @@ TEST_CASE("parameter map: a number that takes no part keeps its value, and no pr
   CHECK_FALSE(map[own + 3].sought);
   CHECK(map[own + 3].prior_mean == 1.25);
 }
+
+TEST_CASE("parameter map: two forms of one effect keep their numbers apart by name") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Model model = model::nominal_model(vehicle, false);
+  for (const auto& [variant, thruster] : {std::pair{0, "T0"}, {2, "T2"}}) {
+    model::ActiveEffect gain = test::active("thruster_gain", {0.1}, variant);
+    gain.variant_name = thruster;
+    model.add(gain);
+  }
+  const ParameterMap map{model};
+  REQUIRE(map.size() == vehicle.parameters.size() + 2);
+  CHECK(map[map.size() - 2].name == "thruster_gain.T0.gain_change");
+  CHECK(map[map.size() - 1].name == "thruster_gain.T2.gain_change");
+}
