@@ -17,7 +17,7 @@ constexpr int kWeightRounds = 2;
 constexpr int kSteps = 6;              // of Gauss and Newton, per round of weights
 constexpr int kHalvings = 4;           // of a step that does not lower the cost
 constexpr double kSettled = 0.01;      // of the cost, which is a chi-square: far below one standard deviation
-constexpr double kFreeStart = 1.0;     // m/s, rad/s, m, rad: prior of a window's beginning, which the data outdoes
+constexpr double kFreeStart = 100.0;   // m/s, rad/s, m, rad: prior of a window's beginning, where no signal tells it
 constexpr double kLeastFreedom = 3.0;  // of a covariance from fewer stretches than it has numbers
 
 /// One window's share of the normal equations, its beginning eliminated.

@@ -23,11 +23,12 @@ double trimmed_mean(std::vector<double> values) {
   return sum / static_cast<double>(kept);
 }
 
-/// Variance of one sample were the residual white, from means over `count` of them.
+/// Variance of one sample were the residual white, from means over so many seconds (0: of single samples).
 double variance_from_means(std::span<const PoseWindow> windows, std::span<const Eigen::VectorXd> residuals, int signal,
-                           Eigen::Index count) {
+                           double seconds) {
   std::vector<double> squares;
   for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto count = static_cast<Eigen::Index>(std::max(1L, std::lround(seconds / windows[w].window().trial->dt)));
     for (const AxisRows& rows : windows[w].signals()) {
       if (windows[w].row(rows.first).signal != signal) continue;
       for (Eigen::Index i = 0; i + count <= rows.count; i += count) {
@@ -49,14 +50,11 @@ double ordinary_noise(int signal) {
 std::vector<Eigen::VectorXd> signal_weights(std::span<const PoseWindow> windows,
                                             std::span<const Eigen::VectorXd> residuals, double longest) {
   SignalVector white = SignalVector::Zero(), lasting = SignalVector::Zero();
-  const double dt = windows.front().window().trial->dt;
   for (int signal = 0; signal < kSignals; ++signal) {
-    white[signal] = variance_from_means(windows, residuals, signal, 1);
+    white[signal] = variance_from_means(windows, residuals, signal, 0.0);
     lasting[signal] = white[signal];
-    for (const double share : kShares) {
-      const auto count = static_cast<Eigen::Index>(std::max(1L, std::lround(share * longest / dt)));
-      lasting[signal] = std::max(lasting[signal], variance_from_means(windows, residuals, signal, count));
-    }
+    for (const double share : kShares)
+      lasting[signal] = std::max(lasting[signal], variance_from_means(windows, residuals, signal, share * longest));
   }
   std::vector<Eigen::VectorXd> weights;
   for (std::size_t w = 0; w < windows.size(); ++w) {

@@ -18,15 +18,16 @@ constexpr double kTypicalSpeed = 0.5;   // m/s, rad/s, where quadratic drag is t
 constexpr double kAbsurd = 50.0;        // m/s or rad/s: no vehicle of ours moves like that
 constexpr int kMaxMemory = 256;
 
-constexpr double kPoseDamping = 0.4;         // of one step, where what a velocity does within it adds up in the pose
+// Where what a velocity does within a step adds up in the pose: places tell the masses of a ROV to 1e-4 over half a
+// minute, and that needs 10 ms. What is slower needs less.
+constexpr double kPoseDamping = 0.04;        // of one step
 constexpr double kShortestPoseStep = 0.005;  // s
-constexpr double kLargestPoseStep = 0.01;    // s: over half a minute, places tell masses to 1e-4
 
 /// Step that follows the fastest motion of the priors: the same for every theta, so that derivatives see no change of
 /// it.
 inline double largest_step(const Vehicle& vehicle, bool poses) {
   const double quickest = quickest_decay(vehicle);
-  return poses ? std::clamp(kPoseDamping * quickest, kShortestPoseStep, kLargestPoseStep)
+  return poses ? std::clamp(kPoseDamping * quickest, kShortestPoseStep, kLargestStep)
                : std::clamp(kMostDamping * quickest, kShortestStep, kLargestStep);
 }
 

@@ -11,9 +11,9 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/vision/jpeg.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
+#include "processes/camera_driver/message.hpp"
 
 namespace fathom::camera_driver {
 namespace {
@@ -94,13 +94,9 @@ void DeviceCamera::publish(pictures::Frame frame) {
   if (std::exchange(lost_, false)) process_.log_info(settings_.device.device + ": the camera is back");
   complaint_.clear();
   ++count_;
-  Camera sample{.utime = utime_after(arrival, -settings_.latency - (settings_.kernel_stamps ? *frame.age : 0.0)),
-                .camera = settings_.camera,
-                .width = frame.picture.cols,
-                .height = frame.picture.rows};
-  sample.jpeg = frame.jpeg.empty() ? vision::encode_jpeg(frame.picture, settings_.quality, frame.halved_colour)
-                                   : std::move(frame.jpeg);
-  process_.publish(wire::kCamera, wire::encode(sample));
+  const double since = settings_.latency + (settings_.kernel_stamps ? *frame.age : 0.0);
+  process_.publish(wire::kCamera, wire::encode(as_message(std::move(frame), utime_after(arrival, -since),
+                                                          settings_.camera, settings_.quality)));
 }
 
 void DeviceCamera::leave_out(const std::string& why) {

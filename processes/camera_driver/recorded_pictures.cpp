@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/base/config.hpp"
-#include "common/vision/jpeg.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
+#include "processes/camera_driver/message.hpp"
 
 namespace fathom::camera_driver {
 
@@ -67,13 +67,8 @@ void RecordedPictures::publish(pictures::Frame& frame) {
   }
   complaint_.clear();
   ++count_;
-  Camera sample{.utime = utime_after(first_, taken),
-                .camera = settings_.camera,
-                .width = frame.picture.cols,
-                .height = frame.picture.rows};
-  sample.jpeg = frame.jpeg.empty() ? vision::encode_jpeg(frame.picture, settings_.quality, frame.halved_colour)
-                                   : std::move(frame.jpeg);
-  process_.publish(wire::kCamera, wire::encode(sample));
+  process_.publish(wire::kCamera, wire::encode(as_message(std::move(frame), utime_after(first_, taken),
+                                                          settings_.camera, settings_.quality)));
 }
 
 runtime::Process::Condition RecordedPictures::condition() const {
