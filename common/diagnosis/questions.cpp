@@ -17,6 +17,8 @@ constexpr double kNearWindow = 2.0;         // s: what a wrong model does in it 
 constexpr std::size_t kNearWindows = 150;   // five minutes whole, longer trials by an even spread
 constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
 constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
+constexpr double kWorthAStep = 0.2;         // of the cost, per error: a tenth of the smallest gain that counts
+constexpr double kQuickTolerance = 1e-3;    // relative decrease of the cost that ends a look from afar
 constexpr int kEnoughRefusals = 2;          // by full fits, in the company of different effects
 constexpr double kPromisesMore = 1.25;      // times the gain: then a refused form is asked again
 constexpr double kLeastTrust = 0.01;        // what broke its promise once is still asked last
@@ -78,7 +80,8 @@ Answers ask_near(std::span<const Candidate> candidates, const NearView& near, co
   answers.near.resize(asked.size());
   for_each_index(asked.size(), settings.threads, [&](std::size_t i) {
     const Candidate& form = asked[i];
-    answers.near[i] = screen(base, *form.effect, form.variant, form.name, form.effect->starts(scene, form.variant));
+    answers.near[i] = screen(base, *form.effect, form.variant, form.name, form.effect->starts(scene, form.variant),
+                             kWorthAStep * settings.smallest_reduction);
   });
   for (const Screened& screened : answers.near) {
     answers.judged.push_back(judge(screened, base, static_cast<int>(candidates.size())));
@@ -97,8 +100,8 @@ void ask_whole(Answers& answers, const TrajectoryFit& problem, const FitResult& 
   answers.screened.resize(answers.near.size());
   for_each_index(answers.near.size(), settings.threads, [&](std::size_t i) {
     const Screened& form = answers.near[i];
-    answers.screened[i] =
-        screen(base, *form.effect, form.variant, form.variant_name, form.effect->starts(scene, form.variant));
+    answers.screened[i] = screen(base, *form.effect, form.variant, form.variant_name,
+                                 form.effect->starts(scene, form.variant), kWorthAStep * settings.smallest_reduction);
   });
   const std::vector<std::size_t> careful =
       thin ? promising(answers.screened, base, settings) : std::vector<std::size_t>{};
@@ -143,7 +146,7 @@ void look_afar(Answers& answers, Coarse& coarse, const FitResult& fit, const mod
       progress("looking further at " + std::string(candidate.effect->name()), done);
       model::Model model = fit.model;
       model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
-      const FitResult far = coarse.problem().fit(model, &coarse.reference());
+      const FitResult far = coarse.problem().fit(model, &coarse.reference(), kQuickTolerance);
       const double share = reduction(coarse.reference().cost, far.cost);
       if (share <= answers.share[i]) continue;
       answers.share[i] = share;

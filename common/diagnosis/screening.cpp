@@ -292,10 +292,18 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       }
       const Eigen::VectorXd move = -normal.ldlt().solve(gradient);
       const double foretold = -0.5 * gradient.dot(move);
-      if (foretold < worth * cost_without) break;
+      if (foretold < kNothing * cost_without) break;
       std::vector<double> next = theta;
       for (std::size_t i = 0; i < k; ++i) next[i] += move[static_cast<Eigen::Index>(i)] * parameters[i].sigma;
-      next = clamped(parameters, next);
+      const std::vector<double> free = std::exchange(next, clamped(parameters, next));
+      if (foretold < worth * cost_without) {
+        // Not worth a rollout: what the linear picture says of it will do.
+        if (next != free) break;
+        theta = next;
+        residual += columns * move;
+        cost = total(window_costs(base, residual.col(0)));
+        break;
+      }
       Eigen::MatrixXd next_residual = candidate.residual(next);
       remove_base(base, next_residual);
       const double next_cost = total(window_costs(base, next_residual.col(0)));
@@ -333,12 +341,12 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
 
 Screened screen(const Linearisation& base, const model::Effect& effect, int variant, const std::string& variant_name,
                 std::span<const std::vector<double>> starts, double worth) {
-  return search_from(base, effect, variant, variant_name, starts, false, std::max(worth, kNothing));
+  return search_from(base, effect, variant, variant_name, starts, false, worth);
 }
 
 Screened refine(const Linearisation& base, const Screened& rough) {
   const std::vector<std::vector<double>> start{rough.theta};
-  return search_from(base, *rough.effect, rough.variant, rough.variant_name, start, true, kNothing);
+  return search_from(base, *rough.effect, rough.variant, rough.variant_name, start, true, 0.0);
 }
 
 }  // namespace fathom::diagnosis
