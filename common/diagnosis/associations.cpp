@@ -1,14 +1,15 @@
 #include "common/diagnosis/associations.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "common/diagnosis/bursts.hpp"
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/oscillation.hpp"
 #include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/product_sums.hpp"
 #include "common/identification/lag_sums.hpp"
 
 namespace fathom::diagnosis {
@@ -16,7 +17,6 @@ namespace {
 
 using identification::ColouredFit;
 using identification::LagSums;
-using Indices = std::vector<Eigen::Index>;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSamplesPerColumn = 5;  // fewer tell nothing
@@ -38,50 +38,10 @@ Indices range(Eigen::Index from, Eigen::Index to) {
   return indices;
 }
 
-/// Columns but the first and the last: mean removed and brought to the size of one, so that sums do not cancel.
-void standardise(std::vector<Eigen::MatrixXd>& runs) {
-  if (runs.empty()) return;
-  for (Eigen::Index c = 1; c + 1 < runs.front().cols(); ++c) {
-    double sum = 0.0, square = 0.0, count = 0.0;
-    for (const Eigen::MatrixXd& run : runs) {
-      for (Eigen::Index k = 0; k < run.rows(); ++k) {
-        if (!std::isfinite(run(k, c))) continue;
-        sum += run(k, c);
-        square += run(k, c) * run(k, c);
-        count += 1.0;
-      }
-    }
-    const double mean = count > 0.0 ? sum / count : 0.0;
-    const double spread = count > 0.0 ? std::sqrt(std::max(square / count - mean * mean, 0.0)) : 0.0;
-    const double scale = spread > 1e-9 * std::abs(mean) && spread > 0.0 ? 1.0 / spread : 0.0;
-    for (Eigen::MatrixXd& run : runs) run.col(c) = (run.col(c).array() - mean) * scale;
-  }
-}
-
 LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs) {
   LagSums sums{runs.front().cols()};
   for (const Eigen::MatrixXd& run : runs) sums.add(run);
   return sums;
-}
-
-/// Least squares by sums of products: what the columns `free` take up of `right`. Collinear columns share.
-Eigen::VectorXd taken_up(const Eigen::MatrixXd& products, const Indices& free, const Eigen::VectorXd& right) {
-  constexpr double kCollinear = 1e-9;  // relative pivot
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
-  solver.setThreshold(kCollinear);
-  solver.compute(products(free, free));
-  return solver.solve(Eigen::VectorXd(right(free)));
-}
-
-/// Least sum of squares of the target when the columns `free` may take up what they like, and the others keep `fixed`.
-double square_left(const Eigen::MatrixXd& products, const Indices& free, const Indices& held,
-                   const Eigen::VectorXd& fixed) {
-  const Eigen::Index target = products.cols() - 1;
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(products.cols());
-  c[target] = 1.0;
-  for (std::size_t i = 0; i < held.size(); ++i) c[held[i]] = -fixed[static_cast<Eigen::Index>(i)];
-  const Eigen::VectorXd with = products * c;
-  return std::max(c.dot(with) - with(free).dot(taken_up(products, free, with)), 0.0);
 }
 
 }  // namespace
@@ -110,7 +70,7 @@ LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
     if (!run.at.empty()) runs_.push_back(std::move(run));
   }
   const auto axes = static_cast<double>(std::ranges::count(model.vehicle->dof, true));
-  tried_ = axes * static_cast<double>(suspects().size() + 2);
+  tried_ = axes * static_cast<double>(suspects().size() + 3);
 }
 
 std::vector<Eigen::MatrixXd> LeftOver::rows(int axis, bool (*seen)(const Trial&), const Asked& asked) const {
@@ -223,6 +183,38 @@ Association LeftOver::oscillation(int axis) const {
   return best;
 }
 
+/// What comes and goes, whatever its sign, and what was measured when it came.
+Association LeftOver::in_bursts(int axis) const {
+  Association found{.axis = model::kAxisNames[static_cast<std::size_t>(axis)],
+                    .with = "bursts of no recorded cause",
+                    .log_odds = -1.0};
+  const std::vector<Eigen::MatrixXd> runs = rows(axis, always, [](const Moment&, Columns&) {});
+  if (runs.empty()) return found;
+  const LagSums sums = sums_of(runs);
+  if (sums.samples() < kSamplesPerColumn * kBaseColumns) return found;
+  const ColouredFit fit = identification::fit_coloured(sums, range(0, kBaseColumns), kBaseColumns);
+  std::vector<Eigen::VectorXd> all;
+  for (const Eigen::MatrixXd& run : runs) all.emplace_back(run.col(kBaseColumns) - run.leftCols(kBaseColumns) * fit.x);
+  const std::vector<std::vector<double>> left = unforetold(all);
+  const Bursts told = bursts(left);
+  found.share = told.share;
+  found.log_odds = told.log_odds - std::log(tried_);
+  if (found.log_odds < 0.0) return found;
+  double best = 0.0;
+  for (const Circumstance& one : circumstances()) {
+    std::vector<std::vector<double>> quantity;
+    for (const Run& run : runs_) {
+      std::vector<double>& of_run = quantity.emplace_back();
+      for (const Moment& at : run.at) of_run.push_back(one.seen(at.trial) ? one.of(at, axis) : kNaN);
+    }
+    const double log_odds = size_goes_with(left, quantity) - std::log(static_cast<double>(circumstances().size()));
+    if (log_odds <= best) continue;
+    best = log_odds;
+    found.with = std::string("bursts, whose size goes with ") + one.name;
+  }
+  return found;
+}
+
 double LeftOver::size(int axis) const {
   struct Spread {
     double sum{}, square{}, count{};
@@ -248,6 +240,7 @@ std::vector<Association> LeftOver::associations(double share, double log_odds, d
     std::vector<Association> of_axis = of_suspects(axis);
     of_axis.push_back(step(axis));
     of_axis.push_back(oscillation(axis));
+    of_axis.push_back(in_bursts(axis));
     const double whole = size(axis);
     for (Association& one : of_axis) one.of_wrench = std::sqrt(one.share) * whole;
     std::erase_if(of_axis, [&](const Association& a) {

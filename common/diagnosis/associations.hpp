@@ -49,6 +49,7 @@ class LeftOver {
   [[nodiscard]] std::vector<Association> of_suspects(int axis) const;
   [[nodiscard]] Association step(int axis) const;
   [[nodiscard]] Association oscillation(int axis) const;
+  [[nodiscard]] Association in_bursts(int axis) const;
   /// Residual over applied wrench along an axis, both without their means (rms); NaN where none is applied.
   [[nodiscard]] double size(int axis) const;
 

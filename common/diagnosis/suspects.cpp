@@ -118,9 +118,17 @@ constexpr std::array kSuspects{
             }},
 };
 
+constexpr std::array kCircumstances{
+    Circumstance{"thrust", always, [](const Moment& at, int axis) { return std::abs(at.tau[0][axis]); }},
+    Circumstance{"speed", always, [](const Moment& at, int axis) { return std::abs(at.nu[axis]); }},
+    Circumstance{"depth", with_position, [](const Moment& at, int) { return place(at).z(); }},
+    Circumstance{"time", always, [](const Moment& at, int) { return time(at); }}};
+
 }  // namespace
 
 std::span<const Suspect> suspects() { return kSuspects; }
+
+std::span<const Circumstance> circumstances() { return kCircumstances; }
 
 void base_columns(const Moment& at, int axis, Columns& row) {
   const double v = at.nu[axis];

@@ -31,6 +31,15 @@ struct Suspect {
 
 [[nodiscard]] std::span<const Suspect> suspects();
 
+/// With what the size of a residual may go, whatever its sign.
+struct Circumstance {
+  const char* name;
+  bool (*seen)(const Trial&);
+  double (*of)(const Moment&, int axis);
+};
+
+[[nodiscard]] std::span<const Circumstance> circumstances();
+
 constexpr int kBaseColumns = 9;
 /// A constant, thrust, drag, what added mass couples, and restoring moments, of one axis.
 void base_columns(const Moment& at, int axis, Columns& row);
