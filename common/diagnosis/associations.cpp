@@ -183,11 +183,14 @@ Association LeftOver::oscillation(int axis) const {
   return best;
 }
 
-/// What comes and goes, whatever its sign, and what was measured when it came.
+/// What comes and goes, whatever its sign, and what was measured when it came. Moments are left out beside forces: that
+/// of the added mass multiplies the noise of one velocity with another, so its noise grows with the speed.
 Association LeftOver::in_bursts(int axis) const {
   Association found{.axis = model::kAxisNames[static_cast<std::size_t>(axis)],
                     .with = "bursts of no recorded cause",
                     .log_odds = -1.0};
+  const auto& dof = model_.vehicle->dof;
+  if (axis >= 3 && (dof[0] || dof[1] || dof[2])) return found;
   const std::vector<Eigen::MatrixXd> runs = rows(axis, always, [](const Moment&, Columns&) {});
   if (runs.empty()) return found;
   const LagSums sums = sums_of(runs);

@@ -90,13 +90,13 @@ struct Tumble {
   std::vector<Trial> trials{1};
   std::vector<std::vector<Vector6d>> residuals{1};
 
-  explicit Tumble(unsigned seed) {
+  explicit Tumble(unsigned seed, std::size_t samples = kTumbleSamples) {
     vehicle.dof.fill(true);
     model = model::nominal_model(vehicle, true);
     constexpr double kMemory = 2.0;  // s, of its speeds
     const double keep = std::exp(-kTumbleDt / kMemory);
     const std::size_t span = residual_span(kTumbleDt);
-    const std::size_t count = kTumbleSamples * span;
+    const std::size_t count = samples * span;
     std::mt19937 random{seed};
     std::normal_distribution<double> normal;
     const auto drawn = [&] { return Vector6d{Vector6d::NullaryExpr([&] { return normal(random); })}; };
@@ -244,6 +244,15 @@ TEST_CASE("associations: thrust that is lost now and then comes in bursts, whose
   }
   CHECK(found == 20);
   CHECK(with_thrust >= 10);  // 12 at the time of writing: bursts are few, and only evidence names what they go with
+}
+
+TEST_CASE("associations: noise of moments that grows with the speed is no burst, the same of a force is") {
+  for (const int axis : {0, 5}) {
+    Tumble tumble{4, 600};
+    for (std::size_t k = 0; k < tumble.trials[0].size(); ++k)
+      tumble.residuals[0][k][axis] *= std::pow(tumble.trials[0].nu[k][1], 2);
+    CHECK(among(tumble.left(), "bursts") == (axis == 0));
+  }
 }
 
 TEST_CASE("associations: a run without the quantity is left out, a run too short tells nothing") {
