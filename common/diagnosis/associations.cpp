@@ -197,6 +197,7 @@ Association LeftOver::in_bursts(int axis) const {
   if (sums.samples() < kSamplesPerColumn * kBaseColumns) return found;
   const ColouredFit fit = identification::fit_coloured(sums, range(0, kBaseColumns), kBaseColumns);
   std::vector<Eigen::VectorXd> all;
+  all.reserve(runs.size());
   for (const Eigen::MatrixXd& run : runs) all.emplace_back(run.col(kBaseColumns) - run.leftCols(kBaseColumns) * fit.x);
   const std::vector<std::vector<double>> left = unforetold(all);
   const Bursts told = bursts(left);
