@@ -35,6 +35,7 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   suspicions_ = evidence.judge();
   std::erase_if(suspicions_, [&](const LiveSuspicion& s) {
     const LiveForm& form = forms()[static_cast<std::size_t>(s.form)];
+    if (form.effect->measures() && sensors_.velocity_judged()) return true;
     return screening_->places().rule_out(*form.effect, s.theta, form.variant);
   });
   const auto convinces = [&](const LiveSuspicion& s) {
@@ -77,7 +78,9 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   };
   ranking.verdict = "ambiguous";
   ranking.against = effect_of(**rival)->name();
-  rivals_.emplace(active(winner), active(**rival));
+  // No segment is rehearsed with a wrong sensor.
+  if (!effect_of(winner)->measures() && !effect_of(**rival)->measures())
+    rivals_.emplace(active(winner), active(**rival));
   return ranking;
 }
 
