@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "common/model/effect_size.hpp"
@@ -11,8 +12,21 @@ namespace {
 
 constexpr double kStep = 1e-3;  // of the number or a tenth of its sigma, for differences: rounding and curvature small
 
+// Of what sensors do, only an arm is asked here: scales of velocities hide in masses and drag, and what is late is no
+// matter of an instant.
+bool is_asked(const model::Effect& effect) { return !effect.measures() || effect.name() == "lever_arm"; }
+
+/// `nu` as it was, were `effect` in what measured it.
+Vector6d unmeasured(const model::Effect& effect, Vector6d nu, std::span<const double> theta, int variant) {
+  Eigen::Map<model::VelocityTrace> one{nu.data(), 6, 1};
+  model::VelocityView view{one};
+  effect.unmeasure(view, 0.0, theta, variant);
+  return nu;
+}
+
 bool adds_inertia(const model::Effect& effect, int variant, const std::vector<double>& theta,
                   const model::Model& base) {
+  if (effect.measures()) return true;  // other velocities are another momentum
   model::Motion motion;
   motion.vehicle = base.vehicle;
   motion.force = model::ActuatorForces::Zero(base.allocation.cols());
@@ -25,9 +39,12 @@ bool adds_inertia(const model::Effect& effect, int variant, const std::vector<do
 
 LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& scene) : base_{base} {
   base_.effects.clear();
+  // STATE's places rest on the same sensors as its velocities: no witness of a wrong arm.
+  model::Scene instruments = scene;
+  instruments.position = instruments.attitude = false;
   for (const model::Effect* effect : model::all_effects()) {
-    if (effect->measures()) continue;  // adds no wrench
-    const std::vector<std::string> names = effect->variants(scene);
+    if (!is_asked(*effect)) continue;
+    const std::vector<std::string> names = effect->variants(effect->measures() ? instruments : scene);
     for (std::size_t v = 0; v < names.size(); ++v) {
       if (names[v] == "-") continue;
       const auto variant = static_cast<int>(v);
@@ -92,6 +109,7 @@ void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForc
       }
     }
     felt = motion;
+    if (probe.effect->measures()) felt.nu = unmeasured(*probe.effect, motion.nu, probe.theta, probe.variant);
     probe.effect->feel(felt, probe.theta, probe.variant, probe.memory);
     const Vector6d force = model::generalised_force(base_, felt, load);
     probe.effect->load(felt, probe.theta, probe.variant, load);
@@ -101,7 +119,8 @@ void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForc
     wrench.col(probe.column) = is_start ? Vector6d{total - absent} : Vector6d{(total - at_start) * probe.per_step};
     const Eigen::Index entry = momentum_of_[static_cast<std::size_t>(probe.column)];
     if (entry < 0) continue;
-    const Vector6d added = load.inertia() * motion.nu;
+    const Vector6d added = probe.effect->measures() ? base_.theta.head<6>().cwiseProduct(felt.nu - motion.nu).eval()
+                                                    : Vector6d{load.inertia() * motion.nu};
     if (is_start) momentum_at_start = added;
     momentum.col(entry) = is_start ? added : Vector6d{(added - momentum_at_start) * probe.per_step};
   }

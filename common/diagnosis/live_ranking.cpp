@@ -35,6 +35,7 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   suspicions_ = evidence.judge();
   std::erase_if(suspicions_, [&](const LiveSuspicion& s) {
     const LiveForm& form = forms()[static_cast<std::size_t>(s.form)];
+    if (form.effect->measures() && sensors_.velocity_judged()) return true;
     return screening_->places().rule_out(*form.effect, s.theta, form.variant);
   });
   const auto convinces = [&](const LiveSuspicion& s) {
@@ -63,8 +64,14 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
     return ranking;
   }
   const LiveSuspicion& winner = *best.front();
+  // Of the residual's power.
+  const auto explained = [](const LiveSuspicion& s) { return 1.0 - std::pow(1.0 - s.error_reduction, 2); };
   const auto rival = std::find_if(best.begin() + 1, best.end(), [&](const LiveSuspicion* other) {
-    return convinces(*other) && evidence.likeness(winner, *other) > settings_.alias_correlation &&
+    // No name is safe while another explains more, and most of the same with it, though it may not convince by itself.
+    const bool more = other->error_reduction > winner.error_reduction;
+    if (!more && !convinces(*other)) return false;
+    const double wider = more ? std::sqrt(explained(*other) / explained(winner)) : 1.0;
+    return wider * evidence.likeness(winner, *other) > settings_.alias_correlation &&
            robust_log_likelihood_ratio(other->block_cost, winner.block_cost) < settings_.alternative_log_odds;
   });
   if (rival == best.end()) {
@@ -77,7 +84,9 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   };
   ranking.verdict = "ambiguous";
   ranking.against = effect_of(**rival)->name();
-  rivals_.emplace(active(winner), active(**rival));
+  // No segment is rehearsed with a wrong sensor.
+  if (!effect_of(winner)->measures() && !effect_of(**rival)->measures())
+    rivals_.emplace(active(winner), active(**rival));
   return ranking;
 }
 

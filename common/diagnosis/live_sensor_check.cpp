@@ -125,7 +125,10 @@ LiveSensorCheck::Seen LiveSensorCheck::until(Utime now) const {
     recording.dvl.push_back({.utime = sample.utime, .v_WB_B = sample.x + turned * w});
   }
   recording.one_estimate = recording.dvl.empty();
-  if (flow_) seen.pictures = flow_->seen(states_, begin, end);
+  if (flow_) {
+    seen.pictures = flow_->seen(states_, begin, end);
+    seen.site = flow_->site();
+  }
   return seen;
 }
 
@@ -133,7 +136,7 @@ LiveSensorCheck::Seen LiveSensorCheck::until(Utime now) const {
 LiveSensorCheck::Found LiveSensorCheck::look(const Seen& seen) {
   auto checked = estimation::check_consistency(std::span(&seen.sensors, 1));
   if (!seen.pictures.dvl.empty()) {
-    estimation::PairResult flow = estimation::compare_flow(std::span(&seen.pictures, 1));
+    estimation::PairResult flow = estimation::compare_flow(std::span(&seen.pictures, 1), *seen.site);
     std::ranges::move(flow.findings, std::back_inserter(checked.findings));
     checked.pairs.emplace("optical_flow", std::move(flow));
   }
@@ -164,6 +167,7 @@ void LiveSensorCheck::take(Found found) {
     return std::ranges::find(found.judged, signal) != found.judged.end();
   };
   std::erase_if(faults_, [&](const EffectEvidence& one) { return judged(group_of(one.variant)); });
+  velocity_judged_ = velocity_judged_ || judged("optical_flow");
   if (judged("gyro")) turns_.gyro = found.turns.gyro;
   if (judged("dvl")) turns_.dvl = found.turns.dvl;
   faults_.insert(faults_.end(), found.faults.begin(), found.faults.end());

@@ -47,6 +47,8 @@ class LiveSensorCheck {
   /// sensor_latency, sensor_scale and lever_arm of AHRS, DVL and optical flow, most certain first; the variant is the
   /// signal. What was found stays until a later look can judge the same sensor.
   [[nodiscard]] const std::vector<EffectEvidence>& faults() const { return faults_; }
+  /// True when places that velocities had no part in have been compared with them: then forces need not be asked.
+  [[nodiscard]] bool velocity_judged() const { return velocity_judged_; }
 
  private:
   struct Sample {
@@ -61,6 +63,7 @@ class LiveSensorCheck {
   void keep(std::deque<Sample>& samples, const Sample& sample) const;
   struct Seen {
     Recording sensors, pictures;
+    std::optional<model::Site> site;  // of the pictures
   };
   template <class Message>
   void hear_picture(const Message& message);
@@ -78,6 +81,7 @@ class LiveSensorCheck {
   std::future<Found> look_;
   std::vector<EffectEvidence> faults_;
   Turns turns_;
+  bool velocity_judged_{false};
 };
 
 }  // namespace fathom::diagnosis

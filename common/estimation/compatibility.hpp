@@ -41,7 +41,7 @@ struct SensorFault {
   Eigen::Vector3d scale{Eigen::Vector3d::Ones()};     ///< per logged axis: true over logged
   Eigen::Vector3d bias{Eigen::Vector3d::Zero()};      ///< added to the corrected signal
   Eigen::Vector3d lever{Eigen::Vector3d::Zero()};     ///< m, where the sensor truly measures
-  Eigen::Matrix3d coupling{Eigen::Matrix3d::Zero()};  ///< m, symmetric
+  Eigen::Matrix3d coupling{Eigen::Matrix3d::Zero()};  ///< m, what else goes with the rates
   double delay{};                                     ///< s, behind the reference
   double heading{};                                   ///< rad, reference attitude turned against reference position
   [[nodiscard]] Eigen::Matrix3d matrix() const { return rotation * base * scale.asDiagonal(); }

@@ -1,14 +1,18 @@
 #include "common/estimation/flow_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "common/base/spatial.hpp"
 #include "common/estimation/camera_geometry.hpp"
 
 namespace fathom::estimation {
 namespace {
 
-constexpr double kNear = 0.1;  // s between a picture and the state that supplies its attitude
+constexpr double kNear = 0.1;      // s between a picture and the state that supplies its attitude
+constexpr double kOwnArm = 0.03;   // m: less changes no fitted model by much
+constexpr double kTurned = 0.035;  // rad: rates that are turned by that much leave an arm of that share of the height
 
 /// The motion nearest to a time stamp, nullptr when there is none near or it does not count.
 const MotionAt* near(const std::deque<MotionAt>& motion, Utime utime) {
@@ -31,8 +35,18 @@ Recording flow_and_tags(const Recording& recording, const model::Mounts& mounts,
   return seen;
 }
 
+/// m, of an arm that is the flow's own and not a turned gyro's, whose rates vision took the turning out with.
+double least_arm(std::span<const Recording> seen, const model::Site& site) {
+  double height = 0.0, count = 0.0;
+  for (const Recording& one : seen) {
+    for (const PoseCapture& pose : one.pose_capture) height += site.floor - pose.p_WB.z();
+    count += static_cast<double>(one.pose_capture.size());
+  }
+  return std::max(kOwnArm, count > 0.0 ? kTurned * height / count : 0.0);
+}
+
 /// How much of the flow's fault is in STATE is the filter's affair: its velocity is measured against the tags, too.
-void correct_what_rests_on_flow(std::span<Recording> recordings, std::vector<Recording>& seen,
+void correct_what_rests_on_flow(std::span<Recording> recordings, std::vector<Recording>& seen, const model::Site& site,
                                 std::vector<Corrections>& corrections) {
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     if (!recordings[r].one_estimate || seen[r].dvl.empty()) continue;
@@ -41,14 +55,19 @@ void correct_what_rests_on_flow(std::span<Recording> recordings, std::vector<Rec
     const SensorFault& fault = checked.corrections.front().dvl;
     corrections[r].dvl.scale.head<2>() = fault.scale.head<2>();
     corrections[r].dvl_shift -= fault.delay;
+    if (fault.lever.cwiseAbs().maxCoeff() > least_arm(seen, site)) {  // u and v alone: heave is not the flow's
+      corrections[r].dvl.coupling.topRows<2>() = skew(fault.lever).topRows<2>();
+    }
     recordings[r].pose_capture = std::move(seen[r].pose_capture);  // STATE's is led astray by the flow
   }
 }
 
 /// Of what the velocity comparison can find, only this is the flow's own: across the optical axis it is one angle times
-/// one distance, and a camera that is mounted otherwise than told moves tags and flow alike.
-bool is_the_flows(const ConsistencyFinding& finding) {
+/// one distance, and a camera that is mounted otherwise than told moves tags and flow alike. So an arm that the tags do
+/// not share is no place of the camera, but turning that was taken out of the flow wrongly.
+bool is_the_flows(const ConsistencyFinding& finding, double least_arm) {
   if (finding.finding == "delay") return finding.signal == "dvl";
+  if (finding.finding.starts_with("lever_arm_")) return std::abs(finding.size) > least_arm;
   const bool kind = finding.finding == "scale" || finding.finding == "sign" || finding.finding == "axes";
   return kind && (finding.signal == "dvl.u" || finding.signal == "dvl.v");
 }
@@ -119,10 +138,11 @@ Recording FlowWitnesses::seen(const std::deque<MotionAt>& motion, Utime begin, U
   return seen;
 }
 
-PairResult compare_flow(std::span<const Recording> seen) {
+PairResult compare_flow(std::span<const Recording> seen, const model::Site& site) {
   ConsistencyResult checked = check_consistency(seen);
   PairResult flow = std::move(checked.pairs.at("dvl"));
-  std::erase_if(flow.findings, [](const ConsistencyFinding& one) { return !is_the_flows(one); });
+  const double least = least_arm(seen, site);
+  std::erase_if(flow.findings, [&](const ConsistencyFinding& one) { return !is_the_flows(one, least); });
   for (ConsistencyFinding& one : flow.findings) {
     one.signal.replace(0, 3, "optical_flow");
     one.reference = "tag_pose";
@@ -135,8 +155,8 @@ void check_flow(std::span<Recording> recordings, const model::Mounts& mounts, co
   std::vector<Recording> seen;
   for (const Recording& one : recordings) seen.push_back(flow_and_tags(one, mounts, site));
   if (std::ranges::all_of(seen, [](const Recording& one) { return one.dvl.empty(); })) return;
-  PairResult flow = compare_flow(seen);
-  if (!flow.findings.empty()) correct_what_rests_on_flow(recordings, seen, result.corrections);
+  PairResult flow = compare_flow(seen, site);
+  if (!flow.findings.empty()) correct_what_rests_on_flow(recordings, seen, site, result.corrections);
   std::ranges::move(flow.findings, std::back_inserter(result.findings));
   result.pairs.emplace("optical_flow", std::move(flow));
 }

@@ -34,6 +34,7 @@ class FlowWitnesses {
 
   void hear(const TagPose& tag);
   void hear(const OpticalFlow& flow);
+  [[nodiscard]] const model::Site& site() const { return site_; }
   void forget_before(Utime utime);
   void clear();
 
@@ -61,9 +62,9 @@ class FlowWitnesses {
   std::deque<Flow> flows_;
 };
 
-/// `seen`: one per trial. Signs, scales and delay of optical_flow.u and .v against tag_pose; of the rest the flow says
-/// nothing.
-[[nodiscard]] PairResult compare_flow(std::span<const Recording> seen);
+/// `seen`: one per trial. Signs, scales and delay of optical_flow.u and .v against tag_pose, and turning that is left
+/// in the flow as by a lever arm; of the rest the flow says nothing.
+[[nodiscard]] PairResult compare_flow(std::span<const Recording> seen, const model::Site& site);
 
 /// Compares flow and tags of logs with STATE; adds to `result`, and where STATE stands for the velocity log
 /// (take_state_as_measured) and the flow is wrong, corrects the velocity and takes the tags' own position.

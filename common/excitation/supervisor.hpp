@@ -50,7 +50,7 @@ struct SupervisorSettings {
   double model_patience{0.0};      ///< s of valid states without a MODEL after which nothing is excited; 0: for ever
   double order_age{5.0};           ///< s that an order may be old
   int flights{0};                  ///< proposed segments that may be flown at the end without an order
-  double open_range{8.0};          ///< m around the start where the site has no walls
+  double open_range{8.0};          ///< m around the place of arming, where walls, floor and surface are farther
   std::vector<std::string> needs;  ///< processes that must be well
   double silence{5.0};             ///< s without HEALTH after which one of them counts as gone, in real time
   HoldSettings hold;

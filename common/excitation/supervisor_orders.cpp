@@ -83,17 +83,12 @@ bool Supervisor::arm() {
   turned_ = 0.0;
   FenceSettings settings = settings_.fence;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    if (!std::isfinite(settings.low[i])) settings.low[i] = state_.p_WB[i] - settings_.open_range;
-    if (!std::isfinite(settings.high[i])) settings.high[i] = state_.p_WB[i] + settings_.open_range;
+    // Water that goes on for longer is no room for a trial: in the open a velocity log loses the bottom.
+    settings.low[i] = std::max(settings.low[i], state_.p_WB[i] - settings_.open_range);
+    settings.high[i] = std::min(settings.high[i], state_.p_WB[i] + settings_.open_range);
   }
   fence_ = Fence{settings};
   middle_ = fence_.middle();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    // A side far away does not pull the vehicle there.
-    const double reach = settings_.open_range;
-    middle_[i] = std::clamp(middle_[i], std::max(settings.low[i], state_.p_WB[i] - reach),
-                            std::min(settings.high[i], state_.p_WB[i] + reach));
-  }
   visits_.clear();
   frozen_.clear();
   hold_.reset();

@@ -17,7 +17,7 @@ constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 3";
+constexpr char kHeader[] = "fathom identifier 4";
 
 void put(std::string& text, double value) {
   std::array<char, 32> number{};
@@ -117,7 +117,10 @@ std::string Identifier::save_text() const {
   all(s.derivatives);
   all(s.score0);
   all(s.score1);
+  all(s.score2);
+  all(s.fourth);
   all(s.last_score);
+  all(s.score_before);
   put(text, s.steps_until_check);
   for (const AxisStatistics& axis : s.axes) {
     for (const double value : {axis.weight, axis.mean, axis.variance, axis.covariance, axis.last}) put(text, value);
@@ -168,7 +171,10 @@ void Identifier::decide(Utime first) {
     all(s.derivatives);
     all(s.score0);
     all(s.score1);
+    all(s.score2);
+    all(s.fourth);
     all(s.last_score);
+    all(s.score_before);
     s.steps_until_check = take(text);
     for (AxisStatistics& axis : s.axes) {
       for (double* value : {&axis.weight, &axis.mean, &axis.variance, &axis.covariance, &axis.last})

@@ -13,6 +13,8 @@ namespace fathom::identification {
 namespace {
 
 constexpr double kLargestCorrelation = 0.995;  // beyond this the AR(1) factor says more about the sample than the noise
+constexpr double kDoubtOfRatio = 16.0;         // four standard errors, squared
+constexpr double kStatedScores = 20.0;  // independent ones that the stated noise is worth: a third of it in doubt
 
 }  // namespace
 
@@ -49,9 +51,11 @@ void RecursiveEstimator::reset() {
   state_.derivatives = ParameterVector::Zero(n);
   state_.score0 = ParameterVector::Zero(n);
   state_.score1 = ParameterVector::Zero(n);
-  state_.last_score = ParameterVector::Zero(n);
+  state_.score2 = ParameterVector::Zero(n);
+  state_.fourth = ParameterVector::Zero(n);
+  state_.last_score = state_.score_before = ParameterVector::Zero(n);
   any_frozen_ = false;
-  score_ = ParameterVector::Zero(n);
+  score_ = score_square_ = ParameterVector::Zero(n);
 }
 
 void RecursiveEstimator::freeze(int parameter) {
@@ -166,9 +170,13 @@ void RecursiveEstimator::step(std::span<const Row> rows) {
     if (row.derivative >= 0 && !state_.frozen[static_cast<std::size_t>(row.derivative)])
       state_.derivatives(row.derivative) += 1.0 / row.variance;
   }
-  state_.score0 = keep * state_.score0 + score_.cwiseAbs2();
+  score_square_ = score_.cwiseAbs2();
+  state_.score0 = keep * state_.score0 + score_square_;
+  state_.fourth = keep * state_.fourth + score_square_.cwiseAbs2();
   state_.score1 = keep * state_.score1 + score_.cwiseProduct(state_.last_score);
-  state_.last_score = score_;
+  state_.score2 = keep * state_.score2 + score_.cwiseProduct(state_.score_before);
+  state_.score_before.swap(state_.last_score);
+  state_.last_score.swap(score_);
 }
 
 ParameterMatrix RecursiveEstimator::covariance() const {
@@ -232,18 +240,31 @@ ParameterVector RecursiveEstimator::projected() const {
 }
 
 // The estimate errs by P times the sum of the scores. White residuals of the stated variance give that sum a variance
-// equal to the information; what it really is, is read off the scores: their size, and their correlation from one step
-// to the next taken as AR(1), (1 + rho) / (1 - rho) (the effective sample size; compare Grauer & Morelli 2016). This
-// sees the colour of residual and regressor together. The prior's share of the information is taken at its word.
-ParameterVector RecursiveEstimator::inflation() const {
+// equal to the information; what it really is, is read off the scores: their size, and their correlation over one step
+// and two taken as ARMA(1, 1) (the effective sample size; compare Grauer & Morelli 2016): windows that overlap make the
+// one, residuals with a memory the other. This sees the colour of residual and regressor together. The prior's share of
+// the information is taken at its word. Where residuals are smaller than stated, the statement counts as if so many
+// independent scores had told it: a few quiet seconds prove little.
+ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
   const Eigen::Index n = state_.estimate.size();
+  const ParameterVector prior = settings_.sigma.cwiseAbs2().cwiseInverse();
   ParameterVector factor = ParameterVector::Ones(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(state_.score0(i) > 0.0)) continue;
-    const double rho = std::clamp(state_.score1(i) / state_.score0(i), 0.0, kLargestCorrelation);
-    const double prior = 1.0 / (settings_.sigma(i) * settings_.sigma(i));
-    const double seen = state_.score0(i) * (1.0 + rho) / (1.0 - rho);
-    factor(i) = std::max(1.0, (prior + seen) / (prior + state_.information(i)));
+    const double squares = state_.score0(i), information = state_.information(i);
+    if (!(squares > 0.0 && information > 0.0)) continue;
+    // Gauss's fourth moment is three variances squared: of scores all alike in size this is their number.
+    const double count = state_.fourth(i) > 0.0 ? 3.0 * squares * squares / state_.fourth(i) : 1.0;
+    const double rho = std::clamp(state_.score1(i) / squares, 0.0, kLargestCorrelation);
+    // Two correlations, each known to 1 / sqrt(count): where the first is no more than that, AR(1).
+    const double doubt = kDoubtOfRatio / count;
+    const double fades = rho * (state_.score2(i) / squares + doubt) / (rho * rho + doubt);
+    const double longer = 1.0 + 2.0 * rho / (1.0 - std::clamp(fades, 0.0, kLargestCorrelation));
+    double seen = squares * longer / information;
+    const double scores = count / longer;
+    if (seen < 1.0) seen = (kStatedScores + scores * seen) / (kStatedScores + scores);
+    // Of P that much is the prior's: P = P (1 / sigma^2 + information) P.
+    const double told = std::min(1.0, P.col(i).cwiseAbs2().dot(prior) / P(i, i));
+    factor(i) = told + (1.0 - told) * seen;
   }
   return factor;
 }
@@ -257,7 +278,7 @@ RecursiveReport RecursiveEstimator::report() const {
     report.active[static_cast<std::size_t>(i)] =
         settings_.signs[static_cast<std::size_t>(i)] != 0 && report.estimate(i) == 0.0;
   }
-  report.inflation = inflation();
+  report.inflation = inflation(report.covariance);
   const ParameterVector widen = report.inflation.cwiseSqrt();
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = 0; i < n; ++i) report.covariance(i, j) *= widen(i) * widen(j);
@@ -270,7 +291,8 @@ void RecursiveEstimator::restore(const State& state) {
   const Eigen::Index n = settings_.mean.size();
   const bool fits = state.estimate.size() == n && state.D.size() == padded(n) && state.U.rows() == padded(n) &&
                     state.U.cols() == n && state.information.size() == n && state.derivatives.size() == n &&
-                    state.score0.size() == n && state.score1.size() == n && state.last_score.size() == n;
+                    state.score0.size() == n && state.score1.size() == n && state.score2.size() == n &&
+                    state.fourth.size() == n && state.last_score.size() == n && state.score_before.size() == n;
   if (!fits) throw InputError("recursive estimator: saved state is of another number of parameters");
   if (!state.estimate.allFinite() || !state.U.allFinite() || !state.D.allFinite() ||
       !(state.D.head(n).minCoeff() > 0.0)) {

@@ -34,7 +34,7 @@ struct RecursiveReport {
   ParameterVector estimate;                   ///< nearest admissible point
   ParameterVector sigma;                      ///< honest: widened for coloured and larger residuals
   ParameterMatrix covariance;                 ///< honest, unconstrained
-  ParameterVector inflation;                  ///< per parameter, >= 1: honest over nominal variance
+  ParameterVector inflation;                  ///< per parameter: honest over nominal variance
   std::array<bool, kMaxParameters> active{};  ///< held at zero by its sign
 };
 
@@ -52,7 +52,9 @@ class RecursiveEstimator {
     ParameterVector derivatives;  ///< sum of 1 / variance over the rows that taught it as their derivative
     ParameterVector score0;       ///< sum of the squared score, score = sum over rows of h * residual / variance
     ParameterVector score1;       ///< sum of score times the score before
-    ParameterVector last_score;
+    ParameterVector score2;       ///< sum of score times the one two steps before
+    ParameterVector fourth;       ///< sum of the score's fourth power: how many scores these sums are made of
+    ParameterVector last_score, score_before;
     double steps_until_check{};
   };
 
@@ -83,13 +85,13 @@ class RecursiveEstimator {
   void forget();
   void take(const Row& row);
   void add_outer(double factor, ParameterVector& v);
-  [[nodiscard]] ParameterVector inflation() const;
+  [[nodiscard]] ParameterVector inflation(const ParameterMatrix& P) const;
 
   RecursiveSettings settings_;
   State state_;
   ParameterVector sign_;  // of the settings, 0 where free
   bool any_frozen_{};
-  ParameterVector score_;
+  ParameterVector score_, score_square_;
 };
 
 }  // namespace fathom::identification

@@ -9,6 +9,7 @@
 """
 import argparse
 import contextlib
+import glob
 import json
 import os
 import random
@@ -46,6 +47,12 @@ def folder_of(options, seed):
 def seeds_of(text):
     first, last = text.split("..")
     return range(int(first), int(last) + 1)
+
+
+def newest_build():
+    """Programs of the preset that was built last."""
+    built = glob.glob(os.path.join(ROOT, "build/*/bin/simulator"))
+    return os.path.dirname(max(built, key=os.path.getmtime)) if built else os.path.join(ROOT, "build/release/bin")
 
 
 def seeds(options):
@@ -219,14 +226,15 @@ def agreement(options):
     for seed in seeds_of(options.what):
         draw = random.Random(seed)
         hidden = draw.choice(effects) if draw.random() < 0.8 else ""
-        with tempfile.TemporaryDirectory() as folder:
+        with folder_of(options, seed) as folder:
             ran = trial(options, folder, seed, *(["--hide", hidden] if hidden else []))
             if ran.returncode != 0:
                 print(f"seed {seed}: {hidden or 'nothing'}: {ran.stderr.splitlines()[-1]}", flush=True)
                 continue
             live = result(folder)["diagnosis"]
             ran = subprocess.run([os.path.join(options.bin, "fathom"), "diagnose",
-                                  "--vehicle", os.path.join(ROOT, f"config/vehicles/{options.vehicle}.yaml"), "--train",
+                                  "--vehicle", os.path.join(ROOT, f"config/vehicles/{options.vehicle}.yaml"),
+                                  "--site", os.path.join(ROOT, f"config/sites/{options.site}.yaml"), "--train",
                                   os.path.join(folder, "run.lcmlog"), "--out", os.path.join(folder, "later")],
                                  capture_output=True, text=True)
             if ran.returncode != 0:
@@ -251,8 +259,8 @@ def main():
     parser.add_argument("--hide", action="append", default=[])
     parser.add_argument("--limit", type=float, default=1500)
     parser.add_argument("--seconds", type=float, default=None)
-    parser.add_argument("--keep", help="folder to keep the trials of `seeds` in, one for each seed")
-    parser.add_argument("--bin", default=os.path.join(ROOT, "build/release/bin"))
+    parser.add_argument("--keep", help="folder to keep the trials of `seeds` and `agreement` in, one for each seed")
+    parser.add_argument("--bin", default=newest_build(), help="programs; those built last otherwise")
     options = parser.parse_args()
     options.bin = os.path.abspath(options.bin)
     if options.seconds is None:

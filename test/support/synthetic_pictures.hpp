@@ -10,10 +10,12 @@ namespace fathom::test {
 
 struct PictureOptions {
   unsigned seed{1};
-  double duration{130.0};                                 // s
-  double rate{20.0};                                      // Hz
-  Eigen::Vector2d flow_factor{Eigen::Vector2d::Ones()};   // of u and v: what the flow shows over what there is
-  double flow_delay{};                                    // s
+  double duration{130.0};                                // s
+  double rate{20.0};                                     // Hz
+  Eigen::Vector2d flow_factor{Eigen::Vector2d::Ones()};  // of u and v: what the flow shows over what there is
+  double flow_delay{};                                   // s
+  Eigen::Vector3d flow_arm{Eigen::Vector3d::Zero()};     // m: turning that is left in the flow, as at this place
+  double gyro_turn{};                                    // rad about x: rates that the flow's turning is taken out with
   Eigen::Vector3d state_offset{Eigen::Vector3d::Zero()};  // m: STATE's position is off, the tags' is not
 };
 
@@ -41,13 +43,15 @@ struct Pictures {
     for (int k = 0; k < count; ++k) {
       const double t = k / o.rate;
       const Utime utime = utime_after(0, 2.0 + t);
-      const Eigen::Vector3d p_WB = motion.p_WB(t), v_B = shown * motion.v_B(t - o.flow_delay), w_B = motion.w_B(t);
+      const Eigen::Vector3d p_WB = motion.p_WB(t), w_B = motion.w_B(t);
+      const Eigen::Vector3d v_B = shown * motion.v_B(t - o.flow_delay) + w_B.cross(o.flow_arm);
       const Eigen::Matrix3d R_WB = motion.R_WB(t);
       StateEstimate state{.utime = utime,
                           .p_WB = p_WB + o.state_offset + noise(0.003),
                           .q_WB = Eigen::Quaterniond{R_WB} * quaternion_from_rotation_vector(noise(0.002)),
                           .valid = true};
-      state.nu << v_B + noise(0.004), w_B + noise(0.0035);
+      const Eigen::Vector3d w_seen = rotation_from_euler({o.gyro_turn, 0.0, 0.0}) * w_B;
+      state.nu << v_B + noise(0.004), w_seen + noise(0.0035);
       recording.state.push_back(state);
       for (const model::Tag& tag : site.tags) {
         const Eigen::Vector3d p_BT = R_WB.transpose() * (tag.p_WT - p_WB);
@@ -56,9 +60,11 @@ struct Pictures {
                                       .tag = tag.id,
                                       .p_CT = camera.R_BS.transpose() * (p_BT - camera.p_BS) + noise(0.006)});
       }
-      const Eigen::Vector3d v_C = camera.R_BS.transpose() * (v_B + w_B.cross(camera.p_BS));
       const Eigen::Vector3d p_WC = p_WB + R_WB * camera.p_BS, axis_W = R_WB * camera.R_BS.col(2);
       const double distance = (site.floor - p_WC.z()) / axis_W.z();
+      // Turning moves the floor's picture as a velocity does; vision takes it out with the rates that it knows.
+      const Eigen::Vector3d left = (w_B - w_seen).cross(distance * camera.R_BS.col(2));
+      const Eigen::Vector3d v_C = camera.R_BS.transpose() * (v_B + w_B.cross(camera.p_BS) + left);
       recording.optical_flow.push_back({.utime = utime,
                                         .camera = "down",
                                         .interval = 1.0 / o.rate,

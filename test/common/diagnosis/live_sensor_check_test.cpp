@@ -242,6 +242,28 @@ TEST_CASE("live sensor check: a flow that reads too small is named while the tri
   }
 }
 
+TEST_CASE("live sensor check: a flow in which turning was left is named with its arm, and has been judged either way") {
+  for (const double arm : {0.0, -0.2}) {
+    CAPTURE(arm);
+    const test::Pictures pictures{{.seed = 4, .flow_arm = {arm, 0.0, 0.0}}};
+    LiveSensorCheck check{{}, estimation::FlowWitnesses{pictures.mounts, pictures.site}};
+    const std::size_t tags = pictures.recording.tag_pose.size() / pictures.recording.state.size();
+    for (std::size_t k = 0; k < pictures.recording.state.size(); ++k) {
+      for (std::size_t i = 0; i < tags; ++i) check.hear(pictures.recording.tag_pose[k * tags + i]);
+      check.hear(pictures.recording.optical_flow[k]);
+      check.step(pictures.recording.state[k]);
+    }
+    CHECK(check.velocity_judged());
+    REQUIRE(check.faults().size() == (arm == 0.0 ? 0 : 1));
+    if (arm == 0.0) continue;
+    CHECK(check.faults().front().name == "lever_arm");
+    CHECK(check.faults().front().variant == "optical_flow");
+    CHECK(check.faults().front().numbers.front() == doctest::Approx(arm).epsilon(0.15));
+    check.reset();
+    CHECK_FALSE(check.velocity_judged());
+  }
+}
+
 TEST_CASE("live sensor check: how far a gyro is turned, and that one in place is not") {
   for (const double turn : {0.0, 0.03}) {
     test::SyntheticOptions options{.seed = 8, .duration = 130.0};

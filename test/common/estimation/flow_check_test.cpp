@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/spatial.hpp"
 #include "common/estimation/state_as_measured.hpp"
 #include "test/support/synthetic_pictures.hpp"
 #include "test/support/timing.hpp"
@@ -69,6 +70,27 @@ TEST_CASE("flow check: a flow that is late") {
   REQUIRE(delay != nullptr);
   CHECK(delay->size == doctest::Approx(0.1).epsilon(0.1));
   CHECK(checked.result.corrections.front().dvl_shift == doctest::Approx(-0.1).epsilon(0.1));
+}
+
+TEST_CASE("flow check: turning that is left in the flow is a lever arm, and is taken out of what the flow supplies") {
+  const Eigen::Vector3d arm{-0.24, 0.27, 0.0};
+  const Checked checked{{.seed = 7, .flow_arm = arm}};
+  const ConsistencyFinding* x = checked.finding("optical_flow", "lever_arm_x");
+  const ConsistencyFinding* y = checked.finding("optical_flow", "lever_arm_y");
+  REQUIRE(x != nullptr);
+  REQUIRE(y != nullptr);
+  CHECK(std::abs(x->size - arm.x()) < 3.0 * x->std + 0.01);
+  CHECK(std::abs(y->size - arm.y()) < 3.0 * y->std + 0.01);
+  const Eigen::Matrix3d& coupling = checked.result.corrections.front().dvl.coupling;
+  CHECK(coupling.topRows<2>().isApprox(skew(arm).topRows<2>(), 0.1));
+  CHECK(coupling.row(2).isZero());  // no camera that looks down sees heave by flow
+}
+
+TEST_CASE("flow check: a gyro that is turned by a degree leaves turning in the flow, which is not the flow's fault") {
+  for (unsigned seed = 1; seed <= test::seeds(4); ++seed) {
+    CAPTURE(seed);
+    CHECK(Checked{{.seed = seed, .gyro_turn = 0.0175}}.result.findings.empty());
+  }
 }
 
 TEST_CASE("flow check: what is in order is not accused") {

@@ -330,6 +330,25 @@ TEST_CASE("supervisor: idle axes are held although the vehicle floats; unheld it
   CHECK(loose.position().z() < 0.2);
 }
 
+TEST_CASE("supervisor: it stays near where it was armed, up and down too, however far the water goes on") {
+  Loop loop;
+  test::TankSettings settings = loop.settings;
+  settings.supervisor.open_range = 0.5;  // m
+  settings.supervisor.schedule = {{.name = "total", .axis = -1, .threshold = 0.0}};
+  loop.supervisor = Supervisor{settings.supervisor, settings.vehicle, "secret"};
+  loop.run(0.5);
+  const Eigen::Vector3d start = loop.plant.position();
+  loop.arm();
+  double farthest = 0.0;
+  for (int second = 0; second < 90; ++second) {
+    loop.run(1.0);
+    farthest = std::max(farthest, (loop.plant.position() - start).cwiseAbs().maxCoeff());
+  }
+  CHECK(loop.supervisor.phase() == Phase::kExcite);
+  CHECK(farthest > 0.1);  // it moved
+  CHECK(farthest < 0.5);
+}
+
 TEST_CASE("supervisor: the same inputs give the same commands to the last bit") {
   std::vector<Vector6d> first;
   for (int round = 0; round < 2; ++round) {

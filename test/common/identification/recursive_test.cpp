@@ -266,6 +266,55 @@ TEST_CASE("recursive: white residuals of the stated size are not punished, large
   CHECK(std::abs(right.state().axes[0].lag1()) < 0.06);
 }
 
+// Stated is four times the noise there is. The estimate's normalised square error must come out as one all the same.
+TEST_CASE("recursive: residuals smaller than stated narrow the intervals by as much, but not after a few of them") {
+  constexpr int kTrials = 200;
+  double honest = 0.0, stated = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Noise noise{static_cast<unsigned>(900 + trial)};
+    RecursiveEstimator estimator{settings(2, 100.0)};
+    for (int k = 0; k < 3000; ++k) {
+      const ParameterVector h = noise.vector(2);
+      const Row r = row(1, h, h.sum() + 0.25 * noise(), 1.0);
+      estimator.step({&r, 1});
+      if (k == 9) CHECK(estimator.report().inflation.minCoeff() > 0.5);  // 20 stated against 10 seen: 0.69 on average
+    }
+    const RecursiveReport report = estimator.report();
+    const ParameterMatrix P = estimator.covariance();
+    for (int i = 0; i < 2; ++i) {
+      const double error = estimator.unconstrained()(i) - 1.0;
+      honest += error * error / report.covariance(i, i) / (2.0 * kTrials);
+      stated += error * error / P(i, i) / (2.0 * kTrials);
+    }
+  }
+  CHECK(stated < 0.1);
+  CHECK(honest > 0.6);  // 400 squared normals: 0.07, taken four times; 0.9 by what the statement still counts
+  CHECK(honest < 1.2);
+}
+
+// Windows that overlap correlate over one step and no further; an AR(1) with that correlation would go on.
+TEST_CASE("recursive: residuals of overlapping windows do not count as ones with a memory") {
+  constexpr int kTrials = 200;
+  double honest = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Noise noise{static_cast<unsigned>(1700 + trial)};
+    RecursiveEstimator estimator{settings(1, 100.0)};
+    double before = noise();
+    for (int k = 0; k < 3000; ++k) {
+      const double e = noise();
+      ParameterVector h(1);
+      h << 1.0;
+      const Row r = row(1, h, 2.0 + (e + before) / std::sqrt(2.0), 1.0);
+      before = e;
+      estimator.step({&r, 1});
+    }
+    const double error = estimator.unconstrained()(0) - 2.0;
+    honest += error * error / estimator.report().covariance(0, 0) / kTrials;
+  }
+  CHECK(honest > 0.7);  // 200 squared normals: 0.1, taken three times; AR(1) would make it 0.67
+  CHECK(honest < 1.3);
+}
+
 TEST_CASE("recursive: a saved state resumes to the same bits, and a foreign one is refused") {
   Noise noise{6};
   RecursiveEstimator first{settings(5, 10.0, 0.999)};

@@ -1,0 +1,138 @@
+#include "test/support/full_trial.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <variant>
+
+#include "common/base/error.hpp"
+#include "common/estimation/navigator.hpp"
+#include "test/common/excitation/tank_run.hpp"
+
+namespace fathom::test {
+
+FullTrial run_trial(const FullTrialOptions& options) {
+  const auto& [seed, optimal, limit, site_name, hide, vehicle, changes] = options;
+  const std::string root = FATHOM_SOURCE_DIR;
+  const std::string path = root + "/config/pipelines/" + site_name + ".yaml";
+  std::ifstream file{path};
+  std::string text_of_file{std::istreambuf_iterator<char>{file}, {}};
+  auto all_changes = changes;
+  if (optimal) {
+    all_changes.emplace_back("excitation: paper", "excitation: optimal");
+    all_changes.emplace_back("schedule: [yaw, surge, sway, heave, total]", "schedule: [total]");
+  }
+  for (const auto& [old, replacement] : all_changes) {
+    const auto at = text_of_file.find(old);
+    if (at == std::string::npos) throw InputError(path + ": there is no '" + old + "' to be changed");
+    text_of_file.replace(at, old.size(), replacement);
+  }
+  const Config pipeline = Config::parse(text_of_file, path);
+  auto s = tank_settings();
+  s.vehicle = vehicle_from_repository(vehicle);
+  const model::Site site = model::Site::load(root + "/config/sites/" + site_name + ".yaml");
+  s.supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), s.vehicle, site);
+  s.identifier = identification::IdentifierSettings::from(pipeline.section("identifier"));
+  s.supervisor.seed = seed;
+  simulation::Simulator simulator{s.vehicle,
+                                  site,
+                                  Config::load(root + "/config/simulation/" + vehicle + ".yaml").section("simulator"),
+                                  {.seed = seed, .hide = hide, .duration = limit}};
+  estimation::Navigator navigator{estimation::NavigatorSettings::from(pipeline.section("estimator")),
+                                  estimation::NavigatorPlaces::of(s.vehicle.mounts, site)};
+  identification::Identifier identifier{s.identifier, s.vehicle};
+  excitation::Supervisor supervisor{s.supervisor, s.vehicle, "secret"};
+  FullTrial trial;
+  double n = 0.0;
+  bool armed = false;
+  StateEstimate last;
+  std::map<Utime, Truth> truths;
+  const auto use = [&](const StateEstimate& state) {
+    last = state;
+    for (const auto& model : identifier.step(state).models) supervisor.hear(model);
+    const auto& output = supervisor.step(state);
+    if (output.command) simulator.command(*output.command);
+    if (output.excitation) identifier.hear(*output.excitation);
+    const double t = seconds_between(1'700'000'000'000'000, state.utime);
+    if (!armed && t > 1.0 && state.valid) {
+      supervisor.hear(order_to_arm(state.utime));
+      armed = true;
+    }
+  };
+  std::map<Utime, StateEstimate> states;
+  while (seconds_between(1'700'000'000'000'000, simulator.now()) < limit) {
+    for (const simulation::Sample& sample : simulator.step()) {
+      std::visit(
+          [&](const auto& one) {
+            using T = std::decay_t<decltype(one)>;
+            if constexpr (requires { navigator.step(one); }) {
+              for (const StateEstimate& state : navigator.step(one)) {
+                use(state);
+                states[state.utime] = state;
+              }
+            } else if constexpr (std::is_same_v<T, Thrusters>) {
+              for (const auto& model : identifier.step(one).models) supervisor.hear(model);
+            } else if constexpr (std::is_same_v<T, Truth>) {
+              truths[one.utime] = one;
+            }
+          },
+          sample);
+    }
+    using excitation::Phase;
+    if (armed && (supervisor.phase() == Phase::kAborted || supervisor.phase() == Phase::kLost)) break;
+    if (supervisor.phase() == Phase::kDone && supervisor.visits().size() == s.supervisor.schedule.size()) break;
+  }
+  for (const auto& [utime, truth] : truths) {
+    const auto found = states.lower_bound(utime);
+    if (found == states.end() || found->first - utime > 5'000 || seconds_between(1'700'000'000'000'000, utime) < 5.0)
+      continue;
+    const double dt = seconds_between(utime, found->first);
+    const StateEstimate& state = found->second;
+    if (!state.valid) continue;
+    n += 1.0;
+    const Eigen::Vector3d dp = state.p_WB - truth.p_WB - dt * (truth.q_WB * truth.nu.head<3>());
+    const Eigen::Vector3d dv = state.nu.head<3>() - truth.nu.head<3>() - dt * truth.nu_dot.head<3>();
+    trial.position += dp.cwiseAbs2();
+    trial.velocity += dv.cwiseAbs2();
+    trial.nees_position += dp.cwiseQuotient(state.sigma.head<3>()).cwiseAbs2();
+    trial.nees_velocity += dv.cwiseQuotient(state.sigma.segment<3>(6)).cwiseAbs2();
+  }
+  trial.position = (trial.position / n).cwiseSqrt();
+  trial.velocity = (trial.velocity / n).cwiseSqrt();
+  trial.nees_position /= n;
+  trial.nees_velocity /= n;
+  trial.ended = seconds_between(1'700'000'000'000'000, simulator.now()) - 1.0;
+  trial.phase = supervisor.phase();
+  trial.visits = supervisor.visits();
+  trial.contacts = simulator.contacts();
+  trial.model = identifier.model();
+  std::ostringstream text;
+  text << "seed " << seed << ": " << name(supervisor.phase()) << ", " << supervisor.reason() << "; ended "
+       << trial.ended << " s; contacts " << trial.contacts.walls << " " << trial.contacts.floor << " "
+       << trial.contacts.surface << "\n  position [mm] " << 1e3 * trial.position.transpose() << " velocity [mm/s] "
+       << 1e3 * trial.velocity.transpose() << " NEES " << trial.nees_position.transpose() << " | "
+       << trial.nees_velocity.transpose() << "\n";
+  for (const auto& v : trial.visits)
+    text << "  " << v.mode << " " << v.begun << " to " << v.ended << (v.left ? " left" : " given up: ") << v.missing
+         << "\n";
+  text << "  ratio " << trial.model.residual_ratio.transpose() << " mean " << trial.model.residual_mean.transpose()
+       << "\n";
+  const model::BaseTheta truth = simulator.secrets().theta;
+  for (const auto& p : trial.model.parameters) {
+    const double value = truth[model::index(*model::parameter_from_name(p.name))];
+    const double z = (p.value - value) / p.std;
+    trial.learnt.push_back({p.name, p.value, p.std, value});
+    trial.covered += std::abs(z) < 1.96 ? 1 : 0;
+    trial.within += std::abs(p.value - value) < 0.05 * std::abs(value) ? 1 : 0;
+    text << "  " << p.name << " " << p.value << " +- " << p.std << " truth " << value << " error "
+         << 100.0 * (p.value / value - 1.0) << " %, z " << z << "\n";
+  }
+  for (const auto& [reason, count] : navigator.rejected()) text << "  " << reason << " " << count << "\n";
+  text << "  " << navigator.complaint() << "\n";
+  trial.text = text.str();
+  return trial;
+}
+
+}  // namespace fathom::test

@@ -1,0 +1,49 @@
+// All minds in one process against the simulator with the noise of every sensor: estimator, identifier and supervisor
+// hear what the processes would hear, in the same order.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/excitation/supervisor.hpp"
+#include "common/samples/estimates.hpp"
+#include "common/simulation/simulator.hpp"
+
+namespace fathom::test {
+
+/// One parameter at a trial's end.
+struct Learnt {
+  std::string name;
+  double value{}, std{}, truth{};  ///< SI
+};
+
+struct FullTrial {
+  std::string text;
+  excitation::Phase phase{};
+  std::vector<excitation::Supervisor::Visit> visits;
+  simulation::ContactCounts contacts;
+  ModelEstimate model;
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()}, velocity{Eigen::Vector3d::Zero()};  // RMS errors
+  Eigen::Vector3d nees_position{Eigen::Vector3d::Zero()}, nees_velocity{Eigen::Vector3d::Zero()};
+  double ended{};
+  int within{}, covered{};  ///< parameters: within 5 % of the truth, inside the 95 % interval
+  std::vector<Learnt> learnt;
+};
+
+struct FullTrialOptions {
+  unsigned seed{1};
+  bool optimal{false};
+  double limit{700.0};  ///< s
+  std::string site{"tank"};
+  std::vector<std::string> hide{};
+  std::string vehicle{"seabotix_lbv150"};
+  /// Changes to the text of the site's pipeline file: what must be there, and what stands in its place.
+  std::vector<std::pair<std::string, std::string>> pipeline{};
+};
+
+/// From the simulator's first command to the schedule's end or the limit.
+[[nodiscard]] FullTrial run_trial(const FullTrialOptions& options);
+
+}  // namespace fathom::test

@@ -1,0 +1,115 @@
+// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--limit S] [--text]
+// Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
+// error, in percent and in its own standard deviations. --pipeline replaces a text of config/pipelines/SITE.yaml.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "test/support/full_trial.hpp"
+
+namespace {
+
+using fathom::test::FullTrial;
+
+struct Sum {
+  std::string name;
+  double error{}, square{}, z{}, z_square{}, largest_z{}, sigma{};  // relative; in standard deviations
+  int within{}, inside{};
+};
+
+void print(const std::vector<FullTrial>& trials) {
+  std::vector<Sum> sums;
+  double ended = 0.0, inside = 0.0, all = 0.0;
+  int settled = 0, contacts = 0;
+  for (const FullTrial& trial : trials) {
+    ended += trial.ended / static_cast<double>(trials.size());
+    const bool done = trial.phase == fathom::excitation::Phase::kDone;
+    settled += done && std::ranges::all_of(trial.visits, [](const auto& v) { return v.left; }) ? 1 : 0;
+    contacts += trial.contacts.walls + trial.contacts.floor + trial.contacts.surface;
+    sums.resize(trial.learnt.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const auto& p = trial.learnt[i];
+      Sum& s = sums[i];
+      const double error = p.truth == 0.0 ? 0.0 : 100.0 * (p.value / p.truth - 1.0), z = (p.value - p.truth) / p.std;
+      s.name = p.name;
+      s.error += error;
+      s.square += error * error;
+      s.z += z;
+      s.z_square += z * z;
+      s.largest_z = std::max(s.largest_z, std::abs(z));
+      s.sigma += p.truth == 0.0 ? 0.0 : 100.0 * p.std / std::abs(p.truth);
+      s.within += std::abs(error) < 5.0 ? 1 : 0;
+      s.inside += std::abs(z) < 1.96 ? 1 : 0;
+      inside += std::abs(z) < 1.96 ? 1.0 : 0.0;
+      all += 1.0;
+    }
+  }
+  const auto n = static_cast<double>(trials.size());
+  std::printf("%d of %zu settled, ended after %.0f s, %d contacts, %.0f of %.0f intervals hold (%.1f %%)\n", settled,
+              trials.size(), ended, contacts, inside, all, 100.0 * inside / all);
+  std::printf("%-8s %10s %8s %9s | in standard deviations: %6s %6s %8s | %s\n", "", "mean error", "rms", "stated",
+              "mean", "rms", "largest", "within 5 %, inside");
+  for (const Sum& s : sums) {
+    std::printf("%-8s %9.2f%% %7.2f%% %8.2f%% | %30.2f %6.2f %8.2f | %d %d\n", s.name.c_str(), s.error / n,
+                std::sqrt(s.square / n), s.sigma / n, s.z / n, std::sqrt(s.z_square / n), s.largest_z, s.within,
+                s.inside);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() < 5) {
+    std::fputs(
+        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--limit S] [--text]\n",
+        stderr);
+    return 1;
+  }
+  try {
+    fathom::test::FullTrialOptions options{.optimal = words[2] == "optimal", .site = words[0], .vehicle = words[1]};
+    const int first = std::stoi(words[3]), last = std::stoi(words[4]);
+    bool text = false;
+    for (std::size_t i = 5; i < words.size(); ++i) {
+      if (words[i] == "--text") text = true;
+      if (words[i] == "--limit" && i + 1 < words.size()) options.limit = std::stod(words[i + 1]);
+      if (words[i] == "--pipeline" && i + 2 < words.size()) options.pipeline.emplace_back(words[i + 1], words[i + 2]);
+    }
+    std::vector<FullTrial> trials(static_cast<std::size_t>(std::max(0, last - first + 1)));
+    std::atomic<int> next{first};
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto work = [&] {
+      for (int seed = next++; seed <= last; seed = next++) {
+        auto own = options;
+        own.seed = static_cast<unsigned>(seed);
+        try {
+          trials[static_cast<std::size_t>(seed - first)] = fathom::test::run_trial(own);
+        } catch (...) {
+          const std::scoped_lock lock{mutex};
+          failure = std::current_exception();
+        }
+      }
+    };
+    {
+      std::vector<std::jthread> workers;
+      for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) workers.emplace_back(work);
+    }
+    if (failure) std::rethrow_exception(failure);
+    for (const FullTrial& trial : trials) {
+      if (text) std::fputs((trial.text + "\n").c_str(), stdout);
+    }
+    print(trials);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fathom_live_trials: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
