@@ -21,6 +21,7 @@ namespace {
 constexpr double kSilence = 2.0;  // s without a picture
 constexpr double kAnew = 10.0;    // s after which a silent camera is opened anew
 constexpr double kPause = 1.0;    // s between two attempts
+constexpr double kAhead = 5e-3;   // s: a stamp may be computed from the camera's own clock
 constexpr double kSlice = 0.02;   // s: OpenCV waits for the camera alone, not for the bus
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -79,15 +80,20 @@ void DeviceCamera::wait(std::span<const int> descriptors, int milliseconds) {
   const double silence = now() - last_;
   if (silence > kAnew)
     return lost(settings_.device.device + ": no picture for " + std::to_string(std::lround(silence)) + " s");
-  if (const bool silent = silence > kSilence; std::exchange(silent_, silent) != silent) process_.tell_health();
+  if (const bool silent = silence > kSilence; std::exchange(silent_, silent) != silent) {
+    if (silent && count_ == 0) process_.log_warning(settings_.device.device + ": opened, and gives no picture");
+    process_.tell_health();
+  }
 }
 
 void DeviceCamera::publish(pictures::Frame frame) {
   const Utime arrival = wall_clock();
   age_ = frame.age.value_or(NAN);
   if (!frame.problem.empty()) return leave_out(frame.problem);
-  if (settings_.kernel_stamps && !frame.age) {
-    const std::string why = settings_.device.device + ": the kernel's stamp of a picture fits no clock of this host";
+  if (settings_.kernel_stamps && !(age_ > -kAhead)) {
+    const std::string fault = frame.age ? "is " + std::to_string(std::lround(-1e3 * age_)) + " ms ahead of its arrival"
+                                        : "fits no clock of this host";
+    const std::string why = settings_.device.device + ": the kernel's stamp of a picture " + fault;
     if (count_ > 0) return leave_out(why);
     throw InputError(why + "; state 'stamp: arrival', and as 'latency' the time from exposure to arrival");
   }
