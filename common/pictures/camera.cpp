@@ -103,6 +103,12 @@ class V4l2Camera final : public Camera {
       throw InputError(device_ + ": gives " + description() + " where " + asked +
                        " was asked for; what it can: v4l2-ctl -d " + device_ + " --list-formats-ext");
     }
+    // Otherwise bytes that are no picture would come as one.
+    if (!streams_[0].set(cv::CAP_PROP_CONVERT_RGB, 1)) {
+      throw InputError(device_ + ": gives " + description() +
+                       ", a format that OpenCV cannot read; 'format' may ask for " +
+                       "another (MJPG, YUYV): v4l2-ctl -d " + device_ + " --list-formats-ext");
+    }
     // Its own JPEG is handed on: not read and compressed anew.
     own_jpeg_ = (format_ == "MJPG" || format_ == "JPEG") && streams_[0].set(cv::CAP_PROP_CONVERT_RGB, 0);
   }
@@ -122,10 +128,14 @@ class V4l2Camera final : public Camera {
   Frame read() override {
     Frame frame{.name = device_};
     cv::Mat got;
-    if (!streams_[0].read(got) || got.empty()) throw InputError(gone());
+    if (!streams_[0].grab()) throw InputError(gone());
+    // Before anything is decoded, and both clocks at once: what comes after is not the picture's age.
+    const double monotonic = seconds(std::chrono::steady_clock::now()),
+                 wall = seconds(std::chrono::system_clock::now());
+    frame.arrival = std::llround(1e6 * wall);
+    frame.age = age_of_stamp(1e-3 * get(cv::CAP_PROP_POS_MSEC), monotonic, wall);
+    if (!streams_[0].retrieve(got) || got.empty()) throw InputError(gone());
     ++count_;
-    frame.age = age_of_stamp(1e-3 * get(cv::CAP_PROP_POS_MSEC), seconds(std::chrono::steady_clock::now()),
-                             seconds(std::chrono::system_clock::now()));
     if (own_jpeg_) {
       const auto* first = got.ptr<std::uint8_t>();
       frame.jpeg.assign(first, first + got.total() * got.elemSize());

@@ -26,11 +26,6 @@ constexpr double kSlice = 0.02;   // s: OpenCV waits for the camera alone, not f
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-Utime wall_clock() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 DeviceSettings DeviceSettings::from(const Config& config) {
@@ -87,7 +82,6 @@ void DeviceCamera::wait(std::span<const int> descriptors, int milliseconds) {
 }
 
 void DeviceCamera::publish(pictures::Frame frame) {
-  const Utime arrival = wall_clock();
   age_ = frame.age.value_or(NAN);
   if (!frame.problem.empty()) return leave_out(frame.problem);
   if (settings_.kernel_stamps && !(age_ > -kAhead)) {
@@ -101,8 +95,9 @@ void DeviceCamera::publish(pictures::Frame frame) {
   complaint_.clear();
   ++count_;
   const double since = settings_.latency + (settings_.kernel_stamps ? *frame.age : 0.0);
-  process_.publish(wire::kCamera, wire::encode(as_message(std::move(frame), utime_after(arrival, -since),
-                                                          settings_.camera, settings_.quality)));
+  const Utime utime = utime_after(frame.arrival, -since);
+  process_.publish(wire::kCamera,
+                   wire::encode(as_message(std::move(frame), utime, settings_.camera, settings_.quality)));
 }
 
 void DeviceCamera::leave_out(const std::string& why) {
