@@ -88,35 +88,51 @@ std::vector<Correspondence> TagLocator::corners_of(const std::vector<bool>& chos
   return points;
 }
 
+// Which tags a pose explains, to within a limit [edges of each tag] or its gate. Of two with one number the nearer
+// counts.
+void TagLocator::choose(double limit, Consensus& consensus) const {
+  const Pose& pose = consensus.fitted.pose;
+  consensus.agrees.assign(candidates_.size(), false);
+  consensus.n = 0;
+  consensus.margin = 0.0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& tag = candidates_[i];
+    const double e = error(tag, pose);
+    if (e > std::max(gate(tag, pose), limit * tag.tag->edge)) continue;
+    const bool rival = std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
+      return each.tag != tag.tag && each.tag->id == tag.tag->id && error(each, pose) < e;
+    });
+    if (rival) continue;
+    consensus.agrees[i] = true;
+    ++consensus.n;
+    consensus.margin += tag.tag->margin;
+  }
+}
+
 // From a pose that explains one tag to the largest set of tags that one pose explains: first roughly, since the tilt of
-// one small tag says little of the next one's place, then within the gate. Of two with one number the nearer counts.
+// one small tag says little of the next one's place, then within the gate. The limit falls step by step: a tag that is
+// not where the map has it draws the pose towards itself, and within the gate of such a pose there may be none at all.
 std::optional<TagLocator::Consensus> TagLocator::grow(const Pose& seed) const {
+  constexpr double kRoughest = 1.0, kFall = 0.6, kFinest = 0.02;  // edges
   Consensus found;
   found.fitted.pose = seed;
-  constexpr std::array<double, 4> kRough{1.0, 0.5, 0.0, 0.0};  // in edges; 0: the gate itself
-  for (const double rough : kRough) {
-    found.agrees.assign(candidates_.size(), false);
-    found.n = 0;
-    found.margin = 0.0;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      const double e = error(candidates_[i], found.fitted.pose);
-      const double limit = std::max(gate(candidates_[i], found.fitted.pose), rough * candidates_[i].tag->edge);
-      if (e > limit) continue;
-      const bool rival = std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
-        return each.tag != candidates_[i].tag && each.tag->id == candidates_[i].tag->id &&
-               error(each, found.fitted.pose) < e;
-      });
-      if (rival) continue;
-      found.agrees[i] = true;
-      ++found.n;
-      found.margin += candidates_[i].tag->margin;
-    }
+  const auto fit = [&](double scale) {
     const std::vector<Correspondence> points = corners_of(found.agrees);
-    if (points.size() < 4) return {};
-    const auto fitted =
-        fit_pose(*projection_, points, found.fitted.pose, rough > 0.0 ? 0.0 : 3.0 * settings_.corner_sigma);
-    if (!fitted) return {};
-    found.fitted = *fitted;
+    if (points.size() < 4) return false;
+    const auto fitted = fit_pose(*projection_, points, found.fitted.pose, scale);
+    if (fitted) found.fitted = *fitted;
+    return fitted.has_value();
+  };
+  for (double limit = kRoughest; limit > kFinest; limit *= kFall) {
+    choose(limit, found);
+    if (!fit(0.0)) return {};
+    const std::vector<bool> rough = found.agrees;
+    choose(0.0, found);
+    if (found.agrees == rough) break;  // nothing draws it aside
+  }
+  for (int again = 0; again < 2; ++again) {
+    choose(0.0, found);
+    if (!fit(3.0 * settings_.corner_sigma)) return {};
   }
   return found;
 }

@@ -67,6 +67,7 @@ class TagLocator {
   void judge_by_map(std::vector<TagSighting>& tags);
   [[nodiscard]] double error(const Candidate& candidate, const Pose& pose) const;
   [[nodiscard]] double gate(const Candidate& candidate, const Pose& pose) const;
+  void choose(double limit, Consensus& consensus) const;
   [[nodiscard]] std::optional<Consensus> grow(const Pose& seed) const;
   [[nodiscard]] std::optional<Consensus> best_consensus(Utime utime) const;
   [[nodiscard]] std::vector<Correspondence> corners_of(const std::vector<bool>& chosen) const;

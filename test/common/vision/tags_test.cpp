@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <random>
 
 #include "common/base/error.hpp"
 #include "test/common/vision/scene.hpp"
@@ -118,6 +119,43 @@ TEST_CASE("tags: a tag that was moved, one twice in the picture and one outside 
     if (tag.id == 11) CHECK((tag.verdict == TagVerdict::kAccepted || tag.verdict == TagVerdict::kTwice));
   }
   CHECK(accepted_11 == 1);
+}
+
+TEST_CASE("tags: one of five that is not where the map has it, however far, is refused, and the others tell the pose") {
+  const model::Site map = site();
+  const Projection projection{lens()};
+  std::mt19937_64 random{17};
+  std::normal_distribution<double> noise{0.0, 0.1};  // px, as kPlace has it
+  std::uniform_real_distribution<double> turn{-3.0, 3.0}, tilt{-0.15, 0.15};
+  for (int round = 0; round < 60; ++round) {
+    const double moved = std::array{0.01, 0.03, 0.07, 0.15, 0.3}[static_cast<std::size_t>(round % 5)];
+    CAPTURE(round);
+    CAPTURE(moved);
+    const Pose truth = pose({0.0, 0.0, 0.2}, tilt(random), tilt(random), turn(random));
+    const double direction = turn(random);
+    const int liar = std::array{7, 11, 12, 13, 17}[static_cast<std::size_t>(round / 5 % 5)];
+    std::vector<TagSighting> seen;
+    for (const int id : {7, 11, 12, 13, 17}) {
+      TagSighting tag{.family = "tag36h11", .id = id, .margin = 60.0};
+      const double h = 0.5 * map.tag(id)->size;
+      const std::array<Eigen::Vector3d, 4> corners{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+      for (std::size_t i = 0; i < 4; ++i) {
+        Eigen::Vector3d p_W = map.tag(id)->p_WT + corners[i];
+        if (id == liar) p_W += moved * Eigen::Vector3d{std::cos(direction), std::sin(direction), 0.0};
+        tag.corners[i] = projection.pixel(truth.R_WC.transpose() * (p_W - truth.p_WC));
+        tag.corners[i] += Eigen::Vector2d{noise(random), noise(random)};
+      }
+      tag.edge = (tag.corners[1] - tag.corners[0]).norm();
+      seen.push_back(tag);
+    }
+    TagLocator locator{map, lens(), {}};
+    const auto fix = locator.step(0, seen, std::nullopt);
+    REQUIRE(fix);
+    CHECK((fix->pose.p_WC - truth.p_WC).norm() < kPlace);
+    for (const TagSighting& tag : seen) {
+      CHECK(tag.verdict == (tag.id == liar ? TagVerdict::kGeometry : TagVerdict::kAccepted));
+    }
+  }
 }
 
 TEST_CASE("tags: of one that the picture's border cuts only the corners that can be seen count") {
