@@ -7,7 +7,8 @@
 namespace fathom::vision {
 namespace {
 
-constexpr int kOutvoted = 5;  // lone tags in a row that contradict the memory: the memory is wrong
+constexpr double kSteady = 0.3;  // m: what a lone tag's pose may err
+constexpr int kOutvoted = 5;     // lone tags in a row that contradict the memory: the memory is wrong
 
 std::array<Eigen::Vector3d, 4> world_corners(const model::Tag& tag) {
   const double h = 0.5 * tag.size;
@@ -28,6 +29,8 @@ void TagLocator::reset() {
   last_.reset();
   implausible_ = 0;
 }
+
+double TagLocator::since_last(const Pose& pose) const { return (pose.p_WC - last_->p_WC).norm(); }
 
 bool TagLocator::recent(Utime utime) const {
   return last_ && utime >= last_utime_ && seconds_between(last_utime_, utime) <= settings_.memory;
@@ -142,10 +145,17 @@ std::optional<TagLocator::Consensus> TagLocator::best_consensus(Utime utime) con
   const auto try_seed = [&](const Pose& seed) {
     const auto found = grow(seed);
     if (!found) return;
-    const bool better =
-        !best || found->n > best->n ||
-        (found->n == best->n && (found->margin > best->margin + 1e-9 ||
-                                 (found->margin > best->margin - 1e-9 && found->fitted.rms < best->fitted.rms - 1e-9)));
+    bool better = !best || found->n > best->n;
+    if (best && found->n == best->n) {
+      // As many say otherwise: believed is who is nearer to where the camera was, else who is clearer.
+      if (found->agrees == best->agrees) {
+        better = found->fitted.rms < best->fitted.rms - 1e-9;
+      } else if (recent(utime)) {
+        better = since_last(found->fitted.pose) < since_last(best->fitted.pose);
+      } else {
+        better = found->margin > best->margin;
+      }
+    }
     if (better) best = found;
   };
   const auto complete = [&] { return best && best->n == static_cast<int>(candidates_.size()); };
@@ -159,12 +169,11 @@ std::optional<TagLocator::Consensus> TagLocator::best_consensus(Utime utime) con
 }
 
 bool TagLocator::alone_is_plausible(Utime utime, const Pose& pose, const std::optional<Eigen::Vector3d>& down_C) {
-  constexpr double kSteady = 0.3;        // m: what a lone tag's pose may err
   constexpr double kWrongSideUp = 0.45;  // rad
   bool plausible = true;
   if (recent(utime)) {
     const double reach = kSteady + settings_.largest_speed * seconds_between(last_utime_, utime);
-    plausible = (pose.p_WC - last_->p_WC).norm() < reach;
+    plausible = since_last(pose) < reach;
   }
   if (down_C) plausible = plausible && std::acos(std::clamp(down_C->dot(pose.R_WC.row(2)), -1.0, 1.0)) < kWrongSideUp;
   implausible_ = plausible ? 0 : implausible_ + 1;
@@ -232,7 +241,7 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
   if (best->n == 1) {
     const auto clear = std::count_if(candidates_.begin(), candidates_.end(), [](const auto& c) { return c.clear; });
     if (!candidates_[first].clear && !recent(utime)) return {};
-    if (clear > 1 && !recent(utime)) {
+    if (clear > 1 && (!recent(utime) || since_last(best->fitted.pose) > kSteady)) {
       for (Candidate& each : candidates_) {
         if (each.clear) each.tag->verdict = TagVerdict::kDisagree;
       }

@@ -75,6 +75,7 @@ class TagLocator {
   void look_for_second(Utime utime, const std::vector<Correspondence>& points, const Eigen::Vector3d& normal,
                        const std::optional<Eigen::Vector3d>& down_C, FittedPose& fitted, CameraFix& fix) const;
   [[nodiscard]] bool recent(Utime utime) const;
+  [[nodiscard]] double since_last(const Pose& pose) const;  ///< m; when there is a last one
 
   model::Site site_;
   std::optional<Projection> projection_;
