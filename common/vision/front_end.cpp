@@ -158,6 +158,8 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
     static_cast<void>(loose_locator_.step(picture.utime, sight_.tags, std::nullopt));
     return sight_;
   }
+  // It was taken before: its tags would be too young, and flow waits for the next one, from the one that was new.
+  if (sight_.picture == PictureState::kRepeated || sight_.picture == PictureState::kFrozen) return sight_;
   sight_.tags = detector_.step(picture.grey);
   std::optional<Eigen::Vector3d> down_C;
   if (R_WC) down_C = R_WC->row(2);
