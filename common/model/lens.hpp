@@ -34,6 +34,8 @@ struct Lens {
 
   /// Keys `width height focal`, and if stated `centre distortion lens port`.
   [[nodiscard]] static Lens from(const Config& config);
+  /// No coefficient at all: rendered pictures have such a lens, of real ones those that nobody calibrated.
+  [[nodiscard]] bool undistorted() const { return kind == Kind::kPinhole && distortion == decltype(distortion){}; }
   [[nodiscard]] double focal() const { return 0.5 * (fx + fy); }
 };
 

@@ -31,8 +31,8 @@ class Camera {
 /// InputError when there is none, somebody else has it, or it cannot do what is asked.
 [[nodiscard]] std::unique_ptr<Camera> open_camera(const CameraSettings& settings);
 
-/// How long ago the kernel stamped a picture [s]. Drivers stamp by the monotonic clock, old ones by the clock on the
-/// wall; nothing where the stamp fits neither.
+/// How long ago the kernel stamped a picture [s]; below zero: it is ahead of the clock. Drivers stamp by the monotonic
+/// clock, old ones by the clock on the wall; nothing where the stamp fits neither.
 [[nodiscard]] std::optional<double> age_of_stamp(double stamp, double monotonic, double wall);
 
 }  // namespace fathom::pictures

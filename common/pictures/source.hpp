@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "common/base/time.hpp"
+
 namespace fathom::pictures {
 
 struct Frame {
@@ -15,7 +17,8 @@ struct Frame {
   double time{};                   ///< s since the first picture
   cv::Mat picture;                 ///< 8 bit, grey or colour in OpenCV's order; empty when `problem` says why
   bool halved_colour{false};       ///< colour has half the resolution of brightness
-  std::optional<double> age;       ///< s, since the kernel stamped it; of a camera's pictures alone
+  Utime arrival{};                 ///< when it was read; of a camera's pictures alone, as is
+  std::optional<double> age;       ///< s since the kernel stamped it, at arrival (age_of_stamp)
   std::string problem;             ///< one line; empty when all is well
   std::vector<std::uint8_t> jpeg;  ///< the file's own bytes, where it is a JPEG
 };

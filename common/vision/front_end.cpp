@@ -158,6 +158,8 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
     static_cast<void>(loose_locator_.step(picture.utime, sight_.tags, std::nullopt));
     return sight_;
   }
+  // It was taken before: its tags would be too young, and flow waits for the next one, from the one that was new.
+  if (sight_.picture == PictureState::kRepeated || sight_.picture == PictureState::kFrozen) return sight_;
   sight_.tags = detector_.step(picture.grey);
   std::optional<Eigen::Vector3d> down_C;
   if (R_WC) down_C = R_WC->row(2);
@@ -166,25 +168,27 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
     sight_.fix = locator_.step(picture.utime, sight_.tags, down_C);
   }
   if (!lens_) return sight_;
-  std::optional<Eigen::Matrix3d> fixed;
-  if (sight_.fix && !sight_.fix->ambiguous) fixed = sight_.fix->pose.R_WC;
+  std::optional<CameraFix> fixed;
+  if (sight_.fix && !sight_.fix->ambiguous) fixed = sight_.fix;
   if (laser_ && !picture.bgr.empty()) {
     sight_.laser = laser_->step(picture.bgr, picture.grey, picture.halved_colour);
   }
-  if (!down_C && fixed) down_C = fixed->row(2);
+  if (!down_C && fixed) down_C = fixed->pose.R_WC.row(2);
   find_range(down_C);
 
-  std::optional<Eigen::Matrix3d> turn;
+  std::optional<Eigen::Matrix3d> turn, turn_covariance;
   if (gyro_R_01) {
     turn = gyro_R_01;
   } else if (R_WC && attitude_before_) {
     turn = attitude_before_->transpose() * *R_WC;
   } else if (!R_WC && fixed && fix_before_) {
-    turn = fix_before_->transpose() * *fixed;
+    turn = fix_before_->pose.R_WC.transpose() * fixed->pose.R_WC;
+    turn_covariance = fix_before_->covariance.bottomRightCorner<3, 3>() +
+                      *turn * fixed->covariance.bottomRightCorner<3, 3>() * turn->transpose();
   }
   attitude_before_ = R_WC;
   fix_before_ = fixed;
-  sight_.flow = tracker_->step(picture.utime, picture.grey, turn, down_C);
+  sight_.flow = tracker_->step(picture.utime, picture.grey, turn, down_C, turn_covariance);
   const bool fresh = range_utime_ && seconds_between(*range_utime_, picture.utime) <= settings_.range_memory;
   if (sight_.flow.state == FlowState::kValid && fresh) {
     // To the middle between the pictures.

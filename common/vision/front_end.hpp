@@ -86,7 +86,8 @@ class FrontEnd {
   std::optional<FlowTracker> tracker_;
   std::optional<LaserFinder> laser_;
   PictureCheck check_;
-  std::optional<Eigen::Matrix3d> attitude_before_, fix_before_;  ///< R_WC of the picture before
+  std::optional<Eigen::Matrix3d> attitude_before_;  ///< R_WC of the picture before
+  std::optional<CameraFix> fix_before_;             ///< of the picture before, when its pose is no guess
   double floor_{};
   Utime utime_{};
   std::optional<Utime> range_utime_;

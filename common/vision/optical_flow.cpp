@@ -139,7 +139,8 @@ void FlowTracker::reset() {
 }
 
 Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eigen::Matrix3d>& R_01,
-                       const std::optional<Eigen::Vector3d>& normal_C) {
+                       const std::optional<Eigen::Vector3d>& normal_C,
+                       const std::optional<Eigen::Matrix3d>& rotation_covariance) {
   State& state = *state_;
   Flow flow{.utime = utime};
   std::swap(state.pyramid, state.pyramid_before);
@@ -177,9 +178,10 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       const Eigen::Vector3d half = 0.5 * rotation_vector_from_quaternion(Eigen::Quaterniond{*R_01});
       const Eigen::Matrix3d to_middle = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();
       flow.rate = to_middle * plane.tau / (flow.interval * (1.0 - 0.5 * plane.tau.z()));
-      flow.covariance = plane.covariance / (flow.interval * flow.interval);
-      const double turning = state.settings.rotation_sigma * state.settings.rotation_sigma;
-      flow.covariance.diagonal() += Eigen::Vector3d{turning, turning, 0.0};
+      const double turning = state.settings.rotation_sigma * flow.interval;
+      const Eigen::Matrix3d turn = rotation_covariance.value_or(turning * turning * Eigen::Matrix3d::Identity());
+      const Eigen::Matrix3d by_turn = error_by_rotation(state.rows, plane);
+      flow.covariance = (plane.covariance + by_turn * turn * by_turn.transpose()) / (flow.interval * flow.interval);
       const bool enough =
           flow.n_agreed >= state.settings.least_tracks && flow.n_agreed >= state.settings.least_share * flow.n_tracks;
       flow.state = enough && flow.covariance.allFinite() ? FlowState::kValid : FlowState::kDisagree;

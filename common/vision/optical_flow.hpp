@@ -21,7 +21,7 @@ struct FlowSettings {
   double least_share{0.5};       ///< of the tracks that must agree
   double there_and_back{0.6};    ///< px of the reduced picture by which a track may miss its beginning on the way back
   double longest_interval{0.5};  ///< s
-  double rotation_sigma{2e-3};   ///< rad/s, error of the rotation that is taken out
+  double rotation_sigma{2e-3};   ///< rad/s, error of a sensor's rotation, which is taken out
 };
 
 enum class FlowState { kNone, kValid, kFirst, kPause, kNoTexture, kLost, kDisagree, kNoRotation };
@@ -54,8 +54,10 @@ class FlowTracker {
 
   /// `R_01`: axes of this picture's camera in those of the one before; without it there is no valid flow.
   /// `normal_C`: the floor's normal in this picture's camera, unit, either sense; left out: the optical axis.
+  /// `rotation_covariance`: of R_01 [rad^2, axes of the camera before]; left out: of a sensor's.
   Flow step(Utime utime, const cv::Mat& grey, const std::optional<Eigen::Matrix3d>& R_01,
-            const std::optional<Eigen::Vector3d>& normal_C);
+            const std::optional<Eigen::Vector3d>& normal_C,
+            const std::optional<Eigen::Matrix3d>& rotation_covariance = std::nullopt);
   /// Of the last step.
   [[nodiscard]] const std::vector<Track>& tracks() const;
   void reset();

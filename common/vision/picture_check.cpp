@@ -10,7 +10,7 @@ constexpr int kEvery = 4;            // rows and columns that are looked at
 constexpr double kDark = 6.0;        // brightness that nothing may exceed in a black picture
 constexpr double kBright = 250.0;    // and that saturated pixels reach
 constexpr double kMostBright = 0.6;  // share of saturated pixels
-constexpr int kRepeats = 3;          // bit by bit the same so often in a row: a camera's noise never is
+constexpr int kRepeats = 3;          // so often in a row is no hiccup; a camera's noise makes no two pictures the same
 
 bool same(const cv::Mat& a, const cv::Mat& b) {
   if (a.size() != b.size()) return false;
@@ -32,6 +32,8 @@ const char* name(PictureState state) {
       return "black";
     case PictureState::kSaturated:
       return "saturated";
+    case PictureState::kRepeated:
+      return "the same again";
     case PictureState::kFrozen:
       return "frozen";
   }
@@ -53,7 +55,8 @@ PictureState PictureCheck::step(const cv::Mat& grey, const model::Lens* lens) {
   constexpr double kAll = 0.998;  // hot pixels shine in the dark too
   if (dark >= kAll * n) return PictureState::kBlack;
   if (bright >= kMostBright * n) return PictureState::kSaturated;
-  return repeated_ >= kRepeats ? PictureState::kFrozen : PictureState::kGood;
+  if (repeated_ == 0) return PictureState::kGood;
+  return repeated_ >= kRepeats ? PictureState::kFrozen : PictureState::kRepeated;
 }
 
 }  // namespace fathom::vision

@@ -7,14 +7,18 @@
 
 namespace fathom::vision {
 
-enum class PictureState { kGood, kOtherSize, kBlack, kSaturated, kFrozen };
+/// Repeated: bit by bit the one before, and so nothing new; frozen: several times in a row.
+enum class PictureState { kGood, kOtherSize, kBlack, kSaturated, kRepeated, kFrozen };
 [[nodiscard]] const char* name(PictureState state);
 
 class PictureCheck {
  public:
   /// `lens`: its size is the one that is expected; nullptr: any.
   PictureState step(const cv::Mat& grey, const model::Lens* lens);
-  void reset() { before_.release(); }
+  void reset() {
+    before_.release();
+    repeated_ = 0;
+  }
 
  private:
   cv::Mat before_;

@@ -73,4 +73,18 @@ PlaneFlow fit_plane_flow(const std::vector<FlowRow>& rows) {
   return result;
 }
 
+Eigen::Matrix3d error_by_rotation(const std::vector<FlowRow>& rows, const PlaneFlow& fitted) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!fitted.agrees[i]) continue;
+    const Eigen::Vector2d& y = rows[i].y;
+    Eigen::Matrix<double, 2, 3> by_turn;  // y moves with the direction (y, 1) that is turned
+    by_turn << -y.x() * y.y(), 1.0 + y.x() * y.x(), -y.y(), -1.0 - y.y() * y.y(), y.x() * y.y(), y.x();
+    const auto a = jacobian(rows[i]);
+    information += a.transpose() * a;
+    right += a.transpose() * by_turn;
+  }
+  return information.ldlt().solve(right);
+}
+
 }  // namespace fathom::vision

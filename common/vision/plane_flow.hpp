@@ -23,4 +23,7 @@ struct PlaneFlow {
 
 [[nodiscard]] PlaneFlow fit_plane_flow(const std::vector<FlowRow>& rows);
 
+/// By how much tau errs when the rotation that was taken out errs by a turn [rad, axes of the first picture's camera].
+[[nodiscard]] Eigen::Matrix3d error_by_rotation(const std::vector<FlowRow>& rows, const PlaneFlow& fitted);
+
 }  // namespace fathom::vision

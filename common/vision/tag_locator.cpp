@@ -7,7 +7,8 @@
 namespace fathom::vision {
 namespace {
 
-constexpr int kOutvoted = 5;  // lone tags in a row that contradict the memory: the memory is wrong
+constexpr double kSteady = 0.3;  // m: what a lone tag's pose may err
+constexpr int kOutvoted = 5;     // lone tags in a row that contradict the memory: the memory is wrong
 
 std::array<Eigen::Vector3d, 4> world_corners(const model::Tag& tag) {
   const double h = 0.5 * tag.size;
@@ -28,6 +29,8 @@ void TagLocator::reset() {
   last_.reset();
   implausible_ = 0;
 }
+
+double TagLocator::since_last(const Pose& pose) const { return (pose.p_WC - last_->p_WC).norm(); }
 
 bool TagLocator::recent(Utime utime) const {
   return last_ && utime >= last_utime_ && seconds_between(last_utime_, utime) <= settings_.memory;
@@ -88,35 +91,51 @@ std::vector<Correspondence> TagLocator::corners_of(const std::vector<bool>& chos
   return points;
 }
 
+// Which tags a pose explains, to within a limit [edges of each tag] or its gate. Of two with one number the nearer
+// counts.
+void TagLocator::choose(double limit, Consensus& consensus) const {
+  const Pose& pose = consensus.fitted.pose;
+  consensus.agrees.assign(candidates_.size(), false);
+  consensus.n = 0;
+  consensus.margin = 0.0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& tag = candidates_[i];
+    const double e = error(tag, pose);
+    if (e > std::max(gate(tag, pose), limit * tag.tag->edge)) continue;
+    const bool rival = std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
+      return each.tag != tag.tag && each.tag->id == tag.tag->id && error(each, pose) < e;
+    });
+    if (rival) continue;
+    consensus.agrees[i] = true;
+    ++consensus.n;
+    consensus.margin += tag.tag->margin;
+  }
+}
+
 // From a pose that explains one tag to the largest set of tags that one pose explains: first roughly, since the tilt of
-// one small tag says little of the next one's place, then within the gate. Of two with one number the nearer counts.
+// one small tag says little of the next one's place, then within the gate. The limit falls step by step: a tag that is
+// not where the map has it draws the pose towards itself, and within the gate of such a pose there may be none at all.
 std::optional<TagLocator::Consensus> TagLocator::grow(const Pose& seed) const {
+  constexpr double kRoughest = 1.0, kFall = 0.6, kFinest = 0.02;  // edges
   Consensus found;
   found.fitted.pose = seed;
-  constexpr std::array<double, 4> kRough{1.0, 0.5, 0.0, 0.0};  // in edges; 0: the gate itself
-  for (const double rough : kRough) {
-    found.agrees.assign(candidates_.size(), false);
-    found.n = 0;
-    found.margin = 0.0;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      const double e = error(candidates_[i], found.fitted.pose);
-      const double limit = std::max(gate(candidates_[i], found.fitted.pose), rough * candidates_[i].tag->edge);
-      if (e > limit) continue;
-      const bool rival = std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
-        return each.tag != candidates_[i].tag && each.tag->id == candidates_[i].tag->id &&
-               error(each, found.fitted.pose) < e;
-      });
-      if (rival) continue;
-      found.agrees[i] = true;
-      ++found.n;
-      found.margin += candidates_[i].tag->margin;
-    }
+  const auto fit = [&](double scale) {
     const std::vector<Correspondence> points = corners_of(found.agrees);
-    if (points.size() < 4) return {};
-    const auto fitted =
-        fit_pose(*projection_, points, found.fitted.pose, rough > 0.0 ? 0.0 : 3.0 * settings_.corner_sigma);
-    if (!fitted) return {};
-    found.fitted = *fitted;
+    if (points.size() < 4) return false;
+    const auto fitted = fit_pose(*projection_, points, found.fitted.pose, scale);
+    if (fitted) found.fitted = *fitted;
+    return fitted.has_value();
+  };
+  for (double limit = kRoughest; limit > kFinest; limit *= kFall) {
+    choose(limit, found);
+    if (!fit(0.0)) return {};
+    const std::vector<bool> rough = found.agrees;
+    choose(0.0, found);
+    if (found.agrees == rough) break;  // nothing draws it aside
+  }
+  for (int again = 0; again < 2; ++again) {
+    choose(0.0, found);
+    if (!fit(3.0 * settings_.corner_sigma)) return {};
   }
   return found;
 }
@@ -126,10 +145,17 @@ std::optional<TagLocator::Consensus> TagLocator::best_consensus(Utime utime) con
   const auto try_seed = [&](const Pose& seed) {
     const auto found = grow(seed);
     if (!found) return;
-    const bool better =
-        !best || found->n > best->n ||
-        (found->n == best->n && (found->margin > best->margin + 1e-9 ||
-                                 (found->margin > best->margin - 1e-9 && found->fitted.rms < best->fitted.rms - 1e-9)));
+    bool better = !best || found->n > best->n;
+    if (best && found->n == best->n) {
+      // As many say otherwise: believed is who is nearer to where the camera was, else who is clearer.
+      if (found->agrees == best->agrees) {
+        better = found->fitted.rms < best->fitted.rms - 1e-9;
+      } else if (recent(utime)) {
+        better = since_last(found->fitted.pose) < since_last(best->fitted.pose);
+      } else {
+        better = found->margin > best->margin;
+      }
+    }
     if (better) best = found;
   };
   const auto complete = [&] { return best && best->n == static_cast<int>(candidates_.size()); };
@@ -143,12 +169,11 @@ std::optional<TagLocator::Consensus> TagLocator::best_consensus(Utime utime) con
 }
 
 bool TagLocator::alone_is_plausible(Utime utime, const Pose& pose, const std::optional<Eigen::Vector3d>& down_C) {
-  constexpr double kSteady = 0.3;        // m: what a lone tag's pose may err
   constexpr double kWrongSideUp = 0.45;  // rad
   bool plausible = true;
   if (recent(utime)) {
     const double reach = kSteady + settings_.largest_speed * seconds_between(last_utime_, utime);
-    plausible = (pose.p_WC - last_->p_WC).norm() < reach;
+    plausible = since_last(pose) < reach;
   }
   if (down_C) plausible = plausible && std::acos(std::clamp(down_C->dot(pose.R_WC.row(2)), -1.0, 1.0)) < kWrongSideUp;
   implausible_ = plausible ? 0 : implausible_ + 1;
@@ -216,7 +241,7 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
   if (best->n == 1) {
     const auto clear = std::count_if(candidates_.begin(), candidates_.end(), [](const auto& c) { return c.clear; });
     if (!candidates_[first].clear && !recent(utime)) return {};
-    if (clear > 1 && !recent(utime)) {
+    if (clear > 1 && (!recent(utime) || since_last(best->fitted.pose) > kSteady)) {
       for (Candidate& each : candidates_) {
         if (each.clear) each.tag->verdict = TagVerdict::kDisagree;
       }

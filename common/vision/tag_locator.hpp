@@ -67,6 +67,7 @@ class TagLocator {
   void judge_by_map(std::vector<TagSighting>& tags);
   [[nodiscard]] double error(const Candidate& candidate, const Pose& pose) const;
   [[nodiscard]] double gate(const Candidate& candidate, const Pose& pose) const;
+  void choose(double limit, Consensus& consensus) const;
   [[nodiscard]] std::optional<Consensus> grow(const Pose& seed) const;
   [[nodiscard]] std::optional<Consensus> best_consensus(Utime utime) const;
   [[nodiscard]] std::vector<Correspondence> corners_of(const std::vector<bool>& chosen) const;
@@ -74,6 +75,7 @@ class TagLocator {
   void look_for_second(Utime utime, const std::vector<Correspondence>& points, const Eigen::Vector3d& normal,
                        const std::optional<Eigen::Vector3d>& down_C, FittedPose& fitted, CameraFix& fix) const;
   [[nodiscard]] bool recent(Utime utime) const;
+  [[nodiscard]] double since_last(const Pose& pose) const;  ///< m; when there is a last one
 
   model::Site site_;
   std::optional<Projection> projection_;

@@ -51,13 +51,14 @@ bool Watch::see(const Camera& sample) {
   picture_.utime = sample.utime;
   if (const auto q_WB = attitudes_.at(sample.utime)) R_WC = q_WB->toRotationMatrix() * R_BC;
   const Sight& sight = front_end_.step(picture_, R_WC, turned);
-  tracked_ = sample.utime;
+  const bool again = sight.picture == PictureState::kRepeated || sight.picture == PictureState::kFrozen;
+  if (!again) tracked_ = sample.utime;
   complaint_ = map_complaint_;
   if (sight.picture == PictureState::kOtherSize) {
     complaint_ = "pictures have " + std::to_string(picture_.grey.cols) + " x " + std::to_string(picture_.grey.rows) +
                  " pixels, camera '" + camera_.name + "' of the vehicle file " + std::to_string(camera_.width) + " x " +
                  std::to_string(camera_.height);
-  } else if (sight.picture != PictureState::kGood) {
+  } else if (sight.picture != PictureState::kGood && sight.picture != PictureState::kRepeated) {
     complaint_ = std::string{"pictures of camera '"} + camera_.name + "' are " + name(sight.picture);
   }
   count();

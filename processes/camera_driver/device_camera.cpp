@@ -21,14 +21,10 @@ namespace {
 constexpr double kSilence = 2.0;  // s without a picture
 constexpr double kAnew = 10.0;    // s after which a silent camera is opened anew
 constexpr double kPause = 1.0;    // s between two attempts
+constexpr double kAhead = 5e-3;   // s: a stamp may be computed from the camera's own clock
 constexpr double kSlice = 0.02;   // s: OpenCV waits for the camera alone, not for the bus
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-Utime wall_clock() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -79,15 +75,19 @@ void DeviceCamera::wait(std::span<const int> descriptors, int milliseconds) {
   const double silence = now() - last_;
   if (silence > kAnew)
     return lost(settings_.device.device + ": no picture for " + std::to_string(std::lround(silence)) + " s");
-  if (const bool silent = silence > kSilence; std::exchange(silent_, silent) != silent) process_.tell_health();
+  if (const bool silent = silence > kSilence; std::exchange(silent_, silent) != silent) {
+    if (silent && count_ == 0) process_.log_warning(settings_.device.device + ": opened, and gives no picture");
+    process_.tell_health();
+  }
 }
 
 void DeviceCamera::publish(pictures::Frame frame) {
-  const Utime arrival = wall_clock();
   age_ = frame.age.value_or(NAN);
   if (!frame.problem.empty()) return leave_out(frame.problem);
-  if (settings_.kernel_stamps && !frame.age) {
-    const std::string why = settings_.device.device + ": the kernel's stamp of a picture fits no clock of this host";
+  if (settings_.kernel_stamps && !(age_ > -kAhead)) {
+    const std::string fault = frame.age ? "is " + std::to_string(std::lround(-1e3 * age_)) + " ms ahead of its arrival"
+                                        : "fits no clock of this host";
+    const std::string why = settings_.device.device + ": the kernel's stamp of a picture " + fault;
     if (count_ > 0) return leave_out(why);
     throw InputError(why + "; state 'stamp: arrival', and as 'latency' the time from exposure to arrival");
   }
@@ -95,8 +95,9 @@ void DeviceCamera::publish(pictures::Frame frame) {
   complaint_.clear();
   ++count_;
   const double since = settings_.latency + (settings_.kernel_stamps ? *frame.age : 0.0);
-  process_.publish(wire::kCamera, wire::encode(as_message(std::move(frame), utime_after(arrival, -since),
-                                                          settings_.camera, settings_.quality)));
+  const Utime utime = utime_after(frame.arrival, -since);
+  process_.publish(wire::kCamera,
+                   wire::encode(as_message(std::move(frame), utime, settings_.camera, settings_.quality)));
 }
 
 void DeviceCamera::leave_out(const std::string& why) {

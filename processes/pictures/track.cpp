@@ -106,6 +106,9 @@ void run(const Options& options) {
     std::fprintf(stderr, "fathom: %s: two tags have the number %d; neither is used\n", options.site.c_str(), id);
   }
   const auto source = open(options.source, options.rate);
+  if (lens && lens->undistorted()) {
+    std::fprintf(stderr, "fathom: the lens has no distortion; if nobody has calibrated it: fathom calibrate\n");
+  }
   vision::FrontEnd front_end{site, lens, camera.laser, settings};
   TrackTables tables{options.csv, camera.R_BC};
   if (!options.drawings.empty()) {

@@ -66,6 +66,10 @@ int main(int argc, char** argv) {
           }
           process.tell_health();
         };
+        if (watch.front_end().lens() && watch.front_end().lens()->undistorted()) {
+          process.log_info("the lens of camera '" + name +
+                           "' has no distortion; if nobody has calibrated it: fathom calibrate");
+        }
         process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
           const auto sample = wire::decode(message);
           if (!sample) return process.reject(wire::kAhrs);

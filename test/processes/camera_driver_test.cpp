@@ -9,6 +9,7 @@
 #include "common/base/event_log.hpp"
 #include "common/vision/jpeg.hpp"
 #include "test/common/vision/scene.hpp"
+#include "test/support/bus.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 
@@ -22,18 +23,26 @@ using test::shell;
 struct Seen {
   test::Ran ran;
   std::vector<fathom_lcm::camera_t> pictures;
-  double old{};  // s from the last picture's own time to the end
+  double old{};   // s from the last picture's own time to the end
+  double took{};  // s
 };
+
+// Writes the driver's settings, and gives the words that start it at the camera that is played.
+std::string driver(const Scratch& scratch, const std::string& camera, const std::string& keys) {
+  std::ofstream{scratch.path("camera.yaml")} << "camera_driver: {camera: down, device: /dev/video42, " << keys << "}\n";
+  return "env FAKE_CAMERA_JPEG=" + scratch.path("own.jpg") + " FAKE_CAMERA=/dev/video42" + camera +
+         " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" + FATHOM_BINARY_DIR + "/test/libtest_fake_camera.so' " +
+         program("camera_driver") + " --config " + scratch.path("camera.yaml");
+}
 
 // `camera`: what the camera is like, `keys`: of the driver, for so many seconds.
 Seen drive(const Scratch& scratch, const std::string& camera, const std::string& keys, double time) {
-  std::ofstream{scratch.path("camera.yaml")} << "camera_driver: {camera: down, device: /dev/video42, " << keys << "}\n";
   Seen seen;
-  seen.ran = shell("timeout -s INT " + std::to_string(time) + " env FAKE_CAMERA_JPEG=" + scratch.path("own.jpg") +
-                   " FAKE_CAMERA=/dev/video42" + camera + " ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" +
-                   FATHOM_BINARY_DIR + "/test/libtest_fake_camera.so' " + program("camera_driver") + " --config " +
-                   scratch.path("camera.yaml") + " --out file://" + scratch.path("camera.lcmlog"));
+  const auto begin = std::chrono::system_clock::now().time_since_epoch();
+  seen.ran = shell("timeout -s INT " + std::to_string(time) + " " + driver(scratch, camera, keys) + " --out file://" +
+                   scratch.path("camera.lcmlog"));
   const auto end = std::chrono::system_clock::now().time_since_epoch();
+  seen.took = std::chrono::duration<double>(end - begin).count();
   EventLog log{scratch.path("camera.lcmlog")};
   while (const auto event = log.next()) {
     if (event->channel != "CAMERA") continue;
@@ -72,6 +81,9 @@ TEST_CASE("camera_driver: pictures carry the kernel's time, whichever clock it s
   const Seen none = drive(scratch, ",clock=none", "stamp: kernel, latency: 0 s", 20.0);
   CHECK(none.ran.code == 1);
   CHECK_MESSAGE(none.ran.says("fits no clock of this host; state 'stamp: arrival'"), none.ran.text);
+  const Seen ahead = drive(scratch, ",age=-80", "stamp: kernel, latency: 0 s", 20.0);
+  CHECK(ahead.ran.code == 1);
+  CHECK_MESSAGE(ahead.ran.says(" ms ahead of its arrival; state 'stamp: arrival'"), ahead.ran.text);
 }
 
 TEST_CASE("camera_driver: what a camera compressed itself is handed on byte for byte, else its half colour is said") {
@@ -122,6 +134,33 @@ TEST_CASE("camera_driver: busy, unplugged, silent, or not as asked: one line eac
   const Seen hung = drive(scratch, ",hang=10", "stamp: kernel, latency: 0 s", 3.0);
   CHECK(hung.ran.code == kStopped);  // and stops when told, while the camera is silent
   CHECK(hung.pictures.size() < 11);
+}
+
+TEST_CASE(
+    "camera_driver: a camera that opens and gives nothing is waited for, said, and holds up neither bus nor end") {
+  const Scratch scratch;
+  const Seen never = drive(scratch, ",first=1e9", "stamp: kernel, latency: 0 s", 5.0);
+  CHECK(never.ran.code == kStopped);
+  CHECK(never.took < 5.0 + kBusy);  // OpenCV alone waits ten seconds
+  CHECK(never.pictures.empty());
+  CHECK(never.ran.lines() == 2);  // what it is, and that nothing comes
+  CHECK_MESSAGE(never.ran.says("/dev/video42: opened, and gives no picture"), never.ran.text);
+  const Seen late = drive(scratch, ",first=1500", "stamp: kernel, latency: 0 s", 4.0);
+  CHECK(late.ran.code == kStopped);
+  CHECK_MESSAGE(late.ran.lines() == 1, late.ran.text);
+  CHECK(late.pictures.size() > 3);
+}
+
+TEST_CASE("camera_driver: HEALTH tells of a camera that opened and gives nothing, while it is waited for") {
+  const Scratch scratch;
+  test::Bus bus;
+  const test::Background running{
+      scratch, "driver", driver(scratch, ",first=1e9", "stamp: kernel, latency: 0 s") + " --in '" + bus.url + "'"};
+  bus.listen(5.0);
+  REQUIRE(bus.health.size() > 2);
+  CHECK_MESSAGE(bus.health.back().state == "unhealthy", bus.health.back().detail);
+  CHECK_MESSAGE(bus.health.back().detail.find("/dev/video42: no picture for") != std::string::npos,
+                bus.health.back().detail);
 }
 
 }  // namespace fathom

@@ -128,6 +128,7 @@ TEST_CASE("fathom track: a row per detection and per picture, a damaged one said
                          " --csv " + scratch.path("out.csv") + " --pictures " + scratch.path("drawn"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   CHECK(ran.says("5.jpg: corrupt JPEG"));
+  CHECK(ran.says("the lens has no distortion"));  // as rendered; a real one wants calibrating
   const auto frames = lines(scratch.path("out.frames.csv")), detections = lines(scratch.path("out.csv"));
   CHECK(frames.size() == kPictures + 1);
   CHECK(detections.size() > 4 * kPictures);

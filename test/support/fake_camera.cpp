@@ -4,6 +4,7 @@
 //   yuyv | mjpg     what it delivers; mjpg from the file in FAKE_CAMERA_JPEG
 //   clock=C         of the stamps: monotonic, realtime, none (zero)
 //   age=MS          of a picture when it is ready
+//   first=MS        from the stream's start to its first picture
 //   unplug=N, hang=N  after N pictures the device is gone, or silent
 //   back=MS         this long after it was unplugged it is there again
 //   busy            another program streams
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdarg>
 #include <cstdlib>
 #include <cstring>
@@ -80,8 +82,10 @@ struct Camera {
     return now(CLOCK_MONOTONIC) - unplugged_at < 1e-3 * number("back", 1e12);
   }
   void tick(int fd) const {
-    const itimerspec each{.it_interval = {.tv_sec = 0, .tv_nsec = kPeriod},
-                          .it_value = {.tv_sec = 0, .tv_nsec = kPeriod}};
+    const double wait = pictures > 0 ? 1e-9 * kPeriod : 1e-3 * number("first", 1e-6 * kPeriod);
+    const timespec first{.tv_sec = static_cast<time_t>(wait),
+                         .tv_nsec = static_cast<long>(1e9 * (wait - std::floor(wait)))};
+    const itimerspec each{.it_interval = {.tv_sec = 0, .tv_nsec = kPeriod}, .it_value = first};
     const itimerspec never{};
     timerfd_settime(fd, 0, pictures >= static_cast<int>(number("hang", 1e9)) ? &never : &each, nullptr);
   }

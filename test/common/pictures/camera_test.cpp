@@ -14,7 +14,8 @@ TEST_CASE("camera: a stamp is of the clock that makes it a moment ago, or of non
   REQUIRE(age_of_stamp(kMonotonic - 0.04, kMonotonic, kWall));
   CHECK(*age_of_stamp(kMonotonic - 0.04, kMonotonic, kWall) == doctest::Approx(0.04).epsilon(kExact));
   CHECK(*age_of_stamp(kWall - 0.04, kMonotonic, kWall) == doctest::Approx(0.04).epsilon(1e-4));
-  CHECK(age_of_stamp(kMonotonic + 0.002, kMonotonic, kWall));  // computed from the camera's own clock
+  REQUIRE(age_of_stamp(kMonotonic + 0.08, kMonotonic, kWall));  // the end of an exposure that lasts
+  CHECK(*age_of_stamp(kMonotonic + 0.08, kMonotonic, kWall) == doctest::Approx(-0.08).epsilon(kExact));
   for (const double never : {0.0, -1.0, kMonotonic - 10.0, kMonotonic + 1.0, kWall + 60.0, std::nan("")}) {
     CHECK_FALSE(age_of_stamp(never, kMonotonic, kWall));
   }

@@ -69,6 +69,36 @@ TEST_CASE("flow: velocity over distance in all three directions while the camera
   }
 }
 
+TEST_CASE("flow: what it says of its error is true with a sensor's rotation and with that of the tags' poses") {
+  constexpr int kPictures = 60;
+  constexpr double kBeyond = 21.1;  // chi squared of three: one in ten thousand
+  const model::Site place = site();
+  for (const bool sensor : {true, false}) {
+    for (const double leaning : {0.0, 0.7}) {
+      CAPTURE(sensor);
+      CAPTURE(leaning);
+      const Pose start = pose({-0.6 * std::tan(leaning), 0.0, 0.7}, 0.0, leaning);
+      const Way way{{0.1, -0.15, 0.05}, {0.1, 0.0, 0.2}};
+      Renderer renderer{place, lens(), std::nullopt, {.caustics = 0.0}, 12};
+      FrontEnd front_end{place, lens(), std::nullopt, {}};
+      int valid = 0, beyond = 0;
+      for (int i = 0; i < kPictures; ++i) {
+        const Pose now = along(start, way, i * kPeriod);
+        const std::optional<Eigen::Matrix3d> R_WC = sensor ? std::optional{now.R_WC} : std::nullopt;
+        const Flow flow = front_end.step(picture(renderer, i * kPeriod, now), R_WC).flow;
+        if (i == 0 || flow.state != FlowState::kValid) continue;
+        const Pose middle = along(start, way, (i - 0.5) * kPeriod);
+        const double z = (place.floor - middle.p_WC.z()) / middle.R_WC(2, 2);
+        const Eigen::Vector3d error = flow.rate - middle.R_WC.transpose() * way.v_W / z;
+        beyond += error.dot(flow.covariance.ldlt().solve(error)) > kBeyond ? 1 : 0;
+        ++valid;
+      }
+      CHECK(valid > kPictures / 2);
+      CHECK(beyond == 0);
+    }
+  }
+}
+
 TEST_CASE("flow: no valid flow without texture, rotation, or after a pause") {
   FlowTracker tracker{lens(), {}};
   const cv::Mat blank(480, 640, CV_8UC1, cv::Scalar{80});

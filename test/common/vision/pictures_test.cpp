@@ -147,6 +147,35 @@ TEST_CASE("watch: corrupt, black, saturated, frozen and other pictures are said,
   CHECK_FALSE(watch.front_end().tag_poses("down").empty());
 }
 
+TEST_CASE("watch: a picture that comes again and again tells nothing new, and flow goes on from the last new one") {
+  const model::Site place = site();
+  constexpr double kSpeed = 0.2;  // m/s
+  for (const bool sensor : {true, false}) {
+    CAPTURE(sensor);
+    Renderer renderer{place, lens(), std::nullopt, {.caustics = 0.0}, 18};
+    Watch watch{place, mount(), std::nullopt, {}};
+    int flows = 0;
+    cv::Mat picture;
+    for (int i = 0; i < 24; ++i) {
+      const Utime utime = utime_after(1'000'000, i / 30.0);
+      if (sensor) watch.hear({.utime = utime, .has_attitude = true});
+      // Every other one twice, and once a stop of a fifth of a second.
+      const int taken = i >= 12 && i < 18 ? 12 : i - i % 2;
+      const bool again = taken != i;
+      if (!again) picture = renderer.step(i / 30.0, pose({kSpeed * i / 30.0, 0.0, 0.4})).clone();
+      CHECK(watch.see(compressed(picture, utime)));
+      const auto flow = watch.front_end().optical_flow("down");
+      CHECK(watch.front_end().tag_poses("down").empty() == again);
+      if (again) CHECK_FALSE(flow);
+      if (!flow) continue;
+      CHECK(flow->flow_C.x() == doctest::Approx(-kSpeed / 1.1).epsilon(0.06));  // -v / z
+      ++flows;
+    }
+    CHECK(flows == 9);  // of ten new pictures
+    CHECK(watch.complaint().empty());
+  }
+}
+
 TEST_CASE("watch: flow needs the attitude sensor where tags are missing, and is then the camera's motion") {
   model::Site bare = site();
   bare.tags.clear();

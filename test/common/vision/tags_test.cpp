@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <random>
 
 #include "common/base/error.hpp"
 #include "test/common/vision/scene.hpp"
@@ -44,6 +45,20 @@ double corner_error(const std::vector<TagSighting>& tags, const model::Site& sit
 
 double turn_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return rotation_vector_from_quaternion(Eigen::Quaterniond{a.transpose() * b}).norm();
+}
+
+/// A tag as it would be seen without noise, were it not where the map has it but `shift` from there.
+TagSighting sighting(const model::Tag& tag, const Pose& truth, const Eigen::Vector3d& shift) {
+  const Projection projection{lens()};
+  TagSighting seen{.family = "tag36h11", .id = tag.id, .margin = 60.0};
+  const double h = 0.5 * tag.size;
+  const std::array<Eigen::Vector3d, 4> corners{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3d p_W = tag.p_WT + shift + tag.R_WT * corners[i];
+    seen.corners[i] = projection.pixel(truth.R_WC.transpose() * (p_W - truth.p_WC));
+  }
+  seen.edge = (seen.corners[1] - seen.corners[0]).norm();
+  return seen;
 }
 
 }  // namespace
@@ -118,6 +133,59 @@ TEST_CASE("tags: a tag that was moved, one twice in the picture and one outside 
     if (tag.id == 11) CHECK((tag.verdict == TagVerdict::kAccepted || tag.verdict == TagVerdict::kTwice));
   }
   CHECK(accepted_11 == 1);
+}
+
+TEST_CASE("tags: one of five that is not where the map has it, however far, is refused, and the others tell the pose") {
+  const model::Site map = site();
+  std::mt19937_64 random{17};
+  std::normal_distribution<double> noise{0.0, 0.1};  // px, as kPlace has it
+  std::uniform_real_distribution<double> turn{-3.0, 3.0}, tilt{-0.15, 0.15};
+  for (int round = 0; round < 60; ++round) {
+    const double moved = std::array{0.01, 0.03, 0.07, 0.15, 0.3}[static_cast<std::size_t>(round % 5)];
+    CAPTURE(round);
+    CAPTURE(moved);
+    const Pose truth = pose({0.0, 0.0, 0.2}, tilt(random), tilt(random), turn(random));
+    const double direction = turn(random);
+    const int liar = std::array{7, 11, 12, 13, 17}[static_cast<std::size_t>(round / 5 % 5)];
+    std::vector<TagSighting> seen;
+    for (const int id : {7, 11, 12, 13, 17}) {
+      const Eigen::Vector3d shift = moved * Eigen::Vector3d{std::cos(direction), std::sin(direction), 0.0};
+      TagSighting tag = sighting(*map.tag(id), truth, id == liar ? shift : Eigen::Vector3d::Zero());
+      for (Eigen::Vector2d& corner : tag.corners) corner += Eigen::Vector2d{noise(random), noise(random)};
+      seen.push_back(tag);
+    }
+    TagLocator locator{map, lens(), {}};
+    const auto fix = locator.step(0, seen, std::nullopt);
+    REQUIRE(fix);
+    CHECK((fix->pose.p_WC - truth.p_WC).norm() < kPlace);
+    for (const TagSighting& tag : seen) {
+      CHECK(tag.verdict == (tag.id == liar ? TagVerdict::kGeometry : TagVerdict::kAccepted));
+    }
+  }
+}
+
+TEST_CASE("tags: of some that contradict each other the one is believed that fits where the camera was, or none") {
+  const model::Site map = site();
+  const Pose truth = pose({0.0, 0.0, 0.4}, 0.05, -0.02, 0.3);
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero(), apart = map.tag(12)->p_WT - map.tag(7)->p_WT;
+  TagLocator locator{map, lens(), {}};
+  std::vector<TagSighting> good{sighting(*map.tag(11), truth, none), sighting(*map.tag(16), truth, none)};
+  REQUIRE(locator.step(0, good, std::nullopt));
+  // Numbers 7 and 12 were glued where the other belongs, and are the clearer ones.
+  std::vector<TagSighting> three{sighting(*map.tag(7), truth, apart), sighting(*map.tag(12), truth, -apart),
+                                 sighting(*map.tag(11), truth, none)};
+  three[0].margin = three[1].margin = 90.0;
+  for (Utime utime = 100'000; utime < 600'000; utime += 100'000) {
+    std::vector<TagSighting> tags = three;
+    const auto fix = locator.step(utime, tags, std::nullopt);
+    REQUIRE(fix);
+    CHECK((fix->pose.p_WC - truth.p_WC).norm() < kPlace);
+    CHECK(tags[2].verdict == TagVerdict::kAccepted);
+  }
+  for (Utime utime = 600'000; utime < 1'500'000; utime += 100'000) {
+    std::vector<TagSighting> tags{three[0], three[1]};
+    CHECK_FALSE(locator.step(utime, tags, std::nullopt));
+  }
 }
 
 TEST_CASE("tags: of one that the picture's border cuts only the corners that can be seen count") {
