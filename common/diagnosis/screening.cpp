@@ -296,7 +296,7 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
       std::vector<double> next = theta;
       for (std::size_t i = 0; i < k; ++i) next[i] += move[static_cast<Eigen::Index>(i)] * parameters[i].sigma;
       const std::vector<double> free = std::exchange(next, clamped(parameters, next));
-      if (foretold < worth * cost_without) {
+      if (damping == 0.0 && foretold + std::max(cost_without - cost, 0.0) < worth * cost_without) {
         // Not worth a rollout: what the linear picture says of it will do.
         if (next != free) break;
         theta = next;

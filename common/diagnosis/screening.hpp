@@ -58,8 +58,9 @@ struct Screened {
   Eigen::VectorXd signature;        ///< change of all residuals that only this candidate can make; unit norm
 };
 
-/// Searches the candidate's numbers from `starts`: from the best of them when there are many. Of a step that the linear
-/// picture gives less than `worth` (a share of the cost) that picture is believed, and the search ends.
+/// Searches the candidate's numbers from `starts`: from the best of them when there are many. Where all that
+/// it has gained and the linear picture foretells is less than `worth` (a share of the cost), that picture is believed,
+/// and the search ends.
 [[nodiscard]] Screened screen(const Linearisation& base, const model::Effect& effect, int variant,
                               const std::string& variant_name, std::span<const std::vector<double>> starts,
                               double worth = 0.0);

@@ -198,9 +198,6 @@ void TrajectoryFit::solve(FitResult& fit, double tolerance) const {
   options.num_threads = 1;
   options.max_num_iterations = settings_.iterations;
   options.function_tolerance = tolerance > 0.0 ? tolerance : settings_.tolerance;
-  // Values alone tell how far to go back from a bound: a derivative costs ten rollouts. Halving never makes a step so
-  // short that it looks like the end, as a parabola through two values does.
-  options.line_search_interpolation_type = ceres::BISECTION;
   options.logging_type = ceres::SILENT;
 
   // Ceres projects each step on the bounds, and a step that would cross one then hardly moves. So numbers that lie on a
