@@ -27,6 +27,8 @@ FullTrial run_trial(const FullTrialOptions& options) {
   for (const auto& [old, replacement] : all_changes) {
     const auto at = text_of_file.find(old);
     if (at == std::string::npos) throw InputError(path + ": there is no '" + old + "' to be changed");
+    if (text_of_file.find(old, at + 1) != std::string::npos)
+      throw InputError(path + ": '" + old + "' stands there more than once");
     text_of_file.replace(at, old.size(), replacement);
   }
   const Config pipeline = Config::parse(text_of_file, path);

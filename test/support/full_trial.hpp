@@ -39,7 +39,7 @@ struct FullTrialOptions {
   std::string site{"tank"};
   std::vector<std::string> hide{};
   std::string vehicle{"seabotix_lbv150"};
-  /// Changes to the text of the site's pipeline file: what must be there, and what stands in its place.
+  /// Changes to the text of the site's pipeline file: what must be there once, and what stands in its place.
   std::vector<std::pair<std::string, std::string>> pipeline{};
 };
 

@@ -98,7 +98,7 @@ TEST_CASE("full noise: optical flow that reads short spoils sway's numbers, unti
   };
   const FullTrial untold = run_trial({.seed = 9, .hide = short_flow});
   const FullTrial told =
-      run_trial({.seed = 9, .hide = short_flow, .pipeline = {{"flow: {", "flow: {scale: 1 1.1547 1, "}}});
+      run_trial({.seed = 9, .hide = short_flow, .pipeline = {{"flow: {cutoff", "flow: {scale: 1 1.1547 1, cutoff"}}});
   CAPTURE(untold.text);
   CAPTURE(told.text);
   CHECK(Y_v(untold) < 1.1 * -18.1106);
