@@ -63,7 +63,7 @@ class PoseFit {
     const auto n = static_cast<Eigen::Index>(map_.size());
     Eigen::MatrixXd information = prior(), meat = information;
     double clusters = 0.0;
-    for (const Reduced& window : linearise()) {
+    for (const Reduced& window : linearise(sought())) {
       information += window.H;
       meat += window.scores * window.scores.transpose();
       clusters += static_cast<double>(window.scores.cols());
@@ -95,6 +95,14 @@ class PoseFit {
       if (map_[i].sought && !map_[i].at_bound(x_[k])) free.push_back(k);
     }
     return free;
+  }
+
+  [[nodiscard]] std::vector<Eigen::Index> sought() const {
+    std::vector<Eigen::Index> all;
+    for (std::size_t i = 0; i < map_.size(); ++i) {
+      if (map_[i].sought) all.push_back(static_cast<Eigen::Index>(i));
+    }
+    return all;
   }
 
   [[nodiscard]] Eigen::MatrixXd prior() const {
@@ -143,20 +151,21 @@ class PoseFit {
     return sum;
   }
 
-  [[nodiscard]] std::vector<Reduced> linearise() const {
+  [[nodiscard]] std::vector<Reduced> linearise(const std::vector<Eigen::Index>& moving) const {
     const model::Model model = model_at(x_);
     std::vector<Reduced> all(windows_.size());
-    for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) { all[w] = reduce(model, w); });
+    for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) { all[w] = reduce(model, moving, w); });
     return all;
   }
 
-  [[nodiscard]] Reduced reduce(const model::Model& model, std::size_t w) const {
+  [[nodiscard]] Reduced reduce(const model::Model& model, const std::vector<Eigen::Index>& moving,
+                               std::size_t w) const {
     const PoseWindow& window = windows_[w];
     const auto n = static_cast<Eigen::Index>(map_.size());
     const auto starts = static_cast<Eigen::Index>(window.free().size());
     Eigen::VectorXd residual(window.rows());
     window.evaluate(model, starts_[w], residual);
-    Eigen::MatrixXd J = window.jacobian(model, map_, starts_[w], residual);
+    Eigen::MatrixXd J = window.jacobian(model, map_, moving, starts_[w], residual);
     J.array().colwise() *= weights_[w].array();
     residual.array() *= weights_[w].array();
     const auto by_start = J.rightCols(starts);
@@ -191,7 +200,7 @@ class PoseFit {
   bool descend(const std::vector<Eigen::Index>& free) {
     double now = cost(x_, starts_);
     for (int step = 0; step < kSteps && std::isfinite(now); ++step) {
-      const std::vector<Reduced> windows = linearise();
+      const std::vector<Reduced> windows = linearise(free);
       Eigen::MatrixXd H = prior();
       Eigen::VectorXd g = prior_gradient(x_);
       double gain = 0.0;

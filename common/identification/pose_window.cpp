@@ -65,16 +65,16 @@ void PoseWindow::evaluate(const model::Model& model, const WindowStart& start,
   }
 }
 
-Eigen::MatrixXd PoseWindow::jacobian(const model::Model& model, const ParameterMap& map, const WindowStart& start,
+Eigen::MatrixXd PoseWindow::jacobian(const model::Model& model, const ParameterMap& map,
+                                     std::span<const Eigen::Index> moving, const WindowStart& start,
                                      const Eigen::VectorXd& residual) const {
   const auto n = static_cast<Eigen::Index>(map.size());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows(), n + static_cast<Eigen::Index>(free_.size()));
   const Eigen::VectorXd x = map.pack(model);
   Eigen::VectorXd moved(rows());
   model::Model shifted = model;
-  for (Eigen::Index j = 0; j < n; ++j) {
+  for (const Eigen::Index j : moving) {
     const FreeParameter& free = map[static_cast<std::size_t>(j)];
-    if (!free.sought) continue;
     const double step = (x[j] + kParameterStep) * free.scale > free.high ? -kParameterStep : kParameterStep;
     Eigen::VectorXd x_shifted = x;
     x_shifted[j] += step;

@@ -41,9 +41,10 @@ class PoseWindow {
 
   /// Simulated minus measured, in units of each signal. Not finite where the simulation diverged.
   void evaluate(const model::Model& model, const WindowStart& start, Eigen::Ref<Eigen::VectorXd> residual) const;
-  /// Derivatives by forward differences: with respect to the scaled parameters that are sought, then to the free
-  /// entries of the start. `residual` is that at the same place.
-  [[nodiscard]] Eigen::MatrixXd jacobian(const model::Model& model, const ParameterMap& map, const WindowStart& start,
+  /// Derivatives by forward differences: with respect to the scaled parameters (zero for those that are not `moving`),
+  /// then to the free entries of the start. `residual` is that at the same place.
+  [[nodiscard]] Eigen::MatrixXd jacobian(const model::Model& model, const ParameterMap& map,
+                                         std::span<const Eigen::Index> moving, const WindowStart& start,
                                          const Eigen::VectorXd& residual) const;
 
  private:

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "test/support/virtual_dive.hpp"
@@ -99,8 +100,10 @@ TEST_CASE("pose windows: derivatives are those of the residual") {
   const WindowStart start = window.measured_start();
   Eigen::VectorXd at(window.rows()), plus(window.rows()), minus(window.rows());
   window.evaluate(fixture.dive.truth, start, at);
-  const Eigen::MatrixXd jacobian = window.jacobian(fixture.dive.truth, map, start, at);
   const auto n = static_cast<Eigen::Index>(map.size());
+  std::vector<Eigen::Index> all(map.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::MatrixXd jacobian = window.jacobian(fixture.dive.truth, map, all, start, at);
   REQUIRE(jacobian.cols() == n + 12);
   const Eigen::VectorXd x = map.pack(fixture.dive.truth);
   constexpr double kStep = 1e-3, kAgreement = 2e-3;  // forward against central differences
@@ -114,6 +117,9 @@ TEST_CASE("pose windows: derivatives are those of the residual") {
     const Eigen::VectorXd central = (plus - minus) / (2.0 * kStep);
     CHECK((jacobian.col(j) - central).norm() < kAgreement * central.norm() + 1e-6);
   }
+  const Eigen::MatrixXd held = window.jacobian(fixture.dive.truth, map, {}, start, at);
+  CHECK(held.leftCols(n).isZero(0.0));
+  CHECK(held.rightCols(12) == jacobian.rightCols(12));
   for (Eigen::Index s = 0; s < 12; ++s) {
     WindowStart other = start;
     other[s] += 1e-4;
