@@ -105,11 +105,12 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
   return names;
 }
 
-/// Whether what training promised is kept by runs that no fit has seen. A veto only: nothing is accepted for it.
-bool carries_over(const SearchResult& found, const Interval& change) {
+/// Whether what training promised is kept by runs that no fit has seen. A veto only: nothing is accepted for it, and
+/// runs that hardly feel what was found (`foreseen`: fall_if_right) have none.
+bool carries_over(const SearchResult& found, const Interval& change, double foreseen) {
   double left = 1.0;
   for (const Judged& judged : found.accepted) left *= 1.0 - judged.error_reduction;
-  const double promised = 1.0 - left;
+  const double promised = std::min(1.0 - left, foreseen);
   if (!std::isfinite(change.value)) return true;
   return change.value > -kMostHarm && (promised < kPromised || change.value > kKept * promised);
 }
@@ -258,7 +259,9 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   const Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
-  if (!found.accepted.empty() && judged && !carries_over(found, improvement(before, after, vehicle))) {
+  if (!found.accepted.empty() && judged &&
+      !carries_over(found, improvement(before, after, vehicle),
+                    fall_if_right(found.before.model, found.after.model, windows, after))) {
     take_back(found, "helps the runs that it was fitted to, and not the validation run");
     found.taken_back = true;
     after = before;

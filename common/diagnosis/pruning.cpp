@@ -1,5 +1,6 @@
 #include "common/diagnosis/pruning.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +21,7 @@ constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost
 /// that fits far from where the effect was begin near their end.
 class FitsWithout {
  public:
-  FitsWithout(const SearchResult& result, const TrajectoryFit& problem) : problem_{problem} {
+  FitsWithout(const SearchResult& result, const TrajectoryFit& problem) : problem_{&problem} {
     for (const Judged& judged : result.accepted) {
       model::Model model = result.before.model;
       model.effects = result.after.model.effects;
@@ -33,10 +34,10 @@ class FitsWithout {
     const model::Model plain = without(result.after.model, judged);
     model::Model& start = starts_[i];
     start.input_hold = plain.input_hold;
-    if (problem_.cost(plain, result.after) < problem_.cost(start, result.after)) start = plain;
-    FitResult fit = problem_.fit(start, &result.after, kQuickTolerance);
+    if (problem_->cost(plain, result.after) < problem_->cost(start, result.after)) start = plain;
+    FitResult fit = problem_->fit(start, &result.after, kQuickTolerance);
     // What is missed so badly is missed by the best fit too.
-    if (reduction(fit.cost, result.after.cost) < kMissedBadly) fit = problem_.fit(fit.model, &fit);
+    if (reduction(fit.cost, result.after.cost) < kMissedBadly) fit = problem_->fit(fit.model, &fit);
     start = fit.model;
     return fit;
   }
@@ -47,14 +48,65 @@ class FitsWithout {
   }
 
  private:
-  const TrajectoryFit& problem_;
+  const TrajectoryFit* problem_;
   std::vector<model::Model> starts_;
 };
 
+/// Another form of one of the accepted effects, fitted without effect `i`: two effects that each look like half of one
+/// law have been taken for it (a lag of second order looks like a delay and a lag).
+struct OtherForm {
+  std::size_t place{};  ///< in accepted
+  Judged judged;
+  FitResult fit;
+};
+
+std::optional<OtherForm> best_other_form(const SearchResult& result, std::size_t i, const FitResult& without_it,
+                                         const TrajectoryFit& problem, const model::Scene& scene) {
+  std::optional<OtherForm> best;
+  for (std::size_t j = 0; j < result.accepted.size(); ++j) {
+    const Judged& other = result.accepted[j];
+    if (j == i || other.effect->variants_matter()) continue;
+    const std::vector<std::string> names = other.effect->variants(scene);
+    for (std::size_t v = 0; v < names.size(); ++v) {
+      const auto variant = static_cast<int>(v);
+      if (names[v] == "-" || variant == other.variant) continue;
+      const model::Model rest = without(without_it.model, other);
+      std::optional<model::Model> start;
+      for (const std::vector<double>& theta : other.effect->starts(scene, variant)) {
+        model::Model model = rest;
+        model.add({other.effect, variant, names[v], theta});
+        if (!start || problem.cost(model, without_it) < problem.cost(*start, without_it)) start = std::move(model);
+      }
+      if (!start) continue;
+      FitResult fit = problem.fit(*start, &without_it, kQuickTolerance);
+      if (best && best->fit.cost <= fit.cost) continue;
+      Judged judged = other;
+      judged.variant = variant;
+      judged.variant_name = names[v];
+      judged.other_forms.clear();
+      best = OtherForm{j, std::move(judged), std::move(fit)};
+    }
+  }
+  return best;
+}
+
+/// Whether the data still asks for the effect when the other has that form.
+bool needed_beside(const Judged& effect, const OtherForm& other, const SearchResult& result, const Settings& settings,
+                   int tried) {
+  const Judged& before = result.accepted[other.place];
+  const int numbers = effect.effect->numbers(effect.variant) + before.effect->numbers(before.variant) -
+                      other.judged.effect->numbers(other.judged.variant);
+  Judged again = effect;
+  again.log_odds =
+      log_odds(other.fit.window_cost, result.after.window_cost, numbers, tried) - surprise(result.after.model, effect);
+  again.error_reduction = reduction(other.fit.cost, result.after.cost);
+  return evident(again, settings) && again.error_reduction >= settings.smallest_reduction;
+}
+
 }  // namespace
 
-void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& settings, int tried,
-           const Progress& progress) {
+void prune(SearchResult& result, const TrajectoryFit& problem, const model::Scene& scene, const Settings& settings,
+           int tried, const Progress& progress) {
   FitsWithout fits{result, problem};
   for (std::size_t i = 0; i < result.accepted.size();) {
     Judged again = result.accepted[i];
@@ -66,6 +118,19 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const Settings& s
     judge_by_few_windows(again, problem, result.after, tried, settings);
     const std::string limited = at_limit(again, result.after.model);  // on everything it may have gone where it had not
     if (limited.empty() && evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
+      if (again.error_reduction < kMissedBadly) {
+        if (auto other = best_other_form(result, i, fit, problem, scene);
+            other && !needed_beside(again, *other, result, settings, tried)) {
+          again.reason = "made superfluous by another form of " + std::string(other->judged.effect->name());
+          result.refused.push_back(again);
+          result.accepted[other->place] = other->judged;
+          result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+          result.after = problem.fit(other->fit.model, &other->fit);
+          fits = FitsWithout{result, problem};
+          i = 0;
+          continue;
+        }
+      }
       result.accepted[i] = again;
       ++i;
       continue;

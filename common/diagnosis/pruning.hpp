@@ -6,9 +6,9 @@
 
 namespace fathom::diagnosis {
 
-/// Drops every accepted effect that the others have made superfluous or that all data does not bear out; fills in the
-/// final odds of those that stay. `tried`: candidates that share the prior.
-void prune(SearchResult& result, const identification::TrajectoryFit& problem, const Settings& settings, int tried,
-           const Progress& progress);
+/// Drops every accepted effect that the others have made superfluous, as they are or in another form, or that all data
+/// does not bear out; fills in the final odds of those that stay. `tried`: candidates that share the prior.
+void prune(SearchResult& result, const identification::TrajectoryFit& problem, const model::Scene& scene,
+           const Settings& settings, int tried, const Progress& progress);
 
 }  // namespace fathom::diagnosis

@@ -94,10 +94,10 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   result.window = whole.settings().window;
   result.after = identification::with_input_hold(whole, std::move(after));
   result.before = result.accepted.empty() ? result.after : whole.fit(result.before.model);
-  prune(result, whole, settings, tried, progress);
+  prune(result, whole, scene, settings, tried, progress);
   if (test_forms(result, problem, problem.fit(result.after.model, &searched), scene, progress)) {
     result.after = whole.fit(only_accepted(result), &result.after);
-    prune(result, whole, settings, tried, progress);
+    prune(result, whole, scene, settings, tried, progress);
   }
   if (result.accepted.empty()) result.after = result.before;
   progress("intervals of what was found", 0.88);

@@ -177,6 +177,25 @@ TEST_CASE("diagnoser: what the validation run contradicts is taken back, and cal
   CHECK(current->reason.find("not the validation run") != std::string::npos);
 }
 
+TEST_CASE("diagnoser: a validation run that hardly feels what was found takes nothing back") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto dive = [&](unsigned seed, double noise) {
+    return test::make_dive(vehicle, {.duration = 90.0,
+                                     .seed = seed,
+                                     .velocity_noise = noise,
+                                     .rate_noise = noise,
+                                     .effects = {test::active("thruster_lag", {0.15})}})
+        .trial;
+  };
+  // Instruments that are coarse beside what the lag changes: a fall of a few per cent of their noise at most.
+  const std::vector<Trial> train{dive(61, 0.002)}, validate{dive(62, 0.06)};
+  const DiagnosisResult result = diagnose(vehicle, train, validate, {}, [](const std::string&, double) {}).result;
+  CAPTURE(result.paragraph);
+  REQUIRE_FALSE(result.effects.empty());
+  CHECK(result.effects[0].name == "thruster_lag");
+  CHECK(result.improvement.value < 0.15);  // of what training gained, far less
+}
+
 TEST_CASE("diagnoser: a sound vehicle is not accused of the time for which its commands are held") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   for (const double hold : {-0.5, 0.5}) {

@@ -269,6 +269,25 @@ TEST_CASE("search: hidden effects are named first, with their numbers") {
   check_finds("bluerov2", hidden("thrust_asymmetry"), kShort, 4);
 }
 
+TEST_CASE("search: a lag of second order is one effect, not a delay and a lag that imitate it together") {
+  if (!test::kTimed) return;
+  const model::Vehicle& vehicle = vehicle_named("bluerov2");
+  for (const double time_constant : {0.1, 0.2}) {
+    CAPTURE(time_constant);
+    test::DiveSettings settings = dive_settings(kShort, 6);
+    settings.velocity_noise = settings.rate_noise = 0.002;  // quiet enough to tell laws of one effect apart
+    settings.dt = 0.04;  // and quick enough for their memory
+    constexpr int kSecondOrder = 3;
+    settings.effects = {test::active("thruster_lag", {time_constant, 0.0}, kSecondOrder)};
+    const test::VirtualDive dive = test::make_dive(vehicle, settings);
+    const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
+    for (const Judged& judged : found.accepted) MESSAGE(judged.effect->name() << " " << judged.variant_name << " " << judged.error_reduction);
+    REQUIRE(found.accepted.size() == 1);
+    CHECK(found.accepted[0].effect->name() == "thruster_lag");
+    CHECK(found.accepted[0].variant == kSecondOrder);
+  }
+}
+
 TEST_CASE("search: a large change of payload is named, whatever its moment") {
   if (!test::kTimed) return;
   constexpr double kMass = 3.0, kWeight = 15.0;  // kg, N: far more than what the vehicle floats by

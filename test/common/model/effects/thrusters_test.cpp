@@ -143,7 +143,7 @@ TEST_CASE("thruster_delay: vertical thrusters have a time of their own, and none
 }
 
 TEST_CASE("thruster_lag: after a step each form follows its own exponential, whatever the steps in time") {
-  enum Form { kAlike, kTwoKinds, kShaft };
+  enum Form { kAlike, kTwoKinds, kShaft, kSecondOrder };
   const Fixture fixture;
   const model::Effect& effect = *model::find_effect("thruster_lag");
   const auto after = [&](double from, double to, std::vector<double> theta, int form, double dt) {
@@ -168,23 +168,25 @@ TEST_CASE("thruster_lag: after a step each form follows its own exponential, wha
     CHECK(after(0.0, 9.0, {0.3, 0.0}, kShaft, dt)[1] == doctest::Approx(rising * rising));
     CHECK(after(9.0, 0.0, {0.3, 0.0}, kShaft, dt)[1] == doctest::Approx(falling * falling));
     CHECK(after(9.0, -4.0, {0.3, 0.0}, kShaft, dt)[2] == doctest::Approx(turning * std::abs(turning)));
+    CHECK(after(4.0, 9.0, {0.3, 0.0}, kSecondOrder, dt)[2] == doctest::Approx(9.0 - 5.0 * (1.0 + t / 0.3) * e));
   }
 }
 
 TEST_CASE("thruster_lag, thruster_delay: forms that these thrusters cannot tell apart are not asked for") {
   Fixture fixture;
   const auto names = [&](const char* effect) { return model::find_effect(effect)->variants(fixture.scene); };
-  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "shaft speed"});
+  CHECK(names("thruster_lag") ==
+        std::vector<std::string>{"", "vertical thrusters apart", "shaft speed", "second order"});
   fixture.vehicle.thrusters.erase(fixture.vehicle.thrusters.begin() + 2);
   model::Allocation level(6, 3);
   level << fixture.vehicle.allocation.leftCols(2), fixture.vehicle.allocation.rightCols(1);
   fixture.vehicle.allocation = level;
   fixture.scene.force_rms = Eigen::Vector3d::Constant(5.0);
-  CHECK(names("thruster_lag") == std::vector<std::string>{"", "-", "shaft speed"});
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "-", "shaft speed", "second order"});
   CHECK(names("thruster_delay") == std::vector<std::string>{"", "-"});
   fixture.scene.force_rms = Vector6d::Constant(5.0);
   fixture.scene.input_is_wrench = true;
-  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "-"});
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "-", "second order"});
 }
 
 TEST_CASE("thrust_loss: bilinear in shaft speed and advance, in both directions") {
