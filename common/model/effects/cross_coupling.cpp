@@ -1,9 +1,9 @@
 // Physics: motion along one axis loads another. Off-diagonal drag w_i = D_ij nu_r,j or D_ij |nu_r,j| nu_r,j, and
-// off-diagonal added mass M_ij = M_ji with its Coriolis part, so that it does no work (Fossen 2011, sec. 6.3 and 6.4).
-// All pairs are asked: a hull symmetric about its x-z plane has {X Z M} with {u w q} and {Y K N} with {v p r}; what is
-// carried on one side couples the two sets. Pairs of the latter are left out where their motion is not simulated.
-// Revealed by single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment, and
-// added mass with centre_of_mass.
+// off-diagonal added mass M_ij = M_ji with its Coriolis part, so that it does no work. Pairs that a hull symmetric
+// about its x-z plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4); and what is
+// carried on one side only: N and Y with u, K with w. Ignores the other pairs of a hull without symmetry. Revealed by
+// single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment, and added mass with
+// centre_of_mass.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +16,8 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)", 1.0}};
+constexpr std::array<std::array<int, 3>, 2> kPlanes{{{0, 2, 4}, {1, 3, 5}}};
+
 enum class Form { kLinear, kQuadratic, kInertia };
 
 struct Term {
@@ -24,24 +26,29 @@ struct Term {
   Form form;
 };
 
-/// 30 pairs of row and column with two laws of drag, 15 of them without order with added mass.
-constexpr std::array<Term, 75> make_terms() {
-  std::array<Term, 75> terms{};
+constexpr std::array<std::array<int, 2>, 3> kOneSided{{{5, 0}, {1, 0}, {3, 2}}};
+
+constexpr std::array<Term, 39> make_terms() {
+  std::array<Term, 39> terms{};
   std::size_t n = 0;
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
-      if (row == column) continue;
-      terms[n++] = {row, column, Form::kLinear};
-      terms[n++] = {row, column, Form::kQuadratic};
-      if (row < column) terms[n++] = {row, column, Form::kInertia};
+  for (const auto& plane : kPlanes) {
+    for (const int row : plane) {
+      for (const int column : plane) {
+        if (row == column) continue;
+        terms[n++] = {row, column, Form::kLinear};
+        terms[n++] = {row, column, Form::kQuadratic};
+        if (row < column) terms[n++] = {row, column, Form::kInertia};
+      }
     }
+  }
+  for (const auto& [row, column] : kOneSided) {
+    terms[n++] = {row, column, Form::kLinear};
+    terms[n++] = {row, column, Form::kQuadratic};
+    terms[n++] = {std::min(row, column), std::max(row, column), Form::kInertia};
   }
   return terms;
 }
 constexpr auto kTerms = make_terms();
-
-/// Whether a hull that is symmetric about its x-z plane can have it: u, w, q and v, p, r alternate in Fossen's order.
-constexpr bool symmetric(const Term& term) { return (term.row + term.column) % 2 == 0; }
 
 std::string term_name(const Term& term) {
   const auto row = static_cast<std::size_t>(term.row);
@@ -71,9 +78,8 @@ class CrossCoupling final : public Effect {
     std::vector<std::string> names;
     for (const Term& term : kTerms) {
       const bool free = scene.vehicle->dof[static_cast<std::size_t>(term.row)];
-      const bool simulated = scene.vehicle->dof[static_cast<std::size_t>(term.column)];
-      const bool moves =
-          scene.nu_rms[term.column] > 0.0 && (simulated || (term.form != Form::kInertia && symmetric(term)));
+      const bool moves = scene.nu_rms[term.column] > 0.0 &&
+                         (term.form != Form::kInertia || scene.vehicle->dof[static_cast<std::size_t>(term.column)]);
       names.push_back(free && moves ? term_name(term) : "-");
     }
     return names;

@@ -276,12 +276,11 @@ TEST_CASE("search: a lag of second order is one effect, not a delay and a lag th
     CAPTURE(time_constant);
     test::DiveSettings settings = dive_settings(kShort, 6);
     settings.velocity_noise = settings.rate_noise = 0.002;  // quiet enough to tell laws of one effect apart
-    settings.dt = 0.04;  // and quick enough for their memory
+    settings.dt = 0.04;                                     // and quick enough for their memory
     constexpr int kSecondOrder = 3;
     settings.effects = {test::active("thruster_lag", {time_constant, 0.0}, kSecondOrder)};
     const test::VirtualDive dive = test::make_dive(vehicle, settings);
     const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
-    for (const Judged& judged : found.accepted) MESSAGE(judged.effect->name() << " " << judged.variant_name << " " << judged.error_reduction);
     REQUIRE(found.accepted.size() == 1);
     CHECK(found.accepted[0].effect->name() == "thruster_lag");
     CHECK(found.accepted[0].variant == kSecondOrder);

@@ -145,7 +145,7 @@ TEST_CASE("payload_change, cross_coupling, centre_of_mass: what mass adds does n
   for (std::size_t v = 0; v < names.size(); ++v) {
     if (names[v].ends_with("_dot")) heavy.push_back(test::active("cross_coupling", {0.6}, static_cast<int>(v)));
   }
-  REQUIRE(heavy.size() == 17);
+  REQUIRE(heavy.size() == 11);
   for (const model::ActiveEffect& effect : heavy) {
     model::Model model = bare.model;
     model.theta.head<6>() << 20, 25, 30, 1, 2, 3;
@@ -164,20 +164,14 @@ TEST_CASE("payload_change, cross_coupling, centre_of_mass: what mass adds does n
   }
 }
 
-TEST_CASE("cross_coupling: covers every pair of what is simulated, and what a symmetric hull feels of the rest") {
+TEST_CASE("cross_coupling: covers every pair that a symmetric hull has, and what one side carries") {
   const model::Vehicle beluga = test::vehicle_from_repository("beluga");
   const auto names = model::find_effect("cross_coupling")->variants({.vehicle = &beluga, .nu_rms = Vector6d::Ones()});
   for (const char* wanted : {"Y_r", "N_v", "Y_r|r|", "N_v|v|", "Y_r_dot", "X_q_dot", "M_u", "Z_q|q|", "K_v", "K_r_dot",
-                             "N_u|u|", "Y_u", "K_w", "X_r_dot", "X_v", "Z_r|r|"}) {
+                             "N_u|u|", "Y_u", "K_w", "X_r_dot", "X_v_dot", "Z_p_dot"}) {
     CAPTURE(wanted);
     CHECK(std::count(names.begin(), names.end(), wanted) == 1);
   }
-  CHECK(std::count(names.begin(), names.end(), "-") == 0);  // all six axes are simulated
-  const model::Vehicle level = test::vehicle_from_repository("seabotix_lbv150");
-  const auto few = model::find_effect("cross_coupling")->variants({.vehicle = &level, .nu_rms = Vector6d::Ones()});
-  CHECK(few.size() == names.size());
-  for (const char* wanted : {"X_v", "X_r_dot", "X_q", "Y_p|p|"}) CHECK(std::count(few.begin(), few.end(), wanted) == 1);
-  for (const char* other : {"X_p", "K_v", "X_q_dot", "Y_p_dot"}) CHECK(std::count(few.begin(), few.end(), other) == 0);
 }
 
 TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the step") {
