@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include "common/base/distributions.hpp"
@@ -41,6 +42,19 @@ double normalised(const Predictions& predictions, std::span<const std::size_t> c
     }
   }
   return axes > 0.0 ? sum / axes : 0.0;
+}
+
+/// Of the normalised error, from `before` to `after`, relative to before.
+double fall(const Predictions& before, const Predictions& after, std::span<const std::size_t> chosen,
+            const model::Vehicle& vehicle) {
+  const double old_error = normalised(before, chosen, vehicle);
+  return old_error > 0.0 ? 1.0 - normalised(after, chosen, vehicle) / old_error : 0.0;
+}
+
+std::vector<std::size_t> all_windows(const Predictions& predictions) {
+  std::vector<std::size_t> all(predictions.windows.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 }  // namespace
@@ -190,14 +204,8 @@ double Predictions::p_foretells(double share, std::size_t horizon, std::size_t a
 }
 
 Interval improvement(const Predictions& before, const Predictions& after, const model::Vehicle& vehicle) {
-  std::vector<std::size_t> chosen(before.windows.size());
-  for (std::size_t w = 0; w < chosen.size(); ++w) chosen[w] = w;
-  const auto fall = [&](std::span<const std::size_t> windows) {
-    const double old_error = normalised(before, windows, vehicle);
-    return old_error > 0.0 ? 1.0 - normalised(after, windows, vehicle) / old_error : 0.0;
-  };
-  Interval interval{.value = fall(chosen)};
-  const std::size_t n = chosen.size();
+  Interval interval{.value = fall(before, after, all_windows(before), vehicle)};
+  const std::size_t n = before.windows.size();
   if (n < 2 * kBlock) {
     interval.low = -std::numeric_limits<double>::infinity();
     interval.high = std::numeric_limits<double>::infinity();
@@ -212,7 +220,7 @@ Interval improvement(const Predictions& before, const Predictions& after, const 
       const std::size_t first = start(random);
       for (std::size_t i = 0; i < kBlock && sample.size() < n; ++i) sample.push_back(first + i);
     }
-    draws.push_back(fall(sample));
+    draws.push_back(fall(before, after, sample, vehicle));
   }
   std::sort(draws.begin(), draws.end());
   interval.low = draws[static_cast<std::size_t>(0.025 * kDraws)];
@@ -239,8 +247,8 @@ double fall_if_right(const model::Model& before, const model::Model& after, std:
       }
     }
   }
-  const double with_all = improvement(of_before, of_after, *before.vehicle).value;
-  return std::isfinite(with_all) ? with_all : 1.0;
+  const double foreseen = fall(of_before, of_after, all_windows(of_after), *before.vehicle);
+  return std::isfinite(foreseen) ? foreseen : 1.0;  // what diverges differs by all there is
 }
 
 }  // namespace fathom::diagnosis

@@ -1,5 +1,6 @@
 #include "common/diagnosis/pruning.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -60,31 +61,47 @@ struct OtherForm {
   FitResult fit;
 };
 
+bool is_accepted(const SearchResult& result, const model::Effect* effect, int variant) {
+  return std::ranges::any_of(
+      result.accepted, [&](const Judged& judged) { return judged.effect == effect && judged.variant == variant; });
+}
+
+/// The start from which the form costs least.
+std::optional<model::Model> best_start(const model::Model& rest, const Judged& form, const FitResult& like,
+                                       const TrajectoryFit& problem, const model::Scene& scene) {
+  std::optional<model::Model> best;
+  double least = 0.0;
+  for (const std::vector<double>& theta : form.effect->starts(scene, form.variant)) {
+    model::Model model = rest;
+    model.add({form.effect, form.variant, form.variant_name, theta});
+    const double cost = problem.cost(model, like);
+    if (best && cost >= least) continue;
+    best = std::move(model);
+    least = cost;
+  }
+  return best;
+}
+
+/// Of the forms that are not at a limit, the one that costs least.
 std::optional<OtherForm> best_other_form(const SearchResult& result, std::size_t i, const FitResult& without_it,
                                          const TrajectoryFit& problem, const model::Scene& scene) {
   std::optional<OtherForm> best;
   for (std::size_t j = 0; j < result.accepted.size(); ++j) {
     const Judged& other = result.accepted[j];
     if (j == i || other.effect->variants_matter()) continue;
+    const model::Model rest = without(without_it.model, other);
     const std::vector<std::string> names = other.effect->variants(scene);
     for (std::size_t v = 0; v < names.size(); ++v) {
-      const auto variant = static_cast<int>(v);
-      if (names[v] == "-" || variant == other.variant) continue;
-      const model::Model rest = without(without_it.model, other);
-      std::optional<model::Model> start;
-      for (const std::vector<double>& theta : other.effect->starts(scene, variant)) {
-        model::Model model = rest;
-        model.add({other.effect, variant, names[v], theta});
-        if (!start || problem.cost(model, without_it) < problem.cost(*start, without_it)) start = std::move(model);
-      }
+      Judged form = other;
+      form.variant = static_cast<int>(v);
+      form.variant_name = names[v];
+      form.other_forms.clear();
+      if (names[v] == "-" || is_accepted(result, form.effect, form.variant)) continue;
+      const std::optional<model::Model> start = best_start(rest, form, without_it, problem, scene);
       if (!start) continue;
       FitResult fit = problem.fit(*start, &without_it, kQuickTolerance);
-      if (best && best->fit.cost <= fit.cost) continue;
-      Judged judged = other;
-      judged.variant = variant;
-      judged.variant_name = names[v];
-      judged.other_forms.clear();
-      best = OtherForm{j, std::move(judged), std::move(fit)};
+      if ((best && best->fit.cost <= fit.cost) || !at_limit(form, fit.model).empty()) continue;
+      best = OtherForm{j, std::move(form), std::move(fit)};
     }
   }
   return best;
@@ -118,18 +135,16 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const model::Scen
     judge_by_few_windows(again, problem, result.after, tried, settings);
     const std::string limited = at_limit(again, result.after.model);  // on everything it may have gone where it had not
     if (limited.empty() && evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
-      if (again.error_reduction < kMissedBadly) {
-        if (auto other = best_other_form(result, i, fit, problem, scene);
-            other && !needed_beside(again, *other, result, settings, tried)) {
-          again.reason = "made superfluous by another form of " + std::string(other->judged.effect->name());
-          result.refused.push_back(again);
-          result.accepted[other->place] = other->judged;
-          result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
-          result.after = problem.fit(other->fit.model, &other->fit);
-          fits = FitsWithout{result, problem};
-          i = 0;
-          continue;
-        }
+      if (auto other = best_other_form(result, i, fit, problem, scene);
+          other && !needed_beside(again, *other, result, settings, tried)) {
+        again.reason = "made superfluous by another form of " + std::string(other->judged.effect->name());
+        result.refused.push_back(again);
+        result.accepted[other->place] = other->judged;
+        result.accepted.erase(result.accepted.begin() + static_cast<std::ptrdiff_t>(i));
+        result.after = problem.fit(other->fit.model, &other->fit);
+        fits = FitsWithout{result, problem};
+        i = 0;
+        continue;
       }
       result.accepted[i] = again;
       ++i;

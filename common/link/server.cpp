@@ -133,12 +133,20 @@ std::size_t Server::send(std::string_view bytes) {
 
 void Server::drain() {
   using std::chrono::milliseconds;
-  for (int i = 0; i < 100 && descriptor_ >= 0; ++i) {
+  constexpr milliseconds kLook{10};
+  constexpr int kMost = 200;
+  constexpr int kSettled = 3;  // looks in a row, as bytes come to a terminal's reader by way of the kernel's own queue
+  if (!connected()) return;
+  // What waits in a terminal is told at the client's end only, and is thrown away when the line goes.
+  const int end = terminal_ ? open(name_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC) : descriptor_;
+  const unsigned long question = terminal_ ? FIONREAD : TIOCOUTQ;
+  for (int i = 0, empty = 0; i < kMost && empty < kSettled; ++i) {
     int waiting = 0;
-    if (ioctl(descriptor_, TIOCOUTQ, &waiting) != 0 || waiting == 0) break;
-    std::this_thread::sleep_for(milliseconds{10});
+    if (end < 0 || ioctl(end, question, &waiting) != 0) break;
+    empty = waiting == 0 ? empty + 1 : 0;
+    std::this_thread::sleep_for(kLook);
   }
-  std::this_thread::sleep_for(milliseconds{200});  // the reader's turn, before the line goes
+  if (terminal_ && end >= 0) close(end);
 }
 
 }  // namespace fathom::link

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -109,6 +110,30 @@ TEST_CASE("link: a pseudo-terminal passes bytes both ways") {
   link.send(binary);
   link.wait({}, 20);
   CHECK(instrument.wait(1.0) == binary);
+}
+
+TEST_CASE("link: an instrument that drains its line leaves with nothing unread, however slow the reader") {
+  const Scratch scratch;
+  const std::string sent(6'000, 'x');  // more than the terminal's own buffer holds
+  std::string read;
+  std::thread reader;
+  {
+    Server instrument{"pty:" + scratch.path("tty")};
+    const int line = ::open(scratch.path("tty").c_str(), O_RDONLY | O_NOCTTY | O_CLOEXEC);
+    REQUIRE(line >= 0);
+    reader = std::thread{[line, &read] {
+      std::this_thread::sleep_for(std::chrono::milliseconds{600});  // a busy machine
+      std::array<char, 512> bytes{};
+      for (ssize_t count = 0; (count = ::read(line, bytes.data(), bytes.size())) > 0;) {
+        read.append(bytes.data(), static_cast<std::size_t>(count));
+      }
+      ::close(line);
+    }};
+    CHECK(instrument.send(sent) == sent.size());
+    instrument.drain();
+  }
+  reader.join();
+  CHECK((read == sent));  // without thousands of letters should it fail
 }
 
 TEST_CASE("link: what waited in a line before it was opened is not taken for news") {
