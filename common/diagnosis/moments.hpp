@@ -7,8 +7,8 @@
 
 namespace fathom::diagnosis {
 
-/// The fit, or a better one that begins with the effect's onset elsewhere within two windows. Effects without an onset
-/// are returned as they are.
+/// The fit, or a better one that begins with the effect's onset elsewhere in the data. Effects without an onset are
+/// returned as they are.
 [[nodiscard]] identification::FitResult at_best_moment(const identification::TrajectoryFit& problem,
                                                        identification::FitResult fit, const model::Effect& effect,
                                                        int variant);

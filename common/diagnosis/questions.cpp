@@ -12,16 +12,16 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr std::size_t kCoarseWindows = 40;  // enough to tell whether a form leads anywhere
-constexpr double kNearWindow = 2.0;         // s: what a wrong model does in it is still nearly linear
-constexpr std::size_t kNearWindows = 150;   // five minutes whole, longer trials by an even spread
-constexpr std::size_t kThinFrom = 120;      // windows; fewer are asked whole at once
-constexpr int kCareful = 2;                 // forms of an effect that earn a look at every window
-constexpr double kWorthAStep = 0.2;         // of the cost, per error: a tenth of the smallest gain that counts
-constexpr double kQuickTolerance = 1e-3;    // relative decrease of the cost that ends a look from afar
-constexpr int kEnoughRefusals = 2;          // by full fits, in the company of different effects
-constexpr double kPromisesMore = 1.25;      // times the gain: then a refused form is asked again
-constexpr double kLeastTrust = 0.01;        // what broke its promise once is still asked last
+constexpr double kNearWindow = 2.0;        // s: what a wrong model does in it is still nearly linear
+constexpr std::size_t kNearWindows = 100;  // by an even spread
+constexpr std::size_t kThinFrom = 120;     // windows; fewer are fitted at once
+constexpr std::size_t kFirstWindows = 20;  // for a first look; what then promises most is asked by all
+constexpr int kCareful = 2;                // forms of an effect that earn a look at every window
+constexpr double kWorthAStep = 0.2;        // of the cost, per error: a tenth of the smallest gain that counts
+constexpr double kQuickTolerance = 1e-3;   // relative decrease of the cost that ends a look from afar
+constexpr int kEnoughRefusals = 2;         // by full fits, in the company of different effects
+constexpr double kPromisesMore = 1.25;     // times the gain: then a refused form is asked again
+constexpr double kLeastTrust = 0.01;       // what broke its promise once is still asked last
 
 bool holds(const model::Model& model, const Candidate& candidate) {
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const model::ActiveEffect& active) {
@@ -95,8 +95,8 @@ Answers ask_near(std::span<const Candidate> candidates, const NearView& near, co
 void ask_whole(Answers& answers, const TrajectoryFit& problem, const FitResult& fit, const model::Scene& scene,
                int tried, const Settings& settings) {
   const Linearisation whole{problem, fit};
-  const bool thin = problem.windows().size() > kThinFrom;
-  const Linearisation base = whole.thinned(thin ? kCoarseWindows : problem.windows().size());
+  const bool thin = problem.windows().size() > kFirstWindows;
+  const Linearisation base = whole.thinned(kFirstWindows);
   answers.screened.resize(answers.near.size());
   for_each_index(answers.near.size(), settings.threads, [&](std::size_t i) {
     const Screened& form = answers.near[i];
@@ -117,15 +117,16 @@ void ask_whole(Answers& answers, const TrajectoryFit& problem, const FitResult& 
   }
 }
 
-Coarse::Coarse(const TrajectoryFit& whole, std::span<const Trial> train, const Settings& settings, const FitResult& fit)
-    : whole_{whole}, train_{train}, settings_{settings}, fit_{fit} {}
+Coarse::Coarse(const TrajectoryFit& whole, std::span<const Trial> train, const Settings& settings, const FitResult& fit,
+               std::size_t windows)
+    : whole_{whole}, train_{train}, settings_{settings}, fit_{fit}, windows_{windows} {}
 
 bool Coarse::useful() const { return whole_.windows().size() > kThinFrom; }
 
 const TrajectoryFit& Coarse::problem() {
   if (problem_) return *problem_;
   identification::FitSettings few = settings_.fit;
-  few.most_windows = kCoarseWindows;
+  few.most_windows = windows_;
   problem_.emplace(whole_.vehicle(), train_, few);
   like_.sigma = fit_.sigma;
   for (const auto& window : problem_->windows()) like_.nu0.push_back(window.window().trial->nu[window.window().start]);
@@ -138,8 +139,9 @@ const FitResult& Coarse::reference() {
   return reference_;
 }
 
-void look_afar(Answers& answers, Coarse& coarse, const FitResult& fit, const model::Scene& scene,
-               const Progress& progress, double done) {
+void look_afar(Answers& answers, const TrajectoryFit& problem, std::span<const Trial> train, const Settings& settings,
+               const FitResult& fit, const model::Scene& scene, const Progress& progress, double done) {
+  Coarse coarse{problem, train, settings, fit, kFirstWindows};
   for (std::size_t i = 0; i < answers.screened.size(); ++i) {
     const Screened& candidate = answers.near[i];
     for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {

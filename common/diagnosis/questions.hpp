@@ -57,26 +57,31 @@ void ask_whole(Answers& answers, const identification::TrajectoryFit& problem, c
 /// anywhere. What it is made from must outlive it.
 class Coarse {
  public:
+  /// On at most `windows` of them.
   Coarse(const identification::TrajectoryFit& whole, std::span<const Trial> train, const Settings& settings,
-         const identification::FitResult& fit);
+         const identification::FitResult& fit, std::size_t windows = kCoarseWindows);
   /// False when all windows are hardly more.
   [[nodiscard]] bool useful() const;
   [[nodiscard]] const identification::TrajectoryFit& problem();
   /// The fit without a candidate.
   [[nodiscard]] const identification::FitResult& reference();
 
+  static constexpr std::size_t kCoarseWindows = 40;  // enough to tell whether a form leads anywhere
+
  private:
   const identification::TrajectoryFit& whole_;
   std::span<const Trial> train_;
   const Settings& settings_;
   const identification::FitResult& fit_;
+  std::size_t windows_;
   std::optional<identification::TrajectoryFit> problem_;
   identification::FitResult like_, reference_;
 };
 
-/// Coarse fits for effects whose small sizes tell nothing about their large ones. What is found waits for another full
-/// fit. `progress` hears of it at `share`.
-void look_afar(Answers& answers, Coarse& coarse, const identification::FitResult& fit, const model::Scene& scene,
+/// Fits on few windows for effects whose small sizes tell nothing about their large ones. What is found waits for
+/// another full fit. `progress` hears of it at `share`.
+void look_afar(Answers& answers, const identification::TrajectoryFit& problem, std::span<const Trial> train,
+               const Settings& settings, const identification::FitResult& fit, const model::Scene& scene,
                const Progress& progress, double share);
 
 /// How much of what the screening promised a full fit has kept, effect by effect. For some effects the linear picture

@@ -18,7 +18,6 @@ constexpr double kAsGood = 0.9;           // of the gain: with fewer numbers, th
 constexpr double kHopeless = 1.0 / 3.0;   // of the best gain so far: screening does not err by more
 constexpr double kClearlyLess = 0.6;      // of the best gain so far, on a spread of windows
 constexpr double kAlike = 0.7;            // correlation of what two candidates change
-constexpr double kFarShort = 0.5;         // of what was foretold
 constexpr double kRestart = 0.1;          // of the screened size: where a fit that went astray begins again
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
@@ -55,15 +54,10 @@ bool better(const Answers& answers, std::size_t place, const FitResult& fit, con
 }
 
 /// A model with the effect never explains less than the same model without it; a fit that says so has gone astray, and
-/// begins again nearer to absence. One that falls far short of what the screening foretold (`promised`, share of the
-/// error) may have been slowed by a bound and ended too early: it goes on with care.
+/// begins again nearer to absence.
 FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, const model::Model& start,
-                   const Screened& screened, double promised) {
+                   const Screened& screened) {
   FitResult fit = problem.fit(start, &reference, kQuickTolerance);
-  if (reduction(reference.cost, fit.cost) < kFarShort * promised) {
-    FitResult careful = problem.fit(fit.model, &fit);
-    if (careful.cost < fit.cost) fit = std::move(careful);
-  }
   if (fit.cost <= reference.cost) return fit;
   model::Model nearer = reference.model;
   nearer.add({screened.effect, screened.variant, screened.variant_name, screened.theta});
@@ -152,9 +146,8 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
   if (coarse_.useful() && !answers_.found[i]) {
     const TrajectoryFit& problem = coarse_.problem();
     const FitResult& without = coarse_.reference();
-    const FitResult rough = at_its_moment(
-        problem, fit_with(problem, without, start_of(problem, without, answers_, i), screened, answers_.share[i]),
-        screened);
+    const FitResult rough =
+        at_its_moment(problem, fit_with(problem, without, start_of(problem, without, answers_, i), screened), screened);
     const double share = reduction(without.cost, rough.cost);
     const bool vain = share < kPromise * settings_.smallest_reduction;
     if (vain || share < kClearlyLess * best_share) {
@@ -169,7 +162,7 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
   } else {
     start = start_of(problem_, reference_, answers_, i);
   }
-  FitResult fit = at_its_moment(problem_, fit_with(problem_, reference_, start, screened, answers_.share[i]), screened);
+  FitResult fit = at_its_moment(problem_, fit_with(problem_, reference_, start, screened), screened);
   promises_.kept(answers_, i, reduction(reference_.cost, fit.cost));
   judge_by_odds(judged, reference_, fit, tried_);
   judge_by_few_windows(judged, problem_, fit, tried_, settings_);

@@ -29,8 +29,6 @@ class Round {
   /// motion in the same way: what screening saw of them may have been far from where their fits went.
   void add_rivals(const Winner& winner, Judged& accepted) const;
 
-  [[nodiscard]] Coarse& coarse() { return coarse_; }
-
  private:
   [[nodiscard]] bool looks_like(std::size_t place, const Winner& best) const;
   std::optional<identification::FitResult> fit_in_full(std::size_t i, double best_share);

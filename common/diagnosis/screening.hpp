@@ -2,49 +2,14 @@
 // the initial velocities can imitate is projected out before it may claim any of the residual.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "common/identification/trajectory_fit.hpp"
+#include "common/diagnosis/linearisation.hpp"
 #include "common/model/effect.hpp"
 
 namespace fathom::diagnosis {
-
-/// A fit with its derivatives, prepared once and used by every candidate. The fit and its problem must outlive it.
-class Linearisation {
- public:
-  Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit);
-  /// The same fit on at most `most` windows, evenly chosen.
-  [[nodiscard]] Linearisation thinned(std::size_t most) const;
-
-  [[nodiscard]] const identification::TrajectoryFit& problem() const { return problem_; }
-  [[nodiscard]] const identification::FitResult& fit() const { return fit_; }
-  [[nodiscard]] std::span<const identification::ProjectedWindow> windows() const { return windows_; }
-  /// Places of these windows among the problem's.
-  [[nodiscard]] std::span<const std::size_t> places() const { return places_; }
-  /// Cost per window after the last step of the base parameters.
-  [[nodiscard]] std::span<const double> window_cost() const { return window_cost_; }
-  /// All residuals, as one column, after that step.
-  [[nodiscard]] const Eigen::MatrixXd& unexplained() const { return unexplained_; }
-  /// All residuals before it.
-  [[nodiscard]] Eigen::VectorXd stacked_residual() const;
-  /// Solves (J'J + prior) x = b for the parameters of the fit.
-  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return information_.solve(b); }
-
- private:
-  Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit,
-                std::vector<identification::ProjectedWindow> windows, std::vector<std::size_t> places);
-
-  const identification::TrajectoryFit& problem_;
-  const identification::FitResult& fit_;
-  std::vector<identification::ProjectedWindow> windows_;
-  std::vector<std::size_t> places_;
-  std::vector<double> window_cost_;
-  Eigen::LDLT<Eigen::MatrixXd> information_;
-  Eigen::MatrixXd unexplained_;
-};
 
 /// What a candidate would do, to first order around its best values.
 struct Screened {

@@ -70,7 +70,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       winner = fits.fit_best(Which::kAll, kWholeRefits, kMostRefits);
     }
     if (!winner) {
-      look_afar(answers, fits.coarse(), result.after, scene, progress, done);
+      look_afar(answers, problem, trials, settings, result.after, scene, progress, done);
       winner = fits.fit_best(Which::kFromAfar, kRefits, kRefits);
     }
     if (winner) {

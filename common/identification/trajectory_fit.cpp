@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -12,6 +13,7 @@
 #include "common/base/parallel.hpp"
 #include "common/identification/fit_costs.hpp"
 #include "common/identification/outlier.hpp"
+#include "common/identification/pressed_bounds.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -29,24 +31,22 @@ std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd
   return held;
 }
 
-/// Moves held numbers inside where that lowers the cost; false when none wants to.
-bool let_go(ceres::Problem& problem, const ParameterMap& map, const std::vector<int>& held, Eigen::VectorXd& x) {
-  if (held.empty()) return false;
-  problem.SetManifold(x.data(), nullptr);
-  ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = {x.data()};
-  std::vector<double> gradient;
-  problem.Evaluate(options, nullptr, nullptr, &gradient, nullptr);
-  bool any = false;
-  for (const int i : held) {
-    const auto k = static_cast<std::size_t>(i);
-    const bool at_low = map[k].at_low(x[i]);
-    if (at_low ? gradient[k] < 0.0 : gradient[k] > 0.0) {
-      x[i] += (at_low ? 1.0 : -1.0) * kReleaseStep;
-      any = true;
+bool all_at_bound(const ParameterMap& map, const std::vector<int>& numbers, const Eigen::VectorXd& x) {
+  return std::ranges::all_of(numbers, [&](int i) { return map[static_cast<std::size_t>(i)].at_bound(x[i]); });
+}
+
+/// Those that are pressed go to their bounds; others that lie on one but want inside leave it, as far as the step says
+/// or a little.
+void put_on_bounds(const ParameterMap& map, const std::vector<int>& pressed, const Eigen::VectorXd& step,
+                   Eigen::VectorXd& x) {
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (std::ranges::find(pressed, static_cast<int>(i)) != pressed.end()) {
+      x[k] += step[k];
+    } else if (map[i].at_bound(x[k])) {
+      x[k] += std::clamp(step[k], -kReleaseStep, kReleaseStep);
     }
   }
-  return any;
 }
 
 /// "RUN is 12 s long, its pose valid for 40 %, its velocity for 98 %; ..."
@@ -187,11 +187,6 @@ void TrajectoryFit::solve(FitResult& fit, double tolerance) const {
     ordering->AddElementToGroup(fit.nu0[w].data(), 0);
     if (!unsimulated.empty()) problem.SetManifold(fit.nu0[w].data(), new ceres::SubsetManifold(6, unsimulated));
   }
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const int k = static_cast<int>(i);
-    if (std::isfinite(map[i].low)) problem.SetParameterLowerBound(x.data(), k, map[i].low / map[i].scale);
-    if (std::isfinite(map[i].high)) problem.SetParameterUpperBound(x.data(), k, map[i].high / map[i].scale);
-  }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
@@ -200,24 +195,32 @@ void TrajectoryFit::solve(FitResult& fit, double tolerance) const {
   options.function_tolerance = tolerance > 0.0 ? tolerance : settings_.tolerance;
   options.logging_type = ceres::SILENT;
 
-  // Ceres projects each step on the bounds, and a step that would cross one then hardly moves. So numbers that lie on a
-  // bound are held there while the others move, and let go again when the cost wants them inside.
-  constexpr int kPasses = 4;
+  constexpr int kPasses = 5;
   std::vector<int> held;
-  bool release = true;
+  double last_cost = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < kPasses; ++pass) {
-    const std::vector<int> at_bound = numbers_at_bound(map, x);
-    if (pass > 0 && at_bound == held) {
-      if (!release || !let_go(problem, map, held, x)) break;
-      held = numbers_at_bound(map, x);
-      release = false;
-    } else {
-      held = at_bound;
-    }
-    problem.SetManifold(x.data(), held.empty() ? nullptr : new ceres::SubsetManifold(static_cast<int>(x.size()), held));
+    double cost = 0.0;
+    evaluations.PrepareForEvaluation(true, true);
+    problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+    const double little = options.function_tolerance * cost;
+    const BoundedStep step = bounded_step(evaluations, windows_, map, x, settings_.threads);
+    std::vector<int> pressed = pressed_numbers(map, x, step);
+    const bool arrived = step.foretold < little && all_at_bound(map, pressed, x);
+    if (pass > 0 && (arrived || (pressed == held && last_cost - cost < little))) break;
+    held = std::move(pressed);
+    last_cost = cost;
+    const Eigen::VectorXd last_x = x;
+    const std::vector<Vector6d> last_nu0 = fit.nu0;
+    put_on_bounds(map, held, step.d, x);
+    problem.SetManifold(x.data(), new InsideBounds(map, held));
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     fit.converged = summary.termination_type == ceres::CONVERGENCE;
+    if (summary.final_cost > cost) {
+      x = last_x;
+      fit.nu0 = last_nu0;
+      break;
+    }
   }
   map.unpack(x, fit.model);
 }

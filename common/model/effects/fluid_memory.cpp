@@ -39,6 +39,7 @@ class FluidMemory final : public Effect {
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   int amplitudes() const override { return kAxes; }
   bool feels_motion() const override { return false; }
+  bool remembers_motion() const override { return true; }
   bool variants_matter() const override { return true; }
   bool takes_part(int variant, std::size_t number) const override {
     return number == kTime || acts_on(variant, number);
