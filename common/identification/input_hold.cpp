@@ -13,6 +13,7 @@ namespace {
 constexpr double kLimit = 0.5;   // of the time between inputs: what is later is a delay of the vehicle
 constexpr double kProbe = 0.25;  // to both sides, for the derivative
 constexpr double kMoved = 0.05;  // less is not worth another fit
+constexpr double kTold = 0.02;   // of the cost: beside a time after the command, less gain tells nothing of the hold
 constexpr int kSteps = 3;
 
 bool has_command_time(const model::Model& model) {
@@ -21,10 +22,12 @@ bool has_command_time(const model::Model& model) {
   });
 }
 
+/// What another hold must gain.
+double least_gain(const FitResult& fit) { return has_command_time(fit.model) ? kTold * fit.cost : 0.0; }
+
 }  // namespace
 
 double input_hold(const TrajectoryFit& problem, const FitResult& fit) {
-  if (has_command_time(fit.model)) return fit.model.input_hold;
   model::Model early = fit.model, late = fit.model;
   early.input_hold -= kProbe;
   late.input_hold += kProbe;
@@ -59,7 +62,9 @@ double input_hold(const TrajectoryFit& problem, const FitResult& fit) {
   curvature -= shared.dot(through);
   pull -= gradient.dot(through);
   if (!(curvature > 0.0) || !std::isfinite(pull)) return fit.model.input_hold;
-  return std::clamp(fit.model.input_hold - pull / curvature, -kLimit, kLimit);
+  const double hold = std::clamp(fit.model.input_hold - pull / curvature, -kLimit, kLimit);
+  const double moved = hold - fit.model.input_hold;
+  return -moved * (pull + 0.5 * moved * curvature) > least_gain(fit) ? hold : fit.model.input_hold;
 }
 
 FitResult with_input_hold(const TrajectoryFit& problem, FitResult fit) {
@@ -69,7 +74,7 @@ FitResult with_input_hold(const TrajectoryFit& problem, FitResult fit) {
     model::Model moved = fit.model;
     moved.input_hold = hold;
     FitResult better = problem.fit(moved, &fit);
-    if (better.cost > fit.cost) break;
+    if (better.cost > fit.cost - least_gain(fit)) break;
     fit = std::move(better);
   }
   return fit;

@@ -7,7 +7,8 @@
 namespace fathom::identification {
 
 /// Model::input_hold that fits best beside all free numbers, from -1/2 to 1/2, by one Gauss-Newton step from `fit`.
-/// That of the fit's model where an effect is a time after the command as well: the two cannot be told apart.
+/// Where an effect is a time after the command as well, that of the fit's model unless another fits clearly better: a
+/// delay cannot be told from a hold, a lag can, by its shape.
 [[nodiscard]] double input_hold(const TrajectoryFit& problem, const FitResult& fit);
 
 /// The fit with the hold that fits it best, near the one it has.

@@ -50,7 +50,7 @@ struct EffectParameter {
   double low{-std::numeric_limits<double>::infinity()};
   double high{std::numeric_limits<double>::infinity()};
   double form_sigma{0.0};     ///< what the effect's assumed form alone leaves open, however good the data
-  bool after_command{false};  ///< a time after the command: how commands are held is not told apart from it
+  bool after_command{false};  ///< a time after the command: how commands are held is hardly told apart from it
 };
 
 using EffectTheta = std::span<const double>;

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -27,16 +29,21 @@ TEST_CASE("moments: a payload's moment that lies far off is found, and the fit b
                                 .effects = {test::active("payload_change", {kSmallMassChange, kWeight, kTrueMoment})}});
   const std::vector<Trial> trials{dive.trial};
   const TrajectoryFit problem{vehicle, trials, {.window = 5.0, .threads = 1, .iterations = 8}};
-  for (const double astray_by : {8.0, -40.0}) {  // s, further than a fit finds its way downhill
+  int lost = 0;
+  for (const double astray_by : {25.0, -25.0, -40.0}) {  // s, from where not every fit finds its way downhill
     CAPTURE(astray_by);
     model::Model model = model::nominal_model(vehicle, false);
     model.add(test::active("payload_change", {kSmallMassChange, kWeight, kTrueMoment + astray_by}));
     const FitResult astray = problem.fit(model, nullptr);
     const model::ActiveEffect& payload = astray.model.effects.front();
+    const bool ended_astray = std::abs(payload.theta[2] - kTrueMoment) > kMomentError;
+    lost += ended_astray ? 1 : 0;
     const FitResult mended = diagnosis::at_best_moment(problem, astray, *payload.effect, payload.variant);
-    CHECK(mended.cost < astray.cost);
-    CHECK(mended.model.effects.front().theta[2] == doctest::Approx(kTrueMoment).epsilon(kMomentError / kTrueMoment));
+    CHECK(mended.cost <= astray.cost);
+    if (ended_astray) CHECK(mended.cost < astray.cost);
+    CHECK(std::abs(mended.model.effects.front().theta[2] - kTrueMoment) < kMomentError);
   }
+  CHECK(lost > 0);
 }
 
 TEST_CASE("moments: an effect without a moment is left as it is") {

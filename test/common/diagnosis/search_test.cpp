@@ -281,6 +281,11 @@ TEST_CASE("search: a lag of second order is one effect, not a delay and a lag th
     settings.effects = {test::active("thruster_lag", {time_constant, 0.0}, kSecondOrder)};
     const test::VirtualDive dive = test::make_dive(vehicle, settings);
     const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
+    std::string said;
+    for (const Judged& judged : found.accepted)
+      said += std::string(judged.effect->name()) + " " + judged.variant_name + ", saves " +
+              std::to_string(judged.error_reduction) + "; ";
+    CAPTURE(said);
     REQUIRE(found.accepted.size() == 1);
     CHECK(found.accepted[0].effect->name() == "thruster_lag");
     CHECK(found.accepted[0].variant == kSecondOrder);

@@ -60,6 +60,23 @@ TEST_CASE("input hold: found on a coarser grid too, where a step holds several c
   }
 }
 
+TEST_CASE("input hold: what a lag without a name had taken is given back once the lag has one") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  constexpr int kSecondOrder = 3;
+  constexpr double kTimeConstant = 0.2;  // s
+  const std::vector<model::ActiveEffect> lag{test::active("thruster_lag", {kTimeConstant, 0.0}, kSecondOrder)};
+  const test::VirtualDive dive = test::make_dive(
+      vehicle, {.duration = 60.0, .dt = 0.04, .seed = 6, .velocity_noise = 0.002, .rate_noise = 0.002, .effects = lag});
+  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, {.window = 5.0, .threads = 2}};
+  const FitResult base = with_input_hold(problem, problem.fit(model::nominal_model(vehicle, false)));
+  CHECK(base.model.input_hold == 0.5);  // all that a hold can pass for
+  model::Model model = base.model;
+  model.add(lag.front());
+  const FitResult fit = with_input_hold(problem, problem.fit(model, &base));
+  CHECK(std::abs(fit.model.input_hold) < kFound);
+  CHECK(std::abs(fit.model.effects.front().theta[0] - kTimeConstant) < 0.01 * kTimeConstant);
+}
+
 TEST_CASE("input hold: a delay of the vehicle is left to the effect that says so") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const test::VirtualDive dive = test::make_dive(
