@@ -32,7 +32,7 @@ bool adds_inertia(const model::Effect& effect, int variant, const std::vector<do
   motion.force = model::ActuatorForces::Zero(base.allocation.cols());
   model::Load load;
   effect.load(motion, theta, variant, load);
-  return load.has_inertia;
+  return load.has_inertia();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "common/diagnosis/final_fit.hpp"
 #include "common/diagnosis/lack_of_form.hpp"
+#include "common/diagnosis/left_to_explain.hpp"
 #include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/pruning.hpp"
 #include "common/diagnosis/round.hpp"
@@ -64,12 +65,14 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
     std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kRefits);
-    if (!winner) {
+    // The least that counts, as a share of the cost, which is the error's square.
+    const bool something = winner || left_to_explain(problem, result.after) > 2.0 * settings.smallest_reduction;
+    if (!winner && something) {
       progress("round " + std::to_string(round + 1) + ": looking at whole windows", done);
       ask_whole(answers, problem, result.after, scene, tried, settings);
       winner = fits.fit_best(Which::kAll, kWholeRefits, kMostRefits);
     }
-    if (!winner) {
+    if (!winner && something) {
       look_afar(answers, problem, trials, settings, result.after, scene, progress, done);
       winner = fits.fit_best(Which::kFromAfar, kRefits, kRefits);
     }

@@ -7,6 +7,7 @@
 
 #include "common/base/parallel.hpp"
 #include "common/identification/pose_window.hpp"
+#include "common/identification/reduced_window.hpp"
 #include "common/identification/signal_weights.hpp"
 #include "common/identification/two_estimates.hpp"
 
@@ -14,20 +15,12 @@ namespace fathom::identification {
 namespace {
 
 constexpr int kWeightRounds = 2;
-constexpr int kSteps = 6;              // of Gauss and Newton, per round of weights
+constexpr int kSteps = 9;              // of Gauss and Newton, per round of weights
+constexpr int kStepsOfOne = 6;         // with the same derivatives: the fit by velocities is close
+constexpr double kMostKept = 2e7;      // derivatives: 160 MB. Of longer recordings they are made anew at each step
 constexpr int kHalvings = 4;           // of a step that does not lower the cost
 constexpr double kSettled = 0.01;      // of the cost, which is a chi-square: far below one standard deviation
-constexpr double kFreeStart = 100.0;   // m/s, rad/s, m, rad: prior of a window's beginning, where no signal tells it
 constexpr double kLeastFreedom = 3.0;  // of a covariance from fewer stretches than it has numbers
-
-/// One window's share of the normal equations, its beginning eliminated.
-struct Reduced {
-  Eigen::MatrixXd H;         ///< n x n
-  Eigen::VectorXd g;         ///< n
-  Eigen::MatrixXd scores;    ///< n x blocks: gradient of each stretch
-  Eigen::MatrixXd follow;    ///< free starts x n: how the beginning follows the numbers
-  Eigen::VectorXd own_step;  ///< free starts: what it moves by itself
-};
 
 class PoseFit {
  public:
@@ -38,7 +31,12 @@ class PoseFit {
         map_{model},
         windows_{pose_windows(vehicle, trials, settings.window)},
         x_{map_.pack(model)} {
-    for (const PoseWindow& window : windows_) starts_.push_back(window.measured_start());
+    double entries = 0.0;
+    for (const PoseWindow& window : windows_) {
+      starts_.push_back(window.measured_start());
+      entries += static_cast<double>(window.rows()) * static_cast<double>(map_.size() + window.free().size());
+    }
+    keeps_ = entries < kMostKept;
     weights_ = ordinary_weights();
   }
 
@@ -46,6 +44,7 @@ class PoseFit {
 
   /// False when it does not come to rest.
   bool solve() {
+    renew();
     const std::vector<Eigen::Index> none;
     if (!descend(none)) return false;
     for (int round = 0; round < kWeightRounds; ++round) {
@@ -63,7 +62,7 @@ class PoseFit {
     const auto n = static_cast<Eigen::Index>(map_.size());
     Eigen::MatrixXd information = prior(), meat = information;
     double clusters = 0.0;
-    for (const Reduced& window : linearise(sought())) {
+    for (const ReducedWindow& window : linearise(sought())) {
       information += window.H;
       meat += window.scores * window.scores.transpose();
       clusters += static_cast<double>(window.scores.cols());
@@ -151,60 +150,56 @@ class PoseFit {
     return sum;
   }
 
-  [[nodiscard]] std::vector<Reduced> linearise(const std::vector<Eigen::Index>& moving) const {
+  /// Derivatives here, of all that is sought.
+  void renew() {
+    steps_of_one_ = 0;
+    if (!keeps_) return;
     const model::Model model = model_at(x_);
-    std::vector<Reduced> all(windows_.size());
+    const std::vector<Eigen::Index> all = sought();
+    jacobians_.resize(windows_.size());
+    for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) {
+      Eigen::VectorXd residual(windows_[w].rows());
+      windows_[w].evaluate(model, starts_[w], residual);
+      jacobians_[w] = windows_[w].jacobian(model, map_, all, starts_[w], residual);
+    });
+  }
+
+  [[nodiscard]] Eigen::MatrixXd jacobian(const model::Model& model, const std::vector<Eigen::Index>& moving,
+                                         std::size_t w, const Eigen::VectorXd& residual) const {
+    if (!keeps_) return windows_[w].jacobian(model, map_, moving, starts_[w], residual);
+    Eigen::MatrixXd J = jacobians_[w];
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(map_.size()); ++i) {
+      if (std::ranges::find(moving, i) == moving.end()) J.col(i).setZero();
+    }
+    return J;
+  }
+
+  [[nodiscard]] std::vector<ReducedWindow> linearise(const std::vector<Eigen::Index>& moving) const {
+    const model::Model model = model_at(x_);
+    std::vector<ReducedWindow> all(windows_.size());
     for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) { all[w] = reduce(model, moving, w); });
     return all;
   }
 
-  [[nodiscard]] Reduced reduce(const model::Model& model, const std::vector<Eigen::Index>& moving,
-                               std::size_t w) const {
+  [[nodiscard]] ReducedWindow reduce(const model::Model& model, const std::vector<Eigen::Index>& moving,
+                                     std::size_t w) const {
     const PoseWindow& window = windows_[w];
-    const auto n = static_cast<Eigen::Index>(map_.size());
-    const auto starts = static_cast<Eigen::Index>(window.free().size());
     Eigen::VectorXd residual(window.rows());
     window.evaluate(model, starts_[w], residual);
-    Eigen::MatrixXd J = window.jacobian(model, map_, moving, starts_[w], residual);
-    J.array().colwise() *= weights_[w].array();
-    residual.array() *= weights_[w].array();
-    const auto by_start = J.rightCols(starts);
-    const WindowStart away = (starts_[w] - window.measured_start()) / (kFreeStart * kFreeStart);
-    Eigen::MatrixXd own = by_start.transpose() * by_start;
-    Eigen::VectorXd pull = by_start.transpose() * residual;
-    for (Eigen::Index s = 0; s < starts; ++s) {
-      own(s, s) += 1.0 / (kFreeStart * kFreeStart);
-      pull[s] += away[window.free()[static_cast<std::size_t>(s)]];
-    }
-    const Eigen::LDLT<Eigen::MatrixXd> factors{own};
-    Reduced out;
-    out.follow = -factors.solve(by_start.transpose() * J.leftCols(n));
-    out.own_step = -factors.solve(pull);
-    // Without what another beginning would explain as well.
-    const Eigen::MatrixXd projected = J.leftCols(n) + by_start * out.follow;
-    const Eigen::VectorXd rest = residual + by_start * out.own_step;
-    out.H = projected.transpose() * projected;
-    out.g = projected.transpose() * rest;
-    const double dt = window.window().trial->dt;
-    const auto blocks = std::max(1L, std::lround(static_cast<double>(window.window().count) * dt / settings_.block));
-    out.scores = Eigen::MatrixXd::Zero(n, blocks);
-    for (Eigen::Index i = 0; i < window.rows(); ++i) {
-      const auto block =
-          static_cast<Eigen::Index>(window.row(i).sample) * blocks / static_cast<Eigen::Index>(window.window().count);
-      out.scores.col(block) += projected.row(i).transpose() * rest[i];
-    }
-    return out;
+    Eigen::MatrixXd J = jacobian(model, moving, w, residual);
+    return reduced(window, starts_[w], weights_[w], std::move(J), std::move(residual), settings_.block);
   }
 
   /// Moves `free` and all beginnings to where the cost is least.
   bool descend(const std::vector<Eigen::Index>& free) {
     double now = cost(x_, starts_);
     for (int step = 0; step < kSteps && std::isfinite(now); ++step) {
-      const std::vector<Reduced> windows = linearise(free);
+      if (steps_of_one_ >= kStepsOfOne) renew();
+      const std::vector<ReducedWindow> windows = linearise(free);
       Eigen::MatrixXd H = prior();
       Eigen::VectorXd g = prior_gradient(x_);
       double gain = 0.0;
-      for (const Reduced& window : windows) {
+      for (const ReducedWindow& window : windows) {
         H += window.H;
         g += window.g;
       }
@@ -227,7 +222,13 @@ class PoseFit {
         next = cost(x, starts);
         if (next < now) break;
       }
-      if (!(next < now)) return gain < kSettled || now - next > -kSettled;
+      if (!(next < now)) {
+        if (gain < kSettled || now - next > -kSettled) return true;
+        if (steps_of_one_ == 0) return false;
+        renew();
+        continue;
+      }
+      ++steps_of_one_;
       const double fell = now - next;
       x_ = std::move(x);
       starts_ = std::move(starts);
@@ -261,6 +262,9 @@ class PoseFit {
   std::vector<PoseWindow> windows_;
   std::vector<WindowStart> starts_;
   std::vector<Eigen::VectorXd> weights_;
+  std::vector<Eigen::MatrixXd> jacobians_;  // per window, not weighted, of all that is sought; when they are kept
+  bool keeps_{};
+  int steps_of_one_{};
   Eigen::VectorXd x_;
 };
 

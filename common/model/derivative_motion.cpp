@@ -88,7 +88,7 @@ Vector6d derivative_acceleration(const Model& model, const Motion& motion, const
   force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   force += load.wrench;
-  if (!load.has_inertia) return force.cwiseQuotient(inertia);
+  if (!load.has_inertia()) return force.cwiseQuotient(inertia);
   Matrix6d M = load.inertia();
   M.diagonal() += inertia;
   return M.partialPivLu().solve(force);

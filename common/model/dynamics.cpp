@@ -128,9 +128,9 @@ Vector6d acceleration(const Model& model, const Motion& motion) {
   const Vector6d inertia = inertia_diagonal(model);
   const auto& dof = model.vehicle->dof;
   Vector6d nu_dot = Vector6d::Zero();
-  if (!load.has_inertia) {
+  if (!load.has_couplings) {
     for (Eigen::Index i = 0; i < 6; ++i) {
-      if (dof[static_cast<std::size_t>(i)]) nu_dot[i] = force[i] / inertia[i];
+      if (dof[static_cast<std::size_t>(i)]) nu_dot[i] = force[i] / (inertia[i] + load.inertia_diagonal[i]);
     }
     return nu_dot;
   }
@@ -151,7 +151,7 @@ Vector6d residual_wrench(const Model& model, const Motion& motion, const Vector6
   Load load;
   const Vector6d force = generalised_force(model, motion, load);
   Vector6d inertial = inertia_diagonal(model).cwiseProduct(nu_dot);
-  if (load.has_inertia) inertial += load.inertia() * nu_dot;
+  if (load.has_inertia()) inertial += load.inertia() * nu_dot;
   return inertial - force;
 }
 

@@ -60,7 +60,7 @@ void EffectWrench::step(const Motion& motion, const ActuatorForces& middle, doub
       }
     }
     const Vector6d total = added(base_, motion, probe, felt, load);
-    const Vector6d carried = load.has_inertia ? Vector6d{load.inertia() * motion.nu} : Vector6d{Vector6d::Zero()};
+    const Vector6d carried = load.has_inertia() ? Vector6d{load.inertia() * motion.nu} : Vector6d{Vector6d::Zero()};
     const auto column = static_cast<Eigen::Index>(i);
     if (i == 0) {
       wrench.col(0) = total;

@@ -83,27 +83,35 @@ struct Motion {
 
 /// What an effect adds to the right-hand side, and the inertia it adds on the left.
 struct Load {
-  Vector6d wrench{Vector6d::Zero()};  ///< N, N m at Bo, body axes
-  bool has_inertia{false};
+  Vector6d wrench{Vector6d::Zero()};            ///< N, N m at Bo, body axes
+  Vector6d inertia_diagonal{Vector6d::Zero()};  ///< kg, kg m^2: added to the diagonal of M
+  bool has_couplings{false};
   Vector6d drag{Vector6d::Zero()};  ///< N, N m: the hull's own by the base parameters, for effects that make it more
   double drag_share{};              ///< how much more of its forces the effects' wrench holds, as a share
 
-  /// Added to M; symmetric. Made when it is asked for: few effects have any, and every step begins with a load of none.
+  /// Added to M; symmetric. Made when it is asked for: few effects couple axes, and every step begins with none.
   [[nodiscard]] Matrix6d& added_inertia() {
-    if (!has_inertia) inertia_.setZero();
-    has_inertia = true;
-    return inertia_;
+    if (!has_couplings) coupled_.setZero();
+    has_couplings = true;
+    return coupled_;
   }
-  [[nodiscard]] Matrix6d inertia() const { return has_inertia ? inertia_ : Matrix6d{Matrix6d::Zero()}; }
+  [[nodiscard]] bool has_inertia() const { return has_couplings || !inertia_diagonal.isZero(0.0); }
+  /// All that is added to M.
+  [[nodiscard]] Matrix6d inertia() const {
+    Matrix6d all = has_couplings ? coupled_ : Matrix6d{Matrix6d::Zero()};
+    all.diagonal() += inertia_diagonal;
+    return all;
+  }
   void clear() {
     wrench.setZero();
     drag.setZero();
     drag_share = 0.0;
-    has_inertia = false;
+    inertia_diagonal.setZero();
+    has_couplings = false;
   }
 
  private:
-  Matrix6d inertia_;
+  Matrix6d coupled_;
 };
 
 }  // namespace fathom::model

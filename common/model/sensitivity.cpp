@@ -35,7 +35,7 @@ Right divided_by_inertia(const Model& model, const Load& load, Right right) {
     M.col(axis).setZero();
     M(axis, axis) = 1.0;
   }
-  if (!load.has_inertia) return M.diagonal().cwiseInverse().asDiagonal() * right;
+  if (!load.has_couplings) return M.diagonal().cwiseInverse().asDiagonal() * right;
   return M.partialPivLu().solve(right);
 }
 
@@ -77,11 +77,11 @@ void Sensitivity::velocity_rows(const Model& model, const Motion& motion, const 
   Eigen::Matrix<double, 6, 12> slope = Eigen::Matrix<double, 6, 12>::Zero();
   slope.rightCols<9>() = base_force_slope(model.theta, motion);
   const Load load = total_load(model, motion);
-  if (!load.wrench.isZero(0.0) || load.has_inertia) {
+  if (!load.wrench.isZero(0.0) || load.has_inertia()) {
     const auto add = [&](Eigen::Index column, const Motion& moved) {
       const Load there = total_load(model, moved);
       Vector6d change = there.wrench - load.wrench;
-      if (load.has_inertia) change -= (there.inertia() - load.inertia()) * nu_dot;
+      if (load.has_inertia()) change -= (there.inertia() - load.inertia()) * nu_dot;
       slope.col(column) += change / kDifference;
     };
     Motion moved = motion;

@@ -52,7 +52,7 @@ class PayloadChange final : public Effect {
     const Eigen::Vector3d v = motion.nu.head<3>();
     const Eigen::Vector3d w = motion.nu.tail<3>();
     load.wrench.head<3>() -= share * theta[0] * w.cross(v);
-    load.added_inertia().diagonal().head<3>().array() += share * theta[0];
+    load.inertia_diagonal.head<3>().array() += share * theta[0];
   }
 };
 

@@ -39,7 +39,7 @@ TEST_CASE("effect: what an author leaves out does nothing, and a search begins a
   plain.load(motion, std::vector{1.0, 1.0}, 0, load);
   CHECK(motion.v_WF_B.isZero(0.0));
   CHECK(load.wrench.isZero(0.0));
-  CHECK_FALSE(load.has_inertia);
+  CHECK_FALSE(load.has_inertia());
 }
 
 TEST_CASE("effect: a model keeps the registry's order, whatever the order of adding") {
