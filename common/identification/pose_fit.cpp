@@ -20,6 +20,7 @@ constexpr int kStepsOfOne = 6;         // with the same derivatives: the fit by 
 constexpr double kMostKept = 2e7;      // derivatives: 160 MB. Of longer recordings they are made anew at each step
 constexpr int kHalvings = 4;           // of a step that does not lower the cost
 constexpr double kSettled = 0.01;      // of the cost, which is a chi-square: far below one standard deviation
+constexpr double kCredible = 100.0;    // times as exact as by velocities
 constexpr double kLeastFreedom = 3.0;  // of a covariance from fewer stretches than it has numbers
 
 class PoseFit {
@@ -58,10 +59,11 @@ class PoseFit {
 
   /// Sandwich over stretches, physical units; at least what the weights alone say, for few stretches can look too
   /// quiet. `freedom`: stretches beyond free numbers.
-  [[nodiscard]] Eigen::MatrixXd covariance(double& freedom) const {
+  [[nodiscard]] Eigen::MatrixXd covariance(double& freedom) {
     const auto n = static_cast<Eigen::Index>(map_.size());
     Eigen::MatrixXd information = prior(), meat = information;
     double clusters = 0.0;
+    renew();
     for (const ReducedWindow& window : linearise(sought())) {
       information += window.H;
       meat += window.scores * window.scores.transpose();
@@ -198,10 +200,11 @@ class PoseFit {
       const std::vector<ReducedWindow> windows = linearise(free);
       Eigen::MatrixXd H = prior();
       Eigen::VectorXd g = prior_gradient(x_);
-      double gain = 0.0;
+      double gain = 0.0, gain_of_starts = 0.0;
       for (const ReducedWindow& window : windows) {
         H += window.H;
         g += window.g;
+        gain_of_starts += window.own_gain;
       }
       Eigen::VectorXd move = Eigen::VectorXd::Zero(x_.size());
       if (!free.empty()) {
@@ -222,18 +225,19 @@ class PoseFit {
         next = cost(x, starts);
         if (next < now) break;
       }
+      const bool fresh = steps_of_one_ == 0 || !keeps_;
+      const double settled = kSettled * static_cast<double>(windows.size());
       if (!(next < now)) {
-        if (gain < kSettled || now - next > -kSettled) return true;
-        if (steps_of_one_ == 0) return false;
+        if (fresh || (gain < kSettled && gain_of_starts < settled)) return gain < kSettled || now - next > -kSettled;
         renew();
         continue;
       }
-      ++steps_of_one_;
+      steps_of_one_ = share < 1.0 ? kStepsOfOne : steps_of_one_ + 1;  // far from what they foretell: they are old
       const double fell = now - next;
       x_ = std::move(x);
       starts_ = std::move(starts);
       now = next;
-      if (gain < kSettled && fell < kSettled * static_cast<double>(windows.size())) return true;
+      if (gain < kSettled && fell < settled) return true;
     }
     return false;
   }
@@ -268,6 +272,15 @@ class PoseFit {
   Eigen::VectorXd x_;
 };
 
+/// Places tell a number four times as well as velocities do, ten times on craft that tilt. Hundreds of times mean a
+/// trajectory that runs away from any other: all of them tell, so sharply that nothing real agrees.
+bool credible(const Eigen::MatrixXd& by_speeds, const Eigen::MatrixXd& by_poses) {
+  return by_speeds.rows() != by_poses.rows() ||
+         (by_speeds.diagonal().array() < kCredible * kCredible * by_poses.diagonal().array() ||
+          by_speeds.diagonal().array() <= 0.0)
+             .all();
+}
+
 }  // namespace
 
 std::optional<FitResult> fit_with_poses(const model::Vehicle& vehicle, std::span<const Trial> trials,
@@ -278,7 +291,7 @@ std::optional<FitResult> fit_with_poses(const model::Vehicle& vehicle, std::span
   fit.model = problem.model();
   if (!agree(by_speeds, fit.model)) return {};
   fit.covariance = problem.covariance(fit.freedom);
-  if (!fit.covariance.allFinite()) return {};
+  if (!fit.covariance.allFinite() || !credible(by_speeds.covariance, fit.covariance)) return {};
   fit.interval95 = drawn_in(by_speeds, fit);
   return fit;
 }

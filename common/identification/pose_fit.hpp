@@ -20,7 +20,8 @@ struct PoseFitSettings {
 /// with its covariance. Each signal weighs by the density of its residual at low frequency, so that one that wanders or
 /// is interpolated weighs little. Nothing where no pose is known over a window, where it does not converge, and where a
 /// number ends farther from the one by velocities than chance allows (Hausman 1978): poses and velocities then
-/// contradict each other. Costs and windows stay those of `by_speeds`.
+/// contradict each other; nor where any number would be known a hundred times better than by velocities, which is how a
+/// trajectory looks that runs away from all others. Costs and windows stay those of `by_speeds`.
 [[nodiscard]] std::optional<FitResult> fit_with_poses(const model::Vehicle& vehicle, std::span<const Trial> trials,
                                                       const PoseFitSettings& settings, const FitResult& by_speeds);
 

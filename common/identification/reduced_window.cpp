@@ -24,6 +24,7 @@ ReducedWindow reduced(const PoseWindow& window, const WindowStart& start, const 
   ReducedWindow out;
   out.follow = -factors.solve(by_start.transpose() * J.leftCols(n));
   out.own_step = -factors.solve(pull);
+  out.own_gain = -0.5 * pull.dot(out.own_step);
   // Without what another beginning would explain as well.
   const Eigen::MatrixXd projected = J.leftCols(n) + by_start * out.follow;
   const Eigen::VectorXd rest = residual + by_start * out.own_step;

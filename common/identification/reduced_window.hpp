@@ -16,6 +16,7 @@ struct ReducedWindow {
   Eigen::MatrixXd scores;    ///< n x stretches: gradient of each
   Eigen::MatrixXd follow;    ///< free starts x n: how the beginning follows the numbers
   Eigen::VectorXd own_step;  ///< free starts: what it moves by itself
+  double own_gain{};         ///< of the cost, foretold of that
 };
 
 /// `J`: derivatives by n numbers, then by the free entries of the start; `weights`: per row. `stretch`: s whose
