@@ -40,8 +40,12 @@ struct Errors {
   int fits{}, refused{};
 };
 
-Errors over_seeds(const char* name, const PoseFitSettings& settings, Places places, unsigned seeds) {
-  const model::Vehicle vehicle = test::vehicle_from_repository(name);
+Errors over_seeds(const char* name, const PoseFitSettings& settings, Places places, unsigned seeds,
+                  double upright = 1.0) {
+  model::Vehicle vehicle = test::vehicle_from_repository(name);
+  for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
+    if (vehicle.parameters[i] == "G_z") vehicle.priors[i].mean *= upright;
+  }
   Errors errors;
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     test::VirtualDive dive =
@@ -117,4 +121,9 @@ TEST_CASE("pose fit: nothing where no pose is known") {
   FitResult by_speeds = problem.fit(dive.truth);
   problem.add_covariance(by_speeds);
   CHECK_FALSE(fit_with_poses(vehicle, {&dive.trial, 1}, kPoses, by_speeds));
+}
+
+TEST_CASE("pose fit: a craft that tips over, whose trajectories run away from each other, is not known too well") {
+  const Errors errors = over_seeds("bluerov2", {.window = 30.0, .block = 10.0, .threads = 1}, Places::kWhite, 4, -1.0);
+  CHECK(errors.held >= 0.88 * errors.count);
 }
