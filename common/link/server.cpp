@@ -135,7 +135,7 @@ void Server::drain() {
   using std::chrono::milliseconds;
   constexpr milliseconds kLook{10};
   constexpr int kMost = 200;
-  constexpr int kSettled = 3;  // looks in a row, as bytes come to a terminal's reader by way of the kernel's own queue
+  constexpr int kSettled = 10;  // looks in a row, as bytes come to a terminal's reader by way of the kernel's own queue
   if (!connected()) return;
   // What waits in a terminal is told at the client's end only, and is thrown away when the line goes.
   const int end = terminal_ ? open(name_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC) : descriptor_;

@@ -125,8 +125,11 @@ std::vector<std::string> parsed(const Chain& chain, const std::string& bytes) {
   return values;
 }
 
-bool is_tail(const std::vector<std::string>& tail, const std::vector<std::string>& whole) {
-  return tail.size() <= whole.size() && std::equal(tail.rbegin(), tail.rend(), whole.rbegin());
+// The first `unsettled` samples may differ: a parser that begins later in the stream learns later what comes in pairs.
+bool is_tail(const std::vector<std::string>& tail, const std::vector<std::string>& whole, std::size_t unsettled = 0) {
+  const std::size_t compared = tail.size() - std::min(unsettled, tail.size());
+  return compared <= whole.size() &&
+         std::equal(tail.rbegin(), tail.rbegin() + static_cast<std::ptrdiff_t>(compared), whole.rbegin());
 }
 
 }  // namespace
@@ -157,7 +160,7 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
     const Told told = read(base + ".lcmlog");
     CHECK(told.values.size() > 2.0 / chain.period);
     CHECK(told.values.size() + kMissed >= wanted.size());
-    CHECK(is_tail(told.values, wanted));
+    CHECK(is_tail(told.values, wanted, kMissed));
     CHECK(std::is_sorted(told.times.begin(), told.times.end()));
 
     // The raw bytes that the driver recorded, parsed again by the driver: the same messages at the same times.
