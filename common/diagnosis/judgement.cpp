@@ -16,9 +16,11 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr double kSameStory = 0.5;  // correlation of what two forms of one effect claim
-constexpr double kEdge = 0.03;      // of the data's length
-constexpr double kAtLimit = 0.05;   // of a limit: nearer than that, the number wants to be beyond it
+constexpr double kSameStory = 0.5;       // correlation of what two forms of one effect claim
+constexpr double kEdge = 0.03;           // of the data's length
+constexpr double kHeldOtherwise = 0.57;  // of the time between commands: between straight lines and held ones lie even
+                                         // odds over it, which make a delay of as much with 95 %
+constexpr double kAtLimit = 0.05;        // of a limit: nearer than that, the number wants to be beyond it
 
 /// Name of a number of the effect that ended at its physical limit (not at zero, which is absence); empty when none
 /// did.
@@ -91,6 +93,22 @@ bool onset_at_edge(const TrajectoryFit& problem, const model::Model& model, cons
 
 }  // namespace
 
+bool too_quick(const TrajectoryFit& problem, const model::Model& model, const Judged& judged) {
+  double step = 0.0;
+  for (const auto& window : problem.windows()) step = std::max(step, window.window().trial->input_step);
+  bool after_command = false;
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect != judged.effect || active.variant != judged.variant) continue;
+    for (std::size_t i = 0; i < active.theta.size(); ++i) {
+      const model::EffectParameter number = model::parameter_of(*active.effect, active.variant, i, *model.vehicle);
+      if (!active.effect->takes_part(active.variant, i) || number.unit != "s") continue;
+      if (std::abs(active.theta[i]) > kHeldOtherwise * step) return false;
+      after_command = after_command || number.after_command;
+    }
+  }
+  return after_command;
+}
+
 double reduction(double cost_without, double cost_with) {
   return cost_without > 0.0 ? 1.0 - std::sqrt(std::max(cost_with, 0.0) / cost_without) : 0.0;
 }
@@ -151,6 +169,7 @@ std::string refusal(const Judged& judged, const Settings& settings, const model:
     return text;
   }
   if (judged.lasting) return "begins at the edge of the data: something that always acts, not an event";
+  if (judged.too_quick) return kTooQuick;
   if (judged.in_the_way) return "has the vehicle on the wrong side of what it would be near to";
   if (judged.held_out_blocks < 0.0) return "does not help on blocks of data left out of its estimate";
   if (judged.held_out_runs < 0.0) return "does not carry over from run to run";
@@ -190,6 +209,7 @@ void judge_by_data_left_out(Judged& judged, const TrajectoryFit& problem, const 
   judged.change = prediction_change(problem, without, with);
   judged.lasting = onset_at_edge(problem, with.model, judged);
   judged.in_the_way = in_the_way(problem, with.model, judged);
+  judged.too_quick = too_quick(problem, with.model, judged);
   const HeldOut carried =
       held_out(problem, without_checked, CrossValidation{problem, with}, places_of(with.model, judged));
   judged.held_out_blocks = carried.blocks;

@@ -15,6 +15,12 @@ constexpr double kAlternativeLogOdds = 3.0;  ///< 20 to 1 between two look-alike
 /// Reason of what would have been accepted had nothing better been found.
 inline constexpr const char* kWeaker = "weaker than the accepted effects";
 
+/// Reason of a time after the command that is none for sure.
+inline constexpr const char* kTooQuick = "shorter than how commands are held between their samples could make it";
+
+/// True when the effect is a time after the command, and no longer than that.
+[[nodiscard]] bool too_quick(const identification::TrajectoryFit& problem, const model::Model& model,
+                             const Judged& judged);
 /// Share of the error (RMS) that a cost has lost.
 [[nodiscard]] double reduction(double cost_without, double cost_with);
 /// The model without that effect in that form.

@@ -133,7 +133,9 @@ void prune(SearchResult& result, const TrajectoryFit& problem, const model::Scen
                      surprise(result.after.model, again);
     again.error_reduction = reduction(fit.cost, result.after.cost);
     judge_by_few_windows(again, problem, result.after, tried, settings);
-    const std::string limited = at_limit(again, result.after.model);  // on everything it may have gone where it had not
+    // On everything it may have gone where it had not.
+    const std::string limited =
+        too_quick(problem, result.after.model, again) ? kTooQuick : at_limit(again, result.after.model);
     if (limited.empty() && evident(again, settings) && again.error_reduction >= settings.smallest_reduction) {
       if (auto other = best_other_form(result, i, fit, problem, scene);
           other && !needed_beside(again, *other, result, settings, tried)) {

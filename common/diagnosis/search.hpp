@@ -23,6 +23,7 @@ struct Judged {
   double change{1.0};      ///< of the predicted velocity, share of the measured one; 1 until a fit has told
   bool in_the_way{false};  ///< numbers that have the vehicle where it cannot be
   bool lasting{false};     ///< an onset at the edge of the data
+  bool too_quick{false};   ///< a time after the command that how commands are held makes too
   std::vector<std::string> aliased_with{};  ///< other effects whose predictions look alike
   std::vector<std::string> alternatives{};  ///< of those, the ones that the odds cannot rule out
   std::vector<std::string> other_forms{};   ///< of the same effect, that would explain as much

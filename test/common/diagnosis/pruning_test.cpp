@@ -4,8 +4,10 @@
 #include <doctest/doctest.h>
 
 #include <random>
+#include <string>
 #include <vector>
 
+#include "common/diagnosis/judgement.hpp"
 #include "test/support/timing.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -69,4 +71,17 @@ TEST_CASE("pruning: a true delay and a true lag stay both") {
   REQUIRE(dive.found.accepted.size() == 2);
   CHECK(dive.found.accepted[0].effect->name() == "thruster_delay");
   CHECK(dive.found.accepted[1].variant == kFirstOrder);
+}
+
+TEST_CASE("pruning: a delay is told only where it is longer than how commands are held could make it") {
+  if (!test::kTimed) return;
+  const auto with_delay = [](double delay) {
+    return Accepted{{test::active("thruster_delay", {delay})}, {test::active("thruster_delay", {delay})}};
+  };
+  const Accepted brief = with_delay(0.012), long_enough = with_delay(0.06);  // s; commands are 0.04 s apart
+  CHECK(brief.found.accepted.empty());
+  REQUIRE(brief.found.refused.size() == 1);
+  CHECK(brief.found.refused[0].reason == std::string{kTooQuick});
+  CHECK(brief.found.refused[0].log_odds > Settings{}.accept_log_odds);  // or it would have been refused anyway
+  CHECK(long_enough.found.accepted.size() == 1);
 }
