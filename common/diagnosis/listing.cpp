@@ -9,6 +9,8 @@
 namespace fathom::diagnosis {
 namespace {
 
+constexpr double kEven = 0.0;  // log odds against something unlisted that looks the same
+
 /// Numbers of one accepted effect, under names that stay apart when it was accepted in several forms.
 std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& found, bool several) {
   std::vector<NamedValue> values;
@@ -37,19 +39,34 @@ std::vector<std::string> alternatives_of(const Judged& judged, const SearchResul
   return open;
 }
 
+/// With the numbers that the effect has in the end.
+model::Unlisted unlisted_for(const Judged& judged, const SearchResult& found) {
+  for (const model::ActiveEffect& active : found.after.model.effects) {
+    if (active.effect == judged.effect && active.variant == judged.variant)
+      return active.effect->looks_like(active.theta, active.variant);
+  }
+  return {};
+}
+
 }  // namespace
 
 void list_effects(const SearchResult& found, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
     const std::vector<std::string> alternatives = alternatives_of(judged, found);
-    const double log_odds = at_most_for(found.explained, judged.log_odds);
+    const model::Unlisted unlisted = unlisted_for(judged, found);
+    double log_odds = at_most_for(found.explained, judged.log_odds);
+    if (!unlisted.what.empty()) log_odds = std::min(log_odds, kEven);
     const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
                                      [&](const Judged& j) { return j.effect == judged.effect; });
     const std::vector<NamedValue> numbers = numbers_of(judged, found, judged.effect->variants_matter() || forms > 1);
     const auto known = std::find_if(result.effects.begin(), result.effects.end(),
                                     [&](const EffectFound& e) { return e.name == name; });
     if (known != result.effects.end()) {
+      if (known->unlisted.empty()) {
+        known->unlisted = unlisted.what;
+        known->unlisted_told_by = unlisted.told_by;
+      }
       known->variant += ", " + judged.variant_name;
       known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
       known->log_odds = std::max(known->log_odds, log_odds);
@@ -73,7 +90,9 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
                               .error_reduction = judged.error_reduction,
                               .alternatives = alternatives,
                               .other_forms = other_forms,
-                              .sentence = std::string(judged.effect->sentence())});
+                              .sentence = std::string(judged.effect->sentence()),
+                              .unlisted = std::string(unlisted.what),
+                              .unlisted_told_by = std::string(unlisted.told_by)});
   }
 }
 

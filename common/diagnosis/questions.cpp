@@ -23,9 +23,9 @@ constexpr int kEnoughRefusals = 2;         // by full fits, in the company of di
 constexpr double kPromisesMore = 1.25;     // times the gain: then a refused form is asked again
 constexpr double kLeastTrust = 0.01;       // what broke its promise once is still asked last
 
-bool holds(const model::Model& model, const Candidate& candidate) {
+bool rules_out(const model::Model& model, const Candidate& candidate) {
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const model::ActiveEffect& active) {
-    return active.effect == candidate.effect && active.variant == candidate.variant;
+    return active.effect == candidate.effect && active.effect->rules_out(active.variant, candidate.variant);
   });
 }
 
@@ -73,7 +73,7 @@ Answers ask_near(std::span<const Candidate> candidates, const NearView& near, co
                  const Settings& settings) {
   std::vector<Candidate> asked;
   for (const Candidate& candidate : candidates) {
-    if (!holds(near.reference.model, candidate)) asked.push_back(candidate);
+    if (!rules_out(near.reference.model, candidate)) asked.push_back(candidate);
   }
   const Linearisation base{near.problem, near.reference};
   Answers answers;

@@ -130,19 +130,30 @@ std::vector<std::string> not_followed(const DiagnosisResult& result, const std::
   return axes;
 }
 
+bool is_open(const EffectFound& effect) { return !effect.alternatives.empty() || !effect.unlisted.empty(); }
+
+/// All that the effect may be instead.
+std::vector<std::string> instead_of(const EffectFound& effect) {
+  std::vector<std::string> others = effect.alternatives;
+  if (!effect.unlisted.empty()) others.push_back(effect.unlisted);
+  return others;
+}
+
 std::string motion_for(const std::string& name) { return std::string(model::find_effect(name)->revealed_by()); }
 
 /// What to drive next: what tells look-alikes apart, else what sharpens the weakest number, else what would confirm
 /// or rule out the nearest candidate. Empty when nothing is open.
 std::string next_manoeuvre(const DiagnosisResult& result, const Judged* promising) {
   for (const EffectFound& effect : result.effects) {
-    if (effect.alternatives.empty()) continue;
-    std::vector<std::string> motions{motion_for(effect.name)};
+    if (!is_open(effect)) continue;
+    std::vector<std::string> motions;
+    if (!effect.unlisted.empty()) motions.push_back(effect.unlisted_told_by);
+    if (!effect.alternatives.empty()) motions.push_back(motion_for(effect.name));
     for (const std::string& other : effect.alternatives) {
       const std::string motion = motion_for(other);
       if (std::find(motions.begin(), motions.end(), motion) == motions.end()) motions.push_back(motion);
     }
-    return "To tell " + effect.name + " from " + joined(effect.alternatives) + ": " + joined(motions, "; and ") + ".";
+    return "To tell " + effect.name + " from " + joined(instead_of(effect)) + ": " + joined(motions, "; and ") + ".";
   }
   const WeakestNumber weakest = weakest_number(result);
   if (weakest.effect != nullptr) {
@@ -180,7 +191,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   std::vector<std::string> names, open;
   for (const EffectFound& effect : result.effects) {
     names.push_back(effect.name);
-    if (!effect.alternatives.empty()) open.push_back(effect.name + " (or " + joined(effect.alternatives, " or ") + ")");
+    if (is_open(effect)) open.push_back(effect.name + " (or " + joined(instead_of(effect), " or ") + ")");
   }
   const std::vector<Foretold> foretold = badly_foretold(result);
   // Worse than to assume the average: whatever is at work, the model does not explain it.
@@ -246,9 +257,8 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
   if (!open.empty()) {
     text += "On this data " + joined(open) + " cannot be told apart";
-    const auto first =
-        std::ranges::find_if(result.effects, [](const EffectFound& e) { return !e.alternatives.empty(); });
-    text += "; what would settle it: " + motion_for(first->name);
+    const auto first = std::ranges::find_if(result.effects, is_open);
+    text += "; what would settle it: " + (first->unlisted.empty() ? motion_for(first->name) : first->unlisted_told_by);
     text += ". ";
   }
   if (promising != nullptr) {

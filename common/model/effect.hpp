@@ -55,6 +55,12 @@ struct EffectParameter {
 
 using EffectTheta = std::span<const double>;
 
+/// Something that no list holds and that moves a vehicle in the same way.
+struct Unlisted {
+  std::string_view what;       ///< for people; empty: nothing is known to
+  std::string_view told_by{};  ///< the motion that would tell the two apart
+};
+
 class Effect {
  public:
   virtual ~Effect() = default;
@@ -81,6 +87,8 @@ class Effect {
   [[nodiscard]] int numbers(int variant) const;
   /// True when several forms can act at once, so that results must say which one a number belongs to.
   [[nodiscard]] virtual bool variants_matter() const { return false; }
+  /// True when both forms are laws of one and the same thing, which obeys one of them: together they imitate another.
+  [[nodiscard]] virtual bool rules_out(int variant, int other) const { return variant == other; }
   /// Where a search begins: full parameter vectors. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual std::vector<std::vector<double>> starts(const Scene&, int variant) const;
 
@@ -91,6 +99,8 @@ class Effect {
   /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
   /// fitted anew (its small sizes may even look harmful). Tried by full fits; none by default.
   [[nodiscard]] virtual std::vector<std::vector<double>> far_starts(const Scene&, int /*variant*/) const { return {}; }
+  /// What is known to look the same as that form with these numbers, however good the data.
+  [[nodiscard]] virtual Unlisted looks_like(EffectTheta, int /*variant*/) const { return {}; }
   /// False where the vehicle cannot have been, were these numbers true: inside a wall, say; everywhere for numbers that
   /// nothing can have.
   [[nodiscard]] virtual bool possible(const Eigen::Vector3d& /*p_WB*/, EffectTheta, int /*variant*/) const {

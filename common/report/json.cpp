@@ -91,6 +91,7 @@ Json effects(const std::vector<EffectFound>& found) {
                      {"log_odds", finite(e.log_odds)},
                      {"error_reduction", finite(e.error_reduction)},
                      {"alternatives", e.alternatives},
+                     {"unlisted_alternative", e.unlisted},
                      {"told_apart_by", told_apart},
                      {"other_forms", e.other_forms},
                      {"sentence", e.sentence}});

@@ -215,6 +215,10 @@ std::string certainty_section(const DiagnosisResult& result) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +
               "</b> cannot be told apart from " + escape(titles(effect.alternatives)) + ".</li>\n";
     }
+    if (!effect.unlisted.empty()) {
+      open += "<li><b>" + escape(effect_title(effect.name, effect.variant)) + "</b> looks the same as " +
+              escape(effect.unlisted) + ".</li>\n";
+    }
     for (const std::string& forms : effect.other_forms) {
       open += "<li>Which form of <b>" + escape(effect_title(effect.name, "")) +
               "</b> it is remains open: " + escape(forms) + ".</li>\n";

@@ -118,6 +118,7 @@ void accepted(Text& out, const DiagnosisResult& result) {
     if (!effect.alternatives.empty()) {
       out.paragraph("cannot be told apart from: " + join(effect.alternatives, ", "), "      ");
     }
+    if (!effect.unlisted.empty()) out.paragraph("looks the same as " + effect.unlisted, "      ");
     if (!effect.other_forms.empty()) {
       out.paragraph("which one is not certain: " + join(effect.other_forms, "; "), "      ");
     }

@@ -80,6 +80,8 @@ struct EffectFound {
   std::vector<std::string> alternatives;  ///< other effects that the data cannot rule out
   std::vector<std::string> other_forms;   ///< "T4 or T0": forms of this effect that would explain as much
   std::string sentence;
+  std::string unlisted{};               ///< what no list holds and would look the same; the odds are even then
+  std::string unlisted_told_by{};       ///< the motion that would tell it apart
   std::vector<ToldApart> told_apart{};  ///< from some alternatives, by a segment; only where a site was given
 };
 

@@ -45,6 +45,12 @@ class BottomEffect final : public Effect {
     return exponential(variant) || theta[kBottomDepth] > p_WB.z();
   }
   bool variants_matter() const override { return true; }
+  bool rules_out(int variant, int other) const override { return presses(variant) == presses(other); }  // one floor
+  /// The upper edge of a layer of denser water lifts exponentially too, until the vehicle has gone through it.
+  Unlisted looks_like(EffectTheta theta, int variant) const override {
+    if (variant != kExponentialForce || theta[0] <= 0.0) return {};
+    return {"a layer of denser water below", "going deeper, or to the same depth where the bottom is deeper"};
+  }
   std::string_view unit(int variant, std::size_t number) const override {
     return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
   }

@@ -303,6 +303,21 @@ TEST_CASE("verdict: look-alikes that the odds cannot rule out are ambiguous, and
   check_all_listed(result);
 }
 
+TEST_CASE("verdict: what no list holds and looks the same leaves the name open at even odds") {
+  MadeUp world;
+  world.accept("bottom_effect", {5.0, 0.0, 0.3, 2.0}, 2, "exponential force");
+  const DiagnosisResult result = world.concluded();
+  CHECK(result.verdict == "ambiguous");
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].log_odds == 0.0);
+  CHECK(result.effects[0].unlisted == "a layer of denser water below");
+  CHECK(says(result.paragraph, "bottom_effect (or a layer of denser water below) cannot be told apart"));
+  CHECK(says(result.manoeuvre, "To tell bottom_effect from a layer of denser water below: going deeper"));
+  MadeUp suction;
+  suction.accept("bottom_effect", {-5.0, 0.0, 0.3, 2.0}, 2, "exponential force");
+  CHECK(suction.concluded().verdict == "effect");
+}
+
 TEST_CASE("verdict: several forms of one effect are one entry whose numbers say which form they belong to") {
   MadeUp made;
   made.accept("thruster_gain", {-0.2}, 0, "port");

@@ -55,6 +55,27 @@ TEST_CASE("bottom_effect: its drag is the hull's own once more for each square o
   CHECK(load.wrench.tail<3>().isZero(0.0));
 }
 
+TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is that of a layer of denser water below") {
+  const model::Effect& bottom = *model::find_effect("bottom_effect");
+  constexpr int kForce = 0, kDrag = 1, kExponentialForce = 2, kExponentialDrag = 3;
+  CHECK(bottom.rules_out(kForce, kExponentialForce));
+  CHECK(bottom.rules_out(kExponentialDrag, kDrag));
+  CHECK_FALSE(bottom.rules_out(kForce, kExponentialDrag));
+  CHECK_FALSE(model::find_effect("wall_effect")->rules_out(kForce, kExponentialForce));  // a tank has four
+
+  constexpr double kStep = 90.0, kDepth = 3.0, kThickness = 0.3;  // N, m, m: buoyancy rises as a tanh of depth
+  for (double z = 1.0; z < kDepth - 2.0 * kThickness; z += 0.1) {
+    model::Motion motion;
+    motion.p_WB.z() = z;
+    const double layer = 0.5 * kStep * (1.0 + std::tanh((z - kDepth) / kThickness));
+    const auto load = load_of("bottom_effect", {kStep, 0.0, 0.5 * kThickness, kDepth}, kExponentialForce, motion);
+    CHECK(-load.wrench.z() == doctest::Approx(layer).epsilon(0.02));  // its tail: exp(-4) of it is missing
+  }
+  CHECK_FALSE(bottom.looks_like(std::vector{kStep, 0.0, 0.15, kDepth}, kExponentialForce).what.empty());
+  CHECK(bottom.looks_like(std::vector{-kStep, 0.0, 0.15, kDepth}, kExponentialForce).what.empty());  // suction
+  CHECK(bottom.looks_like(std::vector{kStep, 5.0, 0.0, 0.0}, kForce).what.empty());
+}
+
 TEST_CASE("wall_effect: pushes away from the wall, whatever the heading") {
   model::Motion motion;
   motion.p_WB = {1.0, 3.0, 0.0};
