@@ -34,7 +34,8 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(keys(file["consistency"][0]) ==
         Names{"action", "evidence", "finding", "reference", "run", "signal", "size", "unit"});
   CHECK(keys(file["effects"][0]) == Names{"accepted", "alternatives", "error_reduction", "log_odds", "name",
-                                          "other_forms", "parameters", "sentence", "told_apart_by", "variant"});
+                                          "other_forms", "parameters", "sentence", "told_apart_by",
+                                          "unlisted_alternative", "variant"});
   CHECK(keys(file["candidates"][0]) ==
         Names{"aliased_with", "error_reduction", "log_odds", "name", "reason", "variant"});
   CHECK(keys(file["error"]) == Names{"after", "before", "improvement"});
