@@ -75,7 +75,13 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
            robust_log_likelihood_ratio(other->block_cost, winner.block_cost) < settings_.alternative_log_odds;
   });
   if (rival == best.end()) {
-    ranking.verdict = "effect";
+    // Forms of one effect are hardly told apart by tangents: one that convinces and has a look-alike is enough.
+    for (const LiveSuspicion& form : suspicions_) {
+      if (effect_of(form) != effect_of(winner) || !convinces(form) || !ranking.against.empty()) continue;
+      const int variant = forms()[static_cast<std::size_t>(form.form)].variant;
+      ranking.against = effect_of(form)->looks_like(form.theta, variant).what;
+    }
+    ranking.verdict = ranking.against.empty() ? "effect" : "ambiguous";
     return ranking;
   }
   const auto active = [&](const LiveSuspicion& s) {

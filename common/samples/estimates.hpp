@@ -99,7 +99,7 @@ struct EffectRanking {
   Utime utime{};
   std::string verdict;  ///< "adequate", "effect", "ambiguous", "unexplained", "collecting"
   std::vector<EffectEvidence> candidates;
-  std::string against;  ///< candidate that the first cannot be told from; empty: none
+  std::string against;  ///< candidate, or in words what no list holds, that the first cannot be told from; empty: none
   std::string segment;  ///< what tells them apart when flown; empty: not known
   double duration{};    ///< s of it, again and again
 };

@@ -117,4 +117,28 @@ TEST_CASE("live ranking: each effect once, the convincing ones first and by what
   CHECK_FALSE(diagnoser.finish());
 }
 
+TEST_CASE("live ranking: what no list holds and looks the same leaves the name open, as afterwards") {
+  constexpr int kExponentialForce = 2;
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  test::DiveSettings settings{.duration = 160.0, .seed = 7};
+  double deepest = 0.0;
+  for (const Eigen::Vector3d& p_WB : test::make_dive(vehicle, settings).trial.p_WB) {
+    deepest = std::max(deepest, p_WB.z());
+  }
+  for (const double reach : {0.1, 0.3, 0.6}) {
+    CAPTURE(reach);
+    settings.effects = {test::active("bottom_effect", {12.0, 0.0, reach, deepest}, kExponentialForce)};
+    LiveDiagnoser diagnoser{short_settings(), vehicle};
+    const EffectRanking last = listen(diagnoser, test::make_dive(vehicle, settings).trial).back();
+    REQUIRE_FALSE(last.candidates.empty());
+    CHECK(last.candidates.front().name == "bottom_effect");
+    CHECK(last.verdict == "ambiguous");
+    CHECK(last.against == "a layer of denser water below");
+    CHECK_FALSE(diagnoser.rivals());  // nothing to fly
+  }
+  settings.effects = {test::active("thruster_lag", {0.5})};
+  LiveDiagnoser diagnoser{short_settings(), vehicle};
+  CHECK(listen(diagnoser, test::make_dive(vehicle, settings).trial).back().against.find("layer") == std::string::npos);
+}
+
 }  // namespace fathom::diagnosis
