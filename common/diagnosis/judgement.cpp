@@ -94,8 +94,7 @@ bool onset_at_edge(const TrajectoryFit& problem, const model::Model& model, cons
 }  // namespace
 
 bool too_quick(const TrajectoryFit& problem, const model::Model& model, const Judged& judged) {
-  double step = 0.0;
-  for (const auto& window : problem.windows()) step = std::max(step, window.window().trial->input_step);
+  const double step = problem.input_step();
   bool after_command = false;
   for (const model::ActiveEffect& active : model.effects) {
     if (active.effect != judged.effect || active.variant != judged.variant) continue;

@@ -275,6 +275,12 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
   return projected;
 }
 
+double TrajectoryFit::input_step() const {
+  double step = 0.0;
+  for (const WindowResidual& window : windows_) step = std::max(step, window.window().trial->input_step);
+  return step;
+}
+
 void TrajectoryFit::add_covariance(FitResult& fit) const {
   const ParameterMap map{fit.model};
   const auto n = static_cast<Eigen::Index>(map.size());
@@ -285,9 +291,7 @@ void TrajectoryFit::add_covariance(FitResult& fit) const {
     information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
     meat(i, i) = information(i, i);
   }
-  for (const WindowResidual& window : windows_) {
-    fit.input_step = std::max(fit.input_step, window.window().trial->input_step);
-  }
+  fit.input_step = input_step();
   for (const ProjectedWindow& window : linearise(fit, false)) {
     information += window.jacobian.transpose() * window.jacobian;
     const Eigen::VectorXd gradient = window.jacobian.transpose() * window.residual;

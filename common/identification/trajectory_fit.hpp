@@ -66,6 +66,8 @@ class TrajectoryFit {
   void add_covariance(FitResult& fit) const;
 
   [[nodiscard]] std::span<const WindowResidual> windows() const { return windows_; }
+  /// s, the longest time between inputs.
+  [[nodiscard]] double input_step() const;
   [[nodiscard]] const model::Vehicle& vehicle() const { return vehicle_; }
   [[nodiscard]] const FitSettings& settings() const { return settings_; }
 
