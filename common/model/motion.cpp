@@ -36,26 +36,38 @@ void InputSignal::line(double t, ActuatorForces& force) const {
 
 void InputSignal::at(double t, ActuatorForces& force) const { line(t - later_, force); }
 
-void InputSignal::now(double t, ActuatorForces& force) const {
-  constexpr double kRounding = 1e-6;  // of dt: at a jump, the force after it
-  if (mixed_) {
-    const double last = static_cast<double>(held_.size() - 1);
-    const auto part = static_cast<std::size_t>(std::clamp(std::floor((t - t0_) / part_ + kRounding), 0.0, last));
-    force = held_share_ * held_[part] + (1.0 - held_share_) * told_[part];
-    return;
-  }
-  if (held_share_ == 0.0) return line(t - later_, force);
+/// Of the force at t in the inputs that are held, in their steps; at a jump, the one after it.
+double InputSignal::place(double t) const {
+  constexpr double kRounding = 1e-6;
+  return mixed_ ? std::floor((t - t0_) / part_ + kRounding) : std::floor((t - t0_) / dt_ + kRounding) + ahead_;
+}
+
+/// Of the two next to a place: the mean over a step that begins between them.
+void InputSignal::mixture(double place, ActuatorForces& force) const {
   const double last = static_cast<double>(held_.size() - 1);
-  const double place = std::clamp(std::floor((t - t0_) / dt_ + kRounding) + ahead_, 0.0, last);
+  place = std::clamp(place, 0.0, last);
   const auto index = static_cast<std::size_t>(place);
-  const double share = std::max(place - static_cast<double>(index), 0.0);
+  const double share = place - static_cast<double>(index);
   const std::size_t next = std::min(index + 1, held_.size() - 1);
-  if (held_share_ == 1.0) {
+  if (mixed_) {
+    force = held_share_ * ((1.0 - share) * held_[index] + share * held_[next]) +
+            (1.0 - held_share_) * ((1.0 - share) * told_[index] + share * told_[next]);
+  } else {
     force = (1.0 - share) * held_[index] + share * held_[next];
-    return;
   }
-  line(t, force);
-  force += held_share_ * ((1.0 - share) * held_[index] + share * held_[next] - force);
+}
+
+void InputSignal::now(double t, ActuatorForces& force) const { ago(t, 0.0, force); }
+
+void InputSignal::ago(double t, double later, ActuatorForces& force) const {
+  if (mixed_) return mixture(place(t) - later / part_, force);
+  if (held_share_ == 0.0) return line(t - later - later_, force);
+  const double held = place(t) - later / dt_;
+  if (held_share_ == 1.0) return mixture(held, force);
+  ActuatorForces straight;
+  line(t - later, straight);
+  mixture(held, force);
+  force = held_share_ * force + (1.0 - held_share_) * straight;
 }
 
 }  // namespace fathom::model

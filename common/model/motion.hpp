@@ -43,9 +43,14 @@ class InputSignal {
   void at(double t, ActuatorForces& force) const;
   /// With the jumps of inputs that are held.
   void now(double t, ActuatorForces& force) const;
+  /// The same as it was `later` seconds before: the mean over the time that now() has one force for, so that no jump is
+  /// lost between the instants that are asked for.
+  void ago(double t, double later, ActuatorForces& force) const;
 
  private:
   void line(double t, ActuatorForces& force) const;
+  [[nodiscard]] double place(double t) const;
+  void mixture(double place, ActuatorForces& force) const;
 
   double t0_{0.0};
   double dt_{1.0};

@@ -119,12 +119,11 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     noises.push_back(noise);
     measured.col(static_cast<Eigen::Index>(k)) = nu;
     trial.voltage.push_back(voltage);
-    const model::InputSignal input{0.0, settings.dt, trial.input};
+    const model::InputSignal input{
+        0.0, settings.dt, trial.input, {}, {}, {.hold = settings.input_hold, .step = settings.dt}};
     const auto motion_at = [&](double time, const Vector6d& velocity) {
       model::Motion motion{.t = time, .p_WB = p, .R_WB = q.toRotationMatrix(), .nu = velocity};
-      input.at(time, motion.force);
-      if (settings.input_hold > 0.0) motion.force = trial.input[k];
-      if (settings.input_hold < 0.0) motion.force = trial.input[k + 1];
+      input.now(time, motion.force);
       motion.voltage = voltage;
       motion.input = &input;
       motion.vehicle = &vehicle;

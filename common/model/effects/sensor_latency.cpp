@@ -2,7 +2,8 @@
 // alone (u v w), the rates alone (p q r), or both. Cubic interpolation between samples; before the window's first
 // sample a straight line goes on. Ignores: jitter, and the age of the pose from which a prediction begins. Revealed by
 // steps and reversals while turning. Confused with thruster_delay: "all" is the same thing seen from the other side
-// (only their sum can be known), one group alone is told apart by the other; with thruster_lag.
+// (only their sum can be known) and not asked where poses were compared with both groups, one group alone is told apart
+// by the other; with thruster_lag.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,7 +85,9 @@ class SensorLatency final : public Effect {
     const auto& dof = scene.vehicle->dof;
     const bool both = scene.velocity && scene.rates && (dof[0] || dof[1] || dof[2]) && (dof[3] || dof[4] || dof[5]);
     const auto form = [both](const char* name, bool checked) { return std::string(both && !checked ? name : "-"); };
-    return {"all", form("velocity", scene.velocity_checked()), form("rates", scene.rates_checked())};
+    // What moves together with poses that were compared with it is not late alone: then the thrust is.
+    const bool with_poses = scene.velocity_checked() && scene.rates_checked();
+    return {with_poses ? "-" : "all", form("velocity", scene.velocity_checked()), form("rates", scene.rates_checked())};
   }
   std::vector<std::vector<double>> starts(const Scene&, int) const override { return {{0.05}, {0.2}, {0.5}}; }
   bool measures() const override { return true; }

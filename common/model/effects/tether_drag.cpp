@@ -1,10 +1,11 @@
 // Physics: the tether in the water drags as the vehicle pulls it along, the more of it the more is paid out. Length:
 // the straight way to the fixed end, L = |p - p_A|; force at the vehicle w = -k L |v_r| v_r, the share of 1/2 rho C_d d
-// L |v|v that does not end at the other end (Driscoll and Nahon 1996; Fossen 2011, sec. 6.4 for the form). Ignores:
-// slack beyond the straight way, the tether's weight and tension, its drag in the current alone. Made fast at Bo, or at
-// a place p_BC in B that is to be found (attachment.hpp): what counts is then that place's own v_r + w x p_BC, and the
-// force turns the vehicle by p_BC x w. Revealed by the same speeds near and far from the fixed end. Confused with
-// quadratic drag, which takes over the drag of the mean length, with cross_coupling and with tether_tension.
+// L |v|v that does not end at the other end (Driscoll and Nahon 1996; Fossen 2011, sec. 6.4 for the form); `linear`, of
+// slow motion and thin tethers: w = -k L v_r. Ignores: slack beyond the straight way, the tether's weight and tension,
+// its drag in the current alone. Made fast at Bo, or at a place p_BC in B that is to be found (attachment.hpp): what
+// counts is then that place's own v_r + w x p_BC, and the force turns the vehicle by p_BC x w. Revealed by the same
+// speeds near and far from the fixed end. Confused with the drag of the mean length, with cross_coupling and with
+// tether_tension.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +25,7 @@ constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^2/m", 5
                                  kAttachment[1],
                                  kAttachment[2]};
 constexpr std::size_t kAttached = 4;  // its first number
+constexpr int kLinear = 8;            // after the sets of an attachment's components
 constexpr int kBearings = 8;
 constexpr double kSwaying = 0.01;  // rad/s of roll and pitch, measured if not simulated: they move a high cleat
 
@@ -42,16 +44,24 @@ class TetherDrag final : public Effect {
     const auto& dof = scene.vehicle->dof;
     const bool seen = scene.position && scene.attitude && (dof[0] || dof[1] || dof[2]);
     const bool sways = scene.nu_rms.segment<2>(3).norm() > kSwaying;
-    return seen ? attachment_forms(*scene.vehicle, sways) : std::vector<std::string>{};
+    if (!seen) return {};
+    std::vector<std::string> forms = attachment_forms(*scene.vehicle, sways);
+    forms.resize(kLinear, "-");
+    forms.emplace_back("linear");
+    return forms;
+  }
+  std::string_view unit(int variant, std::size_t number) const override {
+    return variant == kLinear && number == 0 ? "N/(m/s)/m" : kParameters[number].unit;
   }
   bool takes_part(int variant, std::size_t number) const override {
     return number < kAttached || in_set(variant, number - kAttached);
   }
-  std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
+  std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high);
     const double reach = std::max(0.5 * (scene.p_high - scene.p_low).head<2>().norm(), 0.5);
     const double speed = std::max(scene.nu_rms.head<3>().norm(), 1e-2);
-    const double coefficient = 0.2 * std::max(scene.tau_rms.head<3>().norm(), 1e-2) / (speed * speed * reach);
+    const double slope = 0.2 * std::max(scene.tau_rms.head<3>().norm(), 1e-2) / (speed * reach);
+    const double coefficient = variant == kLinear ? slope : slope / speed;
     std::vector<std::vector<double>> starts{{coefficient, middle.x(), middle.y(), middle.z(), 0.0, 0.0, 0.0}};
     for (int k = 0; k < kBearings; ++k) {
       const double bearing = 2.0 * std::numbers::pi * k / kBearings;
@@ -66,13 +76,14 @@ class TetherDrag final : public Effect {
     const Eigen::Vector3d p_BC = components(theta, variant, kAttached);
     Eigen::Vector3d way = Eigen::Vector3d(theta[1], theta[2], theta[3]) - motion.p_WB;
     Eigen::Vector3d v_r = motion.nu_r().head<3>();
-    if (variant != 0) {
+    const bool elsewhere = variant != 0 && variant != kLinear;
+    if (elsewhere) {
       way -= motion.R_WB * p_BC;
       v_r += motion.nu.tail<3>().cross(p_BC);
     }
-    const Eigen::Vector3d drag = -theta[0] * way.norm() * v_r.norm() * v_r;
+    const Eigen::Vector3d drag = -theta[0] * way.norm() * (variant == kLinear ? 1.0 : v_r.norm()) * v_r;
     load.wrench.head<3>() += drag;
-    if (variant != 0) load.wrench.tail<3>() += p_BC.cross(drag);
+    if (elsewhere) load.wrench.tail<3>() += p_BC.cross(drag);
   }
 };
 

@@ -17,7 +17,9 @@ enum Form { kAlike, kTwoKinds };
 class ThrusterDelay final : public Effect {
  public:
   std::string_view name() const override { return "thruster_delay"; }
-  std::string_view sentence() const override { return "Thrust follows the logged command late by a fixed time."; }
+  std::string_view sentence() const override {
+    return "Thrust follows the logged command late by a fixed time, or all sensors are late alike.";
+  }
   std::string_view revealed_by() const override {
     return "steps and reversals of thrust, each held for several seconds";
   }
@@ -36,12 +38,12 @@ class ThrusterDelay final : public Effect {
     if (motion.input == nullptr) return;
     const double later = variant == kTwoKinds ? time_of_vertical(theta[0], theta[1]) : theta[0];
     if (later == theta[0]) {
-      if (theta[0] != 0.0) motion.input->at(motion.t - theta[0], motion.force);
+      if (theta[0] != 0.0) motion.input->ago(motion.t, theta[0], motion.force);
       return;
     }
     ActuatorForces others = motion.force, vertical = motion.force;
-    if (theta[0] != 0.0) motion.input->at(motion.t - theta[0], others);
-    if (later != 0.0) motion.input->at(motion.t - later, vertical);
+    if (theta[0] != 0.0) motion.input->ago(motion.t, theta[0], others);
+    if (later != 0.0) motion.input->ago(motion.t, later, vertical);
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
       motion.force[i] = is_vertical(*motion.vehicle, i, motion.force.size()) ? vertical[i] : others[i];
     }

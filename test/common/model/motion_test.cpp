@@ -3,6 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 using namespace fathom;
 
 namespace {
@@ -73,6 +77,51 @@ TEST_CASE("input signal: means over parts of a step count for their part, betwee
   CHECK((now(0.25, 0.3) - (0.75 * held[1] + 0.25 * told[1])).norm() < kRounding);
   CHECK((now(0.5, -1.0) - held.front()).norm() < kRounding);
   CHECK((now(0.5, 9.0) - held.back()).norm() < kRounding);
+}
+
+TEST_CASE("input signal: an earlier force is the mean over the time that has one force, so no jump is lost") {
+  std::vector<Eigen::VectorXd> commands, held, told;  // every 0.05 s; a grid of 0.5 s, in parts of 0.25 s
+  std::mt19937_64 random{11};
+  std::normal_distribution<double> any;
+  constexpr double kStep = 0.5, kPart = 0.25, kCommand = 0.05;
+  for (int i = 0; i < 200; ++i) commands.emplace_back(Eigen::Matrix<double, 1, 1>(any(random)));
+  const auto mean = [&](double from) {  // of the held commands over a part, by hand
+    double sum = 0.0;
+    for (int i = 0; i < 250; ++i) {
+      const double at = std::clamp((from + (i + 0.5) * kPart / 250) / kCommand, 0.0, 199.0);
+      sum += commands[static_cast<std::size_t>(at)][0];
+    }
+    return sum / 250;
+  };
+  std::vector<Eigen::VectorXd> samples;
+  for (int k = 0; k < 20; ++k) samples.push_back(commands[static_cast<std::size_t>(10 * k)]);
+  for (int j = 0; j < 40; ++j) held.emplace_back(Eigen::Matrix<double, 1, 1>(mean(j * kPart)));
+  told = held;
+  const model::InputSignal input{0.0, kStep, samples, held, told, {.hold = 0.5, .step = kCommand, .averaged = true}};
+  model::ActuatorForces force, same;
+  for (const double t : {3.0, 3.1, 3.24, 4.75}) {
+    const double begin = kPart * std::floor(t / kPart);
+    input.now(t, force);
+    input.ago(t, 0.0, same);
+    CHECK(force == same);  // no time ago is now
+    for (const int parts : {1, 3, 7}) {
+      input.ago(t, parts * kPart, force);
+      CHECK(force[0] == doctest::Approx(mean(begin - parts * kPart)).epsilon(1e-9));
+    }
+    // Between them the impulse is kept: what a part loses its neighbour has.
+    double all = 0.0, plain = 0.0;
+    for (int j = 0; j < 8; ++j) {
+      input.ago(begin + (j + 0.5) * kPart, 0.4 * kPart, force);
+      input.now(begin + (j + 0.5) * kPart, same);
+      all += force[0];
+      plain += same[0];
+    }
+    input.now(begin - 0.5 * kPart, force);
+    input.now(begin + 7.5 * kPart, same);
+    CHECK(all == doctest::Approx(plain + 0.4 * (force[0] - same[0])).epsilon(1e-9));
+  }
+  input.ago(0.1, 5.0, force);
+  CHECK(force == held.front());
 }
 
 TEST_CASE("input signal: a single sample holds for ever") {

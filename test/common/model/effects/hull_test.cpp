@@ -65,6 +65,29 @@ TEST_CASE("cubic_drag: constant thrust ends at the cube root") {
   CHECK(nu(0, nu.cols() - 1) == doctest::Approx(0.5).epsilon(kMidpoint));
 }
 
+TEST_CASE("asymmetric_drag: all of the drag larger astern is its linear and its quadratic form together") {
+  constexpr int kSwayQuadratic = 1, kSwayLinear = 4, kSwayBoth = 7;
+  constexpr double kMore = 0.3, kDamping = 8.0, kQuadratic = 17.0;  // going to port: of Y_v, Y_v|v|
+  const model::Effect& effect = *model::find_effect("asymmetric_drag");
+  CHECK(effect.numbers(kSwayQuadratic) == 1);
+  CHECK(effect.numbers(kSwayLinear) == 1);
+  CHECK(effect.numbers(kSwayBoth) == 2);
+  const std::vector<double> theta{0.5 * kMore * kQuadratic, 0.5 * kMore * kDamping};
+  for (const double v : {-0.6, -0.1, 0.2, 0.5}) {
+    model::Motion motion;
+    motion.nu[1] = v;
+    model::Load both, quadratic, linear;
+    effect.load(motion, theta, kSwayBoth, both);
+    effect.load(motion, theta, kSwayQuadratic, quadratic);
+    effect.load(motion, theta, kSwayLinear, linear);
+    const double odd = -(1.0 + 0.5 * kMore) * (kDamping + kQuadratic * std::abs(v)) * v;
+    const double share = v < 0.0 ? 1.0 + kMore : 1.0;
+    CHECK(odd + both.wrench[1] == doctest::Approx(-share * (kDamping + kQuadratic * std::abs(v)) * v));
+    CHECK((both.wrench - quadratic.wrench - linear.wrench).norm() < 1e-12);
+    CHECK(both.wrench.norm() == std::abs(both.wrench[1]));
+  }
+}
+
 TEST_CASE("restoring_moment: the same motion as with those components in the base model") {
   Bare bare{{true, true, true, true, true, true}};
   model::Motion motion;

@@ -1,6 +1,7 @@
 // Effects that depend on where the vehicle is: bottom, walls, a tether's length.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -121,6 +122,20 @@ TEST_CASE("tether_drag: proportional to the way to the fixed end, and to the squ
   CHECK(load_of("tether_drag", {2.0, 0.0, 0.0, 0.0}, 0, motion).wrench.isZero(0.0));
 }
 
+TEST_CASE("tether_drag: linear, proportional to the way to the fixed end and to speed") {
+  constexpr int kLinear = 8;
+  model::Motion motion;
+  motion.p_WB = {3.0, 4.0, 0.0};
+  motion.nu << 0.5, -0.1, 0.0, 0.2, 0.1, 0.4;
+  const model::Load load = load_of("tether_drag", {2.0, 0.0, 0.0, 0.0, 0.7, 0.7, 0.7}, kLinear, motion);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(-5.0, 1.0, 0.0)).norm() < kRounding);
+  CHECK(load.wrench.tail<3>().isZero(0.0));  // made fast at the origin
+  const model::Effect& effect = *model::find_effect("tether_drag");
+  CHECK(effect.numbers(kLinear) == effect.numbers(0));
+  CHECK(effect.unit(kLinear, 0) == "N/(m/s)/m");
+  CHECK(effect.unit(0, 0) == "N/(m/s)^2/m");
+}
+
 TEST_CASE("tethers made fast astern: the same pull as at that place of the hull, and its moment about the origin") {
   constexpr int kAstern = 7;
   const Eigen::Vector3d p_BC{-0.3, 0.05, -0.1};
@@ -161,19 +176,25 @@ TEST_CASE("tethers made fast astern: asked for are the arms that turn the vehicl
     const model::Effect& effect = *model::find_effect(name);
     const int at_origin = effect.numbers(0);
     vehicle.dof = {true, true, true, false, false, true};
-    REQUIRE(effect.variants(scene).size() == 4);  // x and y
+    // The last form that is made fast elsewhere.
+    const auto elsewhere = [&] {
+      const std::vector<std::string> forms = effect.variants(scene);
+      const auto last = std::find(forms.rbegin(), forms.rend(), "made fast off the origin");
+      return static_cast<int>(forms.rend() - last) - 1;
+    };
+    CHECK(elsewhere() == 3);  // x and y
     CHECK(effect.variants(scene)[0].empty());
     CHECK(effect.numbers(3) == at_origin + 2);
     scene.nu_rms[4] = 0.3;  // pitch as measured moves a cable that drags
-    CHECK(effect.numbers(static_cast<int>(effect.variants(scene).size()) - 1) ==
-          at_origin + (effect.name() == "tether_drag" ? 3 : 2));
+    CHECK(effect.numbers(elsewhere()) == at_origin + (effect.name() == "tether_drag" ? 3 : 2));
     scene.nu_rms.segment<2>(3).setZero();
     vehicle.dof.fill(true);
-    REQUIRE(effect.variants(scene).size() == 8);
+    CHECK(elsewhere() == 7);
     CHECK(effect.numbers(7) == at_origin + 3);
     CHECK(effect.starts(scene, 7).size() <= effect.starts(scene, 0).size());
     vehicle.dof = {true, true, true, false, false, false};
-    CHECK(effect.variants(scene) == std::vector<std::string>{""});
+    CHECK(effect.variants(scene).front().empty());
+    CHECK(elsewhere() == -1);
   }
 }
 
