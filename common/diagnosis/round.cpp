@@ -14,11 +14,13 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr double kAsGood = 0.9;           // of the gain: with fewer numbers, that is the better explanation
-constexpr double kHopeless = 1.0 / 3.0;   // of the best gain so far: screening does not err by more
-constexpr double kClearlyLess = 0.6;      // of the best gain so far, on a spread of windows
-constexpr double kAlike = 0.7;            // correlation of what two candidates change
-constexpr double kRestart = 0.1;          // of the screened size: where a fit that went astray begins again
+constexpr double kAsGood = 0.9;          // of the gain: with fewer numbers, that is the better explanation
+constexpr double kHopeless = 1.0 / 3.0;  // of the best gain so far: screening does not err by more
+constexpr double kClearlyLess = 0.6;     // of the best gain so far, on a spread of windows
+constexpr double kAlike = 0.7;           // correlation of what two candidates change
+constexpr double kRestart = 0.1;         // of the screened size: where a fit that went astray begins again
+constexpr double kMuch = 0.5;            // of the winner's gain
+constexpr const char* kTrifle = "not evident beside what is too little or too quick to count";
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
 /// Log odds for the fit with more numbers when the noise of each axis is not known, each window a single observation
@@ -125,7 +127,32 @@ std::optional<Winner> Round::fit_best(Which first, std::size_t few, std::size_t 
         (!best || better(answers_, next, *fit, *best, reference_.cost, settings_.accept_log_odds)))
       best = Winner{next, std::move(*fit)};
   }
+  if (best && !counts_beside_trifles(*best)) {
+    answers_.judged[best->place].reason = kTrifle;
+    promises_.refused(answers_, best->place);
+    stands_.erase(best->place);
+    best.reset();
+  }
   return best;
+}
+
+/// What was refused for its size alone acts all the same, and others imitate it: a winner must be evident beside what
+/// explains much of the same.
+bool Round::counts_beside_trifles(const Winner& best) const {
+  const auto gain = [&](const FitResult& fit) { return reference_.cost - fit.cost; };
+  const FitResult* most = nullptr;
+  for (const auto& [place, fit] : trifles_) {
+    if (most == nullptr || fit.cost < most->cost) most = &fit;
+  }
+  if (most == nullptr || gain(*most) < kMuch * gain(best.fit)) return true;
+  const Screened& screened = answers_.near[best.place];
+  model::Model both = most->model;
+  for (const model::ActiveEffect& active : best.fit.model.effects) {
+    if (active.effect == screened.effect && active.variant == screened.variant) both.add(active);
+  }
+  Judged beside = answers_.judged[best.place];
+  judge_by_odds(beside, *most, fit_with(problem_, *most, both, screened), tried_);
+  return evident(beside, settings_) && beside.error_reduction >= settings_.smallest_reduction;
 }
 
 /// What changes the same motion in the same way is measured by the promise of that, not by what its fit has kept:
@@ -176,6 +203,8 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
     stands_.insert_or_assign(i, fit);
   } else {
     promises_.refused(answers_, i);
+    if (evident(judged, settings_) && (judged.too_quick || judged.change < settings_.smallest_change))
+      trifles_.insert_or_assign(i, fit);
   }
   return fit;
 }

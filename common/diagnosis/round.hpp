@@ -31,6 +31,7 @@ class Round {
 
  private:
   [[nodiscard]] bool looks_like(std::size_t place, const Winner& best) const;
+  [[nodiscard]] bool counts_beside_trifles(const Winner& best) const;
   std::optional<identification::FitResult> fit_in_full(std::size_t i, double best_share);
 
   Answers& answers_;
@@ -43,6 +44,7 @@ class Round {
   double done_;
   Coarse coarse_;
   std::map<std::size_t, identification::FitResult> stands_;  // by place: fitted in full, and nothing speaks against it
+  std::map<std::size_t, identification::FitResult> trifles_;  // evident, but too little or too quick to count
   std::optional<CrossValidation> checked_;                   // of the reference, made when the first fit is judged
 };
 

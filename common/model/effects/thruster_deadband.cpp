@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::array kParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50.0}};
 constexpr int kOffset = 0;
-constexpr std::array kSteps{0.04, 0.06, 0.09, 0.13, 0.2, 0.3, 0.45, 0.67, 1.0};  // of the typical command
+constexpr double kFirstStep = 0.04, kLastStep = 1.0;  // of the typical command
+constexpr double kNextStep = 1.15;                    // times the one before: constant commands are often close to it
 
 class ThrusterDeadband final : public Effect {
  public:
@@ -27,8 +28,7 @@ class ThrusterDeadband final : public Effect {
     if (variant == kOffset) return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
     // Only commands at a step's edge tell where it is: no slope leads there from afar.
     std::vector<std::vector<double>> starts;
-    starts.reserve(kSteps.size());
-    for (const double share : kSteps) starts.push_back({share * typical});
+    for (double share = kFirstStep; share < kLastStep; share *= kNextStep) starts.push_back({share * typical});
     return starts;
   }
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 
+#include "common/diagnosis/judgement.hpp"
 #include "test/support/timing.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -51,7 +52,7 @@ const std::vector<Hidden>& hidden_effects() {
       {"current", "", {{0.06, 0.1}, {-0.07, -0.04}}},
       {"wave", "force", {{1.0, 2.0}, {1.0, 2.0}, {0.3, 1.2}, {0.7, 1.5}}},
       {"thrust_loss", "shaft speed", {{0.8, 1.3}}},
-      {"asymmetric_drag", "", {{-10.0, -7.0}}},
+      {"asymmetric_drag", "X_|u| X_uu", {{-10.0, -7.0}, {-5.0, -3.0}}},
       {"cubic_drag", "X_uuu", {{80.0, 140.0}}},
       {"fluid_memory", "u", {{10.0, 20.0}, {10.0, 20.0}, {10.0, 20.0}, {1.0, 2.0}, {1.0, 2.0}, {1.0, 2.0}, {1.0, 3.0}}},
       {"restoring_moment", "", {{3.0, 5.0}, {3.0, 5.0}, {3.0, 5.0}}},
@@ -368,6 +369,23 @@ TEST_CASE("search: a craft that hangs askew is named, though its base model know
 TEST_CASE("search: a clean dive gets no name") {
   check_clean("seabotix_lbv150", kShort, 1);
   if (test::kTimed) check_clean("bluerov2", kShort, 2);
+}
+
+TEST_CASE("search: what imitates a delay that is too quick to be told is not accepted in its place") {
+  if (!test::kTimed) return;
+  const model::Vehicle& vehicle = vehicle_named("seabotix_lbv150");
+  const model::ActiveEffect delay = test::active("thruster_delay", {0.012});  // commands are 0.04 s apart
+  const test::VirtualDive dive = test::make_dive(
+      vehicle, {.duration = 200.0, .dt = 0.04, .seed = 5, .turn = 4.0, .input_hold = 0.5, .effects = {delay}});
+  const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
+  for (const Judged& judged : found.accepted) {
+    MESSAGE(std::string{judged.effect->name()} << " " << judged.variant_name << " log odds " << judged.log_odds);
+  }
+  CHECK(found.accepted.empty());
+  const auto told = std::ranges::find(found.refused, delay.effect, &Judged::effect);
+  REQUIRE(told != found.refused.end());
+  CHECK(told->log_odds > Settings{}.accept_log_odds);  // or it would have been refused anyway
+  CHECK(told->reason == std::string{kTooQuick});
 }
 
 TEST_CASE("search: what the registry does not hold gets no confident name") { check_outsider(Lift{}, 15.0, 11); }

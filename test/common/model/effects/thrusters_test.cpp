@@ -1,6 +1,7 @@
 // Effects between the command and the water, against hand-written formulas.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/model/dynamics.hpp"
@@ -236,4 +237,16 @@ TEST_CASE("battery_sag: by voltage where it says something, by time where it is 
   CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == doctest::Approx(4.0));
   fixture.motion.voltage = 0.0;  // a gap in the log
   CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == 16.0);
+}
+
+TEST_CASE("thruster_deadband: a search for the step begins close to wherever its edge may be") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  model::Scene scene{.vehicle = &vehicle};
+  scene.force_rms = model::ActuatorForces::Constant(4, 5.0);
+  constexpr int kStep = 1;
+  const auto starts = model::find_effect("thruster_deadband")->starts(scene, kStep);
+  // A constant command, as a trim, is often close to the edge, and no slope leads past it.
+  for (double edge = 0.25; edge < 4.0; edge *= 1.01) {
+    CHECK(std::ranges::any_of(starts, [&](const auto& start) { return start[0] > edge && start[0] < 1.2 * edge; }));
+  }
 }
