@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/associations.hpp"
+#include "common/diagnosis/carried_over.hpp"
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/prediction.hpp"
@@ -19,11 +20,8 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kMostHarm = 0.02;  // growth of the validation error: what predicts worse is not what the model lacked
-constexpr double kPromised = 0.1;   // of the training error: so much must show elsewhere
-constexpr double kKept = 0.25;      // of what was promised
-constexpr double kStill = 1e-9;     // m/s, rad/s: rounding of what never changes
-constexpr double kStep = 0.04;      // s between the velocities that are predicted: short of it there is only noise
+constexpr double kStill = 1e-9;  // m/s, rad/s: rounding of what never changes
+constexpr double kStep = 0.04;   // s between the velocities that are predicted: short of it there is only noise
 
 using Residuals = std::vector<std::vector<Vector6d>>;
 
@@ -103,34 +101,6 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
     if (r == 0 || !same_run(trials[r - 1], trials[r])) names.push_back(trials[r].name);
   }
   return names;
-}
-
-/// Whether what training promised is kept by runs that no fit has seen. A veto only: nothing is accepted for it, and
-/// runs that hardly feel what was found (`foreseen`: fall_if_right) have none.
-bool carries_over(const SearchResult& found, const Interval& change, double foreseen) {
-  double left = 1.0;
-  for (const Judged& judged : found.accepted) left *= 1.0 - judged.error_reduction;
-  const double promised = std::min(1.0 - left, foreseen);
-  if (!std::isfinite(change.value)) return true;
-  return change.value > -kMostHarm && (promised < kPromised || change.value > kKept * promised);
-}
-
-/// By the accepted effects, on runs that no fit has seen; 1 when these are too short to tell.
-double share_on(std::span<const Trial> unseen, const SearchResult& found, const model::Vehicle& vehicle,
-                const Settings& settings) {
-  if (identification::cut_windows(unseen, found.window).empty()) return 1.0;
-  identification::FitSettings fits = settings.fit;
-  fits.window = found.window;
-  const identification::TrajectoryFit windows{vehicle, unseen, fits};
-  const double lead = lead_of(found.after.model);
-  double share = 0.0;
-  for (const double moment : {kWhiteNoise, kFilteredNoise}) {
-    const LastingError before = lasting_error(windows, found.before.model, lead, moment);
-    // Where nothing lasts so long, nothing is told by its absence.
-    if (moment > kWhiteNoise && !certainly_lacking(before)) continue;
-    share = std::max(share, share_explained(before, lasting_error(windows, found.after.model, lead, moment)));
-  }
-  return share;
 }
 
 /// What is left in the runs that were fitted, and in those that were not: what a model lacks shows in either, and
@@ -276,6 +246,11 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
     residual_after = residual_before;
   }
   if (!found.accepted.empty()) found.explained = share_on(unseen, found, vehicle, settings);
+  if (!found.accepted.empty() && judged && !worth_keeping(found.explained, improvement(before, after, vehicle))) {
+    take_back(found, "explains little of what is lacking, and hardly helps the validation run");
+    after = before;
+    residual_after = residual_before;
+  }
   result.error_before = {force_rmse(vehicle, residual_before), before.summary(vehicle)};
   result.error_after = {force_rmse(vehicle, residual_after), after.summary(vehicle)};
   result.improvement = improvement(before, after, vehicle);
