@@ -103,6 +103,7 @@ LiveInput::LiveInput(const std::vector<Url>& urls, const std::vector<Subscriptio
   }
   if (slots_.empty()) return;  // nothing to hear: a driver that writes to a file needs no bus
   std::vector<std::string> channels;
+  channels.reserve(subscriptions.size());
   for (const Subscription& each : subscriptions) channels.push_back(each.channel);
   const bool many = std::ranges::any_of(slots_, [](const Slot& slot) { return slot.many; });
   for (const Url& url : urls) {
