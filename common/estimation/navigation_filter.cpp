@@ -1,9 +1,12 @@
 #include "common/estimation/navigation_filter.hpp"
 
+#include <cmath>
+
 namespace fathom::estimation {
 namespace {
 
 const Eigen::Vector3d kGravity{0.0, 0.0, 9.81};  // m/s^2, NED
+constexpr double kTiltTime = 1.0;                // s, for which a vehicle stays tilted the same way
 using Axis = NavigationFilter::AxisCovariance;
 
 // x' = F x with p' = p + dt v - dt^2/2 b, v' = v - dt b.
@@ -48,7 +51,12 @@ void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eig
   v_WB_ += dt * a_W;
   const double noise_v = noise_.acceleration * noise_.acceleration;
   const double noise_b = noise_.bias_walk * noise_.bias_walk;
-  for (Axis& axis : covariance_) propagate(axis, dt, noise_v, noise_b);
+  // A wrong attitude turns gravity, which level passes for a bias along the body, and as such is turned up by a tilt.
+  const double tilted = kGravity.z() * noise_.attitude * std::hypot(R_WB(2, 0), R_WB(2, 1));
+  const Eigen::Vector3d turned{0.0, 0.0, 2.0 * kTiltTime * tilted * tilted};
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    propagate(covariance_[static_cast<std::size_t>(i)], dt, noise_v + turned[i], noise_b);
+  }
 }
 
 void NavigationFilter::correct_position(const Eigen::Vector3d& innovation_W, const AxisGains& gains,
@@ -74,6 +82,16 @@ void NavigationFilter::correct_velocity(const Eigen::Vector3d& innovation_B, con
   for (Eigen::Index i = 0; i < 3; ++i) {
     Axis& c = covariance_[static_cast<std::size_t>(i)];
     correct(c, c.pv, c.vv, c.vb, c.vv + noise[i], 0.0, value[i], -rate[i]);
+  }
+}
+
+void NavigationFilter::correct_horizontal_velocity(const Eigen::Vector2d& innovation_W, const AxisGains& gains,
+                                                   const Eigen::Vector2d& variance, const Eigen::Matrix3d& R_WB) {
+  v_WB_.head<2>() += gains.value.head<2>().cwiseProduct(innovation_W);
+  b_ -= R_WB.transpose().leftCols<2>() * gains.rate.head<2>().cwiseProduct(innovation_W);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    Axis& c = covariance_[static_cast<std::size_t>(i)];
+    correct(c, c.pv, c.vv, c.vb, c.vv + variance[i], 0.0, gains.value[i], -gains.rate[i]);
   }
 }
 

@@ -24,6 +24,7 @@ class NavigationFilter {
     double acceleration{};  ///< m/s in one second (grows with the root of time): accelerometer and attitude together
     double bias_walk{};     ///< m/s^2 in one second
     double bias_prior{};    ///< m/s^2
+    double attitude{};      ///< rad, of roll and pitch
   };
   /// Covariance of position p, velocity v and bias b along one axis of W.
   struct AxisCovariance {
@@ -42,6 +43,9 @@ class NavigationFilter {
   /// Velocity measured minus estimated, in B; gains and variance along B: value to the velocity, rate to the bias.
   void correct_velocity(const Eigen::Vector3d& innovation_B, const AxisGains& gains, const Eigen::Vector3d& variance,
                         const Eigen::Matrix3d& R_WB);
+  /// Horizontal velocity measured minus estimated, in W; gains and variance likewise. The vertical is left alone.
+  void correct_horizontal_velocity(const Eigen::Vector2d& innovation_W, const AxisGains& gains,
+                                   const Eigen::Vector2d& variance, const Eigen::Matrix3d& R_WB);
   /// Nothing was known of the motion for so long, and it may have accelerated by `acceleration` [m/s^2].
   void forget_motion(double seconds, double acceleration);
   /// The estimate was wrong and the measurement is right.

@@ -36,7 +36,8 @@ Navigator::Navigator(const NavigatorSettings& settings, const NavigatorPlaces& p
   }
   const NavigationFilter filter{{.acceleration = settings_.acceleration_noise,
                                  .bias_walk = settings_.bias_walk,
-                                 .bias_prior = settings_.bias_prior}};
+                                 .bias_prior = settings_.bias_prior,
+                                 .attitude = settings_.attitude_noise}};
   nodes_.assign(kHistory, Node{.after = {.filter = filter}});
   waiting_.reserve(kHistory);
 }
@@ -234,7 +235,8 @@ const Navigator::Output& Navigator::step(const Ahrs& sample) {
   if (count_ == 1) {
     const Memory fresh{.filter = NavigationFilter{{.acceleration = settings_.acceleration_noise,
                                                    .bias_walk = settings_.bias_walk,
-                                                   .bias_prior = settings_.bias_prior}}};
+                                                   .bias_prior = settings_.bias_prior,
+                                                   .attitude = settings_.attitude_noise}}};
     nodes_[newest].after = fresh;
   } else {
     std::size_t from = count_ - 2;
@@ -353,6 +355,7 @@ std::map<std::string, std::int64_t> Navigator::rejected() const {
     const Track& track = nodes_[(first_ + count_ - 1) % kHistory].after.tracks[i];
     add(source, "gated", track.rejected[kGated]);
     add(source, "frozen", track.rejected[kFrozen]);
+    add(source, "of a wall", track.rejected[kWall]);
   }
   return all;
 }
@@ -371,6 +374,7 @@ std::string Navigator::complaint() const {
     const double age = track.last ? seconds_between(*track.last, newest.utime) : HUGE_VAL;
     if (age <= s.max_age) continue;
     if (track.repeated >= kRepeats && track.moving) return std::string{channel(source)} + " is frozen";
+    if (track.walled) return std::string{channel(source)} + " looks at a wall";
     if (track.refused > 0) return std::string{channel(source)} + " does not fit the motion";
     return std::string{channel(source)} + " is silent";
   }

@@ -4,7 +4,9 @@
 // everything since is computed anew, so that neither lateness nor the order of arrival changes a number.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -64,8 +66,9 @@ struct NavigatorSettings {
 struct NavigatorPlaces {
   [[nodiscard]] static NavigatorPlaces of(const model::Mounts& mounts, const model::Site& site);
   std::map<std::string, CameraMount> cameras{};
-  std::map<int, Eigen::Vector3d> tags{};          ///< m, p_WT
-  std::optional<double> floor{};                  ///< m, z of a level floor
+  std::map<int, Eigen::Vector3d> tags{};  ///< m, p_WT
+  std::optional<double> floor{};          ///< m, z of a level floor
+  Eigen::AlignedBox2d walls{Eigen::Vector2d::Constant(-HUGE_VAL), Eigen::Vector2d::Constant(HUGE_VAL)};  ///< m, x and y
   Eigen::Vector3d p_BI{Eigen::Vector3d::Zero()};  ///< m, accelerometer in the body
 };
 
@@ -94,7 +97,7 @@ class Navigator {
 
  private:
   static constexpr int kRepeats = 4;  // bit by bit the same: no noisy sensor does that while moving
-  enum Reason { kGated, kFrozen, kLate, kOverdue, kMalformed, kReasons };
+  enum Reason { kGated, kFrozen, kWall, kLate, kOverdue, kMalformed, kReasons };
   struct Input {
     Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
     Eigen::Vector3d w_B{Eigen::Vector3d::Zero()};
@@ -116,6 +119,7 @@ class Navigator {
     int refused{};
     int repeated{};
     bool moving{};  // when the repetition began
+    bool walled{};  // the newest was of a wall
     Eigen::Vector3d a{Eigen::Vector3d::Zero()}, b{Eigen::Vector3d::Zero()};
     std::array<std::int64_t, kReasons> rejected{};
   };
@@ -146,8 +150,11 @@ class Navigator {
                     const Eigen::Vector3d& variance, const Input& input) const;
   void use_tags(Memory& memory, std::size_t first, std::size_t last, const Input& input) const;
   void use_flow(Memory& memory, const Measurement& m, const Input& input) const;
+  [[nodiscard]] bool of_floor(Memory& memory, const Measurement& m, const Eigen::Vector3d& p_B,
+                              const Eigen::Matrix3d& R_WB) const;
   void use_laser(Memory& memory, const Measurement& m, const Input& input) const;
   [[nodiscard]] AxisGains gains(Source source, double interval, bool velocity_is_measured_vertically) const;
+  [[nodiscard]] double share_of_laser(const Memory& memory, const Measurement& m, double variance) const;
   [[nodiscard]] bool passes(Track& track, double worst) const;
   /// True when so many were refused in a row that the estimate must be the one that is wrong.
   [[nodiscard]] static bool outvoted(const Track& track);

@@ -14,6 +14,10 @@ constexpr int kWitness = 3;               // accepted samples that make a source
 constexpr double kMoving = 0.01;          // m/s
 constexpr double kLongestInterval = 1.0;  // s for gains: beyond, they are as good as one
 constexpr double kStartSigma = 0.5;       // m/s: what vehicles of this size do
+constexpr double kLargestTiltCosine =
+    0.5;                           // of 60 deg; beyond, what is seen across the body hardly tells the horizontal
+constexpr double kNearWall = 0.1;  // m: what position and tilt are off by at the far end of the view, and the corner
+constexpr double kTogether = 0.2;  // s: tags that were seen so lately are in sight
 constexpr double kTagsCommonError = 4.0;  // tags in one picture share errors: they count as this many at most
 
 std::size_t slot(Source source) { return static_cast<std::size_t>(source); }
@@ -110,11 +114,25 @@ void Navigator::use_tags(Memory& memory, std::size_t first, std::size_t last, co
   use_position(memory, together, together.a, Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(variance), input);
 }
 
+// What is seen at p_B tells of the floor only where the floor is: a tilted vehicle looks at a wall now and then, and
+// along the wall range and scene change so gently that no gate notices. Nothing is known before there is a position.
+bool Navigator::of_floor(Memory& memory, const Measurement& m, const Eigen::Vector3d& p_B,
+                         const Eigen::Matrix3d& R_WB) const {
+  if (!memory.started) return true;
+  Track& track = memory.tracks[slot(m.source)];
+  const Eigen::Vector2d at = (memory.filter.position() + R_WB * p_B).head<2>();
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kNearWall);
+  track.walled = !Eigen::AlignedBox2d{places_.walls.min() + margin, places_.walls.max() - margin}.contains(at);
+  track.rejected[kWall] += track.walled ? 1 : 0;
+  return !track.walled;
+}
+
 void Navigator::use_flow(Memory& memory, const Measurement& m, const Input& input) const {
   if (!memory.started) return;
   const Eigen::Matrix3d R_WB = input.q_WB.toRotationMatrix();
   const double distance = distance_to_floor(*places_.floor, memory.filter.position(), *m.camera, R_WB);
   if (!(distance > 0.0)) return;
+  if (!of_floor(memory, m, m.camera->p_BC + distance * m.camera->R_BC.col(2), R_WB)) return;
   const Eigen::Vector2d across = velocity_from_flow(m.a.head<2>(), distance);
   // Along the optical axis nothing is seen: there the estimate stands in for the measurement.
   const Eigen::Vector3d v_B = R_WB.transpose() * memory.filter.velocity();
@@ -130,6 +148,7 @@ void Navigator::use_flow(Memory& memory, const Measurement& m, const Input& inpu
 
 void Navigator::use_laser(Memory& memory, const Measurement& m, const Input& input) const {
   const Eigen::Matrix3d R_WB = input.q_WB.toRotationMatrix();
+  if (!of_floor(memory, m, m.camera->p_BC + m.camera->R_BC * m.a, R_WB)) return;
   const double z = depth_from_floor_point(*places_.floor, m.a, *m.camera, R_WB);
   const double sigma = std::hypot(settings_.laser.noise, m.sigma);
   if (settings_.published_gains && memory.started && memory.laser_before) {
@@ -199,6 +218,16 @@ bool Navigator::passes(Track& track, double worst) const {
   return false;
 }
 
+// Tags and laser tell depth at the same cut-off, as often as one another. A laser's range errs with the square of the
+// distance, by a centimetre from a metre on, where tags have company: then it counts for less, but never for nothing,
+// and it stands alone where tags are out of sight.
+double Navigator::share_of_laser(const Memory& memory, const Measurement& m, double variance) const {
+  const std::optional<Utime>& tags = memory.tracks[slot(Source::kTagPose)].last;
+  if (settings_.published_gains || !tags || seconds_between(*tags, m.utime) > kTogether) return 1.0;
+  const double of_tags = settings_.tags.noise * settings_.tags.noise / kTagsCommonError;
+  return std::min(1.0, 2.0 * of_tags / (variance + of_tags));
+}
+
 void Navigator::use_position(Memory& memory, const Measurement& m, const Eigen::Vector3d& p_WB,
                              const Eigen::Vector3d& axes, const Eigen::Vector3d& variance, const Input& input) const {
   Track& track = memory.tracks[slot(m.source)];
@@ -227,6 +256,10 @@ void Navigator::use_position(Memory& memory, const Measurement& m, const Eigen::
   k.value = k.value.cwiseProduct(axes);
   k.rate = k.rate.cwiseProduct(axes);
   k.second = k.second.cwiseProduct(axes);
+  const double share = m.source == Source::kLaserRange ? share_of_laser(memory, m, variance.z()) : 1.0;
+  k.value.z() *= share;
+  k.rate.z() *= share;
+  k.second.z() *= share;
   memory.filter.correct_position(innovation, k, variance, input.q_WB.toRotationMatrix());
   track.last = m.utime;
 }
@@ -250,8 +283,18 @@ void Navigator::use_velocity(Memory& memory, const Measurement& m, const Eigen::
     return;
   }
   const double interval = track.last ? seconds_between(*track.last, m.utime) : kLongestInterval;
-  memory.filter.correct_velocity(innovation, gains(m.source, interval, true), variance, R_WB);
   track.last = m.utime;
+  const AxisGains k = gains(m.source, interval, true);
+  if (axes.z() > 0.0 || settings_.published_gains || R_WB(2, 2) < kLargestTiltCosine) {
+    memory.filter.correct_velocity(innovation, k, variance, R_WB);
+    return;
+  }
+  // Seen across the body's z axis alone. Corrected along the body's axes, a tilted vehicle's horizontal error would
+  // turn into a vertical one, which depth takes out more slowly than it comes. The vertical velocity is depth's to
+  // tell, so what is seen tells the horizontal one: (R_WB' [dv; 0]) across the body's z axis is the innovation.
+  const Eigen::Matrix2d back = R_WB.topLeftCorner<2, 2>().transpose().inverse();
+  memory.filter.correct_horizontal_velocity(back * innovation.head<2>(), k, back.cwiseAbs2() * variance.head<2>(),
+                                            R_WB);
 }
 
 }  // namespace fathom::estimation

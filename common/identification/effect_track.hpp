@@ -17,9 +17,10 @@ struct EffectSample {
   Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
   Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
   Vector6d nu{Vector6d::Zero()};
-  model::ActuatorForces force;  ///< N, as commanded
-  double voltage{};             ///< V; 0: not known
-  bool valid{false};            ///< false: a break in the motion
+  Eigen::Vector3d sigma_v{Eigen::Vector3d::Zero()};  ///< m/s, of u v w
+  model::ActuatorForces force;                       ///< N, as commanded
+  double voltage{};                                  ///< V; 0: not known
+  bool valid{false};                                 ///< false: a break in the motion
 };
 
 class EffectTrack {

@@ -38,7 +38,15 @@ IntegralSettings integral_settings(const IdentifierSettings& settings, const mod
   s.dof = vehicle.dof;
   s.sigma << Eigen::Vector3d::Constant(settings.noise_force), Eigen::Vector3d::Constant(settings.noise_moment);
   const Vector6d mass = model::expected_inertia(vehicle);
-  for (Eigen::Index i = 0; i < 3; ++i) s.sigma[i] = std::hypot(s.sigma[i], settings.noise_acceleration * mass[i]);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double noise = settings.noise_acceleration * mass[i];
+    s.sigma[i] = std::hypot(s.sigma[i], noise);
+    if (settings.noise_velocity > 0.0) {
+      s.per_velocity[i] = noise / settings.noise_velocity;
+      s.mass[i] = mass[i];
+    }
+  }
+  s.ordinary_sigma_v = settings.noise_velocity;
   s.parameters = columns_of(vehicle);
   return s;
 }
@@ -153,6 +161,7 @@ void Identifier::release() {
       sample.p_WB = state.p_WB;
       sample.q_WB = state.q_WB;
       sample.nu = state.nu;
+      sample.sigma_v = state.sigma.segment<3>(6);
       sample.force = *aligned->input;
       sample.voltage = voltage_;
       sample.valid = true;
@@ -164,7 +173,7 @@ void Identifier::release() {
 
 // The rows of the window that this sample closes, the adopted effect's columns among them.
 std::optional<RowBlock> Identifier::rows_of(const EffectSample& sample) {
-  MotionSample motion{.utime = sample.utime, .nu = sample.nu, .valid = sample.valid};
+  MotionSample motion{.utime = sample.utime, .nu = sample.nu, .sigma_v = sample.sigma_v, .valid = sample.valid};
   if (sample.valid) {
     motion.down_B = sample.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
     if (input_ == InputKind::kForce) {

@@ -35,6 +35,7 @@ struct IdentifierSettings {
   double memory{0.0};              ///< s that an update stays in memory; 0: for ever
   double noise_force{0.5};         ///< N, sigma of a window's average
   double noise_acceleration{0.0};  ///< m/s^2 likewise, of STATE's: times the expected mass it is a force
+  double noise_velocity{0.0};      ///< m/s, STATE's sigma up to which that holds; beyond, it grows with it; 0: never
   double noise_moment{0.1};        ///< N m
   bool interpolate_input{true};    ///< false: a command holds until the next
   double max_input_gap{0.5};       ///< s; a state between inputs further apart is not used
@@ -53,7 +54,8 @@ struct IdentifierSettings {
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
-  /// velocity_offset, attitude_offset, noise_acceleration, freeze_delay, adopt_after with adopt_delay and keep.
+  /// velocity_offset, attitude_offset, noise_acceleration with noise_velocity, freeze_delay, adopt_after with
+  /// adopt_delay and keep.
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 

@@ -19,6 +19,17 @@ constexpr std::size_t kFewestSamples = 8;   // the bump needs that many to be on
 constexpr double kShortestShare = 0.8;      // of the window, when irregular samples do not fill it to the end
 constexpr double kRoundingOfTime = 1.5e-6;  // s: stamps are whole microseconds
 
+// Errors of two velocities in the moment of the masses along them: (m_a - m_b) v_a v_b about the third axis.
+Eigen::Vector3d variance_of_moment(const Eigen::Vector3d& mass, const MotionSample& s) {
+  Eigen::Vector3d variance;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index a = (i + 1) % 3, b = (i + 2) % 3;
+    variance[i] =
+        std::pow(mass[a] - mass[b], 2) * (std::pow(s.nu[a] * s.sigma_v[b], 2) + std::pow(s.nu[b] * s.sigma_v[a], 2));
+  }
+  return variance;
+}
+
 }  // namespace
 
 IntegralRegressor::IntegralRegressor(IntegralSettings settings) : settings_{std::move(settings)} {
@@ -119,8 +130,11 @@ RowBlock IntegralRegressor::rows(std::size_t count) {
   weighed_ = count;
   model::BaseRegressor Y = model::BaseRegressor::Zero();
   Vector6d tau = Vector6d::Zero();
+  Eigen::Vector3d known = Eigen::Vector3d::Zero(), moment = known;  // variances of u v w, and of what they make
   for (std::size_t k = 0; k < count; ++k) {
     const MotionSample& s = sample(k);
+    known += average_[k] * s.sigma_v.cwiseAbs2();
+    moment += average_[k] * variance_of_moment(settings_.mass, s);
     Y += average_[k] * model::motion_regressor(s.nu, s.down_B);
     Y.diagonal() += derivative_[k] * s.nu;
     tau += average_[k] * s.tau;
@@ -141,6 +155,12 @@ RowBlock IntegralRegressor::rows(std::size_t count) {
         inertia == settings_.parameters.end() ? -1 : static_cast<int>(inertia - settings_.parameters.begin());
     row.y = tau(axis);
     row.variance = settings_.sigma(axis) * settings_.sigma(axis);
+    if (axis < 3) {
+      const double worse = std::max(0.0, known(axis) - settings_.ordinary_sigma_v * settings_.ordinary_sigma_v);
+      row.variance += settings_.per_velocity(axis) * settings_.per_velocity(axis) * worse;
+    } else {
+      row.variance += moment(axis - 3);
+    }
   }
   return block;
 }

@@ -23,16 +23,22 @@ struct MotionSample {
   Vector6d nu{Vector6d::Zero()};                     ///< m/s, rad/s
   Eigen::Vector3d down_B{Eigen::Vector3d::UnitZ()};  ///< R_WB^T e_z
   Vector6d tau{Vector6d::Zero()};                    ///< N, N m
+  Eigen::Vector3d sigma_v{Eigen::Vector3d::Zero()};  ///< m/s, of u v w
   bool valid{false};                                 ///< false: no window may contain this instant
 };
 
 struct IntegralSettings {
-  double window{2.0};                            ///< s; motion faster than about 1/window is averaged away
-  double stride{0.5};                            ///< s between rows
-  double max_gap{0.35};                          ///< s between samples beyond which the window starts over
-  double max_rate{200.0};                        ///< 1/s; samples that come faster are skipped
-  std::array<bool, 6> dof{};                     ///< axes that give rows
-  Vector6d sigma{Vector6d::Ones()};              ///< N, N m: what averaging leaves of the noise
+  double window{2.0};                ///< s; motion faster than about 1/window is averaged away
+  double stride{0.5};                ///< s between rows
+  double max_gap{0.35};              ///< s between samples beyond which the window starts over
+  double max_rate{200.0};            ///< 1/s; samples that come faster are skipped
+  std::array<bool, 6> dof{};         ///< axes that give rows
+  Vector6d sigma{Vector6d::Ones()};  ///< N, N m: what averaging leaves of the noise
+  /// N per m/s along X Y Z: what velocities known worse than `ordinary_sigma_v` [m/s] leave beyond that.
+  Eigen::Vector3d per_velocity{Eigen::Vector3d::Zero()};
+  double ordinary_sigma_v{};
+  Eigen::Vector3d mass{
+      Eigen::Vector3d::Zero()};  ///< kg along X Y Z, about: two of them and two velocities make a moment
   std::vector<model::BaseParameter> parameters;  ///< columns
 };
 

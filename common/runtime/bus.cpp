@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/runtime/channel_filter.hpp"
 
 namespace fathom::runtime {
 namespace {
@@ -101,13 +102,23 @@ LiveInput::LiveInput(const std::vector<Url>& urls, const std::vector<Subscriptio
                       .many = subscription.channel.find('*') != std::string::npos});
   }
   if (slots_.empty()) return;  // nothing to hear: a driver that writes to a file needs no bus
+  std::vector<std::string> channels;
+  channels.reserve(subscriptions.size());
+  for (const Subscription& each : subscriptions) channels.push_back(each.channel);
+  const bool many = std::ranges::any_of(slots_, [](const Slot& slot) { return slot.many; });
   for (const Url& url : urls) {
     buses_.push_back(connect(url));
+    const std::vector<int> before = listening_sockets();
     for (Slot& slot : slots_) {
       auto* handle = buses_.back()->subscribeFunction(subscriptions[slot.index].channel, &LiveInput::receive, &slot);
       if (handle == nullptr) throw InputError(url.text + ": cannot listen; does multicast come back to this host?");
       handle->setQueueCapacity(std::numeric_limits<int>::max());
     }
+    if (many) continue;
+    // liblcm does not show its socket: it is the one that came with the first subscription.
+    std::vector<int> came = listening_sockets();
+    std::erase_if(came, [&](int each) { return std::ranges::find(before, each) != before.end(); });
+    if (came.size() == 1) hear_only(came.front(), channels);
   }
 }
 

@@ -238,6 +238,65 @@ TEST_CASE("navigator: a sensor that is silent, frozen, jumping or sends no numbe
   }
 }
 
+TEST_CASE("navigator: what looks at a wall tells nothing of the floor") {
+  // A laser that points ahead, and a wall not far beyond the tour's farthest point: the dot climbs it and comes back.
+  const test::SyntheticMotion motion{1};
+  const auto mount = test::survey_camera();
+  const Eigen::Vector3d beam_C = Eigen::Vector3d{0.0, -0.7, 1.0}.normalized();
+  double wall = -HUGE_VAL;
+  for (double t = 0.0; t < 60.0; t += 0.1) wall = std::max(wall, motion.p_WB(t).x());
+  wall += 0.3;
+  const auto spoil = [&](test::SurveySample& s, double t) {
+    auto* laser = std::get_if<LaserRange>(&s);
+    if (laser == nullptr) return true;
+    const Eigen::Vector3d beam_W = motion.R_WB(t) * mount.R_BC * beam_C;
+    const Eigen::Vector3d p_WC = motion.p_WB(t) + motion.R_WB(t) * mount.p_BC;
+    const double floor = (test::kFloor - p_WC.z()) / beam_W.z(), across = (wall - p_WC.x()) / beam_W.x();
+    laser->p_CL = (across > 0.0 ? std::min(floor, across) : floor) * beam_C;
+    return true;
+  };
+  const auto arrivals = test::synthetic_survey({.duration = 60.0, .spoil = spoil});
+  auto places = test::survey_places();
+  Navigator blind{test::survey_settings(true), places};
+  const Judged misled = judge(test::feed(blind, arrivals), 1, 10.0);
+  places.walls.max().x() = wall;
+  Navigator knowing{test::survey_settings(true), places};
+  const Judged judged = judge(test::feed(knowing, arrivals), 1, 10.0);
+  MESSAGE("worst " << misled.worst_position << " m without the wall, " << judged.worst_position << " m with it");
+  CHECK(knowing.rejected()["LASER_RANGE of a wall"] > 0);
+  CHECK(blind.rejected().count("LASER_RANGE of a wall") == 0);
+  CHECK(judged.worst_position < 0.02);
+  CHECK(misled.worst_position > 2.0 * judged.worst_position);
+}
+
+TEST_CASE("navigator: a laser that states a large error counts for less than tags do, and alone when they are gone") {
+  constexpr double kOff = 0.03;  // m
+  const auto depth_error = [&](double stated, bool tags) {
+    const auto spoil = [&](test::SurveySample& s, double t) {
+      if (auto* laser = std::get_if<LaserRange>(&s)) {
+        laser->p_CL.z() += kOff;
+        laser->sigma_range = stated;
+      }
+      return tags || t < 20.0 || !std::holds_alternative<TagPose>(s);
+    };
+    NavigatorSettings settings = test::survey_settings(true);
+    settings.laser.vertical_cutoff = settings.tags.vertical_cutoff;
+    const auto states = run({.duration = 30.0, .noisy = false, .spoil = spoil}, settings);
+    const test::SyntheticMotion motion{1};
+    double sum = 0.0, n = 0.0;
+    for (const StateEstimate& state : states) {
+      const double t = seconds_between(1'000'000'000, state.utime);
+      if (t < 27.0) continue;
+      sum += motion.p_WB(t).z() - state.p_WB.z();
+      n += 1.0;
+    }
+    return sum / n;
+  };
+  CHECK(depth_error(0.008, true) > 0.2 * kOff);
+  CHECK(std::abs(depth_error(0.05, true)) < 0.1 * kOff);
+  CHECK(depth_error(0.05, false) > 0.8 * kOff);
+}
+
 TEST_CASE("navigator: an attitude sensor that froze gives no state, and what comes after a gap is doubted") {
   std::optional<Ahrs> held;
   const auto spoil = [&](test::SurveySample& s, double t) {

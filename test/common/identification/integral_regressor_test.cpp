@@ -232,3 +232,32 @@ TEST_CASE("integral regressor: refuses settings without sense") {
   s.parameters.clear();
   CHECK_THROWS_AS((IntegralRegressor{s}), InputError);
 }
+
+TEST_CASE("integral regressor: rows are as uncertain as the velocities that they are made of") {
+  IntegralSettings s = four_axes();
+  s.per_velocity = {20.0, 10.0, 30.0};
+  s.ordinary_sigma_v = 0.01;
+  s.mass = {10.0, 14.0, 12.0};
+  const auto rows = [&](double sigma_v) {
+    IntegralRegressor regressor{s};
+    std::optional<RowBlock> last;
+    for (int i = 0; i < 100; ++i) {
+      MotionSample sample{.utime = utime_after(1'600'000'000'000'000, kDt * i), .valid = true};
+      sample.nu << 0.4, 0.3, 0.0, 0.0, 0.0, 0.0;
+      sample.sigma_v.setConstant(sigma_v);
+      if (auto block = regressor.step(sample)) last = block;
+    }
+    REQUIRE(last);
+    return *last;
+  };
+  const auto moment = [](double sigma_v) { return std::pow((14.0 - 10.0) * std::hypot(0.4, 0.3) * sigma_v, 2); };
+  const RowBlock ordinary = rows(0.008), worse = rows(0.03);
+  const double excess = 0.03 * 0.03 - 0.01 * 0.01;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double per = s.per_velocity(static_cast<Eigen::Index>(i));
+    CHECK(ordinary.rows[i].variance == doctest::Approx(0.01));
+    CHECK(worse.rows[i].variance == doctest::Approx(0.01 + per * per * excess));
+  }
+  CHECK(ordinary.rows[3].variance == doctest::Approx(0.02 * 0.02 + moment(0.008)));
+  CHECK(worse.rows[3].variance == doctest::Approx(0.02 * 0.02 + moment(0.03)));
+}

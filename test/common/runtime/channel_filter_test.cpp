@@ -1,0 +1,127 @@
+// The filter at a bus's socket: what is heard arrives, what nobody asked for does not, and nothing is lost by it.
+#include "common/runtime/channel_filter.hpp"
+
+#include <arpa/inet.h>
+#include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fathom_lcm/depth_t.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/runtime/bus.hpp"
+
+namespace fathom::runtime {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Socket {
+ public:
+  Socket() : descriptor_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(bind(descriptor_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0);
+  }
+  ~Socket() { close(descriptor_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+  void send_to(const Socket& other, const std::string& bytes) const {
+    sockaddr_in there{};
+    socklen_t size = sizeof there;
+    REQUIRE(getsockname(other.descriptor_, reinterpret_cast<sockaddr*>(&there), &size) == 0);
+    REQUIRE(sendto(descriptor_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&there), size) > 0);
+  }
+
+  /// What lies there; over loopback a packet is there when its sending returns.
+  [[nodiscard]] std::optional<std::string> next() const {
+    std::string bytes(1000, '\0');
+    const ssize_t length = recv(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (length < 0) return {};
+    bytes.resize(static_cast<std::size_t>(length));
+    return bytes;
+  }
+
+ private:
+  int descriptor_;
+};
+
+std::string message(const std::string& channel, const std::string& data, const std::string& magic = "LC02") {
+  return magic + std::string("\0\0\0\7", 4) + channel + std::string(1, '\0') + data;
+}
+
+}  // namespace
+
+TEST_CASE("channel filter: passes the channels asked for, whole names alone") {
+  Socket from, to;
+  hear_only(to.descriptor(), std::vector<std::string>{"STATE", "STATE_OF_ALL", "DVL"});
+  const std::string data = "12345678";
+  for (const char* heard : {"STATE", "STATE_OF_ALL", "DVL"}) {
+    from.send_to(to, message(heard, data));
+    CHECK(to.next() == message(heard, data));
+    from.send_to(to, message(heard, ""));  // nothing behind the name
+    CHECK(to.next() == message(heard, ""));
+  }
+  for (const char* other : {"STAT", "STATE_", "STATES", "state", "DV", "DVL2", "", "AHRS", "LOCKSTEP_ACK"}) {
+    CAPTURE(other);
+    from.send_to(to, message(other, data));
+    CHECK_FALSE(to.next());
+    from.send_to(to, message(other, ""));
+    CHECK_FALSE(to.next());
+  }
+}
+
+TEST_CASE("channel filter: leaves alone what it cannot judge") {
+  Socket from, to;
+  hear_only(to.descriptor(), std::vector<std::string>{"STATE"});
+  const std::string part = message("CAMERA", "12345678", "LC03");  // only the first of several names its channel
+  from.send_to(to, part);
+  CHECK(to.next() == part);
+  from.send_to(to, "no LCM at all");
+  CHECK(to.next() == "no LCM at all");
+}
+
+TEST_CASE("channel filter: too many channels are not filtered") {
+  std::vector<std::string> channels(60, std::string(60, 'A'));
+  CHECK(channel_program(channels).empty());
+  channels.resize(20);
+  CHECK_FALSE(channel_program(channels).empty());
+}
+
+TEST_CASE("channel filter: a process hears its own channels of a live bus, and is not woken for others") {
+  const Url url = Url::parse(
+      "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0&recv_buf_size=2097152", "--in");
+  const auto before = listening_sockets();
+  LiveInput input{{url}, {{"DEPTH", 10}, {"AHRS", 10}}};
+  Output output{url};
+  for (const char* channel : {"STATE", "DEPTH", "TRUTH", "AHRS"}) {
+    fathom_lcm::depth_t depth{};
+    say(output, channel, depth);
+  }
+  std::vector<std::size_t> heard;
+  const auto last = std::chrono::steady_clock::now() + 5s;
+  while (heard.size() < 2 && std::chrono::steady_clock::now() < last) {
+    input.wait(-1, 50);
+    while (const auto each = input.next()) heard.push_back(each->subscription);
+  }
+  CHECK(heard == std::vector<std::size_t>{0, 1});
+  const auto after = listening_sockets();
+  REQUIRE(after.size() == before.size() + 1);
+  const auto socket =
+      std::ranges::find_if(after, [&](int each) { return std::ranges::find(before, each) == before.end(); });
+  REQUIRE(socket != after.end());
+  socklen_t instructions = 0;  // asked like this, the kernel tells how many there are
+  REQUIRE(getsockopt(*socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) == 0);
+  CHECK(instructions == channel_program(std::vector<std::string>{"DEPTH", "AHRS"}).size());
+}
+
+}  // namespace fathom::runtime
