@@ -174,6 +174,9 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       for (std::size_t i = 0; i < state.tracks.size(); ++i) state.tracks[i].agrees = plane.agrees[i];
       flow.n_agreed = plane.n_agreed;
       flow.residual = plane.spread * focal;
+      const Eigen::RowVector3d n_0 = (*R_01 * normal_1 / (*R_01 * normal_1).z()).transpose();
+      flow.floor_10 = R_01->transpose() * (Eigen::Matrix3d::Identity() - plane.tau * n_0);
+      flow.nearing = 1.0 - n_0.dot(plane.tau);
       // From the first camera's distance and axes to those in the middle.
       const Eigen::Vector3d half = 0.5 * rotation_vector_from_quaternion(Eigen::Quaterniond{*R_01});
       const Eigen::Matrix3d to_middle = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();

@@ -43,6 +43,10 @@ struct Flow {
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   int n_tracks{}, n_agreed{};
   double residual{};  ///< px, spread of those that agree
+  /// What lies on the floor, from the picture before to this one, in normalized coordinates: x_1 ~ floor_10 x_0; and the
+  /// distance to it along its normal, over that of the picture before. Of a valid flow.
+  Eigen::Matrix3d floor_10{Eigen::Matrix3d::Identity()};
+  double nearing{1.0};
 };
 
 class FlowTracker {

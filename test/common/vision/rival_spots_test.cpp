@@ -1,0 +1,42 @@
+// What else is green on the floor, and what the laser's range makes of it.
+#include <doctest/doctest.h>
+
+#include <cstdio>
+
+#include "test/common/vision/rival_spots.hpp"
+
+namespace fathom::vision {
+namespace {
+
+using namespace test_scene;
+
+const char* name_of(Moving moving) {
+  constexpr std::array<const char*, 4> kNames{"at rest", "along the floor", "up and down", "all ways"};
+  return kNames[static_cast<std::size_t>(moving)];
+}
+
+const char* name_of(Rival rival) {
+  constexpr std::array<const char*, 4> kNames{"none", "paint", "paint, laser off", "second beam"};
+  return kNames[static_cast<std::size_t>(rival)];
+}
+
+}  // namespace
+
+// The table of docs/vision.md: build/dev/test/test_common_vision -tc="laser: the table of rivals*" --no-skip
+TEST_CASE("laser: the table of rivals of the dot" * doctest::skip()) {
+  constexpr int kDives = 10, kPictures = 30;
+  for (const Rival rival : {Rival::kNone, Rival::kPaint, Rival::kPaintAlone, Rival::kSecondBeam}) {
+    for (const Moving moving : {Moving::kRest, Moving::kAlong, Moving::kDown, Moving::kAll}) {
+      std::printf("| %s | %s |", name_of(rival), name_of(moving));
+      for (const bool tags : {false, true}) {
+        const Tally t = dive({.tags = tags, .moving = moving, .rival = rival, .look = {.caustics = 0.3}}, kDives,
+                             kPictures, 40);
+        std::printf(" %d of %d, wrong %d in %d dives |", t.found, t.looked, t.wrong, t.dives_wrong);
+        std::fflush(stdout);
+      }
+      std::printf("\n");
+    }
+  }
+}
+
+}  // namespace fathom::vision
