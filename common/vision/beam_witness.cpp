@@ -67,7 +67,7 @@ void BeamWitness::move(const Flow& flow) {
 // place and not at the other says what the spot is.
 BeamWitness::Moves BeamWitness::how_it_moves(const LaserFinder& finder, const LaserDot& spot,
                                              const Eigen::Vector3d& normal_C) const {
-  int with_beam = 0, with_floor = 0;
+  int with_beam = 0, with_floor = 0, beside = 0;  // beside: paint that the spot's middle takes in
   for (const Earlier& each : earlier_) {
     const auto on_floor_then = on_floor(each.floor_10.inverse(), spot.pixel);
     if (!on_floor_then) continue;
@@ -79,14 +79,18 @@ BeamWitness::Moves BeamWitness::how_it_moves(const LaserFinder& finder, const La
     const double apart = (on_beam_then - *on_floor_then).norm();
     if (apart < kTold * settings_.pixel_sigma) continue;
     const double near = std::min(kShare * apart, kFarthest);
-    const auto is_at = [&](const Eigen::Vector2d& place) {
-      if (!projection_.inside(place, settings_.largest)) return false;
-      const auto found = finder.spot_near(each.bgr, place, spot.contrast);
-      return found && (*found - place).norm() < near;
-    };
-    with_floor += is_at(*on_floor_then) ? 1 : 0;
-    with_beam += is_at(on_beam_then) ? 1 : 0;
+    const auto found = finder.spot_near(each.bgr, *on_floor_then, spot.contrast);
+    const bool on_beam = found && (*found - on_beam_then).norm() < 0.5 * apart;
+    if (found && (*found - *on_floor_then).norm() < near) {
+      ++with_floor;
+    } else if (found && !on_beam && (*found - *on_floor_then).norm() < 2.0 * settings_.largest) {
+      ++beside;
+    }
+    if (!projection_.inside(on_beam_then, settings_.largest)) continue;
+    const auto lit = on_beam ? found : finder.spot_near(each.bgr, on_beam_then, spot.contrast);
+    with_beam += lit && (*lit - on_beam_then).norm() < near ? 1 : 0;
   }
+  if (beside > 0 && with_floor == 0) return Moves::kBoth;
   if (with_floor > 0) return with_beam > 0 ? Moves::kBoth : Moves::kWithFloor;
   return with_beam > 0 ? Moves::kWithBeam : Moves::kUnknown;
 }

@@ -69,6 +69,7 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
   if (lens && laser) {
     laser_.emplace(*lens, *laser, settings.laser);
     witness_.emplace(*lens, *laser, settings.laser);
+    tracker_->leave_out(laser_->line(), settings.laser.strip + settings.laser.largest);
   }
   if (site.floor <= site.surface && !site.tags.empty()) {  // no water stated: the tags lie on it
     floor_ = 0.0;

@@ -19,6 +19,7 @@ constexpr double kOutstanding = 8.0;  // spreads of the strip's excess
 constexpr double kReach = 2.5;        // sigmas of a dot's place by colour that its place by brightness may be off
 constexpr double kAlone = 2.0;     // times the contrast asked for, where colour is blurred and brightness shows no dot
 constexpr double kRoundest = 3.0;  // ratio of a dot's axes; seen slanting it is an ellipse
+constexpr double kRound = 1.25;    // the same up to which nothing else is likely to be in it
 
 // How much a pixel is more than daylight: greener than `tint`, the water's share of green, which white paper and dark
 // floor have alike, or brighter than the picture's white. The first shows on a floor; on paper the dot clips, JPEG
@@ -162,6 +163,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
   dot.pixel = middle;
   const double trace = spread.trace(), root = std::sqrt(std::max(0.25 * trace * trace - spread.determinant(), 0.0));
   const double large = 0.5 * trace + root, small = std::max(0.5 * trace - root, 1.0 / 12.0);
+  dot.smear = std::sqrt(std::max(large - kRound * kRound * small, 0.0));
   return std::sqrt(large) < 0.5 * settings_.largest && std::sqrt(large / small) < kRoundest;
 }
 
@@ -217,7 +219,7 @@ bool LaserFinder::has_a_neighbour(std::size_t peak, double typical, double contr
       if ((strip_[i].pixel - strip_[peak].pixel).norm() > 2.0 * settings_.largest) break;
       const double here = strip_[i].strength - typical;
       lowest = std::min(lowest, here);
-      if (here > lowest + kValley * contrast) return true;
+      if (here > lowest + std::max(kValley * contrast, settings_.least_contrast)) return true;
     }
   }
   return false;
@@ -275,7 +277,8 @@ const std::vector<LaserDot>& LaserFinder::look(const cv::Mat& bgr, const cv::Mat
       dot.state = LaserState::kNotRound;
     } else {
       dot.state = LaserState::kFound;
-      if (halved_colour) pixel_sigma = sharpen(grey, dot);
+      // What draws a dot out draws its middle away by as much.
+      pixel_sigma = halved_colour ? sharpen(grey, dot) : std::hypot(settings_.pixel_sigma, dot.smear);
       if (dot.state == LaserState::kFound) triangulate(pixel_sigma, dot);
     }
     spots_.push_back(dot);

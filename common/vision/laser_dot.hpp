@@ -44,6 +44,7 @@ struct LaserDot {
   double sigma_range{};                           ///< m, along the line of sight
   Eigen::Vector2d peak{Eigen::Vector2d::Zero()};  ///< where it is strongest along the line
   double contrast{};
+  double smear{};  ///< px, by which it is longer than a round one
 };
 
 class LaserFinder {

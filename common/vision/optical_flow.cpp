@@ -40,7 +40,7 @@ struct FlowTracker::State {
   FlowSettings settings;
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat small;
+  cv::Mat small, mask;  // mask: empty, or 0 where there are no features
   std::vector<cv::Point2f> features, found, back;
   std::vector<unsigned char> ok, ok_back;
   std::vector<float> errors;
@@ -74,11 +74,15 @@ struct FlowTracker::State {
   }
 
   void choose_features() {
-    constexpr double kQuality = 0.005;  // of the best: tags outshine a floor by far
+    constexpr double kQuality = 0.005, kLow = 5e-4;  // of the best: tags outshine a floor by far, lamps even more
+    constexpr std::size_t kFew = 4;                  // times fewer than wanted
     features.clear();
     const double area = static_cast<double>(small.cols) * small.rows;
     const double apart = 0.6 * std::sqrt(area / settings.most_tracks);
-    cv::goodFeaturesToTrack(small, features, settings.most_tracks, kQuality, apart, cv::noArray(), 3);
+    for (const double quality : {kQuality, kLow}) {
+      cv::goodFeaturesToTrack(small, features, settings.most_tracks, quality, apart, mask, 3);
+      if (kFew * features.size() >= static_cast<std::size_t>(settings.most_tracks)) break;
+    }
   }
 
   // There with the rotation as a first guess, and back again.
@@ -132,6 +136,16 @@ FlowTracker::FlowTracker(FlowTracker&&) noexcept = default;
 FlowTracker& FlowTracker::operator=(FlowTracker&&) noexcept = default;
 
 const std::vector<Track>& FlowTracker::tracks() const { return state_->tracks; }
+
+void FlowTracker::leave_out(const std::vector<Eigen::Vector2d>& line, double reach) {
+  const model::Lens& lens = state_->projection.lens();
+  const double r = state_->settings.reduction;
+  const cv::Size size{cvRound(lens.width / r), cvRound(lens.height / r)};  // as cv::resize rounds
+  if (state_->mask.empty()) state_->mask = cv::Mat(size, CV_8UC1, cv::Scalar{255});
+  for (const Eigen::Vector2d& each : line) {
+    cv::circle(state_->mask, state_->reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0}, cv::FILLED);
+  }
+}
 
 void FlowTracker::reset() {
   state_->before.reset();

@@ -62,6 +62,8 @@ class FlowTracker {
   Flow step(Utime utime, const cv::Mat& grey, const std::optional<Eigen::Matrix3d>& R_01,
             const std::optional<Eigen::Vector3d>& normal_C,
             const std::optional<Eigen::Matrix3d>& rotation_covariance = std::nullopt);
+  /// Nothing within `reach` [px] of this line is a feature: a beam's dot there goes its own way, and outshines the floor.
+  void leave_out(const std::vector<Eigen::Vector2d>& line, double reach);
   /// Of the last step.
   [[nodiscard]] const std::vector<Track>& tracks() const;
   void reset();

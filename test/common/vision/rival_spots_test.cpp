@@ -26,11 +26,14 @@ const char* name_of(Rival rival) {
 TEST_CASE("laser: the table of rivals of the dot" * doctest::skip()) {
   constexpr int kDives = 10, kPictures = 30;
   for (const Rival rival : {Rival::kNone, Rival::kPaint, Rival::kPaintAlone, Rival::kSecondBeam}) {
+    if (std::getenv("R") && std::atoi(std::getenv("R")) != static_cast<int>(rival)) continue;
     for (const Moving moving : {Moving::kRest, Moving::kAlong, Moving::kDown, Moving::kAll}) {
+    if (std::getenv("M") && std::atoi(std::getenv("M")) != static_cast<int>(moving)) continue;
       std::printf("| %s | %s |", name_of(rival), name_of(moving));
-      for (const bool tags : {false, true}) {
-        const Tally t = dive({.tags = tags, .moving = moving, .rival = rival, .look = {.caustics = 0.3}}, kDives,
-                             kPictures, 40);
+      for (const auto& [tags, quality] : {std::pair{false, 0}, {true, 0}, {false, 75}, {true, 75}}) {
+        const Tally t = dive(
+            {.tags = tags, .moving = moving, .rival = rival, .look = {.caustics = 0.3}, .quality = quality}, kDives,
+            kPictures, 40);
         std::printf(" %d of %d, wrong %d in %d dives |", t.found, t.looked, t.wrong, t.dives_wrong);
         std::fflush(stdout);
       }
