@@ -115,9 +115,8 @@ LaserState BeamWitness::verdict(const LaserFinder& finder, const LaserDot& spot,
   const Moves moves = how_it_moves(finder, spot, normal_C);
   // Nearer than this to paint, the middle of the spot is that of both.
   const double reach = 1.5 * settings_.largest + kFarthest;
-  const bool near_paint = std::any_of(paint_.begin(), paint_.end(), [&](const Paint& each) {
-    return (each.pixel - spot.pixel).norm() < reach;
-  });
+  const bool near_paint = std::any_of(paint_.begin(), paint_.end(),
+                                      [&](const Paint& each) { return (each.pixel - spot.pixel).norm() < reach; });
   if (moves == Moves::kWithFloor && !near_paint && paint_.size() < kMostPaint) {
     paint_.push_back({.pixel = spot.pixel, .contrast = spot.contrast});
   }
@@ -172,8 +171,8 @@ LaserDot BeamWitness::judge(LaserFinder& finder, const cv::Mat& bgr, const std::
   }
   keep(bgr, normal_C);
   const std::vector<LaserDot>& chosen = agreeing.empty() ? possible : agreeing;
-  const LaserDot dot = chosen.empty() ? refused : LaserFinder::choose(chosen);
-  if (dot.state == LaserState::kFound) known_ = {{normal_C.dot(dot.p_CL), dot.sigma_range}};
+  LaserDot dot = chosen.empty() ? refused : LaserFinder::choose(chosen);
+  if (dot.state == LaserState::kFound) known_ = {.floor = {normal_C.dot(dot.p_CL), dot.sigma_range}};
   return dot;
 }
 

@@ -1,8 +1,8 @@
-// Which of the green spots on the beam's line is the laser's dot. What is painted moves with the floor; the dot stays on
-// its beam, goes along it only as the floor comes nearer or leans, and the floor under it is dark when it is elsewhere.
-// So each spot is sought in earlier pictures: where the floor under it was then, and where the beam was. And the floor
-// is where the tags have it, or not far from where it was. All this says nothing while nothing moves, without tags, and
-// in a descent along the beam, in which paint in the beam's line does what the dot would do.
+// Which of the green spots on the beam's line is the laser's dot. What is painted moves with the floor; the dot stays
+// on its beam, goes along it only as the floor comes nearer or leans, and the floor under it is dark when it is
+// elsewhere. So each spot is sought in earlier pictures: where the floor under it was then, and where the beam was. And
+// the floor is where the tags have it, or not far from where it was. All this says nothing while nothing moves, without
+// tags, and in a descent along the beam, in which paint in the beam's line does what the dot would do.
 #pragma once
 
 #include <Eigen/Core>
@@ -63,7 +63,7 @@ class BeamWitness {
   LaserSettings settings_;
   std::vector<Earlier> earlier_;  ///< the newest last
   std::vector<Paint> paint_;
-  std::optional<Known> known_;  ///< from the last range that was told
+  std::optional<Known> known_;                       ///< from the last range that was told
   Eigen::Vector2d middle_{Eigen::Vector2d::Zero()};  ///< px, of the beam's line
 };
 

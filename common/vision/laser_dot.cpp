@@ -11,10 +11,10 @@ namespace fathom::vision {
 namespace {
 
 constexpr int kSaturated = 250;
-constexpr double kRival = 0.6;        // share of the strongest from which anything else on the line is a rival
-constexpr double kDimRival = 0.25;    // the same of a spot that could be the dot itself, over a darker floor
+constexpr double kRival = 0.6;      // share of the strongest from which anything else on the line is a rival
+constexpr double kDimRival = 0.25;  // the same of a spot that could be the dot itself, over a darker floor
 constexpr std::size_t kMostSpots = 4;
-constexpr double kValley = 0.3;       // of the contrast, by which two peaks in one spot stand above what is between them
+constexpr double kValley = 0.3;  // of the contrast, by which two peaks in one spot stand above what is between them
 constexpr double kOutstanding = 8.0;  // spreads of the strip's excess
 constexpr double kReach = 2.5;        // sigmas of a dot's place by colour that its place by brightness may be off
 constexpr double kAlone = 2.0;     // times the contrast asked for, where colour is blurred and brightness shows no dot
@@ -270,16 +270,15 @@ const std::vector<LaserDot>& LaserFinder::look(const cv::Mat& bgr, const cv::Mat
       least = std::max(least, kDimRival * dot.contrast);
       spots_.clear();
     }
-    double pixel_sigma = settings_.pixel_sigma;
-    if (has_a_neighbour(best, typical, dot.contrast)) {
+    if (!halved_colour && has_a_neighbour(best, typical, dot.contrast)) {  // halved, colour has steps of its own
       dot.state = LaserState::kTwo;
     } else if (!refine(bgr, dot)) {
       dot.state = LaserState::kNotRound;
     } else {
       dot.state = LaserState::kFound;
       // What draws a dot out draws its middle away by as much.
-      pixel_sigma = halved_colour ? sharpen(grey, dot) : std::hypot(settings_.pixel_sigma, dot.smear);
-      if (dot.state == LaserState::kFound) triangulate(pixel_sigma, dot);
+      const double sigma = std::hypot(halved_colour ? sharpen(grey, dot) : settings_.pixel_sigma, dot.smear);
+      if (dot.state == LaserState::kFound) triangulate(sigma, dot);
     }
     spots_.push_back(dot);
     if (spots_.size() == kMostSpots) break;

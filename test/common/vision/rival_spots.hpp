@@ -21,9 +21,10 @@ struct Setting {
 };
 
 struct Tally {
-  int looked{};     // pictures with a dot in them
-  int found{};      // ranges published in those
-  int wrong{};      // ranges beyond three times what they state, or without a dot
+  int looked{};  // pictures with a dot in them
+  int found{};   // ranges published in those
+  int wrong{};   // ranges beyond three times what they state, or without a dot
+  int late{};    // those of them after the paint, or the floor, had moved by some pixels
   int dives_wrong{};
 };
 
@@ -51,6 +52,7 @@ inline void add_spot(cv::Mat& bgr, const Eigen::Vector2d& at, double sigma, doub
 inline Tally dive(const Setting& setting, int dives, int pictures, unsigned seed) {
   constexpr double kPeriod = 1.0 / 30.0, kLeaning = 0.01, kShaking = 3e-4;  // s, rad, rad
   constexpr double kDarkest = 0.3, kBrightest = 2.0;                        // of a rival, of the dot's brightness
+  constexpr double kMoved = 8.0;                                            // px
   Tally tally;
   std::mt19937 generator{seed};
   std::uniform_real_distribution<double> any{-1.0, 1.0};
@@ -78,7 +80,8 @@ inline Tally dive(const Setting& setting, int dives, int pictures, unsigned seed
     const double apparent = 1.0 / (0.55 + 0.45 * any(generator) + 0.5);  // m along the axis, of the spot on the line
     const Pose there = at(moment);
     const double height = place.floor - there.p_WC.z();
-    const Eigen::Vector3d ray = there.R_WC * Eigen::Vector3d{laser().p_CE.x() / apparent, 2.0 / 540 * any(generator), 1.0};
+    const Eigen::Vector3d ray =
+        there.R_WC * Eigen::Vector3d{laser().p_CE.x() / apparent, 2.0 / 540 * any(generator), 1.0};
     const Eigen::Vector3d paint_W = there.p_WC + height / ray.z() * ray;
     model::LaserMount second = laser();
     second.p_CE.x() *= 1.0 + 0.5 * any(generator);
@@ -111,7 +114,8 @@ inline Tally dive(const Setting& setting, int dives, int pictures, unsigned seed
         seen.bgr = bgr;
         seen.grey = grey_of(bgr);
       }
-      const Eigen::Vector3d shake = leaning + kShaking * Eigen::Vector3d{normal(generator), normal(generator), normal(generator)};
+      const Eigen::Vector3d shake =
+          leaning + kShaking * Eigen::Vector3d{normal(generator), normal(generator), normal(generator)};
       const Eigen::Matrix3d R_WC = now.R_WC * quaternion_from_rotation_vector(shake).toRotationMatrix();
       front_end.step(seen, R_WC);
       const auto range = front_end.laser_range("down");
@@ -119,7 +123,11 @@ inline Tally dive(const Setting& setting, int dives, int pictures, unsigned seed
       if (truth) ++tally.looked;
       if (!range) continue;
       if (truth) ++tally.found;
-      if (!truth || std::abs(range->p_CL.z() - truth->z()) > 3.0 * range->sigma_range) ++wrong;
+      if (truth && std::abs(range->p_CL.z() - truth->z()) <= 3.0 * range->sigma_range) continue;
+      ++wrong;
+      const Eigen::Vector3d p_C = now.R_WC.transpose() * (paint_W - now.p_WC);
+      const Eigen::Vector3d first = at(0.0).R_WC.transpose() * (paint_W - at(0.0).p_WC);
+      if ((projection.pixel(p_C) - projection.pixel(first)).norm() > kMoved) ++tally.late;
     }
     tally.wrong += wrong;
     tally.dives_wrong += wrong > 0 ? 1 : 0;
