@@ -8,6 +8,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "common/base/spatial.hpp"
+#include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
 
 namespace fathom::vision {
@@ -112,7 +113,8 @@ struct FlowTracker::State {
       if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
       const cv::Point2f miss = back[i] - features[i];
       if (std::hypot(miss.x, miss.y) > limit) continue;
-      tracks.push_back({.from = whole(features[i]), .to = whole(found[i])});
+      const cv::Point2f end = end_in_changed_light(pyramid_before[0], pyramid[0], features[i], found[i]).value_or(found[i]);
+      tracks.push_back({.from = whole(features[i]), .to = whole(end)});
     }
   }
 
