@@ -9,6 +9,7 @@ namespace fathom::vision {
 namespace {
 
 constexpr int kHalf = 7, kSide = 2 * kHalf + 1;  // of the window: Lucas-Kanade's
+constexpr int kUnknown = 6;
 constexpr int kRounds = 2;
 constexpr float kFarthest = 0.5F;  // px
 constexpr float kLeast = 50.0F;    // texture, square of brightness per px, over the window, beside light
@@ -19,7 +20,8 @@ using Window = std::array<float, static_cast<std::size_t>(Size* Size)>;
 // A square of the picture, its middle between pixels; false when it is not all within.
 template <int Size>
 bool cut(const cv::Mat& picture, const cv::Point2f& middle, Window<Size>& to) {
-  const float left = middle.x - static_cast<float>(Size / 2), top = middle.y - static_cast<float>(Size / 2);
+  constexpr int kReach = Size / 2;
+  const float left = middle.x - static_cast<float>(kReach), top = middle.y - static_cast<float>(kReach);
   const int x0 = static_cast<int>(std::floor(left)), y0 = static_cast<int>(std::floor(top));
   if (x0 < 0 || y0 < 0 || x0 + Size >= picture.cols || y0 + Size >= picture.rows) return false;
   const float u = left - static_cast<float>(x0), v = top - static_cast<float>(y0);
@@ -43,9 +45,9 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
   constexpr int kWide = kSide + 2;
   Window<kWide> wide;
   if (!cut<kWide>(before, from, wide)) return {};
-  // Columns: slopes, brightness less its mean, one.
+  // Columns: the slopes; then the light: brightness less its mean, one, and where in the window.
   static constexpr int kPixels = kSide * kSide;
-  Eigen::Matrix<float, kPixels, 4> by;
+  Eigen::Matrix<float, kPixels, kUnknown> by;
   Eigen::Matrix<float, kPixels, 1> first;
   for (int y = 0, i = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x, ++i) {
@@ -53,16 +55,18 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
       first[i] = *at;
       by(i, 0) = 0.5F * (at[1] - at[-1]);
       by(i, 1) = 0.5F * (at[kWide] - at[-kWide]);
+      by(i, 4) = static_cast<float>(x - kHalf);
+      by(i, 5) = static_cast<float>(y - kHalf);
     }
   }
   by.col(2) = first.array() - first.mean();
   by.col(3).setOnes();
-  const Eigen::Matrix4f information = by.transpose() * by;
-  const Eigen::LDLT<Eigen::Matrix4f> solver{information};
-  const Eigen::Matrix2f light = information.bottomRightCorner<2, 2>() + 1e-3F * Eigen::Matrix2f::Identity();
+  const Eigen::Matrix<float, kUnknown, kUnknown> information = by.transpose() * by;
+  const Eigen::LDLT<Eigen::Matrix<float, kUnknown, kUnknown>> solver{information};
+  const Eigen::Matrix4f light = information.bottomRightCorner<4, 4>() + 1e-3F * Eigen::Matrix4f::Identity();
   const Eigen::Matrix2f texture =
       information.topLeftCorner<2, 2>() -
-      information.topRightCorner<2, 2>() * light.ldlt().solve(information.bottomLeftCorner<2, 2>());
+      information.topRightCorner<2, 4>() * light.ldlt().solve(information.bottomLeftCorner<4, 2>());
   const float half_trace = 0.5F * texture.trace();
   const float weakest = half_trace - std::sqrt(std::max(half_trace * half_trace - texture.determinant(), 0.0F));
   if (!(weakest > kLeast)) return {};
@@ -71,7 +75,7 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
   for (int round = 0; round < kRounds; ++round) {
     if (!cut<kSide>(now, end, seen)) return {};
     const Eigen::Map<const Eigen::Matrix<float, kPixels, 1>> second{seen.data()};
-    const Eigen::Vector4f step = solver.solve(by.transpose() * (second - first));
+    const Eigen::Matrix<float, kUnknown, 1> step = solver.solve(by.transpose() * (second - first));
     end.x -= step[0];
     end.y -= step[1];
   }

@@ -113,7 +113,8 @@ struct FlowTracker::State {
       if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
       const cv::Point2f miss = back[i] - features[i];
       if (std::hypot(miss.x, miss.y) > limit) continue;
-      const cv::Point2f end = end_in_changed_light(pyramid_before[0], pyramid[0], features[i], found[i]).value_or(found[i]);
+      const cv::Point2f end =
+          end_in_changed_light(pyramid_before[0], pyramid[0], features[i], found[i]).value_or(found[i]);
       tracks.push_back({.from = whole(features[i]), .to = whole(end)});
     }
   }
