@@ -66,7 +66,11 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
     near_detector_.emplace(near);
   }
   if (lens) tracker_.emplace(*lens, settings.flow);
-  if (lens && laser) laser_.emplace(*lens, *laser, settings.laser);
+  if (lens && laser) {
+    laser_.emplace(*lens, *laser, settings.laser);
+    witness_.emplace(*lens, *laser, settings.laser);
+    tracker_->leave_out(laser_->line(), settings.laser.strip + settings.laser.largest);
+  }
   if (site.floor <= site.surface && !site.tags.empty()) {  // no water stated: the tags lie on it
     floor_ = 0.0;
     for (const model::Tag& tag : site.tags) floor_ += tag.p_WT.z() / static_cast<double>(site.tags.size());
@@ -76,6 +80,7 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
 void FrontEnd::reset() {
   locator_.reset();
   if (tracker_) tracker_->reset();
+  if (witness_) witness_->reset();
   check_.reset();
   attitude_before_.reset();
   fix_before_.reset();
@@ -118,6 +123,17 @@ bool FrontEnd::look_again(const cv::Mat& grey) {
   return more;
 }
 
+void FrontEnd::find_dot(const Picture& picture, const std::optional<Eigen::Vector3d>& normal_C) {
+  witness_->move(sight_.flow);
+  const auto& spots = laser_->look(picture.bgr, picture.grey, picture.halved_colour);
+  std::optional<FloorDistance> by_tags;
+  if (sight_.fix && !sight_.fix->ambiguous && floor_ > sight_.fix->pose.p_WC.z()) {
+    by_tags = {floor_ - sight_.fix->pose.p_WC.z(), std::sqrt(sight_.fix->covariance(2, 2))};
+  }
+  const Eigen::Vector3d normal = normal_C.value_or(Eigen::Vector3d::UnitZ());
+  sight_.laser = witness_->judge(*laser_, picture.bgr, spots, normal, by_tags);
+}
+
 // Distance along the axis to the floor. The laser's dot lies elsewhere on it: the floor's normal leads there.
 void FrontEnd::find_range(const std::optional<Eigen::Vector3d>& normal_C) {
   if (sight_.laser && sight_.laser->state == LaserState::kFound) {
@@ -151,6 +167,7 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   sight_.flow.utime = picture.utime;
   if (sight_.picture == PictureState::kBlack || sight_.picture == PictureState::kSaturated || !same_size) {
     if (tracker_) tracker_->reset();
+    if (witness_) witness_->reset();
     attitude_before_.reset();
     fix_before_.reset();
     if (same_size) return sight_;
@@ -170,11 +187,7 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   if (!lens_) return sight_;
   std::optional<CameraFix> fixed;
   if (sight_.fix && !sight_.fix->ambiguous) fixed = sight_.fix;
-  if (laser_ && !picture.bgr.empty()) {
-    sight_.laser = laser_->step(picture.bgr, picture.grey, picture.halved_colour);
-  }
   if (!down_C && fixed) down_C = fixed->pose.R_WC.row(2);
-  find_range(down_C);
 
   std::optional<Eigen::Matrix3d> turn, turn_covariance;
   if (gyro_R_01) {
@@ -189,6 +202,8 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   attitude_before_ = R_WC;
   fix_before_ = fixed;
   sight_.flow = tracker_->step(picture.utime, picture.grey, turn, down_C, turn_covariance);
+  if (laser_ && !picture.bgr.empty()) find_dot(picture, down_C);
+  find_range(down_C);
   const bool fresh = range_utime_ && seconds_between(*range_utime_, picture.utime) <= settings_.range_memory;
   if (sight_.flow.state == FlowState::kValid && fresh) {
     // To the middle between the pictures.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/samples/vision.hpp"
+#include "common/vision/beam_witness.hpp"
 #include "common/vision/laser_dot.hpp"
 #include "common/vision/optical_flow.hpp"
 #include "common/vision/picture_check.hpp"
@@ -74,6 +75,7 @@ class FrontEnd {
 
  private:
   [[nodiscard]] bool look_again(const cv::Mat& grey);
+  void find_dot(const Picture& picture, const std::optional<Eigen::Vector3d>& normal_C);
   void find_range(const std::optional<Eigen::Vector3d>& normal_C);
 
   model::Site site_;
@@ -85,6 +87,7 @@ class FrontEnd {
   TagLocator loose_locator_;  ///< for pictures that the lens does not fit: verdicts without a pose
   std::optional<FlowTracker> tracker_;
   std::optional<LaserFinder> laser_;
+  std::optional<BeamWitness> witness_;  ///< beside the laser
   PictureCheck check_;
   std::optional<Eigen::Matrix3d> attitude_before_;  ///< R_WC of the picture before
   std::optional<CameraFix> fix_before_;             ///< of the picture before, when its pose is no guess

@@ -11,11 +11,15 @@ namespace fathom::vision {
 namespace {
 
 constexpr int kSaturated = 250;
-constexpr double kRival = 0.6;        // share of the strongest from which another spot is a rival
+constexpr double kRival = 0.6;      // share of the strongest from which anything else on the line is a rival
+constexpr double kDimRival = 0.25;  // the same of a spot that could be the dot itself, over a darker floor
+constexpr std::size_t kMostSpots = 4;
+constexpr double kValley = 0.3;  // of the contrast, by which two peaks in one spot stand above what is between them
 constexpr double kOutstanding = 8.0;  // spreads of the strip's excess
 constexpr double kReach = 2.5;        // sigmas of a dot's place by colour that its place by brightness may be off
 constexpr double kAlone = 2.0;     // times the contrast asked for, where colour is blurred and brightness shows no dot
 constexpr double kRoundest = 3.0;  // ratio of a dot's axes; seen slanting it is an ellipse
+constexpr double kRound = 1.25;    // the same up to which nothing else is likely to be in it
 
 // How much a pixel is more than daylight: greener than `tint`, the water's share of green, which white paper and dark
 // floor have alike, or brighter than the picture's white. The first shows on a floor; on paper the dot clips, JPEG
@@ -43,6 +47,12 @@ const char* name(LaserState state) {
       return "not on the beam";
     case LaserState::kOutOfRange:
       return "out of range";
+    case LaserState::kPaint:
+      return "moves with the floor";
+    case LaserState::kAgainstTags:
+      return "not where tags have the floor";
+    case LaserState::kJumped:
+      return "not where the floor was";
   }
   return "";
 }
@@ -153,6 +163,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
   dot.pixel = middle;
   const double trace = spread.trace(), root = std::sqrt(std::max(0.25 * trace * trace - spread.determinant(), 0.0));
   const double large = 0.5 * trace + root, small = std::max(0.5 * trace - root, 1.0 / 12.0);
+  dot.smear = std::sqrt(std::max(large - kRound * kRound * small, 0.0));
   return std::sqrt(large) < 0.5 * settings_.largest && std::sqrt(large / small) < kRoundest;
 }
 
@@ -182,17 +193,56 @@ double LaserFinder::along_beam(const Eigen::Vector2d& pixel) const {
   return (between.dot(mount_.axis_C) - cosine * between.dot(ray.direction)) / bottom;
 }
 
-LaserDot LaserFinder::step(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour) {
-  LaserDot dot;
+void LaserFinder::triangulate(double pixel_sigma, LaserDot& dot) const {
+  const double s = along_beam(dot.pixel);
+  const Eigen::Vector3d p_C = mount_.p_CE + s * mount_.axis_C;
+  if (!(s > 0.0) || p_C.z() < settings_.nearest || p_C.z() > settings_.farthest) {
+    dot.state = LaserState::kOutOfRange;
+    return;
+  }
+  const Eigen::Vector2d on_line = projection_.pixel(p_C);
+  if ((on_line - dot.pixel).norm() > settings_.strip) {
+    dot.state = LaserState::kOffLine;
+    return;
+  }
+  const double step = 1e-3 * s;
+  const Eigen::Vector2d moved = projection_.pixel(p_C + step * mount_.axis_C);
+  dot.p_CL = p_C;
+  dot.sigma_range = pixel_sigma * step / std::max((moved - on_line).norm(), 1e-9);
+}
+
+// Whether another peak stands so near that the middle of both would be taken for one dot's.
+bool LaserFinder::has_a_neighbour(std::size_t peak, double typical, double contrast) const {
+  for (const int way : {-1, 1}) {
+    double lowest = contrast;
+    for (std::size_t i = peak; i < strip_.size(); i += static_cast<std::size_t>(way)) {  // ends at both ends
+      if ((strip_[i].pixel - strip_[peak].pixel).norm() > 2.0 * settings_.largest) break;
+      const double here = strip_[i].strength - typical;
+      lowest = std::min(lowest, here);
+      if (here > lowest + std::max(kValley * contrast, settings_.least_contrast)) return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Eigen::Vector2d> LaserFinder::spot_near(const cv::Mat& bgr, const Eigen::Vector2d& place,
+                                                      double contrast) const {
+  LaserDot dot{.pixel = place, .contrast = contrast};
+  if (!refine(bgr, dot)) return {};
+  return dot.pixel;
+}
+
+const std::vector<LaserDot>& LaserFinder::look(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour) {
+  spots_.assign(1, {});
   if (bgr.channels() != 3) {
-    dot.state = LaserState::kNoColour;
-    return dot;
+    spots_.front().state = LaserState::kNoColour;
+    return spots_;
   }
   if (line_.size() < 2) {
-    dot.state = LaserState::kOutOfRange;
-    return dot;
+    spots_.front().state = LaserState::kOutOfRange;
+    return spots_;
   }
-  if (bgr.cols != projection_.lens().width || bgr.rows != projection_.lens().height) return dot;
+  if (bgr.cols != projection_.lens().width || bgr.rows != projection_.lens().height) return spots_;
   find_daylight(bgr);
   measure_strip(bgr);
   sorted_.clear();
@@ -200,42 +250,53 @@ LaserDot LaserFinder::step(const cv::Mat& bgr, const cv::Mat& grey, bool halved_
   std::sort(sorted_.begin(), sorted_.end());
   const double typical = sorted_[sorted_.size() / 2];
   const double spread = sorted_[sorted_.size() * 3 / 4] - sorted_[sorted_.size() / 4];
-  const auto best = std::max_element(strip_.begin(), strip_.end(),
-                                     [](const Spot& a, const Spot& b) { return a.strength < b.strength; });
-  dot.pixel = best->pixel;
-  dot.contrast = best->strength - typical;
-  if (dot.contrast < std::max(settings_.least_contrast, kOutstanding * spread / 1.35)) return dot;
-  const bool rival = std::any_of(strip_.begin(), strip_.end(), [&](const Spot& each) {
-    return each.strength - typical > kRival * dot.contrast &&
-           (each.pixel - best->pixel).norm() > 2.0 * settings_.largest;
-  });
-  if (rival) {
-    dot.state = LaserState::kTwo;
-    return dot;
+  double least = std::max(settings_.least_contrast, kOutstanding * spread / 1.35);
+  while (true) {
+    std::size_t best = strip_.size();
+    for (std::size_t i = 0; i < strip_.size(); ++i) {
+      const bool taken = std::any_of(spots_.begin(), spots_.end(), [&](const LaserDot& each) {
+        return each.contrast >= least && (each.peak - strip_[i].pixel).norm() <= 2.0 * settings_.largest;
+      });
+      if (!taken && (best == strip_.size() || strip_[i].strength > strip_[best].strength)) best = i;
+    }
+    if (best == strip_.size()) break;
+    LaserDot dot{.pixel = strip_[best].pixel, .peak = strip_[best].pixel, .contrast = strip_[best].strength - typical};
+    const bool first = spots_.front().contrast < least;
+    if (dot.contrast < least) {
+      if (first) spots_.front() = dot;  // what it is too dark for is told
+      break;
+    }
+    if (first) {
+      least = std::max(least, kDimRival * dot.contrast);
+      spots_.clear();
+    }
+    if (!halved_colour && has_a_neighbour(best, typical, dot.contrast)) {  // halved, colour has steps of its own
+      dot.state = LaserState::kTwo;
+    } else if (!refine(bgr, dot)) {
+      dot.state = LaserState::kNotRound;
+    } else {
+      dot.state = LaserState::kFound;
+      // What draws a dot out draws its middle away by as much.
+      const double sigma = std::hypot(halved_colour ? sharpen(grey, dot) : settings_.pixel_sigma, dot.smear);
+      if (dot.state == LaserState::kFound) triangulate(sigma, dot);
+    }
+    spots_.push_back(dot);
+    if (spots_.size() == kMostSpots) break;
   }
-  if (!refine(bgr, dot)) {
-    dot.state = LaserState::kNotRound;
-    return dot;
+  return spots_;
+}
+
+LaserDot LaserFinder::choose(std::span<const LaserDot> spots) {
+  LaserDot dot = spots.front();
+  for (const LaserDot& each : spots.subspan(1)) {
+    const bool possible = each.state == LaserState::kFound;
+    if (each.contrast > (possible ? kDimRival : kRival) * dot.contrast) dot.state = LaserState::kTwo;
   }
-  dot.state = LaserState::kFound;
-  const double pixel_sigma = halved_colour ? sharpen(grey, dot) : settings_.pixel_sigma;
-  if (dot.state != LaserState::kFound) return dot;
-  const double s = along_beam(dot.pixel);
-  const Eigen::Vector3d p_C = mount_.p_CE + s * mount_.axis_C;
-  if (!(s > 0.0) || p_C.z() < settings_.nearest || p_C.z() > settings_.farthest) {
-    dot.state = LaserState::kOutOfRange;
-    return dot;
-  }
-  const Eigen::Vector2d on_line = projection_.pixel(p_C);
-  if ((on_line - dot.pixel).norm() > settings_.strip) {
-    dot.state = LaserState::kOffLine;
-    return dot;
-  }
-  const double step = 1e-3 * s;
-  const Eigen::Vector2d moved = projection_.pixel(p_C + step * mount_.axis_C);
-  dot.p_CL = p_C;
-  dot.sigma_range = pixel_sigma * step / std::max((moved - on_line).norm(), 1e-9);
   return dot;
+}
+
+LaserDot LaserFinder::step(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour) {
+  return choose(look(bgr, grey, halved_colour));
 }
 
 }  // namespace fathom::vision

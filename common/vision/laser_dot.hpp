@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "common/model/mounts.hpp"
@@ -21,7 +23,18 @@ struct LaserSettings {
   double halved_sigma{0.9};     ///< px, the same by its colour alone, where colour has half the picture's resolution
 };
 
-enum class LaserState { kFound, kNoColour, kDark, kTwo, kNotRound, kOffLine, kOutOfRange };
+enum class LaserState {
+  kFound,
+  kNoColour,
+  kDark,
+  kTwo,
+  kNotRound,
+  kOffLine,
+  kOutOfRange,
+  kPaint,        ///< it moves with the floor
+  kAgainstTags,  ///< the floor is elsewhere
+  kJumped,       ///< the floor was elsewhere just before
+};
 [[nodiscard]] const char* name(LaserState state);
 
 struct LaserDot {
@@ -29,7 +42,9 @@ struct LaserDot {
   Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};
   Eigen::Vector3d p_CL{Eigen::Vector3d::Zero()};  ///< m, the dot in C
   double sigma_range{};                           ///< m, along the line of sight
+  Eigen::Vector2d peak{Eigen::Vector2d::Zero()};  ///< where it is strongest along the line
   double contrast{};
+  double smear{};  ///< px, by which it is longer than a round one
 };
 
 class LaserFinder {
@@ -39,6 +54,14 @@ class LaserFinder {
   /// `halved_colour`: the picture came with colour at half resolution; brightness, which has all of it, then says where
   /// the dot is that colour found.
   LaserDot step(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour);
+
+  /// The same in two steps, for who knows more than the picture: every spot on the line, the strongest first (kFound:
+  /// it could be the dot; one that says why there is none when there are none), and which of them is the dot.
+  [[nodiscard]] const std::vector<LaserDot>& look(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour);
+  [[nodiscard]] static LaserDot choose(std::span<const LaserDot> spots);
+  /// Middle of a spot as strong as `contrast`, about, near a place in some picture of the same light.
+  [[nodiscard]] std::optional<Eigen::Vector2d> spot_near(const cv::Mat& bgr, const Eigen::Vector2d& place,
+                                                         double contrast) const;
   [[nodiscard]] const std::vector<Eigen::Vector2d>& line() const { return line_; }
 
  private:
@@ -50,6 +73,8 @@ class LaserFinder {
   void measure_strip(const cv::Mat& bgr);
   [[nodiscard]] bool refine(const cv::Mat& bgr, LaserDot& dot) const;
   double sharpen(const cv::Mat& grey, LaserDot& dot) const;
+  void triangulate(double pixel_sigma, LaserDot& dot) const;
+  [[nodiscard]] bool has_a_neighbour(std::size_t peak, double typical, double contrast) const;
   [[nodiscard]] double along_beam(const Eigen::Vector2d& pixel) const;
 
   Projection projection_;
@@ -57,6 +82,7 @@ class LaserFinder {
   LaserSettings settings_;
   std::vector<Eigen::Vector2d> line_;  ///< px, from far to near, a pixel apart
   std::vector<Spot> strip_;
+  std::vector<LaserDot> spots_;
   std::vector<double> sorted_;
   double white_{255.0};  ///< brightness in green
   double tint_{1.0};     ///< green over the stronger other colour of what daylight shows in this water

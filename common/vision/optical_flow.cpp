@@ -8,6 +8,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "common/base/spatial.hpp"
+#include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
 
 namespace fathom::vision {
@@ -40,7 +41,7 @@ struct FlowTracker::State {
   FlowSettings settings;
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat small;
+  cv::Mat small, mask;  // mask: empty, or 0 where there are no features
   std::vector<cv::Point2f> features, found, back;
   std::vector<unsigned char> ok, ok_back;
   std::vector<float> errors;
@@ -74,11 +75,15 @@ struct FlowTracker::State {
   }
 
   void choose_features() {
-    constexpr double kQuality = 0.005;  // of the best: tags outshine a floor by far
+    constexpr double kQuality = 0.005, kLow = 5e-4;  // of the best: tags outshine a floor by far, lamps even more
+    constexpr std::size_t kFew = 4;                  // times fewer than wanted
     features.clear();
     const double area = static_cast<double>(small.cols) * small.rows;
     const double apart = 0.6 * std::sqrt(area / settings.most_tracks);
-    cv::goodFeaturesToTrack(small, features, settings.most_tracks, kQuality, apart, cv::noArray(), 3);
+    for (const double quality : {kQuality, kLow}) {
+      cv::goodFeaturesToTrack(small, features, settings.most_tracks, quality, apart, mask, 3);
+      if (kFew * features.size() >= static_cast<std::size_t>(settings.most_tracks)) break;
+    }
   }
 
   // There with the rotation as a first guess, and back again.
@@ -108,7 +113,9 @@ struct FlowTracker::State {
       if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
       const cv::Point2f miss = back[i] - features[i];
       if (std::hypot(miss.x, miss.y) > limit) continue;
-      tracks.push_back({.from = whole(features[i]), .to = whole(found[i])});
+      const cv::Point2f end =
+          end_in_changed_light(pyramid_before[0], pyramid[0], features[i], found[i]).value_or(found[i]);
+      tracks.push_back({.from = whole(features[i]), .to = whole(end)});
     }
   }
 
@@ -132,6 +139,16 @@ FlowTracker::FlowTracker(FlowTracker&&) noexcept = default;
 FlowTracker& FlowTracker::operator=(FlowTracker&&) noexcept = default;
 
 const std::vector<Track>& FlowTracker::tracks() const { return state_->tracks; }
+
+void FlowTracker::leave_out(const std::vector<Eigen::Vector2d>& line, double reach) {
+  const model::Lens& lens = state_->projection.lens();
+  const double r = state_->settings.reduction;
+  const cv::Size size{cvRound(lens.width / r), cvRound(lens.height / r)};  // as cv::resize rounds
+  if (state_->mask.empty()) state_->mask = cv::Mat(size, CV_8UC1, cv::Scalar{255});
+  for (const Eigen::Vector2d& each : line) {
+    cv::circle(state_->mask, state_->reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0}, cv::FILLED);
+  }
+}
 
 void FlowTracker::reset() {
   state_->before.reset();
@@ -174,6 +191,9 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       for (std::size_t i = 0; i < state.tracks.size(); ++i) state.tracks[i].agrees = plane.agrees[i];
       flow.n_agreed = plane.n_agreed;
       flow.residual = plane.spread * focal;
+      const Eigen::RowVector3d n_0 = (*R_01 * normal_1 / (*R_01 * normal_1).z()).transpose();
+      flow.floor_10 = R_01->transpose() * (Eigen::Matrix3d::Identity() - plane.tau * n_0);
+      flow.nearing = 1.0 - n_0.dot(plane.tau);
       // From the first camera's distance and axes to those in the middle.
       const Eigen::Vector3d half = 0.5 * rotation_vector_from_quaternion(Eigen::Quaterniond{*R_01});
       const Eigen::Matrix3d to_middle = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();

@@ -43,6 +43,10 @@ struct Flow {
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   int n_tracks{}, n_agreed{};
   double residual{};  ///< px, spread of those that agree
+  /// What lies on the floor, from the picture before to this one, in normalized coordinates: x_1 ~ floor_10 x_0; and
+  /// the distance to it along its normal, over that of the picture before. Of a valid flow.
+  Eigen::Matrix3d floor_10{Eigen::Matrix3d::Identity()};
+  double nearing{1.0};
 };
 
 class FlowTracker {
@@ -58,6 +62,9 @@ class FlowTracker {
   Flow step(Utime utime, const cv::Mat& grey, const std::optional<Eigen::Matrix3d>& R_01,
             const std::optional<Eigen::Vector3d>& normal_C,
             const std::optional<Eigen::Matrix3d>& rotation_covariance = std::nullopt);
+  /// Nothing within `reach` [px] of this line is a feature: a beam's dot there goes its own way, and outshines the
+  /// floor.
+  void leave_out(const std::vector<Eigen::Vector2d>& line, double reach);
   /// Of the last step.
   [[nodiscard]] const std::vector<Track>& tracks() const;
   void reset();

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace fathom::vision {
@@ -22,6 +23,38 @@ double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// How many times larger the variance is than that of tracks which err each for itself: moving light, or a floor that is
+// no plane, moves neighbours alike. By what the tracks of each part of the picture push the fit together (a
+// cluster-robust covariance, Liang and Zeger 1986, in the mean over the three directions).
+double shared_error(const std::vector<FlowRow>& rows, const PlaneFlow& fitted, const Eigen::Matrix3d& information) {
+  constexpr int kAcross = 4, kDown = 3, kLeast = 4;  // parts of the picture; fewer tell nothing
+  Eigen::Vector2d low{1e9, 1e9}, high{-1e9, -1e9};
+  for (const FlowRow& row : rows) {
+    low = low.cwiseMin(row.y);
+    high = high.cwiseMax(row.y);
+  }
+  const Eigen::Vector2d extent = (high - low).cwiseMax(1e-6);
+  std::array<Eigen::Vector3d, kAcross * kDown> push;
+  std::array<int, kAcross * kDown> count{};
+  push.fill(Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!fitted.agrees[i]) continue;
+    const Eigen::Vector2d share = (rows[i].y - low).cwiseQuotient(extent);
+    const int column = std::min(static_cast<int>(share.x() * kAcross), kAcross - 1);
+    const int row = std::min(static_cast<int>(share.y() * kDown), kDown - 1);
+    const auto part = static_cast<std::size_t>(row * kAcross + column);
+    const auto a = jacobian(rows[i]);
+    push[part] += a.transpose() * (rows[i].d - a * fitted.tau);
+    ++count[part];
+  }
+  const auto parts = std::count_if(count.begin(), count.end(), [](int n) { return n > 0; });
+  if (parts < kLeast) return 1.0;
+  double sum = 0.0;
+  for (const Eigen::Vector3d& each : push) sum += each.dot(information.ldlt().solve(each));
+  const double few = static_cast<double>(parts) / (static_cast<double>(parts) - 1.5);  // three unknowns, two per part
+  return std::max(few * sum / (3.0 * fitted.spread * fitted.spread), 1.0);
 }
 
 }  // namespace
@@ -70,6 +103,7 @@ PlaneFlow fit_plane_flow(const std::vector<FlowRow>& rows) {
   }
   result.spread = std::max(std::sqrt(squares / std::max(2.0 * result.n_agreed - 3.0, 1.0)), kSmallest);
   result.covariance = result.spread * result.spread * information.inverse();
+  result.covariance *= shared_error(rows, result, information);
   return result;
 }
 

@@ -1,7 +1,11 @@
 // Optical flow and the laser's dot in rendered pictures, where the truth is known.
 #include <doctest/doctest.h>
 
+#include <array>
+#include <random>
+
 #include "common/vision/jpeg.hpp"
+#include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
 #include "test/common/vision/scene.hpp"
 
@@ -97,6 +101,74 @@ TEST_CASE("flow: what it says of its error is true with a sensor's rotation and 
       CHECK(beyond == 0);
     }
   }
+}
+
+TEST_CASE("flow: light that changes over a feature does not move it") {
+  constexpr float kStart = 0.3F;  // px
+  constexpr double kGood = 0.03;
+  cv::Mat before(40, 40, CV_8UC1), now(40, 40, CV_8UC1);
+  const Eigen::Vector2d shift{1.3, -0.7};
+  const auto floor = [](double x, double y) { return 90.0 + 25.0 * std::sin(0.7 * x + 0.3 * y) * std::cos(0.5 * y); };
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      before.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(floor(x, y));
+      const double there = floor(x - shift.x(), y - shift.y());
+      now.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(1.1 * there + 5.0 + 0.8 * (x - 20) - 0.5 * (y - 20));
+    }
+  }
+  const cv::Point2f from{19.3F, 20.6F}, true_end{20.6F, 19.9F};
+  const auto end = end_in_changed_light(before, now, from, true_end + cv::Point2f{kStart, -0.6F * kStart});
+  REQUIRE(end);
+  CHECK(std::hypot(end->x - true_end.x, end->y - true_end.y) < kGood);
+  CHECK_FALSE(end_in_changed_light(before, now, {3.0F, 20.0F}, true_end));                   // at the border
+  CHECK_FALSE(end_in_changed_light(before, now, from, true_end + cv::Point2f{1.5F, 1.0F}));  // far off
+  CHECK_FALSE(end_in_changed_light(cv::Mat(40, 40, CV_8UC1, cv::Scalar{80}), now, from, true_end));
+}
+
+TEST_CASE("flow: moving light on a bare floor is not taken for motion") {
+  constexpr double kLight = 0.004;  // 1/s, of the mean over half a second; by Lucas-Kanade alone three times that
+  model::Site bare = site();
+  bare.tags.clear();
+  double squares = 0.0;
+  constexpr int kDives = 5, kPictures = 15;
+  for (int dive = 0; dive < kDives; ++dive) {
+    Renderer renderer{bare, lens(), std::nullopt, {.caustics = 0.3}, static_cast<std::uint64_t>(30 + dive)};
+    FlowTracker tracker{lens(), {}};
+    const Pose start = pose({0.1 * dive, -0.2, 0.3 + 0.12 * dive}, 0.03, 0.02, dive);
+    const Way way{{0.1 * (dive - 2), 0.05, 0.0}, {0.0, 0.0, 0.0}};
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (int i = 0; i < kPictures; ++i) {
+      const Pose now = along(start, way, i * kPeriod);
+      const Picture seen = picture(renderer, 17.0 * dive + i * kPeriod, now);
+      const Eigen::Vector3d normal_C = now.R_WC.row(2);
+      const Flow flow = tracker.step(seen.utime, seen.grey, Eigen::Matrix3d::Identity(), normal_C);
+      if (i == 0) continue;
+      REQUIRE(flow.state == FlowState::kValid);
+      const double z = (bare.floor - now.p_WC.z()) / now.R_WC(2, 2);
+      sum += (flow.rate - now.R_WC.transpose() * way.v_W / z).head<2>();
+    }
+    squares += (sum / (kPictures - 1)).squaredNorm() / 2.0;
+  }
+  CHECK(std::sqrt(squares / kDives) < kLight);
+}
+
+TEST_CASE("flow: tracks that err alike in parts of the picture leave the error larger than chance") {
+  constexpr int kAcross = 16, kDown = 12;
+  std::vector<FlowRow> alone, together;
+  std::mt19937 generator{5};
+  std::normal_distribution<double> normal;
+  std::array<Eigen::Vector2d, 12> shared;
+  for (Eigen::Vector2d& each : shared) each = 1e-3 * Eigen::Vector2d{normal(generator), normal(generator)};
+  for (int i = 0; i < kAcross * kDown; ++i) {
+    const int column = i % kAcross, row = i / kAcross;
+    const Eigen::Vector2d y{0.06 * column - 0.45, 0.06 * row - 0.33};
+    const Eigen::Vector2d own = 1e-3 * Eigen::Vector2d{normal(generator), normal(generator)};
+    alone.push_back({.d = own, .y = y, .s = 1.0});
+    together.push_back({.d = shared[static_cast<std::size_t>(row / 4 * 4 + column / 4)], .y = y, .s = 1.0});
+  }
+  const double by_chance = std::sqrt(fit_plane_flow(alone).covariance(0, 0));
+  CHECK(by_chance < 2e-4);  // 1e-3 over the root of 192, and what parts that are few add
+  CHECK(std::sqrt(fit_plane_flow(together).covariance(0, 0)) > 1.8 * by_chance);
 }
 
 TEST_CASE("flow: no valid flow without texture, rotation, or after a pause") {

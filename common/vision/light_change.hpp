@@ -1,0 +1,16 @@
+// Tracks are found as if light stayed as it was. Where it changes, as under waves, brightness that moves over a feature
+// pulls at it. Here a track's end is found anew with the light of its window free, as far as it changes by a factor and
+// a plane over it: I_1(to + x) = (1 + g) I_0(from + x) + o + r x (after Jin, Favaro and Soatto 2001).
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <optional>
+
+namespace fathom::vision {
+
+/// `from`, `to`: px of `before` and `now` (8 bits). Nothing when the window leaves a picture, has no texture beside
+/// what light could have made, or the end is further than half a pixel away: then `to` is as good as is known.
+[[nodiscard]] std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv::Mat& now,
+                                                              const cv::Point2f& from, const cv::Point2f& to);
+
+}  // namespace fathom::vision
