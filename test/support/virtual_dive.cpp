@@ -20,7 +20,7 @@ class Excitation {
   Excitation(const model::Model& model, std::mt19937& random) : random_{random} {
     std::uniform_real_distribution<double> any{0.0, 1.0};
     for (int i = 0; i < 6; ++i) {
-      const double speed = i < 3 ? 0.4 : 0.4;  // m/s, rad/s
+      const double speed = 0.4;  // m/s, rad/s
       const double restoring = i == 3 || i == 4 ? 0.1 * std::abs(model.theta[21]) : 0.0;
       strength_[i] = speed * (std::abs(model.theta[6 + i]) + speed * std::abs(model.theta[12 + i])) +
                      0.3 * model.theta[i] + restoring;
@@ -119,8 +119,8 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
     noises.push_back(noise);
     measured.col(static_cast<Eigen::Index>(k)) = nu;
     trial.voltage.push_back(voltage);
-    const model::InputSignal input{
-        0.0, settings.dt, trial.input, {}, {}, {.hold = settings.input_hold, .step = settings.dt}};
+    const model::InputSignal input{0.0, settings.dt, trial.input,
+                                   {},  {},          {.hold = settings.input_hold, .step = settings.dt}};
     const auto motion_at = [&](double time, const Vector6d& velocity) {
       model::Motion motion{.t = time, .p_WB = p, .R_WB = q.toRotationMatrix(), .nu = velocity};
       input.now(time, motion.force);

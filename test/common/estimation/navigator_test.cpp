@@ -155,7 +155,6 @@ TEST_CASE("navigator: a sensor that is silent, frozen, jumping or sends no numbe
   };
   std::optional<LaserRange> held_laser;
   std::optional<Dvl> held_dvl;
-  std::optional<Depth> held_depth;
   const auto after = [](double t) { return t > 25.0; };
   const std::vector<Fault> faults{
       {"", "OPTICAL_FLOW is silent", true,

@@ -94,6 +94,7 @@ TEST_CASE("input signal: an earlier force is the mean over the time that has one
     return sum / 250;
   };
   std::vector<Eigen::VectorXd> samples;
+  samples.reserve(20);
   for (int k = 0; k < 20; ++k) samples.push_back(commands[static_cast<std::size_t>(10 * k)]);
   for (int j = 0; j < 40; ++j) held.emplace_back(Eigen::Matrix<double, 1, 1>(mean(j * kPart)));
   told = held;

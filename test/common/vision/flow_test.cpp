@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 
 #include "common/vision/jpeg.hpp"
@@ -51,10 +52,10 @@ TEST_CASE("flow: velocity over distance in all three directions while the camera
       constexpr int kPictures = 8;
       for (int i = 0; i < kPictures; ++i) {
         const Pose now = along(start, way, i * kPeriod), before = along(start, way, (i - 1) * kPeriod);
-        const Eigen::Vector3d normal_C = now.R_WC.row(2);
-        const Eigen::Matrix3d R_01 = before.R_WC.transpose() * now.R_WC;
+        const Eigen::Vector3d n_C = now.R_WC.row(2);
+        const Eigen::Matrix3d R_AB = before.R_WC.transpose() * now.R_WC;
         const Picture seen = picture(renderer, i * kPeriod, now);
-        const Flow flow = tracker.step(seen.utime, seen.grey, R_01, normal_C);
+        const Flow flow = tracker.step(seen.utime, seen.grey, R_AB, n_C);
         if (i == 0) {
           CHECK(flow.state == FlowState::kFirst);
           continue;
@@ -140,8 +141,8 @@ TEST_CASE("flow: moving light on a bare floor is not taken for motion") {
     for (int i = 0; i < kPictures; ++i) {
       const Pose now = along(start, way, i * kPeriod);
       const Picture seen = picture(renderer, 17.0 * dive + i * kPeriod, now);
-      const Eigen::Vector3d normal_C = now.R_WC.row(2);
-      const Flow flow = tracker.step(seen.utime, seen.grey, Eigen::Matrix3d::Identity(), normal_C);
+      const Eigen::Vector3d n_C = now.R_WC.row(2);
+      const Flow flow = tracker.step(seen.utime, seen.grey, Eigen::Matrix3d::Identity(), n_C);
       if (i == 0) continue;
       REQUIRE(flow.state == FlowState::kValid);
       const double z = (bare.floor - now.p_WC.z()) / now.R_WC(2, 2);
@@ -190,7 +191,7 @@ TEST_CASE("flow: a third of the tracks going elsewhere does not spoil the rest")
   std::vector<FlowRow> rows;
   const Eigen::Vector3d tau{0.02, -0.01, 0.015};
   for (int i = 0; i < 60; ++i) {
-    const Eigen::Vector2d x{0.1 * (i % 8) - 0.35, 0.08 * (i / 8) - 0.3};
+    const Eigen::Vector2d x{0.1 * (i % 8) - 0.35, 0.08 * std::floor(i / 8.0) - 0.3};
     const double s = 1.0 + 0.1 * x.x();
     // Exact by geometry: a point at depth 1 / s moves to where the shifted camera sees it.
     const Eigen::Vector2d y = (x / s - tau.head<2>()) / (1.0 / s - tau.z());

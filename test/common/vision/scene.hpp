@@ -20,8 +20,10 @@ inline model::Site site(const std::string& family = "tag36h11") {
   site.floor = 1.5;
   site.search.families = {family};
   site.search.map_sigma = 0.0;
-  for (int i = 0; i < 25; ++i) {
-    site.tags.push_back({.id = i, .size = 0.15, .p_WT = {0.45 * (i % 5 - 2), 0.45 * (i / 5 - 2), 1.5}});
+  for (int row = 0; row < 5; ++row) {
+    for (int column = 0; column < 5; ++column) {
+      site.tags.push_back({.id = 5 * row + column, .size = 0.15, .p_WT = {0.45 * (column - 2), 0.45 * (row - 2), 1.5}});
+    }
   }
   return site;
 }
@@ -35,7 +37,7 @@ inline cv::Mat grey_of(const cv::Mat& bgr) {
   cv::Mat grey(bgr.size(), CV_8UC1);
   for (int y = 0; y < bgr.rows; ++y) {
     for (int x = 0; x < bgr.cols; ++x) {
-      const cv::Vec3b c = bgr.at<cv::Vec3b>(y, x);
+      const auto& c = bgr.at<cv::Vec3b>(y, x);
       grey.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(0.114 * c[0] + 0.587 * c[1] + 0.299 * c[2]);
     }
   }
