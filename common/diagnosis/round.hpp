@@ -43,9 +43,9 @@ class Round {
   const Progress& progress_;
   double done_;
   Coarse coarse_;
-  std::map<std::size_t, identification::FitResult> stands_;  // by place: fitted in full, and nothing speaks against it
+  std::map<std::size_t, identification::FitResult> stands_;   // by place: fitted in full, and nothing speaks against it
   std::map<std::size_t, identification::FitResult> trifles_;  // evident, but too little or too quick to count
-  std::optional<CrossValidation> checked_;                   // of the reference, made when the first fit is judged
+  std::optional<CrossValidation> checked_;                    // of the reference, made when the first fit is judged
 };
 
 }  // namespace fathom::diagnosis
