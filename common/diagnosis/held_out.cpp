@@ -38,19 +38,17 @@ std::vector<int> folds_by_run(std::span<const identification::WindowResidual> wi
   return folds;
 }
 
-/// What lies inside an effect that has amplitudes (a moment, a place, a time constant) is known from a few windows
-/// alone, and no single step finds it from the others: it keeps its value, and the others set the amplitudes.
-bool keeps_its_value(const identification::FreeParameter& number, const model::Model& model) {
-  if (number.effect < 0) return false;
-  const int amplitudes = model.effects[static_cast<std::size_t>(number.effect)].effect->amplitudes();
-  return amplitudes > 0 && number.component >= amplitudes;
-}
-
 int fold_count(std::span<const int> folds) {
   return folds.empty() ? 0 : *std::max_element(folds.begin(), folds.end()) + 1;
 }
 
 }  // namespace
+
+bool keeps_its_value(const identification::FreeParameter& number, const model::Model& model) {
+  if (number.effect < 0) return false;
+  const int amplitudes = model.effects[static_cast<std::size_t>(number.effect)].effect->amplitudes();
+  return amplitudes > 0 && number.component >= amplitudes;
+}
 
 void CrossValidation::Window::operator+=(const Window& other) {
   information += other.information;
@@ -65,7 +63,7 @@ double CrossValidation::Window::after(const Eigen::VectorXd& step) const {
 CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& fit) {
   const identification::ParameterMap map{fit.model};
   const auto n = static_cast<Eigen::Index>(map.size());
-  x_ = map.pack(fit.model);
+  const Eigen::VectorXd x = map.pack(fit.model);
   all_ = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   for (identification::ProjectedWindow& window : problem.linearise(fit)) {
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -84,7 +82,7 @@ CrossValidation::CrossValidation(const TrajectoryFit& problem, const FitResult& 
     const auto& free = map[static_cast<std::size_t>(i)];
     const double prior = inflation * std::pow(free.scale / free.prior_sigma, 2);
     all_.information(i, i) += prior;
-    if (!keeps_its_value(free, fit.model)) all_.gradient[i] += prior * (x_[i] - free.prior_mean / free.scale);
+    if (!keeps_its_value(free, fit.model)) all_.gradient[i] += prior * (x[i] - free.prior_mean / free.scale);
   }
 }
 
@@ -128,36 +126,6 @@ double CrossValidation::error(std::span<const int> folds, std::span<const Eigen:
     error += out.after(step);
   }
   return error;
-}
-
-double CrossValidation::log_likelihood_ratio(std::span<const Eigen::Index> places) const {
-  std::vector<Eigen::Index> known;  // without what keeps its value: no window says anything of it
-  for (const Eigen::Index place : places) {
-    double information = 0.0;
-    for (const Window& window : windows_) information += window.information(place, place);
-    if (information > 0.0) known.push_back(place);
-  }
-  if (known.empty()) return 0.0;
-  const Eigen::Index n = all_.gradient.size();
-  const Eigen::LDLT<Eigen::MatrixXd> all{all_.information};
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
-  for (const Window& window : windows_) {
-    const Eigen::VectorXd moved = (all_.information - window.information).ldlt().solve(window.gradient);
-    scatter += moved * moved.transpose();  // how far the parameters move when this window is left out
-  }
-  const Eigen::MatrixXd covariance = scatter(known, known);
-  const Eigen::VectorXd x = x_(known);
-  const Eigen::LDLT<Eigen::MatrixXd> solver{covariance};
-  if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0.0)) return 0.0;
-  const Eigen::VectorXd weighted = solver.solve(x);
-  Eigen::VectorXd direction = Eigen::VectorXd::Zero(n);
-  for (std::size_t i = 0; i < known.size(); ++i) direction[known[i]] = weighted[static_cast<Eigen::Index>(i)];
-  const Eigen::VectorXd influence = all.solve(direction);
-  std::vector<double> shares;
-  for (const Window& window : windows_) shares.push_back(influence.dot(window.information * influence));
-  const double informative = effective_count(shares);
-  const double wald = x.dot(weighted);
-  return informative > 1.0 && wald > 0.0 ? 0.5 * informative * std::log1p(wald / informative) : 0.0;
 }
 
 double error_left_out(const TrajectoryFit& problem, const FitResult& fit) {

@@ -10,6 +10,10 @@
 
 namespace fathom::diagnosis {
 
+/// True for what lies inside an effect that has amplitudes (a moment, a place, a time constant): it is known from a few
+/// windows alone, and no single step finds it from the others. It keeps its value, and the others set the amplitudes.
+[[nodiscard]] bool keeps_its_value(const identification::FreeParameter& number, const model::Model& model);
+
 /// What a fit's windows say of its parameters: enough to leave some of them out without fitting again.
 class CrossValidation {
  public:
@@ -23,11 +27,6 @@ class CrossValidation {
   [[nodiscard]] double error(std::span<const int> folds, std::span<const Eigen::Index> places) const;
   /// The same at the fit of all windows.
   [[nodiscard]] double error() const;
-  /// Log-likelihood ratio of the numbers at `places` against zero, by what is left in the windows once they are there:
-  /// Wald's statistic W with the covariance that comes of leaving one window out at a time (MacKinnon and White 1985,
-  /// HC3, by windows), and m/2 ln(1 + W/m) with m the number of windows that say something of them. What acts in a few
-  /// windows only, but there beyond doubt, is not refused for acting seldom.
-  [[nodiscard]] double log_likelihood_ratio(std::span<const Eigen::Index> places) const;
 
  private:
   struct Window {
@@ -43,8 +42,7 @@ class CrossValidation {
   [[nodiscard]] Window sum(std::span<const int> folds, int fold) const;
 
   std::vector<Window> windows_;
-  Window all_;         ///< sum over all windows and the prior; its square without the prior
-  Eigen::VectorXd x_;  ///< the parameters, scaled
+  Window all_;  ///< sum over all windows and the prior; its square without the prior
 };
 
 /// Share of the error (RMS) that the effect saves on windows left out.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/few_windows.hpp"
 #include "common/diagnosis/places.hpp"
 #include "common/model/effect_size.hpp"
 #include "common/model/onset.hpp"
@@ -196,8 +197,8 @@ void judge_by_odds(Judged& judged, const FitResult& without, const FitResult& wi
 
 void judge_by_few_windows(Judged& judged, const TrajectoryFit& problem, const FitResult& with, int tried,
                           const Settings& settings) {
-  if (evident(judged, settings) || judged.error_reduction < settings.convincing) return;
-  const double ratio = CrossValidation{problem, with}.log_likelihood_ratio(places_of(with.model, judged));
+  if (judged.log_odds >= needed_log_odds(judged, settings) || judged.error_reduction < settings.convincing) return;
+  const double ratio = ratio_where_it_acts(problem, with, places_of(with.model, judged));
   const auto n = static_cast<double>(problem.windows().size());
   judged.log_odds = std::max(
       judged.log_odds, ratio - price(judged.effect->numbers(judged.variant), n, tried) - surprise(with.model, judged));

@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <array>
-#include <random>
 
 #include "test/support/virtual_dive.hpp"
 
@@ -105,39 +104,4 @@ TEST_CASE("held out: what acted in one run of three helps its own blocks, but do
   const HeldOut once = single.judge("current", {0.01, 0.01});
   CHECK(once.runs < once.blocks);
   CHECK(once.runs < kChance);
-}
-
-TEST_CASE("held out: what acts in a few windows only, but there beyond doubt, has its odds from these windows") {
-  constexpr double kOnset = 100.0;  // s, of 120: four windows of 24
-  const Runs runs{{{test::active("thruster_failure", {0.5, kOnset}, 1)}}, 120.0};
-  const TrajectoryFit problem{runs.vehicle, runs.trials, quick()};
-  const Runs::Fits fits = runs.fit(problem, "thruster_failure", {0.3, kOnset}, 1);
-  const double ratio = CrossValidation{problem, fits.with}.log_likelihood_ratio(fits.places);
-  CHECK(ratio > 8.0);
-  CHECK(ratio < 40.0);  // four windows cannot say more, however large the fall of the cost
-  CHECK(fits.without.cost - fits.with.cost > 100.0 * ratio);
-}
-
-TEST_CASE("held out: windows that are the same with and without an effect give it no odds") {
-  int convinced = 0;
-  for (unsigned seed = 1; seed <= 12; ++seed) {
-    const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
-    test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0, .seed = seed, .spread = 0.0});
-    std::mt19937 random{seed};
-    std::normal_distribution<double> normal;
-    Vector6d drift = Vector6d::Zero();  // noise with a memory of a second, three times the sensors' own
-    for (Vector6d& nu : dive.trial.nu) {
-      for (int axis = 0; axis < 6; ++axis) drift[axis] = 0.9 * drift[axis] + 0.0065 * normal(random);
-      for (const int axis : {0, 1, 2, 5}) nu[axis] += drift[axis];
-    }
-    const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
-    const FitResult without = problem.fit(model::nominal_model(vehicle, false));
-    model::Model model = without.model;
-    model.add(test::active("current", {0.01, 0.01}));
-    const FitResult with = problem.fit(model, &without);
-    const auto all = static_cast<Eigen::Index>(identification::ParameterMap{with.model}.size());
-    const std::array places{all - 2, all - 1};
-    convinced += CrossValidation{problem, with}.log_likelihood_ratio(places) > 6.0 ? 1 : 0;
-  }
-  CHECK(convinced == 0);  // e^-6 each, less what twelve clusters leave uncertain
 }
