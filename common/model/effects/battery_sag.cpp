@@ -1,8 +1,9 @@
 // Physics: thrust at a given command falls with the battery's voltage: f = f_c (V / V_ref)^k, k between 1 and 2 for an
 // open propeller on a DC motor (bounds wider: a controller below its voltage loses more); where no voltage is logged,
-// or it does not change, f = f_c (1 - s t / 300 s) with t the time in the run. Ignores: load-dependent sag within the
-// thruster's own cable. Revealed by the same manoeuvre early and late. Confused with payload change and, in one short
-// run, with drag.
+// or it does not change, f = f_c (1 - s t / 300 s) with t the time in the run. Source: a DC motor at a given duty turns
+// as fast as its voltage lets it, and thrust goes with the square of that speed (Fossen 2011, eq. 12.236 without
+// advance). Ignores: load-dependent sag within the thruster's own cable. Revealed by the same manoeuvre early and late.
+// Confused with payload change and, in one short run, with drag.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -2,9 +2,11 @@
 // of the thrusters' wash, a > 0) or pull down (suction, a < 0), w = -a f down_B; `drag`: the hull's own translational
 // drag grows by the share c f. Each falls with the inverse square of the gap to the bottom, f = 1 / (z_b - z)^2, or
 // exponentially, f = exp((z - z_d) / s), told for the deepest place z_d that was visited (boundary.hpp). The bottom's
-// depth z_b or the reach s is a number to be found. Ignores: growth of the added mass, slope of the bottom, which
-// thruster blows. Revealed by hovering and moving at several heights, one within a hull's length of the floor. Confused
-// with compressibility (linear in depth), which it becomes when the floor is far.
+// depth z_b or the reach s is a number to be found. Source: the image in the boundary of what the hull or jet does to
+// the water, whose speed falls with the square of the distance (Milne-Thomson 1968); the exponential form is an
+// assumption. Ignores: growth of the added mass, slope of the bottom, which thruster blows. Revealed by hovering and
+// moving at several heights, one within a hull's length of the floor. Confused with compressibility (linear in depth),
+// which it becomes when the floor is far.
 #include <algorithm>
 #include <array>
 

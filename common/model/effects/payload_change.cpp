@@ -1,10 +1,10 @@
 // Physics: at a moment the vehicle takes up or drops a payload at Bo: mass m_P (in water, its added mass included) and
 // net weight w_P = m_P g minus its buoyancy, which are independent of each other. With the smooth step s of 1 s:
 //   (M + s diag(m_P, m_P, m_P, 0, 0, 0)) nu_dot = ... - s w x m_P v + s w_P down_B
-// Ignores: an arm (moment and inertia of rotation), the momentum exchanged at that moment, that several runs seldom
-// change at the same time of the run. Revealed by hovering and by the same steps of thrust early and late. Confused
-// with battery_sag and W-B when the change comes early or late in the data, with thruster_failure of a vertical
-// thruster.
+// Source: Newton-Euler about Bo with a point mass there (Fossen 2011, sec. 3.3). Ignores: an arm (moment and inertia of
+// rotation), the momentum exchanged at that moment, that several runs seldom change at the same time of the run.
+// Revealed by hovering and by the same steps of thrust early and late. Confused with battery_sag and W-B when the
+// change comes early or late in the data, with thruster_failure of a vertical thruster.
 #include <algorithm>
 #include <array>
 

@@ -1,9 +1,9 @@
 // Physics: a measured velocity is older than its time stamp says: nu_measured(t) = nu(t - T). Forms: the velocity log
 // alone (u v w), the rates alone (p q r), or both. Cubic interpolation between samples; before the window's first
-// sample a straight line goes on. Ignores: jitter, and the age of the pose from which a prediction begins. Revealed by
-// steps and reversals while turning. Confused with thruster_delay: "all" is the same thing seen from the other side
-// (only their sum can be known) and not asked where poses were compared with both groups, one group alone is told apart
-// by the other; with thruster_lag.
+// sample a straight line goes on. Source: the definition of a latency. Ignores: jitter, and the age of the pose from
+// which a prediction begins. Revealed by steps and reversals while turning. Confused with thruster_delay: "all" is the
+// same thing seen from the other side (only their sum can be known) and not asked where poses were compared with both
+// groups, one group alone is told apart by the other; with thruster_lag.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,7 +1,8 @@
 // Physics: a sensor's scale is off (speed of sound of a velocity log, gyro gain): nu_measured,i = (1 + s) nu_i for one
-// component. Ignores: offsets, scale that changes with temperature. Revealed by motions that couple axes, since along
-// one axis alone masses, drag and thrust absorb it whole; a position measured beside the velocity shows it directly,
-// which the consistency check uses before any fit. Confused with all base parameters of that axis.
+// component. Source: the definition of a scale error. Ignores: offsets, scale that changes with temperature. Revealed
+// by motions that couple axes, since along one axis alone masses, drag and thrust absorb it whole; a position measured
+// beside the velocity shows it directly, which the consistency check uses before any fit. Confused with all base
+// parameters of that axis.
 #include <algorithm>
 #include <array>
 

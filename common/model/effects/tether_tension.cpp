@@ -1,8 +1,9 @@
 // Physics: a tether to a fixed anchor, slack up to its length L, then a spring: T = k max(|p_A - p| - L, 0) toward the
-// anchor. Made fast at Bo, or at a place p_BC in B that is to be found (attachment.hpp): it then ends at p + R_WB p_BC
-// and turns the vehicle by p_BC x T. Ignores: drag and weight of the tether, hysteresis. Revealed by slow excursions to
-// all sides, its place by pulls from ahead and abeam. Confused with current (which follows speed and heading, not
-// place) and W-B; the turning with restoring_moment and a thruster's gain.
+// anchor. Source: Hooke's law of a cable that carries no compression. Made fast at Bo, or at a place p_BC in B that is
+// to be found (attachment.hpp): it then ends at p + R_WB p_BC and turns the vehicle by p_BC x T. Ignores: drag and
+// weight of the tether, hysteresis. Revealed by slow excursions to all sides, its place by pulls from ahead and abeam.
+// Confused with current (which follows speed and heading, not place) and W-B; the turning with restoring_moment and a
+// thruster's gain.
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
-// Physics: propellers give less thrust astern than the same command gives ahead: f = (1 + a) f_c for f_c < 0.
-// Ignores: that the ratio may differ between thrusters. Revealed by motion in both directions at equal command.
-// Confused with asymmetric_drag (which acts on the hull, so it follows speed, not thrust) and steady pulls.
+// Physics: propellers give less thrust astern than the same command gives ahead: f = (1 + a) f_c for f_c < 0. Source:
+// makers' thrust curves, whose two branches differ. Ignores: that the ratio may differ between thrusters. Revealed by
+// motion in both directions at equal command. Confused with asymmetric_drag (which acts on the hull, so it follows
+// speed, not thrust) and steady pulls.
 #include <array>
 
 #include "common/model/effect.hpp"

@@ -1,6 +1,7 @@
 // Physics: small commands turn no propeller (static friction, ESC threshold). Two forms: `offset` f = sign(f_c)
-// max(|f_c| - d, 0), and `step`, nothing below d and the full force above it. Ignores: a band of its own per thruster.
-// Revealed by small commands around zero. Confused with lower thruster gain when all commands are alike in size.
+// max(|f_c| - d, 0), and `step`, nothing below d and the full force above it. Source: makers' thrust curves about
+// neutral, and Coulomb's friction. Ignores: a band of its own per thruster. Revealed by small commands around zero.
+// Confused with lower thruster gain when all commands are alike in size.
 #include <algorithm>
 #include <array>
 #include <cmath>

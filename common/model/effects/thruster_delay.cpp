@@ -1,8 +1,8 @@
 // Physics: the command reaches the propellers late by a fixed time (bus, ESC, on-board computer), or the log's clocks
 // of command and motion differ by as much. f(t) = f_c(t - T), for all thrusters alike, or T + dT for those that push up
-// and down, which are often of another make (thruster_kinds.hpp). Ignores: jitter; a delay of its own per thruster.
-// Revealed by steps and fast reversals along every axis. Confused with thruster_lag (a delay shifts, a lag also rounds)
-// and, over a narrow band, with added mass.
+// and down, which are often of another make (thruster_kinds.hpp). Source: the definition of a dead time. Ignores:
+// jitter; a delay of its own per thruster. Revealed by steps and fast reversals along every axis. Confused with
+// thruster_lag (a delay shifts, a lag also rounds) and, over a narrow band, with added mass.
 #include <array>
 
 #include "common/model/thruster_kinds.hpp"

@@ -3,9 +3,9 @@
 // hull's own translational drag grows by the share c f. Each falls with the inverse square of the gap to the wall, f =
 // 1 / (d - n . p)^2, or exponentially, f = exp((n . p - d_a) / s), told for a place d_a as near as the vehicle came
 // (boundary.hpp). Bearing b and the wall's distance d from the site's origin, or the reach s, are numbers to be found.
-// Ignores: more than one wall (each is a form of its own search), growth of the added mass, the jets' own reflection.
-// Revealed by moving along and toward each side of the site. Confused with tether_tension (pulls along a line to a
-// point) and, with little motion across, with current.
+// Source: as there. Ignores: more than one wall (each is a form of its own search), growth of the added mass, the jets'
+// own reflection. Revealed by moving along and toward each side of the site. Confused with tether_tension (pulls along
+// a line to a point) and, with little motion across, with current.
 #include <algorithm>
 #include <array>
 #include <cmath>
