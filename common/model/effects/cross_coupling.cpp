@@ -1,12 +1,13 @@
 // Physics: motion along one axis loads another. Off-diagonal drag w_i = D_ij nu_r,j or D_ij |nu_r,j| nu_r,j, and
 // off-diagonal added mass M_ij = M_ji with its Coriolis part, so that it does no work. Pairs that a hull symmetric
-// about its x-z plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4); and what is
-// carried on one side only: N and Y with u, K with w. Ignores the other pairs of a hull without symmetry. Revealed by
-// single-axis motion: watch the idle axes. Confused with thruster_gain and thruster_misalignment, and added mass with
-// centre_of_mass.
+// about its x-z plane allows: {X Z M} with {u w q}, {Y K N} with {v p r} (Fossen 2011, sec. 6.3 and 6.4); what is
+// carried on one side only: N and Y with u, K with w; then those of a hull without symmetry. Ignores products of two
+// speeds, and u^2 in place of |u|u. Revealed by single-axis motion: watch the idle axes. Confused with thruster_gain
+// and thruster_misalignment, and added mass with centre_of_mass.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/model/effect.hpp"
 #include "common/model/parameters.hpp"
@@ -28,23 +29,39 @@ struct Term {
 
 constexpr std::array<std::array<int, 2>, 3> kOneSided{{{5, 0}, {1, 0}, {3, 2}}};
 
-constexpr std::array<Term, 39> make_terms() {
-  std::array<Term, 39> terms{};
+/// Numbers of the forms, which others know them by, go from the likeliest hulls to those without any symmetry.
+constexpr std::array<Term, 75> make_terms() {
+  std::array<Term, 75> terms{};
+  std::array<bool, 36> drag{}, inertia{};
   std::size_t n = 0;
+  const auto add_drag = [&](int row, int column) {
+    if (std::exchange(drag[static_cast<std::size_t>(6 * row + column)], true)) return;
+    terms[n++] = {row, column, Form::kLinear};
+    terms[n++] = {row, column, Form::kQuadratic};
+  };
+  const auto add_inertia = [&](int row, int column) {
+    const auto [low, high] = std::minmax(row, column);
+    if (std::exchange(inertia[static_cast<std::size_t>(6 * low + high)], true)) return;
+    terms[n++] = {low, high, Form::kInertia};
+  };
   for (const auto& plane : kPlanes) {
     for (const int row : plane) {
       for (const int column : plane) {
         if (row == column) continue;
-        terms[n++] = {row, column, Form::kLinear};
-        terms[n++] = {row, column, Form::kQuadratic};
-        if (row < column) terms[n++] = {row, column, Form::kInertia};
+        add_drag(row, column);
+        if (row < column) add_inertia(row, column);
       }
     }
   }
-  for (const auto& [row, column] : kOneSided) {
-    terms[n++] = {row, column, Form::kLinear};
-    terms[n++] = {row, column, Form::kQuadratic};
-    terms[n++] = {std::min(row, column), std::max(row, column), Form::kInertia};
+  const auto add = [&](int row, int column) {
+    add_drag(row, column);
+    add_inertia(row, column);
+  };
+  for (const auto& [row, column] : kOneSided) add(row, column);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      if (row != column) add(row, column);
+    }
   }
   return terms;
 }

@@ -1,6 +1,7 @@
 // Physics: one thruster gives more or less than its curve says (damage, weed, a swapped propeller): f_i = (1 + g)
-// f_c,i. Ignores: change over time (thruster_failure). Revealed by motions that load the thrusters unequally: its axes
-// couple. Confused with a common gain error, which the masses and drag absorb whole, and with cross_coupling.
+// f_c,i. Source: f = B K u with a diagonal K of which one number is off (Fossen 2011, sec. 12.3). Ignores: change over
+// time (thruster_failure). Revealed by motions that load the thrusters unequally: its axes couple. Confused with a
+// common gain error, which the masses and drag absorb whole, and with cross_coupling.
 #include <array>
 
 #include "common/model/effect.hpp"
@@ -27,6 +28,9 @@ class ThrusterGain final : public Effect {
     for (const Thruster& thruster : scene.vehicle->thrusters) names.push_back(thruster.name);
     return names.size() > 1 ? names : std::vector<std::string>{};
   }
+  /// One that gives nothing: beside what it was thought to give, masses and drag have gone so far astray that no slope
+  /// leads here.
+  std::vector<std::vector<double>> far_starts(const Scene&, int) const override { return {{-1.0}}; }
 
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {
     if (variant < motion.force.size()) motion.force[variant] *= 1.0 + theta[0];

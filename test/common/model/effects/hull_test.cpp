@@ -168,7 +168,7 @@ TEST_CASE("payload_change, cross_coupling, centre_of_mass: what mass adds does n
   for (std::size_t v = 0; v < names.size(); ++v) {
     if (names[v].ends_with("_dot")) heavy.push_back(test::active("cross_coupling", {0.6}, static_cast<int>(v)));
   }
-  REQUIRE(heavy.size() == 11);
+  REQUIRE(heavy.size() == 17);
   for (const model::ActiveEffect& effect : heavy) {
     model::Model model = bare.model;
     model.theta.head<6>() << 20, 25, 30, 1, 2, 3;
