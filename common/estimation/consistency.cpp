@@ -126,6 +126,10 @@ ConsistencyResult Check::run() {
     dvl = velocity(gyro);
   }
   for (int round = 0; round < 3 && find_heading(dvl); ++round) dvl = velocity(gyro);
+  if (blame_pose_tilt(gyro, dvl)) {
+    gyro = rates();
+    dvl = velocity(gyro);
+  }
   PairResult force = acceleration();
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (gyro.checked) {

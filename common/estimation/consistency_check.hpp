@@ -39,6 +39,7 @@ class Check {
   void report_outliers(const std::string& name, const PairResult& pair);
   // pose_blame.cpp
   bool blame_pose_axes(const PairResult& gyro, const PairResult& dvl);
+  bool blame_pose_tilt(const PairResult& gyro, const PairResult& dvl);
   bool blame_position_unit(const PairResult& dvl);
   bool find_heading(const PairResult& dvl);
   void report(const std::string& signal, const std::string& finding, double size, const std::string& unit,

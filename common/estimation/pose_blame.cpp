@@ -1,12 +1,24 @@
 // When gyro and DVL both contradict the pose in one way, the pose is to blame: its body axes, its unit, its heading.
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "common/base/spatial.hpp"
 #include "common/base/units.hpp"
 #include "common/estimation/consistency_check.hpp"
 #include "common/estimation/increment_estimate.hpp"
 #include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
+namespace {
+
+constexpr double kSameTurn = 0.4;  // of the smaller turn: two sensors that agree so well are not both wrong by chance
+
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
+  return rotation_vector_from_quaternion(Eigen::Quaterniond(rotation));
+}
+
+}  // namespace
 
 /// Gyro and DVL turned in the same way against the pose: then it is the pose's body axes that are turned.
 bool Check::blame_pose_axes(const PairResult& gyro, const PairResult& dvl) {
@@ -16,6 +28,30 @@ bool Check::blame_pose_axes(const PairResult& gyro, const PairResult& dvl) {
   for (Corrections& corrections : result_.corrections) corrections.attitude_axes = base;
   report("pose_capture.attitude", "axes", 1.0, "",
          "gyro and DVL agree with each other and are both turned against the pose: its body axes are",
+         "corrected: body axes of the pose turned", "gyro and dvl");
+  return true;
+}
+
+/// Gyro and DVL turned by the same small angles against the pose: then it is the pose that sits tilted on the vehicle.
+bool Check::blame_pose_tilt(const PairResult& gyro, const PairResult& dvl) {
+  if (!gyro.checked || !dvl.checked || runs_.empty()) return false;
+  std::vector<Eigen::Vector3d> tilt;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const Eigen::Vector3d one = rotation_vector(gyro.faults[r].rotation),
+                          other = rotation_vector(dvl.faults[r].rotation);
+    tilt.emplace_back(0.5 * (one + other));
+    if ((one - other).norm() > kSameTurn * std::min(one.norm(), other.norm()) || !(tilt.back().norm() > 0.0))
+      return false;
+  }
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    Eigen::Matrix3d& axes = result_.corrections[r].attitude_axes;
+    axes = axes * quaternion_from_rotation_vector(tilt[r]).toRotationMatrix();
+  }
+  const Eigen::Vector3d& told = tilt.front();
+  report("pose_capture.attitude", "misalignment", told.norm(), "rad",
+         text("gyro and DVL agree with each other and are both turned against the pose, by %.2f, %.2f, %.2f deg about "
+              "body x, y, z",
+              told.x() / kDegree, told.y() / kDegree, told.z() / kDegree),
          "corrected: body axes of the pose turned", "gyro and dvl");
   return true;
 }

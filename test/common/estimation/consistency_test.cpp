@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <random>
 
+#include "common/base/spatial.hpp"
 #include "test/support/consistency.hpp"
 #include "test/support/timing.hpp"
 
@@ -142,6 +144,33 @@ TEST_CASE("missing groups are worked without") {
     const Trial trial = estimation::reconstruct(recording, result.corrections[0], model::Vehicle{});
     CHECK_FALSE(trial.observed.velocity);
     CHECK(trial.observed.rates);
+  }
+}
+
+TEST_CASE("an attitude sensor that sits tilted is turned, not the two that contradict it; one tilted gyro is itself") {
+  std::mt19937 random{20261124};
+  std::uniform_real_distribution<double> any{0.01, 0.02};  // rad
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    const Eigen::Vector3d tilt{any(random), -any(random), 0.0};
+    const Eigen::Quaterniond turn = quaternion_from_rotation_vector(tilt);
+    SyntheticOptions options{.seed = seed};
+    options.spoil_pose = [&](PoseCapture& pose) { pose.q_WB = pose.q_WB * turn; };
+    const Recording tilted = test::synthetic_recording(options);
+    const estimation::ConsistencyResult result = estimation::check_consistency(std::span(&tilted, 1));
+    REQUIRE(result.findings.size() == 1);
+    CHECK(result.findings[0].signal == "pose_capture.attitude");
+    CHECK(result.findings[0].finding == "misalignment");
+    CHECK(result.findings[0].size == doctest::Approx(tilt.norm()).epsilon(0.15));
+    const Eigen::Matrix3d left = turn.toRotationMatrix() * result.corrections[0].attitude_axes;
+    CHECK(Eigen::AngleAxisd(left).angle() < 0.003);
+    CHECK(result.corrections[0].gyro.rotation.isIdentity());
+    CHECK(result.corrections[0].dvl.rotation.isIdentity());
+
+    const Recording gyro = test::synthetic_recording({.seed = seed, .gyro_matrix = turn.toRotationMatrix()});
+    const estimation::ConsistencyResult alone = estimation::check_consistency(std::span(&gyro, 1));
+    CHECK(alone.corrections[0].attitude_axes.isIdentity());
+    CHECK_FALSE(alone.corrections[0].gyro.rotation.isIdentity());
   }
 }
 
