@@ -6,6 +6,7 @@
 #include <random>
 
 #include "common/diagnosis/thrust_evidence.hpp"
+#include "common/diagnosis/turned_axes.hpp"
 #include "common/identification/fit_from_priors.hpp"
 
 namespace fathom::diagnosis {
@@ -40,6 +41,13 @@ class Search {
       allocation.col(static_cast<Eigen::Index>(i)) =
           wiring.sign[i] * allocation_.col(static_cast<Eigen::Index>(wiring.actuator[i]));
     return allocation;
+  }
+
+  /// The half turn of all axes under which the file's own arrangement would fit best.
+  [[nodiscard]] TurnedAxes turn() const {
+    TurnedAxes axes = likeliest_turn(evidence_, allocation_);
+    axes.cost += kPrice;  // one thing to be wrong, however many thrusters it moves
+    return axes;
   }
 
   /// Minus log likelihood, what the file does not say being the less likely the more it is.
@@ -144,6 +152,19 @@ std::vector<Wiring> likely_wirings(const model::Vehicle& vehicle, std::span<cons
   return likely;
 }
 
+namespace {
+
+/// A half turn of the axes that fits as well as the likeliest arrangements of thrusters.
+std::optional<TurnedAxes> turn_instead(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                                       const std::vector<Wiring>& likely) {
+  const Search search{vehicle, trials};
+  const double least = likely.empty() ? search.cost(search.as_filed()) - kCertain : search.cost(likely.front()) + kSame;
+  const TurnedAxes turn = search.turn();
+  return turn.cost <= least ? std::optional{turn} : std::nullopt;
+}
+
+}  // namespace
+
 std::vector<Trial> rewired(std::span<const Trial> trials, const Wiring& wiring) {
   std::vector<Trial> all{trials.begin(), trials.end()};
   for (Trial& trial : all) {
@@ -182,14 +203,26 @@ std::string words_for(const Wiring& wiring, const model::Vehicle& vehicle, bool 
 std::optional<WiringFault> wiring_fault(const model::Vehicle& vehicle, std::span<const Trial> trials,
                                         const identification::FitSettings& settings) {
   const std::vector<Wiring> likely = likely_wirings(vehicle, trials);
-  if (likely.empty()) return {};
+  const std::optional<TurnedAxes> turn = turn_instead(vehicle, trials, likely);
+  if (likely.empty() && !turn) return {};
   identification::FitSettings few = settings;
   few.most_windows = std::min(few.most_windows, kWindows);
-  const std::vector<Trial> other = rewired(trials, likely.front());
+  model::Vehicle right = vehicle;
+  std::vector<Trial> other{trials.begin(), trials.end()};
+  if (!turn) {
+    other = rewired(trials, likely.front());
+  } else if (trials.front().input_is_wrench) {
+    Wiring signs = Search{vehicle, trials}.as_filed();
+    signs.sign.assign(turn->sign.begin(), turn->sign.end());
+    other = rewired(trials, signs);
+  } else {
+    right.allocation = turned(vehicle.allocation, *turn);
+  }
   const double left = error_left(identification::fit_from_priors(vehicle, trials, few),
-                                 identification::fit_from_priors(vehicle, other, few));
+                                 identification::fit_from_priors(right, other, few));
   if (left > 1.0 - kLessError) return {};
   WiringFault fault{.readings = {}, .error_reduction = 1.0 - left};
+  if (turn) fault.readings.emplace_back(turn->words);
   for (const Wiring& wiring : likely)
     fault.readings.push_back(words_for(wiring, vehicle, trials.front().input_is_wrench));
   return fault;

@@ -83,6 +83,23 @@ TEST_CASE("wiring: whatever thrusters are exchanged or reversed, motion tells wh
   }
 }
 
+TEST_CASE("wiring: motion along other axes than the file's is told before thrusters that would all be wrong at once") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  for (const bool wrench : {false, true}) {
+    CAPTURE(wrench);
+    test::VirtualDive dive = test::make_dive(vehicle, {.duration = 100.0, .seed = 6, .wrench = wrench});
+    const Vector6d signs{1.0, -1.0, -1.0, 1.0, -1.0, -1.0};
+    for (Vector6d& nu : dive.trial.nu) nu = nu.cwiseProduct(signs).eval();
+    const Eigen::Quaterniond half{0.0, 1.0, 0.0, 0.0};  // w x y z
+    for (Eigen::Quaterniond& q : dive.trial.q_WB) q = half * q * half.conjugate();
+    for (Eigen::Vector3d& p : dive.trial.p_WB) p = half * p;
+    const auto fault = wiring_fault(vehicle, std::span{&dive.trial, 1}, {});
+    REQUIRE(fault);
+    CHECK(fault->error_reduction > 0.5);
+    CHECK(fault->readings.front().starts_with("motion told along left and up in place of right and down"));
+  }
+}
+
 TEST_CASE("wiring: of a measured wrench the reversed axis is told") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   test::VirtualDive dive = test::make_dive(vehicle, {.duration = 100.0, .seed = 4, .wrench = true});
