@@ -7,11 +7,15 @@
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/associations.hpp"
+#include "common/diagnosis/bent_base.hpp"
 #include "common/diagnosis/carried_over.hpp"
 #include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
+#include "common/diagnosis/own_run.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/search.hpp"
+#include "common/diagnosis/traces.hpp"
 #include "common/diagnosis/verdict.hpp"
 #include "common/diagnosis/whiteness.hpp"
 #include "common/diagnosis/wiring.hpp"
@@ -24,8 +28,6 @@ constexpr double kStill = 1e-9;  // m/s, rad/s: rounding of what never changes
 constexpr double kStep = 0.04;   // s between the velocities that are predicted: short of it there is only noise
 
 using Residuals = std::vector<std::vector<Vector6d>>;
-
-std::array<double, 6> as_array(const Vector6d& v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
 Residuals residuals_of(const model::Model& model, std::span<const Trial> trials) {
   Residuals residuals;
@@ -51,49 +53,6 @@ std::map<std::string, double> force_rmse(const model::Vehicle& vehicle, const Re
   return rmse;
 }
 
-PredictionTrace trace_of(const Trial& trial, const SearchResult& found, const std::vector<Vector6d>& residual_before,
-                         const std::vector<Vector6d>& residual_after) {
-  PredictionTrace trace{.run = trial.name, .t = trial.t};
-  trace.restarts = restarts(trial);
-  trace.before = predict_anew(found.before.model, trial, trace.restarts);
-  trace.after = predict_anew(found.after.model, trial, trace.restarts);
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t k = 0; k < trial.size(); ++k) {
-    std::array<double, 6> measured = as_array(trial.nu[k]);
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      if (!is_measured(trial, k, axis)) measured[axis] = kNaN;
-    }
-    trace.measured.push_back(measured);
-    trace.residual_before.push_back(as_array(residual_before[k]));
-    trace.residual_after.push_back(as_array(residual_after[k]));
-    if (trial.observed.position) trace.position.push_back({trial.p_WB[k].x(), trial.p_WB[k].y(), trial.p_WB[k].z()});
-    if (trial.observed.attitude) {
-      trace.heading.push_back(euler_from_rotation(trial.q_WB[k].toRotationMatrix()).z());
-    }
-    trace.tau.push_back(as_array(found.before.model.allocation * trial.input[k]));
-  }
-  trace.voltage = trial.voltage;
-  return trace;
-}
-
-/// Stretches between a run's gaps are one run to whoever looks at it: one row of nothing stands for each gap.
-void join(PredictionTrace& run, PredictionTrace&& next) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  const auto append = [](auto& to, auto& from, const auto& between) {
-    if (from.empty()) return;
-    to.push_back(between);
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  for (const std::size_t k : next.restarts) run.restarts.push_back(run.t.size() + 1 + k);
-  append(run.t, next.t, 0.5 * (run.t.back() + next.t.front()));
-  for (auto rows : {&PredictionTrace::measured, &PredictionTrace::before, &PredictionTrace::after,
-                    &PredictionTrace::residual_before, &PredictionTrace::residual_after, &PredictionTrace::tau})
-    append(run.*rows, next.*rows, std::array<double, 6>{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN});
-  append(run.position, next.position, std::array<double, 3>{kNaN, kNaN, kNaN});
-  append(run.heading, next.heading, kNaN);
-  append(run.voltage, next.voltage, kNaN);
-}
-
 /// Every run once, however many stretches it has.
 std::vector<std::string> names_of(std::span<const Trial> trials) {
   std::vector<std::string> names;
@@ -107,12 +66,12 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
 /// something that grows with a run's time need not be the same in both. A free curve is believed when a residual goes
 /// with what it runs over, for noise with a memory goes a little with any curve; unless it took an effect's place.
 std::vector<Association> left_in(std::span<const Trial> train, std::span<const Trial> unseen, SearchResult& found,
-                                 const model::Vehicle& vehicle, const Settings& settings) {
+                                 const model::Model& learnt, const model::Vehicle& vehicle, const Settings& settings) {
   std::vector<Trial> fitted;
   for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
   const model::Model& model = found.after.model;
-  const LeftOver in_fitted{model, fitted, residuals_of(model, fitted)};
-  const LeftOver in_unseen{model, unseen, residuals_of(model, unseen)};
+  const LeftOver in_fitted{learnt, fitted, residuals_unbent(learnt, fitted)};
+  const LeftOver in_unseen{model, unseen, residuals_unbent(model, unseen)};
   if (found.free_form && !found.free_form->in_place_of_effect) {
     const auto curves = free_curves(model::scene_of(vehicle, train));
     const auto same = std::ranges::find_if(curves, [&](const auto& curve) {
@@ -174,6 +133,19 @@ std::string too_short(std::span<const Trial> unseen, const Settings& settings) {
   return words + text;
 }
 
+/// Said of runs in which nothing ever pushes: a column of zeros is the commonest cause.
+std::string never_pushed(const model::Vehicle& vehicle, std::span<const Trial> train) {
+  for (const Trial& trial : train) {
+    for (const Eigen::VectorXd& input : trial.input) {
+      if ((input.array() != 0.0).any()) return "";
+    }
+  }
+  const bool wrench = train.front().input_is_wrench || vehicle.thrusters.empty();
+  return std::string(wrench ? "The wrench" : "The thrusters' force") +
+         " is zero in every run that was fitted: how the vehicle answers thrust cannot be told; are those columns "
+         "filled? ";
+}
+
 /// Without the numbers that the effects' forms have no use for.
 std::vector<NamedValue> told_parameters(const identification::FitResult& fit) {
   std::vector<NamedValue> values = fit.parameters();
@@ -188,11 +160,34 @@ std::vector<NamedValue> told_parameters(const identification::FitResult& fit) {
   return values;
 }
 
+/// Whether the effects help a validation run in which their moments, phases or flows are others: then `found` takes the
+/// model with these, and the predictions are those of the run's second half.
+bool helps_with_own_numbers(SearchResult& found, const model::Vehicle& vehicle, std::span<const Trial> unseen,
+                            const Settings& settings, std::span<const model::Window> windows, Predictions& before,
+                            Predictions& after, std::vector<std::string>& effects) {
+  if (settings.held_out > 0.0) return false;  // the same run, which has but one of each
+  identification::FitSettings fits = settings.fit;
+  fits.window = found.window;
+  std::optional<OwnRun> own = with_own_numbers(found.after, vehicle, unseen, fits);
+  if (!own) return false;
+  const std::vector<model::Window> late = second_half(windows, unseen);
+  if (late.empty()) return false;
+  Predictions plain = predict(found.before.model, late), with = predict(own->model, late);
+  const Interval change = improvement(plain, with, vehicle);
+  const bool sure = !std::isfinite(change.low) || change.low > 0.0;
+  if (!sure || !carries_over(found, change, fall_if_right(found.before.model, own->model, late, with))) return false;
+  found.after.model = std::move(own->model);
+  before = std::move(plain);
+  after = std::move(with);
+  effects = std::move(own->effects);
+  return true;
+}
+
 /// Takes back everything that was accepted.
 void take_back(SearchResult& found, const std::string& reason) {
   for (Judged& judged : found.accepted) {
     judged.reason = reason;
-    found.refused.push_back(judged);
+    found.refused.insert(found.refused.begin(), judged);  // before other forms of it
   }
   found.accepted.clear();
   found.free_form.reset();  // it was measured beside what is taken back
@@ -226,14 +221,16 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
 
   progress("predicting the validation runs", 0.97);
   const std::vector<model::Window> windows = prediction_windows(unseen, lead_of(found.after.model));
-  const Predictions before = predict(found.before.model, windows);
+  Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
+  model::Model learnt = found.after.model;
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
   if (!found.accepted.empty() && judged &&
       !carries_over(found, improvement(before, after, vehicle),
-                    fall_if_right(found.before.model, found.after.model, windows, after))) {
-    take_back(found, "helps the runs that it was fitted to, and not the validation run");
-    found.taken_back = true;
+                    fall_if_right(found.before.model, found.after.model, windows, after)) &&
+      !helps_with_own_numbers(found, vehicle, unseen, settings, windows, before, after, result.own_in_validation)) {
+    found.taken_back = std::ranges::max_element(found.accepted, {}, &Judged::log_odds)->log_odds;
+    take_back(found, kNotCarriedOver);
     after = before;
   }
   const Residuals residual_before = residuals_of(found.before.model, unseen);
@@ -260,20 +257,16 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
     result.error_after.prediction.clear();
     result.improvement = {kNaN, kNaN, kNaN};
   }
-  result.parameters_before = found.before.parameters();
-  result.parameters_after = told_parameters(found.after);
   result.residual_before = whiteness(found.before.model, unseen, residual_before);
   result.residual_after = whiteness(found.after.model, unseen, residual_after);
-  const std::vector<Association> left = left_in(train, unseen, found, vehicle, settings);
-  conclude(found, left, model::scene_of(vehicle, train), result, judged ? "" : too_short(unseen, settings));
-  for (std::size_t r = 0; r < unseen.size(); ++r) {
-    PredictionTrace trace = trace_of(unseen[r], found, residual_before[r], residual_after[r]);
-    if (r > 0 && same_run(unseen[r - 1], unseen[r])) {
-      join(report.traces.back(), std::move(trace));
-    } else {
-      report.traces.push_back(std::move(trace));
-    }
-  }
+  if (found.accepted.empty()) learnt = found.after.model;
+  const std::vector<Association> left = left_in(train, unseen, found, learnt, vehicle, settings);
+  report.traces = traces_of(unseen, found.before.model, found.after.model, residual_before, residual_after);
+  found.after.model = std::move(learnt);
+  result.parameters_before = found.before.parameters();
+  result.parameters_after = told_parameters(found.after);
+  conclude(found, left, model::scene_of(vehicle, train), result,
+           never_pushed(vehicle, train) + (judged ? "" : too_short(unseen, settings)));
   if (fitted != nullptr) *fitted = std::move(found.after);
   return report;
 }

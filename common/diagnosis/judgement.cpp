@@ -17,7 +17,6 @@ namespace {
 using identification::FitResult;
 using identification::TrajectoryFit;
 
-constexpr double kSameStory = 0.5;       // correlation of what two forms of one effect claim
 constexpr double kEdge = 0.03;           // of the data's length
 constexpr double kHeldOtherwise = 0.57;  // of the time between commands: between straight lines and held ones lie even
                                          // odds over it, which make a delay of as much with 95 %
@@ -214,30 +213,6 @@ void judge_by_data_left_out(Judged& judged, const TrajectoryFit& problem, const 
       held_out(problem, without_checked, CrossValidation{problem, with}, places_of(with.model, judged));
   judged.held_out_blocks = carried.blocks;
   judged.held_out_runs = carried.runs;
-}
-
-void find_aliases(Judged& winner, const Screened& best, const std::vector<Screened>& screened,
-                  const std::vector<Judged>& judged, const Settings& settings) {
-  for (std::size_t i = 0; i < screened.size(); ++i) {
-    const Screened& other = screened[i];
-    const std::string name{other.effect->name()};
-    if (other.signature.size() != best.signature.size()) continue;
-    if (other.effect == best.effect) {
-      if (other.variant != best.variant && other.signature.dot(best.signature) > kSameStory &&
-          robust_log_likelihood_ratio(other.window_cost, best.window_cost) < kAlternativeLogOdds)
-        winner.other_forms.push_back(other.variant_name);
-      continue;
-    }
-    if (other.signature.dot(best.signature) < settings.alias_correlation) continue;
-    if (std::find(winner.aliased_with.begin(), winner.aliased_with.end(), name) == winner.aliased_with.end()) {
-      winner.aliased_with.push_back(name);
-    }
-    const double between = robust_log_likelihood_ratio(other.window_cost, best.window_cost);
-    if (judged[i].reason.empty() && between < kAlternativeLogOdds &&
-        std::find(winner.alternatives.begin(), winner.alternatives.end(), name) == winner.alternatives.end()) {
-      winner.alternatives.push_back(name);
-    }
-  }
 }
 
 std::vector<Judged> best_of_each_effect(const std::vector<Judged>& judged, const std::vector<Judged>& accepted) {

@@ -1,4 +1,4 @@
-// What decides about a candidate: odds, share of the error, carrying over, physical limits, look-alikes.
+// What decides about a candidate: odds, share of the error, carrying over, physical limits.
 #pragma once
 
 #include <span>
@@ -10,10 +10,11 @@
 
 namespace fathom::diagnosis {
 
-constexpr double kAlternativeLogOdds = 3.0;  ///< 20 to 1 between two look-alikes settles which it is
-
 /// Reason of what would have been accepted had nothing better been found.
 inline constexpr const char* kWeaker = "weaker than the accepted effects";
+
+/// Reason of what was accepted by the training runs alone.
+inline constexpr const char* kNotCarriedOver = "helps the runs that it was fitted to, and not the validation run";
 
 /// Reason of a time after the command that is none for sure.
 inline constexpr const char* kTooQuick = "shorter than how commands are held between their samples could make it";
@@ -52,9 +53,6 @@ void judge_by_data_left_out(Judged& judged, const identification::TrajectoryFit&
 [[nodiscard]] std::string at_limit(const Judged& judged, const model::Model& model);
 /// Why it must be refused; empty when nothing speaks against it. With the fitted `model`, limits are looked at too.
 [[nodiscard]] std::string refusal(const Judged& judged, const Settings& settings, const model::Model* model = nullptr);
-/// Names the look-alikes of the winner, and which of them the data cannot rule out.
-void find_aliases(Judged& winner, const Screened& best, const std::vector<Screened>& screened,
-                  const std::vector<Judged>& judged, const Settings& settings);
 /// The best form of every effect that is not among the accepted ones, best odds first.
 [[nodiscard]] std::vector<Judged> best_of_each_effect(const std::vector<Judged>& judged,
                                                       const std::vector<Judged>& accepted);

@@ -5,6 +5,7 @@
 #include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
+#include "common/diagnosis/rivals.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -30,11 +31,16 @@ std::vector<NamedValue> numbers_of(const Judged& judged, const SearchResult& fou
   return values;
 }
 
+std::string either(const std::string& form, const std::string& other) {
+  const auto told = [](const std::string& name) { return name.empty() ? std::string("the plain form") : name; };
+  return told(form) + " or " + told(other);
+}
+
 /// What acts itself is no alternative to another.
-std::vector<std::string> alternatives_of(const Judged& judged, const SearchResult& found) {
-  std::vector<std::string> open = judged.alternatives;
-  std::erase_if(open, [&](const std::string& name) {
-    return std::ranges::any_of(found.accepted, [&](const Judged& other) { return other.effect->name() == name; });
+std::vector<Alternative> alternatives_of(const Judged& judged, const SearchResult& found) {
+  std::vector<Alternative> open = judged.alternatives;
+  std::erase_if(open, [&](const Alternative& one) {
+    return std::ranges::any_of(found.accepted, [&](const Judged& other) { return other.effect->name() == one.name; });
   });
   return open;
 }
@@ -53,9 +59,9 @@ model::Unlisted unlisted_for(const Judged& judged, const SearchResult& found) {
 void list_effects(const SearchResult& found, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
-    const std::vector<std::string> alternatives = alternatives_of(judged, found);
+    const std::vector<Alternative> alternatives = alternatives_of(judged, found);
     const model::Unlisted unlisted = unlisted_for(judged, found);
-    double log_odds = at_most_for(found.explained, judged.log_odds);
+    double log_odds = at_most_for(found.explained, log_odds_among(judged.log_odds, alternatives));
     if (!unlisted.what.empty()) log_odds = std::min(log_odds, kEven);
     const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
                                      [&](const Judged& j) { return j.effect == judged.effect; });
@@ -71,17 +77,16 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
       known->parameters.insert(known->parameters.end(), numbers.begin(), numbers.end());
       known->log_odds = std::max(known->log_odds, log_odds);
       known->error_reduction = 1.0 - (1.0 - known->error_reduction) * (1.0 - judged.error_reduction);
-      for (const std::string& other : alternatives) {
-        if (std::find(known->alternatives.begin(), known->alternatives.end(), other) == known->alternatives.end()) {
+      for (const Alternative& other : alternatives) {
+        if (std::ranges::find(known->alternatives, other.name, &Alternative::name) == known->alternatives.end())
           known->alternatives.push_back(other);
-        }
       }
       for (const std::string& other : judged.other_forms)
-        known->other_forms.push_back(judged.variant_name + " or " + other);
+        known->other_forms.push_back(either(judged.variant_name, other));
       continue;
     }
     std::vector<std::string> other_forms;
-    for (const std::string& other : judged.other_forms) other_forms.push_back(judged.variant_name + " or " + other);
+    for (const std::string& other : judged.other_forms) other_forms.push_back(either(judged.variant_name, other));
     result.effects.push_back({.name = name,
                               .variant = judged.variant_name,
                               .accepted = true,
@@ -92,7 +97,9 @@ void list_effects(const SearchResult& found, DiagnosisResult& result) {
                               .other_forms = other_forms,
                               .sentence = std::string(judged.effect->sentence()),
                               .unlisted = std::string(unlisted.what),
-                              .unlisted_told_by = std::string(unlisted.told_by)});
+                              .unlisted_told_by = std::string(unlisted.told_by),
+                              .corrupts = judged.corrupts,
+                              .corruption = judged.corruption});
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/moments.hpp"
+#include "common/diagnosis/rivals.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -71,22 +72,6 @@ FitResult fit_with(const TrajectoryFit& problem, const FitResult& reference, con
   }
   FitResult again = problem.fit(nearer, &reference, kQuickTolerance);
   return again.cost < fit.cost ? again : fit;
-}
-
-/// Of all windows, weighted as in the fit.
-Eigen::VectorXd residuals(const TrajectoryFit& problem, const FitResult& fit) {
-  Eigen::Index rows = 0;
-  for (const auto& window : problem.windows()) rows += window.rows();
-  Eigen::VectorXd all(rows), own;
-  model::VelocityTrace trace;
-  rows = 0;
-  for (std::size_t w = 0; w < problem.windows().size(); ++w) {
-    own.resize(problem.windows()[w].rows());
-    problem.windows()[w].evaluate(fit.model, fit.nu0[w], fit.sigma, trace, own);
-    all.segment(rows, own.size()) = own;
-    rows += own.size();
-  }
-  return all;
 }
 
 /// Seconds beside a sudden change no slope leads to it, and a large one is then hardly told from none.
@@ -209,22 +194,10 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
   return fit;
 }
 
-void Round::add_rivals(const Winner& winner, Judged& accepted) const {
-  const Eigen::VectorXd without = residuals(problem_, reference_);
-  const Eigen::VectorXd own = residuals(problem_, winner.fit) - without;
-  const auto add = [](std::vector<std::string>& names, const std::string& name) {
-    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-  };
-  for (const auto& [place, fit] : stands_) {
-    const model::Effect* other = answers_.near[place].effect;
-    if (other == accepted.effect) continue;
-    const Eigen::VectorXd change = residuals(problem_, fit) - without;
-    if (change.dot(own) < settings_.alias_correlation * change.norm() * own.norm()) continue;
-    const std::string name{other->name()};
-    add(accepted.aliased_with, name);
-    if (robust_log_likelihood_ratio(fit.window_cost, winner.fit.window_cost) < kAlternativeLogOdds)
-      add(accepted.alternatives, name);
-  }
+void Round::name_rivals(const Winner& winner, const FitResult& near, Judged& accepted) const {
+  const BaseNumbers numbers{problem_, reference_};
+  find_aliases(accepted, answers_.near[winner.place], answers_, numbers, near.model, settings_);
+  find_rivals(accepted, winner.fit, stands_, answers_, numbers, problem_, settings_);
 }
 
 }  // namespace fathom::diagnosis

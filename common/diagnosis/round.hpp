@@ -25,9 +25,10 @@ class Round {
   /// `first` tells which candidates are meant; after `few` fits without a winner, only open ones, `most` in all.
   std::optional<Winner> fit_best(Which first, std::size_t few, std::size_t most);
 
-  /// Adds to what looks like the winner those that were fitted in full beside it, stand as well, and change the same
-  /// motion in the same way: what screening saw of them may have been far from where their fits went.
-  void add_rivals(const Winner& winner, Judged& accepted) const;
+  /// Names what looks like the winner: by the first looks, of which `near` is the fit that was asked about, and those
+  /// that were fitted in full beside it, stand as well, and change the same motion in the same way. What the first
+  /// looks saw of them may have been far from where their fits went.
+  void name_rivals(const Winner& winner, const identification::FitResult& near, Judged& accepted) const;
 
  private:
   [[nodiscard]] bool looks_like(std::size_t place, const Winner& best) const;

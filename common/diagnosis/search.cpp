@@ -78,8 +78,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     }
     if (winner) {
       Judged accepted = answers.judged[winner->place];
-      find_aliases(accepted, answers.near[winner->place], answers.near, answers.judged, settings);
-      fits.add_rivals(*winner, accepted);
+      fits.name_rivals(*winner, near.reference, accepted);
       result.accepted.push_back(accepted);
       result.after = problem.fit(winner->fit.model, &winner->fit);
       result.after = at_best_moment(problem, std::move(result.after), *accepted.effect, accepted.variant);

@@ -25,7 +25,9 @@ struct Judged {
   bool lasting{false};     ///< an onset at the edge of the data
   bool too_quick{false};   ///< a time after the command that how commands are held makes too
   std::vector<std::string> aliased_with{};  ///< other effects whose predictions look alike
-  std::vector<std::string> alternatives{};  ///< of those, the ones that the odds cannot rule out
+  std::vector<Alternative> alternatives{};  ///< of those, the ones that the odds cannot rule out
+  std::string corrupts{};                   ///< the base parameter that it moves most where it is left out
+  double corruption{};                      ///< by so much of its value
   std::vector<std::string> other_forms{};   ///< of the same effect, that would explain as much
   std::string reason{};                     ///< why it was refused; empty when accepted
 };
@@ -44,9 +46,10 @@ struct SearchResult {
   std::vector<Judged> accepted;  ///< in the order of acceptance
   std::vector<Judged> refused;   ///< best form of every other effect, from the last round
   std::optional<FreeForm> free_form{};
-  double window{};         ///< s, of the final fits
-  double explained{1.0};   ///< by the accepted effects, of the lasting error on runs that no fit has seen
-  bool taken_back{false};  ///< what was accepted did not help the validation run
+  double window{};        ///< s, of the final fits
+  double explained{1.0};  ///< by the accepted effects, of the lasting error on runs that no fit has seen
+  /// Best log odds, on the training runs, of what was accepted there and did not help the validation run.
+  std::optional<double> taken_back{};
 };
 
 [[nodiscard]] SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,

@@ -8,6 +8,7 @@
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/listing.hpp"
+#include "common/diagnosis/rivals.hpp"
 #include "common/diagnosis/whiteness.hpp"
 
 namespace fathom::diagnosis {
@@ -32,8 +33,12 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
 
 std::string improvement_sentence(const DiagnosisResult& result) {
   const Interval& change = result.improvement;
-  std::string text = "On runs that no fit has seen, the 5 s prediction error " +
-                     std::string(change.value >= 0.0 ? "falls by " : "grows by ") + percent(std::abs(change.value));
+  const bool own = !result.own_in_validation.empty();
+  std::string text = own ? "The validation run has numbers of its own for " + joined(result.own_in_validation) +
+                               " (when, in what phase, or which way the water goes); its first half set them. In its "
+                               "second half the"
+                         : "On runs that no fit has seen, the 5 s prediction error ";
+  text += std::string(change.value >= 0.0 ? "falls by " : "grows by ") + percent(std::abs(change.value));
   if (std::isfinite(change.low) && std::isfinite(change.high)) {
     text += " (95 % interval " + percent(change.low) + " to " + percent(change.high) + ")";
   } else {
@@ -47,7 +52,7 @@ std::string memory_sentence(const DiagnosisResult& result) {
   std::vector<std::string> axes;
   double longest = 0.0;
   for (const AxisWhiteness& axis : result.residual_after) {
-    if (!(axis.p_value < kNotRandom)) continue;
+    if (!(axis.p_value < kNotRandom) || axis.autocorrelation_time_s < kNoMemory) continue;
     axes.push_back(axis.axis);
     longest = std::max(longest, axis.autocorrelation_time_s);
   }
@@ -102,6 +107,21 @@ std::vector<Foretold> badly_foretold(const DiagnosisResult& result) {
   return axes;
 }
 
+/// Axes of which the model foretells little on too little motion for that to mean anything.
+std::string hardly_shown_sentence(const DiagnosisResult& result) {
+  constexpr double kHorizon = 5.0;  // s
+  constexpr double kLittle = 0.5;   // R2
+  std::vector<std::string> axes;
+  for (const PredictionError& error : result.error_after.prediction) {
+    for (std::size_t i = 0; error.horizon_s == kHorizon && i < 6; ++i) {
+      if (error.r2[i] < kLittle) axes.emplace_back(model::kVelocityNames[i]);
+    }
+  }
+  return axes.empty() ? ""
+                      : "Of the motion along " + joined(axes) +
+                            " the validation runs show too little to tell whether the model foretells it. ";
+}
+
 std::string foretold_sentence(const std::vector<Foretold>& axes) {
   if (axes.empty()) return "";
   std::vector<std::string> words;
@@ -114,8 +134,8 @@ std::string foretold_sentence(const std::vector<Foretold>& axes) {
 std::string wiring_sentence(const WiringFault& fault) {
   return "The thrusters do not seem to be those of the vehicle's file: with " + joined(fault.readings, ", or with ") +
          ", the base model fitted anew would make " + percent(fault.error_reduction) +
-         " less error. No effect is named before the file is right: try the thrusters one by one, correct it and "
-         "diagnose again. ";
+         " less error. No effect is named before the file is right: try the thrusters one by one, correct it, "
+         "or the axes of the recordings, and diagnose again. ";
 }
 
 /// Where thrust is followed so badly that the file itself is in doubt: axes that are badly foretold, or where more is
@@ -134,7 +154,8 @@ bool is_open(const EffectFound& effect) { return !effect.alternatives.empty() ||
 
 /// All that the effect may be instead.
 std::vector<std::string> instead_of(const EffectFound& effect) {
-  std::vector<std::string> others = effect.alternatives;
+  std::vector<std::string> others;
+  for (const Alternative& other : effect.alternatives) others.push_back(other.name);
   if (!effect.unlisted.empty()) others.push_back(effect.unlisted);
   return others;
 }
@@ -149,8 +170,8 @@ std::string next_manoeuvre(const DiagnosisResult& result, const Judged* promisin
     std::vector<std::string> motions;
     if (!effect.unlisted.empty()) motions.push_back(effect.unlisted_told_by);
     if (!effect.alternatives.empty()) motions.push_back(motion_for(effect.name));
-    for (const std::string& other : effect.alternatives) {
-      const std::string motion = motion_for(other);
+    for (const Alternative& other : effect.alternatives) {
+      const std::string motion = motion_for(other.name);
       if (std::find(motions.begin(), motions.end(), motion) == motions.end()) motions.push_back(motion);
     }
     return "To tell " + effect.name + " from " + joined(instead_of(effect)) + ": " + joined(motions, "; and ") + ".";
@@ -169,6 +190,20 @@ std::string next_manoeuvre(const DiagnosisResult& result, const Judged* promisin
   if (nearest.error_reduction <= 0.0) return "";
   return "To confirm or rule out the nearest candidate, " + nearest.name + ": " + motion_for(nearest.name) + ".";
 }
+
+/// What a program lists among the refused, and whose name may be right all the same.
+std::string taken_back_sentence(const SearchResult& found) {
+  std::vector<std::string> names;
+  for (const Judged& judged : found.refused) {
+    if (judged.reason == kNotCarriedOver) names.emplace_back(judged.effect->name());
+  }
+  return joined(names) + " helped the training runs and did not help the validation run" +
+         (names.empty() ? "" : ": if it acts otherwise in every run, let one long run be judged by its own end") + ". ";
+}
+
+/// Odds by which noise with a memory, that a pilot answers, has favoured an effect: an answer on other runs is then the
+/// better witness that there is none.
+constexpr double kByChance = 8.0;
 
 /// The refused effect that would save most of the error; none when that is little, or when the validation run has just
 /// told that it saves nothing there.
@@ -199,8 +234,8 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const Judged* promising = promising_of(found);
   // Noise beside which thrust hardly matters is no model that explains the runs.
   const std::vector<std::string> astray_axes = not_followed(result, foretold);
-  const bool structure = !left.empty() || found.free_form || found.taken_back || blind || !astray_axes.empty() ||
-                         promising != nullptr || result.wiring;
+  const bool structure = !left.empty() || found.free_form || found.taken_back.value_or(0.0) > kByChance || blind ||
+                         !astray_axes.empty() || promising != nullptr || result.wiring;
   const bool stand_ins = !names.empty() && found.explained < kWholeCause;
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
@@ -218,17 +253,16 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   }
   if (result.verdict == "unjudged") {
     text = "None of the " + std::to_string(asked) +
-           " effects that were tried has evidence worth adding, which says little on so short a run. " + unjudged;
+           " effects that were tried has evidence worth adding, which says little here. " + unjudged;
   } else if (names.empty() && !structure) {
     text =
         "The base model explains these runs: none of the " + std::to_string(asked) +
         " effects that were tried has evidence worth adding, and what is left goes with nothing that was measured. " +
         memory_sentence(result);
+    if (found.taken_back) text += "One that seemed to help the training runs did not help the validation run. ";
   } else if (names.empty()) {
     text = "The base model leaves structure in the residual that no known effect explains. ";
-    if (found.taken_back) {
-      text += "What helped the training runs did not help the validation run; it is listed among the refused. ";
-    }
+    if (found.taken_back) text += taken_back_sentence(found);
     text += unjudged;
   } else {
     const double odds = std::ranges::min_element(result.effects, {}, &EffectFound::log_odds)->log_odds;
@@ -244,6 +278,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
     text += unjudged.empty() ? improvement_sentence(result) : unjudged;
   }
   text += foretold_sentence(foretold);
+  if (result.verdict == "adequate" && foretold.empty()) text += hardly_shown_sentence(result);
   if (!astray_axes.empty()) {
     text += "Along " + joined(astray_axes) +
             " less than half of the applied force is accounted for: are the thrusters' order, signs, places and units "
@@ -256,6 +291,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
             " for something that no known effect describes: kept because the prediction gains, not as a certain name. ";
   }
   if (!open.empty()) {
+    for (const EffectFound& effect : result.effects) text += odds_sentence(effect);
     text += "On this data " + joined(open) + " cannot be told apart";
     const auto first = std::ranges::find_if(result.effects, is_open);
     text += "; what would settle it: " + (first->unlisted.empty() ? motion_for(first->name) : first->unlisted_told_by);

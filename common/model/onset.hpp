@@ -15,7 +15,7 @@ constexpr double kOnsetDuration = 0.3;  // s, within which a change happens: smo
 // A step anywhere within the assumed duration would look much the same: the std of a uniform spread over it.
 constexpr double kOnsetFormSigma = kOnsetDuration / 3.4641;
 /// Such a moment, as a number of an effect.
-inline constexpr EffectParameter kOnsetParameter{kOnset, "s", 1000.0, 0.0, 1e6, kOnsetFormSigma};
+inline constexpr EffectParameter kOnsetParameter{kOnset, "s", 1000.0, 0.0, 1e6, kOnsetFormSigma, false, true};
 
 /// Share of the change at `t`: 0 before `onset`, 1 after it, with two continuous derivatives.
 inline double onset_share(double t, double onset) {

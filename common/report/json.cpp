@@ -84,13 +84,24 @@ Json effects(const std::vector<EffectFound>& found) {
     Json told_apart = Json::array();
     for (const auto& t : e.told_apart)
       told_apart.push_back({{"name", t.name}, {"segment", t.segment}, {"seconds", finite(t.seconds)}});
+    Json names = Json::array(), rivals = Json::array();
+    for (const Alternative& other : e.alternatives) {
+      names.push_back(other.name);
+      rivals.push_back({{"name", other.name},
+                        {"log_odds", finite(other.log_odds)},
+                        {"corrupts", other.corrupts},
+                        {"corruption", finite(other.corruption)}});
+    }
     array.push_back({{"name", e.name},
                      {"variant", e.variant},
                      {"accepted", e.accepted},
                      {"parameters", named(e.parameters)},
                      {"log_odds", finite(e.log_odds)},
                      {"error_reduction", finite(e.error_reduction)},
-                     {"alternatives", e.alternatives},
+                     {"alternatives", names},
+                     {"rivals", rivals},
+                     {"corrupts", e.corrupts},
+                     {"corruption", finite(e.corruption)},
                      {"unlisted_alternative", e.unlisted},
                      {"told_apart_by", told_apart},
                      {"other_forms", e.other_forms},
@@ -153,6 +164,7 @@ std::string to_json(const DiagnosisResult& result) {
   file["parameters"]["before"] = named(result.parameters_before);
   file["parameters"]["after"] = named(result.parameters_after);
   file["explained"] = result.explained;
+  if (!result.own_in_validation.empty()) file["own_in_validation"] = result.own_in_validation;
   if (result.wiring)
     file["wiring"] = {{"readings", result.wiring->readings}, {"error_reduction", result.wiring->error_reduction}};
   file["residual"]["before"] = whiteness(result.residual_before);

@@ -26,8 +26,7 @@ Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
   if (verdict == "unexplained" && partly)
     return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
-  if (verdict == "unjudged")
-    return {"ambiguous", "Too little data: nothing could be judged on motion that no fit has seen"};
+  if (verdict == "unjudged") return {"ambiguous", "These runs show too little to judge by"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
 }
 

@@ -40,6 +40,22 @@ std::string odds_html(double log_odds) {
   return html.substr(0, hat) + "<sup>" + html.substr(hat + 1, end - hat - 1) + "</sup>" + html.substr(end);
 }
 
+/// "tether tension (3 : 1 against it)", one after the other, and what each falsifies unnoticed.
+std::string rivals(const EffectFound& effect) {
+  std::string names, harm;
+  const auto falsifies = [](const std::string& name, const std::string& parameter, double share) {
+    return parameter.empty() ? ""
+                             : " " + effect_title(name, "") + " unnoticed makes " + parameter + " " +
+                                   percent(std::abs(share)) + (share > 0.0 ? " too large" : " too small") + ".";
+  };
+  harm += falsifies(effect.name, effect.corrupts, effect.corruption);
+  for (const Alternative& other : effect.alternatives) {
+    names += (names.empty() ? "" : ", ") + effect_title(other.name, "") + " (" + odds(other.log_odds) + " against it)";
+    harm += falsifies(other.name, other.corrupts, other.corruption);
+  }
+  return escape(names + "." + harm);
+}
+
 std::string titles(const std::vector<std::string>& names) {
   std::vector<std::string> words;
   words.reserve(names.size());
@@ -149,7 +165,9 @@ std::string candidate_section(const DiagnosisResult& result) {
       why += std::string(why.empty() ? "" : " ") + "<b>Looks the same as " + escape(titles(c->aliased_with)) +
              " on this data.</b>";
     }
-    const std::string mark = found ? "<span class=\"mark\">accepted</span>" : "<span class=\"mark no\">refused</span>";
+    const std::string mark = !found                            ? "<span class=\"mark no\">refused</span>"
+                             : result.verdict == "unexplained" ? "<span class=\"mark\">kept</span>"
+                                                               : "<span class=\"mark\">accepted</span>";
     const std::string score =
         std::isnan(c->log_odds) ? "not scored" : escape(number(c->log_odds)) + " (" + odds_html(c->log_odds) + ")";
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
@@ -213,7 +231,7 @@ std::string certainty_section(const DiagnosisResult& result) {
     }
     if (!effect.alternatives.empty()) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +
-              "</b> cannot be told apart from " + escape(titles(effect.alternatives)) + ".</li>\n";
+              "</b> cannot be told apart from " + rivals(effect) + "</li>\n";
     }
     if (!effect.unlisted.empty()) {
       open += "<li><b>" + escape(effect_title(effect.name, effect.variant)) + "</b> looks the same as " +
@@ -225,7 +243,7 @@ std::string certainty_section(const DiagnosisResult& result) {
     }
   }
   for (const auto& axis : result.residual_after) {
-    if (!(axis.p_value < kNotRandom)) continue;
+    if (!(axis.p_value < kNotRandom) || axis.autocorrelation_time_s < kNoMemory) continue;
     const auto named = std::ranges::find_if(kAxes, [&](const Axis& a) { return axis.axis == a.force; });
     open += "<li>What is left in <b>" + escape(named == kAxes.end() ? axis.axis : std::string(named->name)) +
             "</b> remembers itself for about " + escape(number(axis.autocorrelation_time_s, 2)) +

@@ -115,9 +115,8 @@ void accepted(Text& out, const DiagnosisResult& result) {
     out.line("  " + pad_right(effect_title(effect.name, effect.variant), kNameWidth) + " " +
              scores(effect.log_odds, effect.error_reduction) + odds(effect.log_odds));
     for (const auto& value : effect.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");
-    if (!effect.alternatives.empty()) {
-      out.paragraph("cannot be told apart from: " + join(effect.alternatives, ", "), "      ");
-    }
+    for (const Alternative& other : effect.alternatives)
+      out.paragraph("cannot be told apart from " + other.name + " (" + odds(other.log_odds) + " against it)", "      ");
     if (!effect.unlisted.empty()) out.paragraph("looks the same as " + effect.unlisted, "      ");
     if (!effect.other_forms.empty()) {
       out.paragraph("which one is not certain: " + join(effect.other_forms, "; "), "      ");

@@ -61,6 +61,7 @@ struct Association {
   double of_wrench{std::numeric_limits<double>::quiet_NaN()};  ///< its size over that of the applied wrench (rms)
 };
 
+constexpr double kNoMemory = 0.4;    ///< s: white noise shows half of what a residual is the mean over, .25 to .35 s
 constexpr double kNotRandom = 0.01;  ///< p-value below which a residual counts as having a memory
 
 /// What to fly to tell an effect from another that explains the same.
@@ -70,19 +71,30 @@ struct ToldApart {
   double seconds{};
 };
 
+/// Another effect that the data cannot rule out in the place of one that was found.
+struct Alternative {
+  std::string name;
+  double log_odds{};  ///< natural, of the effect that was found over this one
+  std::string
+      corrupts{};  ///< the base parameter that goes most wrong if this acts unnoticed; empty where none surely does
+  double corruption{};  ///< by so much of its value; above zero: its size is overstated
+};
+
 struct EffectFound {
   std::string name;
   std::string variant;  ///< e.g. "thruster 3"; empty when the effect has one form only
   bool accepted{true};
   std::vector<NamedValue> parameters;
-  double log_odds{};
+  double log_odds{};  ///< natural, that the name is right: against nothing, what a part explains, and alternatives
   double error_reduction{};
-  std::vector<std::string> alternatives;  ///< other effects that the data cannot rule out
+  std::vector<Alternative> alternatives;  ///< other effects that the data cannot rule out
   std::vector<std::string> other_forms;   ///< "T4 or T0": forms of this effect that would explain as much
   std::string sentence;
   std::string unlisted{};               ///< what no list holds and would look the same; the odds are even then
   std::string unlisted_told_by{};       ///< the motion that would tell it apart
   std::vector<ToldApart> told_apart{};  ///< from some alternatives, by a segment; only where a site was given
+  std::string corrupts{};               ///< as for an alternative; empty where none moves
+  double corruption{};
 };
 
 struct CandidateTried {
@@ -126,6 +138,8 @@ struct DiagnosisResult {
   ModelError error_before;
   ModelError error_after;
   std::optional<WiringFault> wiring{};
+  /// Effects whose moment, phase or flow is another in the validation run, set by its first half; its second is judged.
+  std::vector<std::string> own_in_validation{};
   double explained{1.0};  ///< by the accepted effects, of the lasting error on validation; 1 when there are none
   Interval improvement;   ///< relative reduction of the normalised 5 s prediction error on validation
   std::vector<NamedValue> parameters_before;

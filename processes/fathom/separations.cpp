@@ -45,7 +45,7 @@ void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& 
     const auto active = std::ranges::find_if(
         fit.model.effects, [&](const model::ActiveEffect& a) { return a.effect->name() == effect.name; });
     if (active == fit.model.effects.end()) continue;
-    for (const std::string& other : effect.alternatives) {
+    for (const auto& [other, log_odds, corrupts, corruption] : effect.alternatives) {
       const auto answer = planning::segment_between(*active, *model::find_effect(other), scene, data, flights.extras());
       if (answer) effect.told_apart.push_back({other, answer->segment, answer->seconds});
     }

@@ -197,7 +197,9 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
                                    [&](const std::string& name) { return one.covers(name); }) &&
                        score.kind != "foreign" && score.kind != "noise";
     if (!right) ++score.strangers;
-    if (std::isfinite(one.probability)) score.claims.push_back({one.probability, right});
+    // Stated odds are those of the first name, beside what it may be instead.
+    if (std::isfinite(one.probability))
+      score.claims.push_back({one.probability, right && contains(score.truth, one.set.front())});
     compare_parameters(truth, one, score);
   }
   score.outcome = outcome_of(score, named);

@@ -151,7 +151,7 @@ inline DiagnosisReport made_up_report(const FixtureOptions& options = {}) {
                 {{"V_N", 0.081, 0.009, "m/s"}, {"V_E", -0.034, 0.011, "m/s"}},
                 18.2,
                 0.09,
-                {"tether_tension"},
+                {{"tether_tension", 1.1, "X_u", -0.08}},
                 {"east or north"},
                 "The water moves at 0.09 m/s towards the north-west."}};
   r.candidates = {{"thruster_lag", "", 214.6, 0.31, {}, "explains the late answer in every axis"},

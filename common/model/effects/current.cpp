@@ -8,8 +8,8 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"v_N", "m/s", 0.1, -3.0, 3.0},
-                                 EffectParameter{"v_E", "m/s", 0.1, -3.0, 3.0}};
+constexpr std::array kParameters{EffectParameter{"v_N", "m/s", 0.1, -3.0, 3.0, 0.0, false, true},
+                                 EffectParameter{"v_E", "m/s", 0.1, -3.0, 3.0, 0.0, false, true}};
 
 class Current final : public Effect {
  public:

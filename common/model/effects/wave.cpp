@@ -18,8 +18,9 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"cosine", "N", 5.0, -1e4, 1e4},
-                                 EffectParameter{"sine", "N", 5.0, -1e4, 1e4}, EffectParameter{"bearing", "rad", 3.0},
+constexpr std::array kParameters{EffectParameter{"cosine", "N", 5.0, -1e4, 1e4, 0.0, false, true},
+                                 EffectParameter{"sine", "N", 5.0, -1e4, 1e4, 0.0, false, true},
+                                 EffectParameter{"bearing", "rad", 3.0},
                                  EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
 constexpr int kAmplitudes = 2;  // the leading numbers
 constexpr std::size_t kBearing = 2;

@@ -127,7 +127,7 @@ Outcome search_dive(const model::Vehicle& vehicle, const std::vector<model::Acti
   for (const Judged& judged : outcome.found.accepted) {
     outcome.said += std::string(judged.effect->name()) + "(" + judged.variant_name + ") log odds " +
                     std::to_string(judged.log_odds) + " saves " + std::to_string(judged.error_reduction);
-    for (const std::string& other : judged.alternatives) outcome.said += " or " + other;
+    for (const Alternative& other : judged.alternatives) outcome.said += " or " + other.name;
     outcome.said += "; ";
   }
   if (outcome.found.accepted.empty()) {
@@ -327,7 +327,8 @@ TEST_CASE("search: drag that grows away from a far anchor looks like a wall's, a
   CAPTURE(outcome.said);
   REQUIRE_FALSE(outcome.found.accepted.empty());
   const Judged& first = outcome.found.accepted.front();
-  const bool among = std::ranges::find(first.alternatives, "tether_drag") != first.alternatives.end();
+  const bool among =
+      std::ranges::find(first.alternatives, "tether_drag", &Alternative::name) != first.alternatives.end();
   CHECK((first.effect->name() == "tether_drag" || among));
   MESSAGE(outcome.said);
 }

@@ -118,7 +118,7 @@ TEST_CASE(
   made.found.after.window_cost.assign(10, 1.0);
   CHECK(made.concluded().verdict == "adequate");
   made.found.after.window_cost.assign(50, 1.0);
-  made.found.taken_back = true;
+  made.found.taken_back = 20.0;
   const DiagnosisResult result = made.concluded();
   CHECK_FALSE(says(result.paragraph, "would remove"));
   CHECK(says(result.paragraph, "did not help the validation run"));
@@ -242,11 +242,12 @@ TEST_CASE("verdict: thrusters that are not the file's come before all else") {
 
 TEST_CASE("verdict: an alternative that was accepted beside it is none any more") {
   MadeUp made;
-  made.accept("current", {0.1, 0.1}).alternatives = {"tether_tension", "wall_effect"};
+  made.accept("current", {0.1, 0.1}).alternatives = {{"tether_tension"}, {"wall_effect", 1.0, "X_u", 0.2}};
   made.accept("tether_tension", {1.0, 1.0, 1.0, 1.0, 1.0});
   const DiagnosisResult result = made.concluded();
   REQUIRE(result.effects.size() == 2);
-  CHECK(result.effects[0].alternatives == std::vector<std::string>{"wall_effect"});
+  REQUIRE(result.effects[0].alternatives.size() == 1);
+  CHECK(result.effects[0].alternatives[0].name == "wall_effect");
   CHECK(says(result.paragraph, "current (or wall_effect)"));
 }
 
@@ -293,10 +294,17 @@ TEST_CASE("verdict: look-alikes that the odds cannot rule out are ambiguous, and
   made.accept("thruster_lag", {0.3});
   Judged& open = made.accept("asymmetric_drag", {-8.0}, 0, "X_uu");
   open.aliased_with = {"thrust_asymmetry"};
-  open.alternatives = {"thrust_asymmetry"};
+  open.alternatives = {{"thrust_asymmetry", std::log(2.0), "X_u", -0.1}};
+  open.log_odds = 30.0;
+  open.corrupts = "X_u|u|";
+  open.corruption = 0.25;
   const DiagnosisResult result = made.concluded();
   CHECK(result.verdict == "ambiguous");
   CHECK(says(result.paragraph, "asymmetric_drag (or thrust_asymmetry) cannot be told apart"));
+  CHECK(says(result.paragraph,
+             "The odds for asymmetric_drag are 2 to 1 against thrust_asymmetry; left out of a model, "
+             "asymmetric_drag falsifies X_u|u| by +25 %, thrust_asymmetry X_u by -10 %."));
+  CHECK(result.effects[1].log_odds == doctest::Approx(std::log(2.0)));  // no surer than the name is
   CHECK(says(result.manoeuvre, std::string{model::find_effect("asymmetric_drag")->revealed_by()}));
   CHECK(says(result.manoeuvre, std::string{model::find_effect("thrust_asymmetry")->revealed_by()}));
   CHECK_FALSE(says(result.manoeuvre, "thruster_lag"));
@@ -337,11 +345,28 @@ TEST_CASE("verdict: several forms of one effect are one entry whose numbers say 
 TEST_CASE("verdict: what was taken back leaves something unexplained, and the refused say why") {
   MadeUp made;
   made.refuse("current", 30.0, "helps the runs that it was fitted to, and not the validation run");
-  made.found.taken_back = true;
+  made.found.taken_back = 20.0;
   const DiagnosisResult result = made.concluded();
   CHECK(result.verdict == "unexplained");
   CHECK(result.effects.empty());
   CHECK(result.paragraph.find("did not help the validation run") != std::string::npos);
+}
+
+TEST_CASE("verdict: what was taken back at odds that noise reaches was chance, and is told") {
+  MadeUp made;
+  made.refuse("thrust_overshoot", 5.3, "helps the runs that it was fitted to, and not the validation run");
+  made.found.taken_back = 5.3;
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "adequate");
+  CHECK(says(result.paragraph, "One that seemed to help the training runs did not help the validation run."));
+}
+
+TEST_CASE("verdict: forms without a name of their own are told apart in words") {
+  MadeUp made;
+  made.accept("thruster_lag", {0.3}).other_forms = {"vertical apart"};
+  const DiagnosisResult result = made.concluded();
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].other_forms == std::vector<std::string>{"the plain form or vertical apart"});
 }
 
 TEST_CASE("verdict: a free curve that helps leaves something unexplained, and says over what") {
