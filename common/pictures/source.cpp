@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -13,7 +12,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/vision/jpeg.hpp"
+#include "common/pictures/file_reader.hpp"
 
 namespace fathom::pictures {
 namespace {
@@ -22,13 +21,26 @@ namespace fs = std::filesystem;
 
 constexpr double kFolderRate = 10.0;
 
-const std::set<std::string> kPictures{".png", ".jpg", ".jpeg", ".bmp",  ".pgm",
+const std::set<std::string> kPictures{".png", ".jpg", ".jpeg", ".jp2",  ".bmp", ".pgm",
                                       ".ppm", ".pnm", ".tif",  ".tiff", ".webp"};
 
 std::string ending(const fs::path& path) {
   std::string text = path.extension().string();
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+// Names that begin with a dot are other programs' notes beside the pictures.
+bool is_picture(const fs::directory_entry& entry) {
+  std::error_code error;
+  return entry.is_regular_file(error) && entry.path().filename().string().front() != '.' &&
+         kPictures.contains(ending(entry.path()));
+}
+
+bool has_pictures(const fs::path& folder) {
+  std::error_code error;
+  const fs::directory_iterator all{folder, error};
+  return std::any_of(begin(all), end(all), is_picture);
 }
 
 // "frame2" before "frame10".
@@ -62,36 +74,9 @@ class Folder final : public Source {
 
   std::optional<Frame> next() override {
     if (at_ >= files_.size()) return {};
-    const fs::path& path = files_[at_];
-    Frame frame{.name = path.filename().string(), .time = static_cast<double>(at_) / rate_};
+    Frame frame{.name = files_[at_].filename().string(), .time = static_cast<double>(at_) / rate_};
+    reader_.read(files_[at_], frame);
     ++at_;
-    std::ifstream file{path, std::ios::binary};
-    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>{file}, {}};
-    const bool jpeg = bytes.size() > 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
-    if (!file && bytes.empty()) {
-      frame.problem = path.string() + ": cannot be read";
-    } else if (jpeg) {
-      cv::Mat grey, bgr;
-      const std::string problem = vision::decode_jpeg(bytes, true, grey, bgr);
-      if (problem.empty()) {
-        frame.picture = bgr.empty() ? grey : bgr;
-        frame.halved_colour = vision::halves_colour(bytes);
-        frame.jpeg = std::move(bytes);
-      } else {
-        frame.problem = path.string() + ": " + problem;
-      }
-    } else {
-      try {
-        frame.picture = bytes.empty() ? cv::Mat{} : cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-      } catch (const cv::Exception&) {
-        frame.picture.release();
-      }
-      if (frame.picture.empty()) {
-        frame.problem = path.string() + ": no picture that can be read; is it damaged?";
-      } else {
-        frame.picture = plain(frame.picture);
-      }
-    }
     return frame;
   }
   [[nodiscard]] double rate() const override { return rate_; }
@@ -100,6 +85,7 @@ class Folder final : public Source {
   std::vector<fs::path> files_;
   double rate_;
   std::size_t at_{};
+  FileReader reader_;
 };
 
 class Video final : public Source {
@@ -112,6 +98,7 @@ class Video final : public Source {
     cv::Mat picture;
     if (!capture_.read(picture) || picture.empty()) {
       if (count_ == 0) throw InputError(name_ + ": no picture comes out of it; is it a video that OpenCV can read?");
+      ended_ = true;
       return {};
     }
     char text[32];
@@ -124,12 +111,21 @@ class Video final : public Source {
     return frame;
   }
   [[nodiscard]] double rate() const override { return rate_; }
+  [[nodiscard]] std::string remark() const override {
+    constexpr double kSure = 0.95;  // lengths are estimates where the rate varies
+    const double stated = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    const auto came = static_cast<double>(count_);
+    if (!ended_ || !(stated < 1e8) || came + 1.0 >= kSure * stated) return {};
+    return name_ + ": ends after " + std::to_string(count_) + " of " + std::to_string(std::lround(stated)) +
+           " pictures that it states; is it cut?";
+  }
 
  private:
   cv::VideoCapture capture_;
   std::string name_;
   double rate_;
   std::size_t count_{};
+  bool ended_{false};
 };
 
 }  // namespace
@@ -140,10 +136,15 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
   const double folder_rate = rate > 0.0 ? rate : kFolderRate;
   if (fs::is_directory(path)) {
     std::vector<fs::path> files;
+    std::string within;  // a folder with pictures, to say where they are
     for (const auto& entry : fs::directory_iterator{path, error}) {
-      if (entry.is_regular_file() && kPictures.contains(ending(entry.path()))) files.push_back(entry.path());
+      if (is_picture(entry)) files.push_back(entry.path());
+      if (entry.is_directory(error) && has_pictures(entry.path())) within = entry.path().filename().string();
     }
-    if (files.empty()) throw InputError(path + ": no pictures in this folder (png, jpg, bmp, pgm, tif, webp)");
+    if (files.empty()) {
+      throw InputError(path + ": no pictures in this folder (png, jpg, jp2, bmp, pgm, tif, webp)" +
+                       (within.empty() ? "" : "; there are some in its folder '" + within + "'"));
+    }
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
       return before(a.filename().string(), b.filename().string());
     });
@@ -151,6 +152,7 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
   }
   if (kPictures.contains(ending(path))) return std::make_unique<Folder>(std::vector<fs::path>{path}, folder_rate);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it, in one line
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);                              // as does FFmpeg's own voice
   cv::VideoCapture capture;
   try {
     capture.open(path);
@@ -161,18 +163,6 @@ std::unique_ptr<Source> open(const std::string& path, double rate) {
   const double stated = capture.get(cv::CAP_PROP_FPS);
   const bool sensible = std::isfinite(stated) && stated > 0.01 && stated < 10000.0;
   return std::make_unique<Video>(capture, path, rate > 0.0 ? rate : (sensible ? stated : kFolderRate));
-}
-
-cv::Mat plain(const cv::Mat& picture) {
-  cv::Mat result = picture;
-  if (picture.depth() == CV_16U) {
-    picture.convertTo(result, CV_8U, 1.0 / 257.0);
-  } else if (picture.depth() != CV_8U) {
-    cv::normalize(picture, result, 0.0, 255.0, cv::NORM_MINMAX, CV_8U);
-  }
-  if (result.channels() == 4) cv::cvtColor(result, result, cv::COLOR_BGRA2BGR);
-  if (result.channels() == 2) cv::extractChannel(result, result, 0);
-  return result;
 }
 
 cv::Mat in_grey(const cv::Mat& picture) {

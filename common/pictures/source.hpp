@@ -29,6 +29,8 @@ class Source {
   /// Nothing: the end.
   virtual std::optional<Frame> next() = 0;
   [[nodiscard]] virtual double rate() const = 0;  ///< Hz
+  /// What was odd of all of it, known at its end; one line, mostly empty.
+  [[nodiscard]] virtual std::string remark() const { return {}; }
 };
 
 /// Folder (its pictures in the order of their names, numbers by value), single picture, or video. `rate` [Hz]: of a
@@ -36,8 +38,8 @@ class Source {
 /// there is nothing to read.
 [[nodiscard]] std::unique_ptr<Source> open(const std::string& path, double rate);
 
-/// 8 bit, one or three channels.
-[[nodiscard]] cv::Mat plain(const cv::Mat& picture);
+/// 8 bit, one or three channels. `bits`: of the largest brightness, where a pixel has 16.
+[[nodiscard]] cv::Mat plain(const cv::Mat& picture, int bits = 16);
 
 /// The picture itself when it is grey.
 [[nodiscard]] cv::Mat in_grey(const cv::Mat& picture);

@@ -1,5 +1,6 @@
 #include "common/vision/corner_fit.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -88,23 +89,71 @@ std::optional<Line> fit(const std::array<Eigen::Vector2d, kMostSamples>& points,
   return line;
 }
 
-std::optional<Line> fit_edge(const cv::Mat& grey, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                             const Eigen::Vector2d& middle, double reach, double sense) {
+/// By how much the lens bends an edge away from its chord [px, outward], as a polynomial that is 0 at both ends.
+struct Bow {
+  double quarter{}, middle{}, three_quarters{};
+
+  [[nodiscard]] double at(double share) const {  // through the five points (Lagrange)
+    const double s = share;
+    return s * (1.0 - s) *
+           (128.0 / 3.0 * quarter * (0.5 - s) * (0.75 - s) - 64.0 * middle * (0.25 - s) * (0.75 - s) +
+            128.0 / 3.0 * three_quarters * (0.25 - s) * (0.5 - s));
+  }
+  [[nodiscard]] double largest() const {
+    return std::max({std::abs(quarter), std::abs(middle), std::abs(three_quarters)});
+  }
+};
+
+// What is straight in space is straight in normalized coordinates.
+Bow bow_of(const Projection* lens, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+           const Eigen::Vector2d& outward) {
+  constexpr double kStraight = 0.02;  // px
+  constexpr double kSteepest = 20.0;  // tangent of the angle to the axis: there it folds back
+  if (lens == nullptr) return {};
+  const Eigen::Vector2d a = lens->normalized(from), b = lens->normalized(to);
+  if (!(a.norm() < kSteepest) || !(b.norm() < kSteepest)) return {};
+  const Eigen::Vector2d along = (to - from).normalized();
+  constexpr double kFar = 1e3;  // m: there a port's offset of the rays, which `normalized` neglects, is nothing
+  // At a share of the chord in the picture, which is not that in space.
+  const auto bend = [&](double share) {
+    double s = share, off = 0.0;
+    for (int round = 0; round < 2; ++round) {
+      const Eigen::Vector2d p = lens->pixel(kFar * Eigen::Vector2d{a + s * (b - a)}.homogeneous()) - from;
+      s += share - along.dot(p) / (to - from).norm();
+      off = outward.dot(p);
+    }
+    return off;
+  };
+  const double middle = bend(0.5);
+  if (std::abs(middle) < kStraight) return {};
+  return {.quarter = bend(0.25), .middle = middle, .three_quarters = bend(0.75)};
+}
+
+/// An edge as it was fitted: its chord.
+struct Edge {
+  std::optional<Line> line;
+  double bow{};  // px
+};
+
+Edge fit_edge(const cv::Mat& grey, const Projection* lens, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+              const Eigen::Vector2d& middle, double reach, double sense) {
   const Eigen::Vector2d along = to - from;
   Eigen::Vector2d outward{-along.y(), along.x()};
   outward.normalize();
   if (outward.dot(0.5 * (from + to) - middle) < 0.0) outward = -outward;
+  const Bow bow = bow_of(lens, from, to, outward);
+  Edge edge{.bow = bow.largest()};
   const int wanted = std::clamp(static_cast<int>(along.norm() * (1.0 - 2.0 * kFree)), 6, kMostSamples);
   std::array<Eigen::Vector2d, kMostSamples> points;
   int n = 0;
   for (int i = 0; i < wanted; ++i) {
     const double share = kFree + (1.0 - 2.0 * kFree) * (i + 0.5) / wanted;
     const Eigen::Vector2d at = from + share * along;
-    const auto offset = step_along(grey, at, outward, reach, sense);
+    const auto offset = step_along(grey, at + bow.at(share) * outward, outward, reach, sense);
     if (offset) points[static_cast<std::size_t>(n++)] = at + *offset * outward;
   }
-  if (2 * n < wanted) return {};
-  return fit(points, n);
+  if (2 * n >= wanted) edge.line = fit(points, n);
+  return edge;
 }
 
 std::optional<Eigen::Vector2d> meeting(const Line& a, const Line& b) {
@@ -116,7 +165,8 @@ std::optional<Eigen::Vector2d> meeting(const Line& a, const Line& b) {
 
 }  // namespace
 
-std::array<bool, 4> fit_corners(const cv::Mat& grey, bool reversed, std::array<Eigen::Vector2d, 4>& corners) {
+std::array<bool, 4> fit_corners(const cv::Mat& grey, bool reversed, const Projection* lens,
+                                std::array<Eigen::Vector2d, 4>& corners) {
   const std::array<Eigen::Vector2d, 4> begin = corners;
   const double sense = reversed ? -1.0 : 1.0;
   std::array<bool, 4> fitted{};
@@ -126,15 +176,16 @@ std::array<bool, 4> fit_corners(const cv::Mat& grey, bool reversed, std::array<E
     for (std::size_t i = 0; i < 4; ++i) shortest = std::min(shortest, (corners[(i + 1) % 4] - corners[i]).norm());
     // Not into the next cell: the border is at least one cell of at most ten along the edge.
     const double reach = std::clamp(0.08 * shortest, 1.5, 4.0);
-    std::array<std::optional<Line>, 4> edges;
+    std::array<Edge, 4> edges;
     for (std::size_t i = 0; i < 4; ++i) {
-      edges[i] = fit_edge(grey, corners[i], corners[(i + 1) % 4], middle, reach, sense);
+      edges[i] = fit_edge(grey, lens, corners[i], corners[(i + 1) % 4], middle, reach, sense);
     }
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto& before = edges[(i + 3) % 4];
-      const auto& after = edges[i];
-      const auto at = before && after ? meeting(*before, *after) : std::nullopt;
-      fitted[i] = at && (*at - begin[i]).norm() < kFarthest;
+      const Edge& before = edges[(i + 3) % 4];
+      const Edge& after = edges[i];
+      const auto at = before.line && after.line ? meeting(*before.line, *after.line) : std::nullopt;
+      // The library drew straight lines through bent edges.
+      fitted[i] = at && (*at - begin[i]).norm() < kFarthest + before.bow + after.bow;
       if (fitted[i]) corners[i] = *at;
     }
   }

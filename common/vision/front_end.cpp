@@ -56,14 +56,15 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
     : site_{site},
       lens_{lens},
       settings_{settings},
-      detector_{settings.detector},
+      detector_{settings.detector, lens},
       locator_{site, lens, settings.locator},
       loose_locator_{site, std::nullopt, settings.locator},
       floor_{site.floor} {
   if (settings.detector.decimation > 1.0) {
     DetectorSettings near = settings.detector;
     near.decimation = 1.0;
-    near_detector_.emplace(near);
+    near.coarser = false;
+    near_detector_.emplace(near, lens);
   }
   if (lens) tracker_.emplace(*lens, settings.flow);
   if (lens && laser) {
@@ -112,9 +113,8 @@ bool FrontEnd::look_again(const cv::Mat& grey) {
     const cv::Rect region =
         whole & cv::Rect{cv::Point{static_cast<int>(low.x() - margin), static_cast<int>(low.y() - margin)},
                          cv::Point{static_cast<int>(high.x() + margin) + 1, static_cast<int>(high.y() + margin) + 1}};
-    for (TagSighting tag : near_detector_->step(grey(region).clone())) {
+    for (const TagSighting& tag : near_detector_->step(grey, region)) {
       if (tag.id != id) continue;
-      for (Eigen::Vector2d& corner : tag.corners) corner += Eigen::Vector2d{region.x, region.y};
       sight_.tags.push_back(tag);
       more = true;
       break;

@@ -42,6 +42,7 @@ struct FlowTracker::State {
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
   cv::Mat small, mask;  // mask: empty, or 0 where there are no features
+  cv::Mat smooth, smooth_before;
   std::vector<cv::Point2f> features, found, back;
   std::vector<unsigned char> ok, ok_back;
   std::vector<float> errors;
@@ -72,6 +73,12 @@ struct FlowTracker::State {
       grey.copyTo(small);
     }
     cv::buildOpticalFlowPyramid(small, pyramid, window(), kLevels);
+    // Mean values of pixels still hold detail finer than the reduced ones can: interpolated, it draws each feature to
+    // whole pixels, and motion of less than one, as a divergence is, was read too small. Tracks' ends are fitted in
+    // smoother pictures; not found in them, for moving light is smooth too.
+    constexpr double kSmooth = 1.0;  // px, reduced
+    std::swap(smooth, smooth_before);
+    cv::GaussianBlur(small, smooth, {5, 5}, kSmooth);
   }
 
   void choose_features() {
@@ -113,8 +120,7 @@ struct FlowTracker::State {
       if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
       const cv::Point2f miss = back[i] - features[i];
       if (std::hypot(miss.x, miss.y) > limit) continue;
-      const cv::Point2f end =
-          end_in_changed_light(pyramid_before[0], pyramid[0], features[i], found[i]).value_or(found[i]);
+      const cv::Point2f end = end_in_changed_light(smooth_before, smooth, features[i], found[i]).value_or(found[i]);
       tracks.push_back({.from = whole(features[i]), .to = whole(end)});
     }
   }

@@ -19,6 +19,7 @@ extern "C" {
 
 #include "common/base/error.hpp"
 #include "common/vision/corner_fit.hpp"
+#include "common/vision/projection.hpp"
 
 namespace fathom::vision {
 namespace {
@@ -109,7 +110,8 @@ double least_margin(const std::string& name) {
 struct TagDetector::State {
   apriltag_detector_t* detector{};
   std::vector<std::pair<const Family*, apriltag_family_t*>> families;
-  bool refine{};
+  DetectorSettings settings;
+  std::optional<Projection> projection;
   std::vector<TagSighting> found;
 
   State() = default;
@@ -119,13 +121,52 @@ struct TagDetector::State {
     if (detector != nullptr) apriltag_detector_destroy(detector);
     for (const auto& [known, made] : families) known->destroy(made);
   }
+
+  // What was found before at a finer scale stays as it is: its corners are better.
+  [[nodiscard]] bool is_new(const TagSighting& tag) const {
+    const auto middle = [](const TagSighting& each) {
+      return Eigen::Vector2d{0.25 * (each.corners[0] + each.corners[1] + each.corners[2] + each.corners[3])};
+    };
+    return std::none_of(found.begin(), found.end(), [&](const TagSighting& each) {
+      return each.id == tag.id && each.family == tag.family && (middle(each) - middle(tag)).norm() < 0.5 * each.edge;
+    });
+  }
+
+  void look(const cv::Mat& grey, const cv::Rect& region, double decimation) {
+    const bool fits = projection && projection->lens().width == grey.cols && projection->lens().height == grey.rows;
+    const Projection* lens = fits ? &*projection : nullptr;
+    const Eigen::Vector2d origin{region.x - 0.5, region.y - 0.5};  // the library counts from a pixel's outer corner
+    const cv::Mat part = region.size() == grey.size() ? grey : grey(region).clone();
+    detector->quad_decimate = static_cast<float>(decimation);
+    image_u8_t image{part.cols, part.rows, static_cast<int32_t>(part.step), part.data};
+    zarray_t* detections = apriltag_detector_detect(detector, &image);
+    for (int i = 0; i < zarray_size(detections); ++i) {
+      apriltag_detection_t* each = nullptr;
+      zarray_get(detections, i, static_cast<void*>(&each));
+      TagSighting tag;
+      tag.family = each->family->name;
+      tag.id = each->id;
+      tag.hamming = each->hamming;
+      tag.margin = static_cast<double>(each->decision_margin);
+      for (std::size_t k = 0; k < 4; ++k) tag.corners[k] = origin + Eigen::Vector2d{each->p[k][0], each->p[k][1]};
+      tag.edge = mean_edge(tag.corners);
+      if (!is_new(tag)) continue;
+      if (settings.refine) {
+        const auto fitted = fit_corners(grey, each->family->reversed_border, lens, tag.corners);
+        if (near_border(grey, tag)) tag.sound = fitted;
+      }
+      found.push_back(tag);
+    }
+    apriltag_detections_destroy(detections);
+  }
 };
 
-TagDetector::TagDetector(const DetectorSettings& settings) : state_{std::make_unique<State>()} {
+TagDetector::TagDetector(const DetectorSettings& settings, const std::optional<model::Lens>& lens)
+    : state_{std::make_unique<State>()} {
+  if (lens && (!lens->undistorted() || lens->port)) state_->projection.emplace(*lens);
   state_->detector = apriltag_detector_create();
   state_->detector->nthreads = 1;
-  state_->detector->quad_decimate = static_cast<float>(settings.decimation);
-  state_->refine = settings.refine;
+  state_->settings = settings;
   for (const std::string& wanted : settings.families) {
     const Family* known = need_family(wanted);
     const bool twice = std::any_of(state_->families.begin(), state_->families.end(),
@@ -141,30 +182,20 @@ TagDetector::TagDetector(TagDetector&&) noexcept = default;
 TagDetector& TagDetector::operator=(TagDetector&&) noexcept = default;
 
 const std::vector<TagSighting>& TagDetector::step(const cv::Mat& grey) {
+  return step(grey, {0, 0, grey.cols, grey.rows});
+}
+
+const std::vector<TagSighting>& TagDetector::step(const cv::Mat& grey, const cv::Rect& region) {
   State& state = *state_;
   state.found.clear();
   constexpr int kSmallest = 16;  // px: below, no family's cells are pixels any more, and the library's tiles break
-  if (grey.cols < kSmallest || grey.rows < kSmallest) return state.found;
-  image_u8_t image{grey.cols, grey.rows, static_cast<int32_t>(grey.step), grey.data};
-  zarray_t* detections = apriltag_detector_detect(state.detector, &image);
-  for (int i = 0; i < zarray_size(detections); ++i) {
-    apriltag_detection_t* each = nullptr;
-    zarray_get(detections, i, static_cast<void*>(&each));
-    TagSighting tag;
-    tag.family = each->family->name;
-    tag.id = each->id;
-    tag.hamming = each->hamming;
-    tag.margin = static_cast<double>(each->decision_margin);
-    // The library counts from the outer corner of the first pixel.
-    for (std::size_t k = 0; k < 4; ++k) tag.corners[k] = {each->p[k][0] - 0.5, each->p[k][1] - 0.5};
-    tag.edge = mean_edge(tag.corners);
-    if (state.refine) {
-      const auto fitted = fit_corners(grey, each->family->reversed_border, tag.corners);
-      if (near_border(grey, tag)) tag.sound = fitted;
-    }
-    state.found.push_back(tag);
-  }
-  apriltag_detections_destroy(detections);
+  if (region.width < kSmallest || region.height < kSmallest) return state.found;
+  constexpr double kLeastSide = 240.0;  // px, of the reduced picture
+  double decimation = state.settings.decimation;
+  do {
+    state.look(grey, region, decimation);
+    decimation *= 2.0;
+  } while (state.settings.coarser && std::min(region.width, region.height) >= kLeastSide * decimation);
   std::sort(state.found.begin(), state.found.end(), [](const TagSighting& a, const TagSighting& b) {
     return std::tie(a.family, a.id, b.margin) < std::tie(b.family, b.id, a.margin);
   });

@@ -5,8 +5,11 @@
 #include <array>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "common/model/lens.hpp"
 
 namespace fathom::vision {
 
@@ -42,19 +45,22 @@ struct TagSighting {
 struct DetectorSettings {
   std::vector<std::string> families{"tag36h11"};
   double decimation{2.0};  ///< search in pictures so many times smaller; corners are fitted at full resolution
+  bool coarser{false};     ///< and in half of that, and so on: large tags with blurred edges show there alone
   bool refine{true};       ///< fit the edges anew at full resolution
 };
 
 class TagDetector {
  public:
-  /// InputError for a family that the library does not know.
-  explicit TagDetector(const DetectorSettings& settings);
+  /// InputError for a family that the library does not know. `lens`: of pictures of its size; it bends tags' edges.
+  explicit TagDetector(const DetectorSettings& settings, const std::optional<model::Lens>& lens = std::nullopt);
   ~TagDetector();
   TagDetector(TagDetector&&) noexcept;
   TagDetector& operator=(TagDetector&&) noexcept;
 
   /// All tags of a grey picture, in the order of family and number. The reference is good until the next call.
   const std::vector<TagSighting>& step(const cv::Mat& grey);
+  /// The same in a part of the picture.
+  const std::vector<TagSighting>& step(const cv::Mat& grey, const cv::Rect& region);
 
  private:
   struct State;

@@ -223,6 +223,17 @@ void TagLocator::look_for_second(Utime utime, const std::vector<Correspondence>&
   }
 }
 
+// What corners err is stated beforehand and seen in the fit, a lone tag's too: the larger counts, since lens and light
+// move all of them alike. One tag's shift in the map is the camera's, and no fit shows it.
+Matrix6d TagLocator::covariance(const FittedPose& fitted, std::size_t n_points, int n_tags) const {
+  const double dof = 2.0 * static_cast<double>(n_points) - 6.0;
+  const double squares = fitted.rms * fitted.rms * static_cast<double>(n_points);
+  const double variance = std::max(settings_.corner_sigma * settings_.corner_sigma, squares / dof);
+  Matrix6d result = variance * fitted.information.inverse();
+  result.topLeftCorner<3, 3>().diagonal().array() += site_.search.map_sigma * site_.search.map_sigma / n_tags;
+  return result;
+}
+
 std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>& tags,
                                           const std::optional<Eigen::Vector3d>& down_C) {
   judge_by_map(tags);
@@ -266,13 +277,10 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
       if (best->agrees[k] && candidates_[k].tag->id == each.tag->id) each.tag->verdict = TagVerdict::kTwice;
     }
   }
-  const double dof = 2.0 * static_cast<double>(points.size()) - 6.0;
-  const double variance =
-      std::max(settings_.corner_sigma * settings_.corner_sigma, best->n > 1 ? best->fitted.cost / dof : 0.0);
   fix.pose = best->fitted.pose;
   fix.rms = best->fitted.rms;
   fix.n_tags = best->n;
-  fix.covariance = variance * best->fitted.information.inverse();
+  fix.covariance = covariance(best->fitted, points.size(), best->n);
   if (!fix.covariance.allFinite()) return {};
   if (!fix.ambiguous) {
     last_ = fix.pose;

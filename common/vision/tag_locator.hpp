@@ -74,6 +74,7 @@ class TagLocator {
   [[nodiscard]] bool alone_is_plausible(Utime utime, const Pose& pose, const std::optional<Eigen::Vector3d>& down_C);
   void look_for_second(Utime utime, const std::vector<Correspondence>& points, const Eigen::Vector3d& normal,
                        const std::optional<Eigen::Vector3d>& down_C, FittedPose& fitted, CameraFix& fix) const;
+  [[nodiscard]] Matrix6d covariance(const FittedPose& fitted, std::size_t n_points, int n_tags) const;
   [[nodiscard]] bool recent(Utime utime) const;
   [[nodiscard]] double since_last(const Pose& pose) const;  ///< m; when there is a last one
 

@@ -41,6 +41,10 @@ void RecordedPictures::wait(std::span<const int> descriptors, int milliseconds) 
     }
   }
   auto frame = source_->next();
+  if (!frame && remark_ != source_->remark()) {  // once, where it is repeated
+    remark_ = source_->remark();
+    process_.log_warning(remark_);
+  }
   if (!frame && settings_.repeat && count_ > 0) {
     source_ = pictures::open(settings_.pictures, settings_.rate);
     offset_ = due_;

@@ -37,7 +37,7 @@ class RecordedPictures {
   runtime::Process& process_;
   RecordedSettings settings_;
   std::unique_ptr<pictures::Source> source_;
-  std::string complaint_;
+  std::string complaint_, remark_;
   std::int64_t count_{}, unreadable_{};
   std::chrono::steady_clock::time_point began_{};
   Utime first_{};

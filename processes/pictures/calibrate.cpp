@@ -27,7 +27,7 @@ struct Options {
 };
 
 std::vector<vision::View> look(const Options& options, model::Site& site) {
-  vision::TagDetector detector{{.families = site.search.families, .decimation = 1.0}};
+  vision::TagDetector detector{{.families = site.search.families, .decimation = 1.0, .coarser = true}};
   const auto source = open(options.source, 0.0);
   std::vector<vision::View> views;
   int count = 0;
@@ -57,6 +57,8 @@ std::vector<vision::View> look(const Options& options, model::Site& site) {
     }
     views.push_back({frame->name, detector.step(grey)});
   }
+  if (const std::string remark = source->remark(); !remark.empty())
+    std::fprintf(stderr, "fathom: %s\n", remark.c_str());
   return views;
 }
 

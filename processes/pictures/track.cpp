@@ -94,8 +94,9 @@ void run(const Options& options) {
                  options.vehicle.c_str(), options.site.c_str());
   }
   vision::FrontEndSettings settings;
-  // Recorded pictures can wait: search and flow at full resolution, unless the configuration says otherwise.
+  // Recorded pictures can wait: search at every and flow at full resolution, unless the configuration says otherwise.
   settings.detector.decimation = 1.0;
+  settings.detector.coarser = true;
   settings.flow.reduction = 1.0;
   if (!options.config.empty()) {
     const Config file = Config::load(options.config);
@@ -140,6 +141,8 @@ void run(const Options& options) {
     summary.add(sight);
     if (!options.drawings.empty()) write(drawing_name(options.drawings, frame->name), draw(picture, front_end));
   }
+  if (const std::string remark = source->remark(); !remark.empty())
+    std::fprintf(stderr, "fathom: %s\n", remark.c_str());
   tables.close();
   summary.print(lens.has_value(), !site.tags.empty(), camera.laser.has_value());
   std::printf("written: %s, %s%s%s\n", options.csv.c_str(), tables.frames_path().c_str(),

@@ -104,6 +104,35 @@ TEST_CASE("flow: what it says of its error is true with a sensor's rotation and 
   }
 }
 
+TEST_CASE("flow: a divergence that moves features by less than a pixel is read in full, and its error is as stated") {
+  constexpr double kShare = 0.02;  // of the divergence, in the mean; five without smoothing
+  constexpr double kStated = 2.5;  // of one, the mean square of error over what is stated
+  constexpr int kDives = 6, kPictures = 12;
+  const model::Site place = site();
+  double seen = 0.0, wanted = 0.0, squares = 0.0;
+  for (int dive = 0; dive < kDives; ++dive) {
+    Renderer renderer{place, lens(), std::nullopt, {.caustics = 0.0}, static_cast<std::uint64_t>(50 + dive)};
+    FlowTracker tracker{lens(), {}};
+    const Pose start = pose({0.07 * dive, -0.1, 0.2 + 0.05 * dive}, 0.02, -0.03, 0.9 * dive);
+    const Way way{{0.02, 0.03, dive % 2 == 0 ? 0.09 : -0.09}, Eigen::Vector3d::Zero()};
+    for (int i = 0; i < kPictures; ++i) {
+      const Pose now = along(start, way, i * kPeriod);
+      const Picture shown = picture(renderer, i * kPeriod, now);
+      const Flow flow = tracker.step(shown.utime, shown.grey, Eigen::Matrix3d::Identity(), now.R_WC.row(2));
+      if (i == 0) continue;
+      REQUIRE(flow.state == FlowState::kValid);
+      const Pose middle = along(start, way, (i - 0.5) * kPeriod);
+      const double z = (place.floor - middle.p_WC.z()) / middle.R_WC(2, 2);
+      const double truth = (middle.R_WC.transpose() * way.v_W).z() / z;
+      seen += flow.rate.z() * truth;
+      wanted += truth * truth;
+      squares += (flow.rate.z() - truth) * (flow.rate.z() - truth) / flow.covariance(2, 2);
+    }
+  }
+  CHECK(std::abs(seen / wanted - 1.0) < kShare);
+  CHECK(squares / (kDives * (kPictures - 1)) < kStated);
+}
+
 TEST_CASE("flow: light that changes over a feature does not move it") {
   constexpr float kStart = 0.3F;  // px
   constexpr double kGood = 0.03;
