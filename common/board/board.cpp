@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "common/base/entanglement.hpp"
+
 namespace fathom::board {
 namespace {
 
@@ -13,6 +15,7 @@ using Json = nlohmann::json;
 
 // Whatever anybody says, the text stays small enough to be sent twice a second.
 constexpr std::size_t kMostText = 300, kMostItems = 100;
+constexpr std::size_t kMostCovariance = 32 * 32;  // twice what any vehicle learns
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -113,14 +116,21 @@ Json named(const NamedValue& value) {
 }
 
 Json model(const ModelEstimate& said) {
+  Entanglement entangled;
+  if (said.covariance.size() <= kMostCovariance) entangled = entanglement(said.covariance);
+  std::size_t at = 0;
   return {{"updates", said.updates},
           {"parameters", list(said.parameters,
                               [&](const NamedValue& each) {
                                 Json one = named(each);
                                 one["frozen"] =
                                     std::find(said.frozen.begin(), said.frozen.end(), each.name) != said.frozen.end();
+                                one["entangled"] =
+                                    at < entangled.inflation.size() ? number(entangled.inflation[at]) : Json(nullptr);
+                                ++at;
                                 return one;
                               })},
+          {"condition", entangled.inflation.empty() ? Json(nullptr) : number(entangled.condition)},
           {"effects", texts(said.effects)},
           {"effect_numbers", list(said.effect_numbers, named)}};
 }

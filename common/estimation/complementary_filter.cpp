@@ -27,6 +27,17 @@ Gains third_order_gains(double cutoff, double damping, double dt) {
   return {.value = x / (1.0 + x), .rate = (b + c * dt) * dt / (1.0 + x), .second = c * dt / (1.0 + x)};
 }
 
+// Backward Euler's shares of value, rate and second depend on the interval. Two sources that disagree by e, one of
+// which skips a measurement now and then, then cancel in the second but not in the value, and a false speed makes up
+// for it.
+Gains proportional_third_order_gains(double cutoff, double damping, double dt) {
+  constexpr double kStable = 2.0;  // cutoff times dt; from 2.3 on a source that is alone would make it swing
+  if (cutoff * dt > kStable) return third_order_gains(cutoff, damping, dt);
+  const double a = (2.0 * damping + 1.0) * cutoff;
+  const double value = a * dt / (1.0 + a * dt);
+  return {.value = value, .rate = cutoff * value, .second = cutoff * cutoff / (2.0 * damping + 1.0) * value};
+}
+
 void PairCovariance::predict(double coupling, double dt, double noise_xx, double noise_xr, double noise_rr) {
   const double h = coupling * dt;
   xx += 2.0 * h * xr + h * h * rr + noise_xx;

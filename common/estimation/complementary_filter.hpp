@@ -21,6 +21,10 @@ struct Gains {
 [[nodiscard]] Gains second_order_gains(double cutoff, double damping, double dt);
 /// The same with a further pole at the cut-off, for one more integrator (the bias of an accelerometer).
 [[nodiscard]] Gains third_order_gains(double cutoff, double damping, double dt);
+/// The same for an axis that several sources share: value, rate and second in a ratio that does not depend on the
+/// interval, up to two over the cut-off. What the sources disagree by then makes no false speed, whichever of them
+/// skips a sample.
+[[nodiscard]] Gains proportional_third_order_gains(double cutoff, double damping, double dt);
 
 /// Variances of a quantity x and its rate (or bias) r: the part of a Kalman filter that does not choose the gains.
 struct PairCovariance {

@@ -49,13 +49,15 @@ void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eig
   const Eigen::Vector3d a_W = R_WB * (f_B - b_) + kGravity;
   p_WB_ += dt * v_WB_ + (0.5 * dt * dt) * a_W;
   v_WB_ += dt * a_W;
-  const double noise_v = noise_.acceleration * noise_.acceleration;
+  const double across = noise_.acceleration * noise_.acceleration;
+  const double vertical = noise_.vertical_acceleration * noise_.vertical_acceleration;
   const double noise_b = noise_.bias_walk * noise_.bias_walk;
   // A wrong attitude turns gravity, which level passes for a bias along the body, and as such is turned up by a tilt.
   const double tilted = kGravity.z() * noise_.attitude * std::hypot(R_WB(2, 0), R_WB(2, 1));
-  const Eigen::Vector3d turned{0.0, 0.0, 2.0 * kTiltTime * tilted * tilted};
+  const Eigen::Vector3d noise_v{across, across,
+                                (vertical > 0.0 ? vertical : across) + 2.0 * kTiltTime * tilted * tilted};
   for (Eigen::Index i = 0; i < 3; ++i) {
-    propagate(covariance_[static_cast<std::size_t>(i)], dt, noise_v + turned[i], noise_b);
+    propagate(covariance_[static_cast<std::size_t>(i)], dt, noise_v[i], noise_b);
   }
 }
 

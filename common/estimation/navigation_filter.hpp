@@ -21,10 +21,12 @@ struct AxisGains {
 class NavigationFilter {
  public:
   struct Noise {
-    double acceleration{};  ///< m/s in one second (grows with the root of time): accelerometer and attitude together
-    double bias_walk{};     ///< m/s^2 in one second
-    double bias_prior{};    ///< m/s^2
-    double attitude{};      ///< rad, of roll and pitch
+    /// m/s in one second (grows with the root of time), across: accelerometer and what the attitude turns of gravity.
+    double acceleration{};
+    double vertical_acceleration{};  ///< the same up and down of a level vehicle: the accelerometer alone; 0: as across
+    double bias_walk{};              ///< m/s^2 in one second
+    double bias_prior{};             ///< m/s^2
+    double attitude{};               ///< rad, of roll and pitch
   };
   /// Covariance of position p, velocity v and bias b along one axis of W.
   struct AxisCovariance {

@@ -1,3 +1,5 @@
+// Every attitude sample makes a node; what was measured meanwhile is put in at its own time, and everything since is
+// computed anew. What is let in stands in navigator_intake.cpp, what each measurement does in navigator_aids.cpp.
 #include "common/estimation/navigator.hpp"
 
 #include <algorithm>
@@ -9,18 +11,7 @@
 namespace fathom::estimation {
 namespace {
 
-constexpr std::size_t kHistory = 512;  // attitude samples: 5 s at 100 Hz
-constexpr int kAttitudePatience = 20;
-constexpr double kLargestForce = 50.0;  // m/s^2; a vehicle under water is far below
-constexpr double kLargestRate = 20.0;   // rad/s
-constexpr double kAttitudeJump = 0.1;   // rad between what the gyro says and what the attitude says
-
 std::size_t slot(Source source) { return static_cast<std::size_t>(source); }
-const char* channel(Source source) {
-  constexpr std::array kNames{"AHRS",        "POSE_CAPTURE", "TAG_POSE", "OPTICAL_FLOW",
-                              "LASER_RANGE", "DVL",          "USBL",     "DEPTH"};
-  return kNames[slot(source)];
-}
 
 }  // namespace
 
@@ -35,6 +26,7 @@ Navigator::Navigator(const NavigatorSettings& settings, const NavigatorPlaces& p
     throw InputError("estimator: tags, flow and laser need a camera; give a vehicle file with its mount");
   }
   const NavigationFilter filter{{.acceleration = settings_.acceleration_noise,
+                                 .vertical_acceleration = settings_.vertical_acceleration_noise,
                                  .bias_walk = settings_.bias_walk,
                                  .bias_prior = settings_.bias_prior,
                                  .attitude = settings_.attitude_noise}};
@@ -59,142 +51,6 @@ const AidSettings& Navigator::aid(Source source) const {
     default:
       return settings_.depth;
   }
-}
-
-const Navigator::Output& Navigator::step(const TagPose& sample) {
-  const auto camera = places_.cameras.find(sample.camera);
-  const auto tag = places_.tags.find(sample.tag);
-  output_.clear();
-  if (tag == places_.tags.end()) {
-    ++other_["TAG_POSE of a tag that the site does not have"];
-    return output_;
-  }
-  if (camera == places_.cameras.end()) {
-    ++other_["TAG_POSE of a camera that the vehicle does not have"];
-    return output_;
-  }
-  const CameraMount& mount = camera->second;
-  return wait({.utime = sample.utime,
-               .source = Source::kTagPose,
-               .a = tag->second,
-               .b = mount.p_BC + mount.R_BC * sample.p_CT,
-               .camera = &mount});
-}
-
-const Navigator::Output& Navigator::step(const OpticalFlow& sample) {
-  const auto camera = places_.cameras.find(sample.camera);
-  output_.clear();
-  if (camera == places_.cameras.end()) {
-    ++other_["OPTICAL_FLOW of a camera that the vehicle does not have"];
-    return output_;
-  }
-  return wait({.utime = sample.utime,
-               .source = Source::kOpticalFlow,
-               .a = {sample.flow_C.x(), sample.flow_C.y(), 0.0},
-               .sigma = sample.sigma,
-               .camera = &camera->second});
-}
-
-const Navigator::Output& Navigator::step(const LaserRange& sample) {
-  const auto camera = places_.cameras.find(sample.camera);
-  output_.clear();
-  if (camera == places_.cameras.end()) {
-    ++other_["LASER_RANGE of a camera that the vehicle does not have"];
-    return output_;
-  }
-  return wait({.utime = sample.utime,
-               .source = Source::kLaserRange,
-               .a = sample.p_CL,
-               .sigma = sample.sigma_range,
-               .camera = &camera->second});
-}
-
-const Navigator::Output& Navigator::step(const Dvl& sample) {
-  output_.clear();
-  if (!sample.valid || sample.held) {
-    ++other_[sample.held ? "DVL held" : "DVL without lock"];
-    return output_;
-  }
-  return wait({.utime = sample.utime, .source = Source::kDvl, .a = sample.v_WB_B});
-}
-
-const Navigator::Output& Navigator::step(const Usbl& sample) {
-  output_.clear();
-  if (!sample.valid) {
-    ++other_["USBL not trusted by itself"];
-    return output_;
-  }
-  return wait({.utime = sample.utime, .source = Source::kUsbl, .a = sample.p_WB, .b = sample.sigma});
-}
-
-const Navigator::Output& Navigator::step(const Depth& sample) {
-  output_.clear();
-  return wait({.utime = sample.utime, .source = Source::kDepth, .a = {0.0, 0.0, sample.z}});
-}
-
-const Navigator::Output& Navigator::wait(const Measurement& m) {
-  const std::size_t i = slot(m.source);
-  if (!aid(m.source).used) return output_;
-  if (!m.a.allFinite() || !m.b.allFinite() || !std::isfinite(m.sigma)) {
-    ++malformed_[i];
-    return output_;
-  }
-  if (count_ > 0) {
-    const Node& newest = nodes_[(first_ + count_ - 1) % kHistory];
-    if (m.utime < nodes_[first_].utime) {
-      ++late_[i];
-      return output_;
-    }
-    if (seconds_between(m.utime, newest.utime) >= aid(m.source).delay) ++overdue_[i];
-    // From the future: a clock that jumped. Nothing may wait for hours.
-    if (seconds_between(newest.utime, m.utime) > settings_.max_gap + 1.0) {
-      ++malformed_[i];
-      return output_;
-    }
-  }
-  const auto place =
-      std::upper_bound(waiting_.begin(), waiting_.end(), m, [](const Measurement& a, const Measurement& b) {
-        return a.utime != b.utime ? a.utime < b.utime : a.source < b.source;
-      });
-  waiting_.insert(place, m);
-  return output_;
-}
-
-bool Navigator::usable(const Ahrs& sample) {
-  if (!sample.has_attitude || !sample.has_rates || !sample.has_specific_force) {
-    ++other_["AHRS without attitude, rates or specific force"];
-    return false;
-  }
-  const double norm = sample.q_WB.norm();
-  if (!sample.f_B.allFinite() || !sample.w_WB_B.allFinite() || !(std::abs(norm - 1.0) < 1e-2) ||
-      sample.f_B.norm() > kLargestForce || sample.w_WB_B.norm() > kLargestRate) {
-    ++other_["AHRS not plausible"];
-    return false;
-  }
-  if (last_ahrs_) {
-    const double dt = seconds_between(last_ahrs_->utime, sample.utime);
-    if (dt <= 0.0) {
-      ++other_["AHRS late"];
-      return false;
-    }
-    const bool same = sample.f_B == last_ahrs_->f_B && sample.w_WB_B == last_ahrs_->w_WB_B &&
-                      sample.q_WB.coeffs() == last_ahrs_->q_WB.coeffs();
-    ahrs_repeated_ = same ? ahrs_repeated_ + 1 : 0;
-    if (ahrs_repeated_ >= kRepeats) {
-      ++other_["AHRS frozen"];
-      return false;
-    }
-    if (dt <= settings_.max_gap) {
-      const Eigen::Quaterniond expected =
-          last_ahrs_->q_WB * quaternion_from_rotation_vector(0.5 * dt * (sample.w_WB_B + last_ahrs_->w_WB_B));
-      if (expected.angularDistance(sample.q_WB) > kAttitudeJump && ++attitude_jumps_ < kAttitudePatience) {
-        ++other_["AHRS jumped"];
-        return false;
-      }
-    }
-    attitude_jumps_ = 0;
-  }
-  return true;
 }
 
 // What the accelerometer would feel at the body's origin: f - w' x r - w x (w x r).
@@ -222,7 +78,7 @@ const Navigator::Output& Navigator::step(const Ahrs& sample) {
     --count_;
   }
   const std::size_t newest = (first_ + count_) % kHistory;
-  const Utime before = count_ > 0 ? nodes_[(first_ + count_ - 1) % kHistory].utime : sample.utime - 1;
+  const Utime before = count_ > 0 ? this->newest().utime : sample.utime - 1;
   nodes_[newest].utime = sample.utime;
   nodes_[newest].input = input;
   ++count_;
@@ -234,6 +90,7 @@ const Navigator::Output& Navigator::step(const Ahrs& sample) {
   }
   if (count_ == 1) {
     const Memory fresh{.filter = NavigationFilter{{.acceleration = settings_.acceleration_noise,
+                                                   .vertical_acceleration = settings_.vertical_acceleration_noise,
                                                    .bias_walk = settings_.bias_walk,
                                                    .bias_prior = settings_.bias_prior,
                                                    .attitude = settings_.attitude_noise}}};
@@ -339,46 +196,6 @@ void Navigator::forget() {
   if (waiting_.size() < kHistory / 2) return;
   waiting_.erase(waiting_.begin(), std::lower_bound(waiting_.begin(), waiting_.end(), oldest,
                                                     [](const Measurement& m, Utime t) { return m.utime < t; }));
-}
-
-std::map<std::string, std::int64_t> Navigator::rejected() const {
-  std::map<std::string, std::int64_t> all = other_;
-  const auto add = [&](Source source, const char* what, std::int64_t n) {
-    if (n > 0) all[std::string{channel(source)} + " " + what] = n;
-  };
-  for (std::size_t i = 0; i < kSources; ++i) {
-    const auto source = static_cast<Source>(i);
-    add(source, "too late", late_[i]);
-    add(source, "later than stated", overdue_[i]);
-    add(source, "not plausible", malformed_[i]);
-    if (count_ == 0) continue;
-    const Track& track = nodes_[(first_ + count_ - 1) % kHistory].after.tracks[i];
-    add(source, "gated", track.rejected[kGated]);
-    add(source, "frozen", track.rejected[kFrozen]);
-    add(source, "of a wall", track.rejected[kWall]);
-  }
-  return all;
-}
-
-std::string Navigator::complaint() const {
-  if (count_ == 0) return "no AHRS sample with attitude, rates and specific force yet";
-  if (ahrs_repeated_ >= kRepeats) return "AHRS is frozen";
-  const Node& newest = nodes_[(first_ + count_ - 1) % kHistory];
-  const Memory& memory = newest.after;
-  if (!memory.started) return "no position yet: a tag of the site or an acoustic fix is needed";
-  for (const Source source :
-       {Source::kTagPose, Source::kOpticalFlow, Source::kLaserRange, Source::kDvl, Source::kUsbl, Source::kDepth}) {
-    const AidSettings& s = aid(source);
-    if (!s.used) continue;
-    const Track& track = memory.tracks[slot(source)];
-    const double age = track.last ? seconds_between(*track.last, newest.utime) : HUGE_VAL;
-    if (age <= s.max_age) continue;
-    if (track.repeated >= kRepeats && track.moving) return std::string{channel(source)} + " is frozen";
-    if (track.walled) return std::string{channel(source)} + " looks at a wall";
-    if (track.refused > 0) return std::string{channel(source)} + " does not fit the motion";
-    return std::string{channel(source)} + " is silent";
-  }
-  return {};
 }
 
 }  // namespace fathom::estimation

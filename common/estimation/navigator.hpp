@@ -42,20 +42,22 @@ struct AidSettings {
   double delay{};       ///< s after its time that it counts: at least its latency and the channel's jitter
   double max_age{};     ///< s; older than that it is said to be silent
   Eigen::Vector3d scale{Eigen::Vector3d::Ones()};  ///< of a velocity: true over what is read, along B
+  double vertical_noise{};  ///< m, of tags, which an attitude's error moves across alone; zero: as `noise`
 };
 
 struct NavigatorSettings {
-  bool published_gains{false};       ///< the numbers of the paper instead of gains from cut-off, damping and interval
-  double gate{6.0};                  ///< standard deviations beyond which a measurement is refused
-  double max_gap{0.25};              ///< s without attitude sample after which the motion in between is unknown
-  double attitude_noise{};           ///< rad
-  double rate_noise{};               ///< rad/s
-  double acceleration_noise{};       ///< m/s in one second: accelerometer and attitude together
-  double bias_walk{};                ///< m/s^2 in one second
-  double bias_prior{};               ///< m/s^2
-  double unknown_acceleration{0.5};  ///< m/s^2 that may have acted in a gap
-  double largest_position_sigma{};   ///< m; beyond it the state is not valid
-  double largest_velocity_sigma{};   ///< m/s
+  bool published_gains{false};  ///< the numbers of the paper instead of gains from cut-off, damping and interval
+  double gate{6.0};             ///< standard deviations beyond which a measurement is refused
+  double max_gap{0.25};         ///< s without attitude sample after which the motion in between is unknown
+  double attitude_noise{};      ///< rad
+  double rate_noise{};          ///< rad/s
+  double acceleration_noise{};  ///< m/s in one second, across: accelerometer and what the attitude turns of gravity
+  double vertical_acceleration_noise{};  ///< m/s in one second, level: the accelerometer alone; zero: as across
+  double bias_walk{};                    ///< m/s^2 in one second
+  double bias_prior{};                   ///< m/s^2
+  double unknown_acceleration{0.5};      ///< m/s^2 that may have acted in a gap
+  double largest_position_sigma{};       ///< m; beyond it the state is not valid
+  double largest_velocity_sigma{};       ///< m/s
   AidSettings tags, flow, laser, dvl, usbl, depth;
 
   /// Keys as above, with units; one section for each aid that is used.
@@ -96,7 +98,9 @@ class Navigator {
   [[nodiscard]] std::string complaint() const;
 
  private:
-  static constexpr int kRepeats = 4;  // bit by bit the same: no noisy sensor does that while moving
+  static constexpr std::size_t kHistory = 512;  // attitude samples: 5 s at 100 Hz
+  static constexpr int kRepeats = 4;            // bit by bit the same: no noisy sensor does that while moving
+  enum class Clock { kRight, kBehind, kAhead };
   enum Reason { kGated, kFrozen, kWall, kLate, kOverdue, kMalformed, kReasons };
   struct Input {
     Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
@@ -139,6 +143,8 @@ class Navigator {
 
   const Output& wait(const Measurement& measurement);
   [[nodiscard]] bool usable(const Ahrs& sample);
+  bool refuse(const Ahrs& sample, const char* why);
+  void without_ahrs(Source source, Utime utime);
   [[nodiscard]] Input input_of(const Ahrs& sample);
   void run(std::size_t from, Utime since);
   void advance(Memory& memory, const Node& before, const Node& after, Utime from, Utime to) const;
@@ -160,6 +166,7 @@ class Navigator {
   [[nodiscard]] static bool outvoted(const Track& track);
   [[nodiscard]] bool frozen(Memory& memory, const Measurement& m, const Input& input) const;
   [[nodiscard]] const AidSettings& aid(Source source) const;
+  [[nodiscard]] const Node& newest() const { return nodes_[(first_ + count_ - 1) % kHistory]; }
   void say(const Node& node);
   void forget();
 
@@ -170,10 +177,16 @@ class Navigator {
   std::size_t first_{}, count_{};
   std::vector<Measurement> waiting_;  // in the order of time, then kind
   std::array<std::int64_t, kSources> late_{}, overdue_{}, malformed_{};
+  std::array<Clock, kSources> clock_{};  // as the newest sample of each shows it, beside AHRS
   std::map<std::string, std::int64_t> other_;
   std::optional<Ahrs> last_ahrs_;
   int ahrs_repeated_{};
   int attitude_jumps_{};
+  /// Of each source the first sample since the last attitude that was used, and how long any of them has gone on since:
+  /// nobody else's clock tells whether the attitude sensor is away.
+  std::array<std::optional<Utime>, kSources> first_without_{};
+  double without_ahrs_{};
+  const char* refused_ahrs_{};  ///< why the last attitude was not used; null: none came since
   Output output_;
 };
 

@@ -110,8 +110,10 @@ void Navigator::use_tags(Memory& memory, std::size_t first, std::size_t last, co
     return;
   }
   together.a = sum / agreed;
-  const double variance = noise * noise / std::min(agreed, kTagsCommonError);
-  use_position(memory, together, together.a, Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(variance), input);
+  const double down = settings_.tags.vertical_noise > 0.0 ? settings_.tags.vertical_noise : noise;
+  const double count = std::min(agreed, kTagsCommonError);
+  const Eigen::Vector3d variance = Eigen::Vector3d{noise * noise, noise * noise, down * down} / count;
+  use_position(memory, together, together.a, Eigen::Vector3d::Ones(), variance, input);
 }
 
 // What is seen at p_B tells of the floor only where the floor is: a tilted vehicle looks at a wall now and then, and
@@ -196,7 +198,7 @@ AxisGains Navigator::gains(Source source, double interval, bool) const {
   }
   if (s.vertical_cutoff > 0.0) {
     const Gains down = vertical_velocity_ ? first_order_gains(s.vertical_cutoff, dt)
-                                          : third_order_gains(s.vertical_cutoff, s.vertical_damping, dt);
+                                          : proportional_third_order_gains(s.vertical_cutoff, s.vertical_damping, dt);
     k.value.z() = down.value;
     k.rate.z() = down.rate;
     k.second.z() = down.second;
@@ -241,7 +243,8 @@ void Navigator::use_position(Memory& memory, const Measurement& m, const Eigen::
   const Eigen::Vector3d innovation = axes.cwiseProduct(p_WB - memory.filter.position());
   double worst = 0.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double spread = std::sqrt(memory.filter.covariance()[static_cast<std::size_t>(i)].pp + variance[i]);
+    // A tilt moves what is noise across to where it is not, so the gate is as wide as the widest axis.
+    const double spread = std::sqrt(memory.filter.covariance()[static_cast<std::size_t>(i)].pp + variance.maxCoeff());
     worst = std::max(worst, std::abs(innovation[i]) / spread);
   }
   if (!passes(track, worst)) {

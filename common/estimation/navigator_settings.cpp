@@ -15,6 +15,7 @@ AidSettings aid_from(const Config& config, const std::string& key, bool velocity
   aid.delay = section.not_negative("delay", "s");
   aid.max_age = section.positive("max_age", "s");
   aid.noise = section.not_negative("noise", velocity ? "m/s" : "m");
+  if (key == "tags" && section.has("vertical_noise")) aid.vertical_noise = section.positive("vertical_noise", "m");
   if (section.has("systematic")) aid.systematic = section.not_negative("systematic", velocity ? "m/s" : "m");
   if (!vertical_alone) aid.cutoff = section.positive("cutoff", "rad/s");
   if (key != "flow") aid.vertical_cutoff = section.positive("vertical_cutoff", "rad/s");
@@ -37,6 +38,9 @@ NavigatorSettings NavigatorSettings::from(const Config& config) {
   s.attitude_noise = config.positive("attitude_noise", "rad");
   s.rate_noise = config.positive("rate_noise", "rad/s");
   s.acceleration_noise = config.positive("acceleration_noise", "m/s");
+  s.vertical_acceleration_noise = config.has("vertical_acceleration_noise")
+                                      ? config.positive("vertical_acceleration_noise", "m/s")
+                                      : s.acceleration_noise;
   s.bias_walk = config.positive("bias_walk", "m/s^2");
   s.bias_prior = config.positive("bias_prior", "m/s^2");
   s.unknown_acceleration = config.positive("unknown_acceleration", "m/s^2");

@@ -75,7 +75,9 @@ Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle&
 }
 
 void Supervisor::reset() {
+  const bool interrupted = armed_;
   *this = Supervisor{SupervisorSettings{settings_}, model::Vehicle{vehicle_}, std::string{token_}};
+  if (interrupted) reason_ = "the time of STATE went back: is the attitude sensor's clock right? then arm again";
 }
 
 void Supervisor::hear(const ModelEstimate& model) {

@@ -60,13 +60,17 @@ std::string to_json(const LiveTrialResult& result) {
   for (const FlownSegment& flight : result.flights)
     json["flights"].push_back({{"segment", flight.segment}, {"begun_s", flight.begun}, {"ended_s", flight.ended}});
   json["parameters"] = Json::object();
-  for (const NamedValue& p : result.parameters) {
+  const std::vector<double>& inflation = result.entangled.inflation;
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    const NamedValue& p = result.parameters[i];
     json["parameters"][p.name] = {
         {"value", finite(p.value)},
         {"std", finite(p.std)},
         {"interval_95", {finite(p.value - kNormal95 * p.std), finite(p.value + kNormal95 * p.std)}},
-        {"unit", p.unit}};
+        {"unit", p.unit},
+        {"variance_inflation", i < inflation.size() ? finite(inflation[i]) : Json(nullptr)}};
   }
+  json["condition_of_correlations"] = inflation.empty() ? Json(nullptr) : finite(result.entangled.condition);
   json["adopted_effects"] = result.adopted;
   json["effect_parameters"] = Json::object();
   for (const NamedValue& p : result.effect_numbers) {

@@ -70,23 +70,28 @@ std::string mode_table(const LiveTrialResult& result) {
 std::string table_1_1(const LiveTrialResult& result) {
   std::string html =
       "<section><h2>Table 1.1: the identified set</h2><table>" +
-      heading_cells({"Parameter", "Identified", "Std", "95 % interval", "Unit", "Vehicle file"}, {1, 2, 3, 5});
-  for (const NamedValue& p : result.parameters) {
+      heading_cells({"Parameter", "Identified", "Std", "95 % interval", "Unit", "Vehicle file", "Entangled"},
+                    {1, 2, 3, 5, 6});
+  const std::vector<double>& inflation = result.entangled.inflation;
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    const NamedValue& p = result.parameters[i];
     const auto known = std::ranges::find(result.expected, p.name, &NamedValue::name);
     html += "<tr>" + cell(escape(p.name), "k") + cell(number(p.value, 4), "n") + cell(number(p.std, 2), "n") +
             cell(number(p.value - kNormal95 * p.std, 4) + " to " + number(p.value + kNormal95 * p.std, 4), "n") +
             cell(escape(p.unit)) + cell(known == result.expected.end() ? "-" : number(known->value, 4), "n") +
-            "</tr>\n";
+            cell(i < inflation.size() ? number(inflation[i], 3) : "-", "n") + "</tr>\n";
   }
   for (const NamedValue& p : result.effect_numbers) {
     html += "<tr class=\"yes\">" + cell(escape(p.name), "k") + cell(number(p.value, 4), "n") +
             cell(number(p.std, 2), "n") +
             cell(number(p.value - kNormal95 * p.std, 4) + " to " + number(p.value + kNormal95 * p.std, 4), "n") +
-            cell(escape(p.unit)) + cell("adopted effect") + "</tr>\n";
+            cell(escape(p.unit)) + cell("adopted effect") + cell("") + "</tr>\n";
   }
   return html +
          "</table><p class=\"small soft\">Vehicle file: what it states beforehand; for the LBV150 the paper's "
-         "Table 1.1.</p></section>\n";
+         "Table 1.1. Entangled: how many times the variance is what it would be, were all other parameters known; 1 "
+         "is best. Condition of all correlations: " +
+         (inflation.empty() ? std::string{"-"} : number(result.entangled.condition, 3)) + ".</p></section>\n";
 }
 
 std::string motion(const Recording& recording, const estimation::AidsSeen& seen, Album& album) {

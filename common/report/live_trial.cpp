@@ -86,6 +86,7 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
   }
   const ModelEstimate& model = recording.model.back();
   result.parameters = model.parameters;
+  result.entangled = entanglement(model.covariance);
   result.adopted = model.effects;
   result.effect_numbers = model.effect_numbers;
   for (std::size_t i = 0; i < vehicle.priors.size() && i < vehicle.parameters.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/entanglement.hpp"
 #include "common/samples/estimates.hpp"
 
 namespace fathom {
@@ -50,6 +51,7 @@ struct LiveTrialResult {
   std::vector<FlownSegment> flights;
   std::vector<ModeVisit> visits;
   std::vector<NamedValue> parameters;             ///< identified, the std honest
+  Entanglement entangled;                         ///< theirs, at the end
   std::vector<NamedValue> expected;               ///< of the vehicle file: what was known before, for reference
   std::vector<std::string> adopted;               ///< effects in the identifier's model
   std::vector<NamedValue> effect_numbers;         ///< theirs, "effect.parameter"

@@ -36,6 +36,16 @@ void hear(runtime::Process& process, Mind& mind, const std::string& channel) {
   });
 }
 
+/// An instrument beside the one whose clock is STATE's: should its own jump, it is late, and nothing starts over.
+template <class Message>
+void hear_aid(runtime::Process& process, estimation::Navigator& navigator, const std::string& channel) {
+  process.listens_to<Message>(channel, [&process, &navigator, channel](const Message& message) {
+    const auto sample = wire::decode(message);
+    if (!sample) return process.reject(channel);
+    navigator.step(*sample);
+  });
+}
+
 /// A channel that the chosen filter has no use for. It is heard all the same: what a process hears shall not depend on
 /// its configuration.
 template <class Message>
@@ -75,12 +85,12 @@ void run_trial(runtime::Process& process, const Config& config) {
   estimation::Navigator navigator{estimation::NavigatorSettings::from(config),
                                   estimation::NavigatorPlaces::of(vehicle.mounts, site)};
   hear<fathom_lcm::ahrs_t>(process, navigator, wire::kAhrs);
-  hear<fathom_lcm::tag_pose_t>(process, navigator, wire::kTagPose);
-  hear<fathom_lcm::optical_flow_t>(process, navigator, wire::kOpticalFlow);
-  hear<fathom_lcm::laser_range_t>(process, navigator, wire::kLaserRange);
-  hear<fathom_lcm::dvl_t>(process, navigator, wire::kDvl);
-  hear<fathom_lcm::usbl_t>(process, navigator, wire::kUsbl);
-  hear<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
+  hear_aid<fathom_lcm::tag_pose_t>(process, navigator, wire::kTagPose);
+  hear_aid<fathom_lcm::optical_flow_t>(process, navigator, wire::kOpticalFlow);
+  hear_aid<fathom_lcm::laser_range_t>(process, navigator, wire::kLaserRange);
+  hear_aid<fathom_lcm::dvl_t>(process, navigator, wire::kDvl);
+  hear_aid<fathom_lcm::usbl_t>(process, navigator, wire::kUsbl);
+  hear_aid<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
   process.on_health([&]() -> runtime::Process::Condition {

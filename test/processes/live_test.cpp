@@ -229,6 +229,39 @@ TEST_CASE("live: when the estimator or the supervisor falls silent, the thruster
   }
 }
 
+TEST_CASE("live: an attitude sensor without numbers is named by HEALTH, the thrusters stop, and the log is whole") {
+  if (!live_network()) return;
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper real 3 16 --fail ahrs=nan,from:9"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const Recording run = wire::read_log(scratch.path("out/run.lcmlog")).recording;
+  CHECK(std::ranges::any_of(run.health, [](const Health& each) {
+    return each.process == "estimator" && each.state == "unhealthy" && each.detail.find("AHRS is silent") == 0;
+  }));
+  const Utime begin = run.thrusters.front().utime;
+  double last_push = 0.0;
+  for (const Thrusters& each : run.thrusters) {
+    if (std::ranges::any_of(each.tau, [](double x) { return x != 0.0; }))
+      last_push = seconds_between(begin, each.utime);
+  }
+  CHECK(last_push > 8.0);
+  CHECK(last_push < 10.0);  // a command's life is 0.3 s
+  CHECK(seconds_between(begin, run.thrusters.back().utime) > 15.0);
+}
+
+TEST_CASE("live: an instrument whose clock goes back is named, and the trial goes on without it") {
+  if (!live_network()) return;
+  const Scratch scratch;
+  const auto ran = shell(live(scratch, "deep seabotix_lbv150 paper lockstep 3 40 --fail usbl=jump,from:25,to:31"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const Recording run = wire::read_log(scratch.path("out/run.lcmlog")).recording;
+  CHECK(std::ranges::none_of(run.excitation, [](const auto& each) { return each.phase == "lost"; }));
+  CHECK(run.excitation.back().phase == "excite");
+  CHECK_MESSAGE(
+      test::read_bytes(scratch.path("out/processes/estimator.txt")).find("starting over") == std::string::npos,
+      "the estimator started over");
+}
+
 TEST_CASE("live: a process that dies ends the trial with one line that names it") {
   if (!live_network()) return;
   for (const char* victim : {"identifier", "simulator", "recorder"}) {
@@ -257,6 +290,7 @@ TEST_CASE("live: what cannot start says why") {
   const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper lockstep 1 20 --hide sea_monster"));
   CHECK(ran.code == 1);
   CHECK_MESSAGE(ran.says("sea_monster"), ran.text);
+  CHECK_MESSAGE(ran.lines() <= 3, ran.text);  // what is begun, why it ended, where to look
   CHECK(nothing_left(scratch));
 }
 

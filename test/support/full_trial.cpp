@@ -13,35 +13,44 @@
 
 namespace fathom::test {
 
-FullTrial run_trial(const FullTrialOptions& options) {
-  const auto& [seed, optimal, limit, site_name, hide, vehicle, changes] = options;
-  const std::string root = FATHOM_SOURCE_DIR;
-  const std::string path = root + "/config/pipelines/" + site_name + ".yaml";
+namespace {
+
+/// A file of the repository with some of its text replaced.
+Config changed(const std::string& path, const std::vector<std::pair<std::string, std::string>>& changes) {
   std::ifstream file{path};
-  std::string text_of_file{std::istreambuf_iterator<char>{file}, {}};
+  std::string text{std::istreambuf_iterator<char>{file}, {}};
+  for (const auto& [old, replacement] : changes) {
+    const auto at = text.find(old);
+    if (at == std::string::npos) throw InputError(path + ": there is no '" + old + "' to be changed");
+    if (text.find(old, at + 1) != std::string::npos)
+      throw InputError(path + ": '" + old + "' stands there more than once");
+    text.replace(at, old.size(), replacement);
+  }
+  return Config::parse(text, path);
+}
+
+}  // namespace
+
+FullTrial run_trial(const FullTrialOptions& options) {
+  const auto& [seed, optimal, limit, site_name, hide, vehicle, changes, of_simulation] = options;
+  const std::string root = FATHOM_SOURCE_DIR;
   auto all_changes = changes;
   if (optimal) {
     all_changes.emplace_back("excitation: paper", "excitation: optimal");
     all_changes.emplace_back("schedule: [yaw, surge, sway, heave, total]", "schedule: [total]");
   }
-  for (const auto& [old, replacement] : all_changes) {
-    const auto at = text_of_file.find(old);
-    if (at == std::string::npos) throw InputError(path + ": there is no '" + old + "' to be changed");
-    if (text_of_file.find(old, at + 1) != std::string::npos)
-      throw InputError(path + ": '" + old + "' stands there more than once");
-    text_of_file.replace(at, old.size(), replacement);
-  }
-  const Config pipeline = Config::parse(text_of_file, path);
+  const Config pipeline = changed(root + "/config/pipelines/" + site_name + ".yaml", all_changes);
   auto s = tank_settings();
   s.vehicle = vehicle_from_repository(vehicle);
   const model::Site site = model::Site::load(root + "/config/sites/" + site_name + ".yaml");
   s.supervisor = excitation::SupervisorSettings::from(pipeline.section("supervisor"), s.vehicle, site);
   s.identifier = identification::IdentifierSettings::from(pipeline.section("identifier"));
   s.supervisor.seed = seed;
-  simulation::Simulator simulator{s.vehicle,
-                                  site,
-                                  Config::load(root + "/config/simulation/" + vehicle + ".yaml").section("simulator"),
-                                  {.seed = seed, .hide = hide, .duration = limit}};
+  simulation::Simulator simulator{
+      s.vehicle,
+      site,
+      changed(root + "/config/simulation/" + vehicle + ".yaml", of_simulation).section("simulator"),
+      {.seed = seed, .hide = hide, .duration = limit}};
   estimation::Navigator navigator{estimation::NavigatorSettings::from(pipeline.section("estimator")),
                                   estimation::NavigatorPlaces::of(s.vehicle.mounts, site)};
   identification::Identifier identifier{s.identifier, s.vehicle};
@@ -96,6 +105,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
     n += 1.0;
     const Eigen::Vector3d dp = state.p_WB - truth.p_WB - dt * (truth.q_WB * truth.nu.head<3>());
     const Eigen::Vector3d dv = state.nu.head<3>() - truth.nu.head<3>() - dt * truth.nu_dot.head<3>();
+    trial.velocity_mean += dv;
     trial.position += dp.cwiseAbs2();
     trial.velocity += dv.cwiseAbs2();
     trial.nees_position += dp.cwiseQuotient(state.sigma.head<3>()).cwiseAbs2();
@@ -103,6 +113,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
   }
   trial.position = (trial.position / n).cwiseSqrt();
   trial.velocity = (trial.velocity / n).cwiseSqrt();
+  trial.velocity_mean /= n;
   trial.nees_position /= n;
   trial.nees_velocity /= n;
   trial.ended = seconds_between(1'700'000'000'000'000, simulator.now()) - 1.0;
@@ -114,8 +125,8 @@ FullTrial run_trial(const FullTrialOptions& options) {
   text << "seed " << seed << ": " << name(supervisor.phase()) << ", " << supervisor.reason() << "; ended "
        << trial.ended << " s; contacts " << trial.contacts.walls << " " << trial.contacts.floor << " "
        << trial.contacts.surface << "\n  position [mm] " << 1e3 * trial.position.transpose() << " velocity [mm/s] "
-       << 1e3 * trial.velocity.transpose() << " NEES " << trial.nees_position.transpose() << " | "
-       << trial.nees_velocity.transpose() << "\n";
+       << 1e3 * trial.velocity.transpose() << " mean " << 1e3 * trial.velocity_mean.transpose() << " NEES "
+       << trial.nees_position.transpose() << " | " << trial.nees_velocity.transpose() << "\n";
   for (const auto& v : trial.visits)
     text << "  " << v.mode << " " << v.begun << " to " << v.ended << (v.left ? " left" : " given up: ") << v.missing
          << "\n";

@@ -26,6 +26,7 @@ struct FullTrial {
   simulation::ContactCounts contacts;
   ModelEstimate model;
   Eigen::Vector3d position{Eigen::Vector3d::Zero()}, velocity{Eigen::Vector3d::Zero()};  // RMS errors
+  Eigen::Vector3d velocity_mean{Eigen::Vector3d::Zero()};  // of the velocity's errors, m/s
   Eigen::Vector3d nees_position{Eigen::Vector3d::Zero()}, nees_velocity{Eigen::Vector3d::Zero()};
   double ended{};
   int within{}, covered{};  ///< parameters: within 5 % of the truth, inside the 95 % interval
@@ -41,6 +42,8 @@ struct FullTrialOptions {
   std::string vehicle{"seabotix_lbv150"};
   /// Changes to the text of the site's pipeline file: what must be there once, and what stands in its place.
   std::vector<std::pair<std::string, std::string>> pipeline{};
+  /// The same for config/simulation/VEHICLE.yaml: which error of an instrument makes which error of the model.
+  std::vector<std::pair<std::string, std::string>> simulation{};
 };
 
 /// From the simulator's first command to the schedule's end or the limit.

@@ -1,6 +1,8 @@
-// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--limit S] [--text]
-// Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
-// error, in percent and in its own standard deviations. --pipeline replaces a text of config/pipelines/SITE.yaml.
+// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--simulation OLD NEW] [--limit
+// S] [--text] Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every
+// parameter the error, in percent and in its own standard deviations. --pipeline replaces a text of
+// config/pipelines/SITE.yaml,
+// --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes which error of the model.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -27,11 +29,17 @@ struct Sum {
 void print(const std::vector<FullTrial>& trials) {
   std::vector<Sum> sums;
   double ended = 0.0, inside = 0.0, all = 0.0;
-  int settled = 0, contacts = 0;
+  int settled = 0, contacts = 0, with_state = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();  // mean squares over stated
   for (const FullTrial& trial : trials) {
     ended += trial.ended / static_cast<double>(trials.size());
     const bool done = trial.phase == fathom::excitation::Phase::kDone;
     settled += done && std::ranges::all_of(trial.visits, [](const auto& v) { return v.left; }) ? 1 : 0;
+    if (trial.position.allFinite()) {  // else there was no valid STATE
+      position += trial.nees_position;
+      velocity += trial.nees_velocity;
+      ++with_state;
+    }
     contacts += trial.contacts.walls + trial.contacts.floor + trial.contacts.surface;
     sums.resize(trial.learnt.size());
     for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -54,6 +62,10 @@ void print(const std::vector<FullTrial>& trials) {
   const auto n = static_cast<double>(trials.size());
   std::printf("%d of %zu settled, ended after %.0f s, %d contacts, %.0f of %.0f intervals hold (%.1f %%)\n", settled,
               trials.size(), ended, contacts, inside, all, 100.0 * inside / all);
+  position /= std::max(1, with_state);
+  velocity /= std::max(1, with_state);
+  std::printf("STATE's errors, mean square over the stated one: x y z %.2f %.2f %.2f, u v w %.2f %.2f %.2f\n",
+              position.x(), position.y(), position.z(), velocity.x(), velocity.y(), velocity.z());
   std::printf("%-8s %10s %8s %9s | in standard deviations: %6s %6s %8s | %s\n", "", "mean error", "rms", "stated",
               "mean", "rms", "largest", "within 5 %, inside");
   for (const Sum& s : sums) {
@@ -69,7 +81,8 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 5) {
     std::fputs(
-        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--limit S] [--text]\n",
+        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--simulation OLD NEW] "
+        "[--limit S] [--text]\n",
         stderr);
     return 1;
   }
@@ -81,6 +94,8 @@ int main(int argc, char** argv) {
       if (words[i] == "--text") text = true;
       if (words[i] == "--limit" && i + 1 < words.size()) options.limit = std::stod(words[i + 1]);
       if (words[i] == "--pipeline" && i + 2 < words.size()) options.pipeline.emplace_back(words[i + 1], words[i + 2]);
+      if (words[i] == "--simulation" && i + 2 < words.size())
+        options.simulation.emplace_back(words[i + 1], words[i + 2]);
     }
     std::vector<FullTrial> trials(static_cast<std::size_t>(std::max(0, last - first + 1)));
     std::atomic<int> next{first};

@@ -85,8 +85,10 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
   some.hear(Thrusters{.force = {1.0, -2.0}, .tau = {3.0}, .has_tau = true}, 0.0);
   some.hear(WrenchCommand{.commander = "supervisor 3"}, 0.0);
   some.hear(Battery{.voltage = 15.5}, 0.0);
-  some.hear(ModelEstimate{.parameters = {{.name = "m_X", .value = 10.0, .std = 1.0, .unit = "kg"}},
+  some.hear(ModelEstimate{.parameters = {{.name = "m_X", .value = 10.0, .std = 1.0, .unit = "kg"},
+                                         {.name = "X_u", .value = -8.0, .std = 2.0, .unit = "N/(m/s)"}},
                           .effects = {"tether_tension"},
+                          .covariance = {1.0, 1.2, 1.2, 4.0},
                           .frozen = {"m_X"}},
             0.0);
   some.hear(EffectRanking{.verdict = "ambiguous",
@@ -106,6 +108,8 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
   CHECK(all["battery"]["voltage"] == 15.5);
   CHECK(all["model"]["parameters"][0]["low"] == doctest::Approx(10.0 - kNormal95));
   CHECK(all["model"]["parameters"][0]["frozen"] == true);
+  CHECK(all["model"]["parameters"][1]["entangled"] == doctest::Approx(1.0 / (1.0 - 0.36)));  // correlated by 0.6
+  CHECK(all["model"]["condition"] == doctest::Approx(4.0));
   CHECK(all["model"]["effects"][0] == "tether_tension");
   CHECK(all["effects"]["against"] == "tether_tension");
   CHECK(all["effects"]["candidates"][0]["log_odds"] == doctest::Approx(3.5));
@@ -131,7 +135,7 @@ TEST_CASE("board: numbers that are not finite are null, and broken text is mende
   some.hear(state, 0.0);
   some.hear(Thrusters{.force = {kNot}, .tau = {kInfinite}, .has_tau = true}, 0.0);
   some.hear(Battery{.voltage = kNot}, 0.0);
-  some.hear(ModelEstimate{.parameters = {{.name = "m_X", .value = kNot, .std = kInfinite}}}, 0.0);
+  some.hear(ModelEstimate{.parameters = {{.name = "m_X", .value = kNot, .std = kInfinite}}, .covariance = {kNot}}, 0.0);
   some.hear(EffectRanking{.candidates = {{.name = "x", .log_odds = kInfinite}}, .duration = kNot}, 0.0);
   some.hear(
       Health{.process = "\xff\xfe <script>\"\\\n", .state = "running", .cpu = kNot, .channels = {{"A", kNot, 0.0}}},
@@ -145,6 +149,7 @@ TEST_CASE("board: numbers that are not finite are null, and broken text is mende
   CHECK(all["state"]["values"][0].is_null());
   CHECK(all["history"]["values"][1][0].is_null());
   CHECK(all["model"]["parameters"][0]["high"].is_null());
+  CHECK(all["model"]["parameters"][0]["entangled"].is_null());
   CHECK(all["processes"][0]["cpu"].is_null());
 }
 
@@ -153,6 +158,7 @@ TEST_CASE("board: whatever length a message states, the answer stays small") {
   const std::string word(100'000, 'x');
   ModelEstimate model{.effects = std::vector<std::string>(5000, word)};
   model.parameters.assign(5000, {.name = word, .unit = word});
+  model.covariance.assign(5000 * 5000, 1.0);
   some.hear(model, 0.0);
   some.hear(Thrusters{.force = std::vector<double>(100'000, 1.0)}, 0.0);
   for (int i = 0; i < 100; ++i) {

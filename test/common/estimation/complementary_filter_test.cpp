@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "common/base/spatial.hpp"
 
@@ -46,6 +47,59 @@ TEST_CASE(
     const auto third = estimation::third_order_gains(2.0, 0.7, dt);
     CHECK(third.value < 1.0);
     CHECK(third.value > second.value);
+  }
+}
+
+TEST_CASE("complementary gains: two sources that disagree make no false speed, although one of them skips samples") {
+  // At rest; one source says 0, the other a centimetre, and every other sample of it is lost for half of the time.
+  const double w = 2.5, dt = 1.0 / 30.0, apart = 0.01;
+  const auto mean_speed = [&](auto gains) {
+    double p = 0.0, v = 0.0, a = 0.0, sum = 0.0;
+    int n = 0, last = -1;
+    for (int k = 0; k < 30'000; ++k) {
+      p += dt * v + 0.5 * dt * dt * a;
+      v += dt * a;
+      const auto correct = [&](double z, double interval) {
+        const auto g = gains(w, 1.0, interval);
+        const double error = z - p;
+        p += g.value * error;
+        v += g.rate * error;
+        a += g.second * error;
+      };
+      correct(0.0, dt);
+      if (k % 60 < 30 || k % 2 == 0) correct(apart, dt * (k - std::exchange(last, k)));
+      if (k < 3000) continue;
+      sum += v;
+      ++n;
+    }
+    return sum / n;
+  };
+  CHECK(std::abs(mean_speed(estimation::third_order_gains)) > 1e-4);  // m/s: 2 mN of weight by a drag of 20 N/(m/s)
+  CHECK(std::abs(mean_speed(estimation::proportional_third_order_gains)) < 1e-6);
+}
+
+TEST_CASE("complementary gains: in proportion they are stable at every interval and damping, and else as designed") {
+  for (const double damping : {0.5, 1.0, 3.0}) {
+    for (const double dt : {1e-3, 0.01, 0.1, 0.3, 0.7, 1.0, 1.9, 2.1, 5.0, 30.0}) {
+      CAPTURE(damping);
+      CAPTURE(dt);
+      const auto g = estimation::proportional_third_order_gains(1.0, damping, dt);
+      double p = 1.0, v = 0.3, a = -0.2;
+      for (int k = 0; k < 100 + static_cast<int>(100.0 / dt); ++k) {
+        p += dt * v + 0.5 * dt * dt * a;
+        v += dt * a;
+        const double error = -p;
+        p += g.value * error;
+        v += g.rate * error;
+        a += g.second * error;
+      }
+      CHECK(std::abs(p) + std::abs(v) + std::abs(a) < 1e-3);
+    }
+    const auto fine = estimation::proportional_third_order_gains(3.0, damping, 1e-4);
+    const auto designed = estimation::third_order_gains(3.0, damping, 1e-4);
+    CHECK(fine.value == doctest::Approx(designed.value).epsilon(1e-3));
+    CHECK(fine.rate == doctest::Approx(designed.rate).epsilon(1e-3));
+    CHECK(fine.second == doctest::Approx(designed.second).epsilon(1e-3));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -321,6 +322,59 @@ TEST_CASE("navigator: an attitude sensor that froze gives no state, and what com
   CHECK(judge(states, 1, 14.0).worst_position < 0.05);
 }
 
+TEST_CASE("navigator: an attitude sensor that is away is named by what the others go on with, until it is back") {
+  using Kind = std::function<bool(Ahrs&)>;  // false: not said at all
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::optional<Ahrs> held;
+  const std::vector<std::pair<std::string, Kind>> kinds{
+      {"AHRS is silent or sends no numbers", [](Ahrs&) { return false; }},
+      {"AHRS is refused: not plausible",
+       [&](Ahrs& ahrs) {
+         ahrs.f_B.z() = nan;
+         return true;
+       }},
+      {"AHRS is refused: late",
+       [](Ahrs& ahrs) {
+         ahrs.utime -= 5'000'000;
+         return true;
+       }},
+      {"AHRS is frozen",
+       [&](Ahrs& ahrs) {
+         if (!held) held = ahrs;
+         const Utime utime = ahrs.utime;
+         ahrs = *held;
+         ahrs.utime = utime;
+         return true;
+       }},
+  };
+  for (const bool shallow : {true, false}) {
+    for (const auto& [words, kind] : kinds) {
+      CAPTURE(shallow);
+      CAPTURE(words);
+      held.reset();
+      for (const double end : {13.0, 40.0}) {
+        auto arrivals = test::synthetic_survey({.duration = end, .shallow = shallow});
+        std::erase_if(arrivals, [&](auto& arrival) {
+          auto* ahrs = std::get_if<Ahrs>(&arrival.sample);
+          if (ahrs == nullptr) return false;
+          const double t = seconds_between(1'000'000'000, ahrs->utime);
+          return t > 10.0 && t < 13.0 && !kind(*ahrs);
+        });
+        Navigator navigator{test::survey_settings(shallow), test::survey_places()};
+        const auto states = test::feed(navigator, arrivals);
+        const std::string said = navigator.complaint();
+        if (end < 14.0) {
+          CHECK_MESSAGE(said.find(words) == 0, said);
+          CHECK(seconds_between(1'000'000'000, states.back().utime) < 10.1);
+        } else {
+          CHECK(said.empty());
+          CHECK(states.back().valid);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("navigator: a first fix that is wild is outvoted by the next two") {
   bool first = true;
   const auto spoil = [&](test::SurveySample& s, double) {
@@ -349,7 +403,19 @@ TEST_CASE("navigator: clocks that jump forward or back make no state wrong") {
   Navigator navigator{test::survey_settings(true), test::survey_places()};
   const auto states = test::feed(navigator, arrivals);
   CHECK(navigator.rejected()["OPTICAL_FLOW not plausible"] > 100);
+  CHECK(navigator.complaint() == "OPTICAL_FLOW is ahead of AHRS; is its clock right?");
   CHECK(judge(states, 1, 5.0).worst_position < 0.1);
+  // One that went back by four seconds: what it says is of another time, although that time is still remembered.
+  auto late = test::synthetic_survey({.duration = 20.0, .shallow = false});
+  for (auto& arrival : late) {
+    if (auto* dvl = std::get_if<Dvl>(&arrival.sample); dvl != nullptr && dvl->utime > 1'010'000'000)
+      dvl->utime -= 4'000'000;
+  }
+  Navigator deep{test::survey_settings(false), test::survey_places()};
+  const auto deep_states = test::feed(deep, late);
+  CHECK(deep.rejected()["DVL too late"] > 50);
+  CHECK(deep.complaint() == "DVL comes too late; is its clock right?");
+  CHECK(judge(deep_states, 1, 5.0).worst_position < 1.0);
 }
 
 TEST_CASE("navigator: what an aid needs and is not there is said in one line") {

@@ -187,6 +187,28 @@ TEST_CASE("seabotix: four motions and the paper's thirteen parameters") {
   CHECK(prior_mean(vehicle, "W-B") == -1.1881);
 }
 
+// Eq. 1.6 lists port, starboard, vertical, lateral (the tau of 1.7: port, starboard, lateral, vertical).
+TEST_CASE("seabotix: printed 1.6 with printed 1.7 books ten newtons of the vertical thruster as sway and yaw") {
+  const Vehicle vehicle = Vehicle::load(vehicle_file("seabotix_lbv150"));
+  const Eigen::Vector4d only_vertical{0.0, 0.0, 10.0, 0.0};
+  Eigen::Matrix4d printed;        // rows X, Y, Z, N
+  printed << 1.0, 1.0, 0.0, 0.0,  //
+      0.0, 0.0, 1.0, 0.0,         //
+      0.0, 0.0, 0.0, 1.0,         //
+      0.0475, -0.0475, 0.05, 0.0;
+  const Eigen::Vector4d wrong = printed * only_vertical;
+  CHECK(wrong[1] == doctest::Approx(10.0));
+  CHECK(wrong[3] == doctest::Approx(0.5));
+  const Vector6d right = vehicle.allocation * only_vertical;  // by hand: (0 0 -0.05) x (0 0 10) is nothing
+  CHECK((right - (Vector6d{} << 0.0, 0.0, 10.0, 0.0, 0.0, 0.0).finished()).norm() < 1e-12);
+  // With the columns in the order of the inputs the numbers themselves are right.
+  printed.col(2).swap(printed.col(3));
+  for (Eigen::Index column = 0; column < 4; ++column) {
+    const Eigen::Vector4d rows = vehicle.allocation({0, 1, 2, 5}, column);
+    CHECK((printed.col(column) - rows).norm() < 1e-12);
+  }
+}
+
 TEST_CASE("bluerov2: the file loads and its thrusters reach every motion it names") {
   const Vehicle vehicle = Vehicle::load(vehicle_file("bluerov2"));
   CHECK(vehicle.thrusters.size() == 6);

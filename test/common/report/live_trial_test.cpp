@@ -49,6 +49,7 @@ Recording trial() {
     ModelEstimate model{.utime = utime};
     model.parameters = {
         {"m_X", 9.0 + 0.01 * t, 0.5, "kg"}, {"I_Z", 0.16, 0.01, "kg m^2"}, {"X_u", -8.0, 0.1, "N/(m/s)"}};
+    model.covariance = {0.25, 0.0, 0.03, 0.0, 1e-4, 0.0, 0.03, 0.0, 0.01};  // m_X and X_u correlated by 0.6
     model.modes = {{"surge", 1.0 / (1.0 + t), 0.1}, {"total", 2.0 / (1.0 + t), 0.1}, {"yaw", 0.1 / (1.0 + t), 0.1}};
     recording.model.push_back(model);
   }
@@ -169,12 +170,15 @@ TEST_CASE("live trial: JSON, table and page agree, and speak of truth only when 
   result.truth = compare_truth(truth_file(scratch, kTruth), recording);
   const auto json = nlohmann::json::parse(to_json(result));
   CHECK(json["parameters"]["m_X"]["value"].get<double>() == doctest::Approx(9.6));
+  CHECK(json["parameters"]["m_X"]["variance_inflation"].get<double>() == doctest::Approx(1.0 / (1.0 - 0.36)));
+  CHECK(json["parameters"]["I_Z"]["variance_inflation"].get<double>() == doctest::Approx(1.0));
+  CHECK(json["condition_of_correlations"].get<double>() == doctest::Approx(4.0));
   CHECK(json["compared_with_truth"]["parameters"]["X_u"]["inside_interval"] == false);
   CHECK(json["compared_with_truth"]["parameters"]["m_X"]["inside_interval"] == true);
   CHECK(to_table(result).find("MISSES THE TRUTH") != std::string::npos);
   const std::string page = to_html(result, recording, vehicle(), site());
-  for (const char* words : {"Table 1.1", "Figure 1.11", "Figure 1.14", "Figure 1.15", "Figure 1.17", "Figure 1.19",
-                            "Compared with the simulator's truth"}) {
+  for (const char* words : {"Table 1.1", "Entangled", "Figure 1.11", "Figure 1.14", "Figure 1.15", "Figure 1.17",
+                            "Figure 1.19", "Compared with the simulator's truth"}) {
     CHECK_MESSAGE(page.find(words) != std::string::npos, words);
   }
   CHECK(page.find("Compared with the simulator's truth") > page.find("Figure 1.19"));
