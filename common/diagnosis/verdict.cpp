@@ -36,7 +36,7 @@ std::string improvement_sentence(const DiagnosisResult& result) {
   const bool own = !result.own_in_validation.empty();
   std::string text = own ? "The validation run has numbers of its own for " + joined(result.own_in_validation) +
                                " (when, in what phase, or which way the water goes); its first half set them. In its "
-                               "second half the"
+                               "second half the 5 s prediction error "
                          : "On runs that no fit has seen, the 5 s prediction error ";
   text += std::string(change.value >= 0.0 ? "falls by " : "grows by ") + percent(std::abs(change.value));
   if (std::isfinite(change.low) && std::isfinite(change.high)) {
