@@ -259,7 +259,10 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   }
   result.residual_before = whiteness(found.before.model, unseen, residual_before);
   result.residual_after = whiteness(found.after.model, unseen, residual_after);
-  if (found.accepted.empty()) learnt = found.after.model;
+  if (found.accepted.empty()) {
+    learnt = found.after.model;
+    result.own_in_validation.clear();
+  }
   const std::vector<Association> left = left_in(train, unseen, found, learnt, vehicle, settings);
   report.traces = traces_of(unseen, found.before.model, found.after.model, residual_before, residual_after);
   found.after.model = std::move(learnt);

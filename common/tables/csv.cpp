@@ -31,14 +31,16 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-// NaN for a missing or infinite number; false when the cell is no number at all.
+constexpr double kFill = 1e30;  // what loggers write for "no value" (FLT_MAX, 1e38, DBL_MAX) is larger than any quantity
+
+// NaN for a missing or infinite number, and for a fill value; false when the cell is no number at all.
 bool read_number(std::string_view cell, double& value) {
   value = kMissing;
   if (cell.empty()) return true;
   if (cell.front() == '+') cell.remove_prefix(1);
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc{} || end != cell.data() + cell.size()) return false;
-  if (!std::isfinite(value)) value = kMissing;
+  if (!(std::abs(value) < kFill)) value = kMissing;
   return true;
 }
 
