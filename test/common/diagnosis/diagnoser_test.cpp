@@ -160,21 +160,23 @@ TEST_CASE("diagnoser: a validation run of a few seconds judges nothing, and stop
 
 TEST_CASE("diagnoser: what the validation run contradicts is taken back, and called unexplained") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
-  const auto dive = [&](unsigned seed, double v_N) {
-    return test::make_dive(vehicle, {.duration = 90.0, .seed = seed, .effects = {test::active("current", {v_N, 0.0})}})
+  const auto dive = [&](unsigned seed, double change) {
+    return test::make_dive(vehicle,
+                           {.duration = 90.0, .seed = seed, .effects = {test::active("thrust_asymmetry", {change})}})
         .trial;
   };
-  std::vector<Trial> train{dive(51, 0.15)}, validate{dive(52, -0.15)};  // the stream has turned in between
+  std::vector<Trial> train{dive(51, -0.3)}, validate{dive(52, 0.3)};  // other propellers, put on in between
   train[0].name = "before";
   validate[0].name = "after";
   const DiagnosisResult result = diagnose(vehicle, train, validate, {}, [](const std::string&, double) {}).result;
   CHECK(result.verdict == "unexplained");
   CHECK(result.effects.empty());
   CHECK(result.improvement.value == 0.0);
-  const auto current = std::find_if(result.candidates.begin(), result.candidates.end(),
-                                    [](const CandidateTried& c) { return c.name == "current"; });
-  REQUIRE(current != result.candidates.end());
-  CHECK(current->reason.find("not the validation run") != std::string::npos);
+  const auto asymmetry = std::find_if(result.candidates.begin(), result.candidates.end(),
+                                      [](const CandidateTried& c) { return c.name == "thrust_asymmetry"; });
+  REQUIRE(asymmetry != result.candidates.end());
+  CHECK(asymmetry->reason.find("not the validation run") != std::string::npos);
+  CHECK(result.paragraph.find("thrust_asymmetry helped the training runs") != std::string::npos);
 }
 
 TEST_CASE("diagnoser: a validation run that hardly feels what was found takes nothing back") {

@@ -24,7 +24,7 @@ const model::Vehicle& vehicle() {
 }
 
 Trial dive(const model::ActiveEffect& effect, unsigned seed, double duration = 200.0) {
-  return test::make_dive(vehicle(), {.duration = duration, .seed = seed, .effects = {effect}}).trial;
+  return test::make_dive(vehicle(), {.duration = duration, .seed = seed, .spread = 0.0, .effects = {effect}}).trial;
 }
 
 /// The truth of one run, as if it had been learnt.
