@@ -53,7 +53,7 @@ std::vector<std::vector<Vector6d>> residuals_unbent(const model::Model& model, s
   Eigen::MatrixXd columns(target.size(), static_cast<Eigen::Index>(base.size()));
   for (std::size_t j = 0; j < base.size(); ++j) {
     model::Model moved = model;  // the residual is linear in base numbers, so any step will do
-    moved.theta[static_cast<std::size_t>(map[base[j]].base)] += map[base[j]].scale;
+    moved.theta[map[base[j]].base] += map[base[j]].scale;
     columns.col(static_cast<Eigen::Index>(j)) = stacked(trials, residuals_of(moved, trials)) - target;
   }
   Eigen::VectorXd step = Eigen::VectorXd::Zero(columns.cols()), left = target;
@@ -76,8 +76,7 @@ std::vector<std::vector<Vector6d>> residuals_unbent(const model::Model& model, s
   if (!step.allFinite()) return residuals;
   model::Model unbent = model;
   for (std::size_t j = 0; j < base.size(); ++j)
-    unbent.theta[static_cast<std::size_t>(map[base[j]].base)] +=
-        step[static_cast<Eigen::Index>(j)] * map[base[j]].scale;
+    unbent.theta[map[base[j]].base] += step[static_cast<Eigen::Index>(j)] * map[base[j]].scale;
   return residuals_of(unbent, trials);
 }
 

@@ -63,7 +63,7 @@ Corruption BaseNumbers::most_moved(const model::Model& without, const model::Mod
   Corruption most;
   for (std::size_t i = 0; i < map.size() && map[i].base >= 0; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const auto base = static_cast<std::size_t>(map[i].base);
+    const int base = map[i].base;
     const double moved = without.theta[base] - with.theta[base];
     if (with.theta[base] == 0.0 || std::abs(moved) < kSurely * std::sqrt(without_.covariance(k, k))) continue;
     const double share = moved / with.theta[base];

@@ -31,7 +31,7 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-constexpr double kFill = 1e30;  // what loggers write for "no value" (FLT_MAX, 1e38, DBL_MAX) is larger than any quantity
+constexpr double kFill = 1e30;  // and more is what loggers write for "no value": FLT_MAX, 1e38, DBL_MAX
 
 // NaN for a missing or infinite number, and for a fill value; false when the cell is no number at all.
 bool read_number(std::string_view cell, double& value) {

@@ -239,19 +239,6 @@ TEST_CASE("battery_sag: by voltage where it says something, by time where it is 
   CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == 16.0);
 }
 
-TEST_CASE(
-    "thruster_deadband: a rounded band has no edge, takes all but a trace of small commands and hardly any of large") {
-  Fixture fixture;
-  const auto share = [&](double command, double width) {
-    fixture.motion.force.setConstant(command);
-    return fixture.felt("thruster_deadband", {width}, 2)[0] / command;
-  };
-  CHECK(share(1.0, 1.0) == doctest::Approx(1.0 - std::exp(-1.0)));
-  CHECK(share(-1.0, 1.0) == doctest::Approx(1.0 - std::exp(-1.0)));
-  CHECK(share(0.1, 1.0) == doctest::Approx(0.00995).epsilon(0.001));
-  CHECK(share(4.0, 1.0) > 0.999);
-}
-
 TEST_CASE("thruster_deadband: a search for the step begins close to wherever its edge may be") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   model::Scene scene{.vehicle = &vehicle};
