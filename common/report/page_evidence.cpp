@@ -45,7 +45,7 @@ std::string rivals(const EffectFound& effect) {
   std::string names, harm;
   const auto falsifies = [](const std::string& name, const std::string& parameter, double share) {
     return parameter.empty() ? ""
-                             : " " + effect_title(name, "") + " unnoticed makes " + parameter + " " +
+                             : " Unnoticed, " + effect_title(name, "") + " makes " + parameter + " " +
                                    percent(std::abs(share)) + (share > 0.0 ? " too large" : " too small") + ".";
   };
   harm += falsifies(effect.name, effect.corrupts, effect.corruption);
