@@ -10,7 +10,7 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kStep = 1e-3;  // of the number or a tenth of its sigma, for differences: rounding and curvature small
+constexpr double kStep = 3e-4;  // of the number or a tenth of its sigma, for differences: rounding and curvature small
 
 // Of what sensors do, only an arm is asked here: scales of velocities hide in masses and drag, and what is late is no
 // matter of an instant.
@@ -103,9 +103,9 @@ void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForc
   for (Probe& probe : probes_) {
     if (!probe.memory.empty()) {
       if (settled_) {
-        probe.effect->advance(halfway, probe.theta, dt, probe.memory);
+        probe.effect->advance(halfway, probe.theta, probe.variant, dt, probe.memory);
       } else {
-        probe.effect->settle(motion, probe.theta, probe.memory);
+        probe.effect->settle(motion, probe.theta, probe.variant, probe.memory);
       }
     }
     felt = motion;

@@ -54,7 +54,7 @@ void feel(const Model& model, Motion& motion, std::span<double> memory, double d
   for (const ActiveEffect& active : model.effects) {
     const auto size = static_cast<std::size_t>(active.effect->state_size(*model.vehicle, actuators(model)));
     const std::span<double> z = memory.subspan(offset, size);
-    if (dt > 0.0 && size > 0) active.effect->advance(motion, active.theta, dt, z);
+    if (dt > 0.0 && size > 0) active.effect->advance(motion, active.theta, active.variant, dt, z);
     active.effect->feel(motion, active.theta, active.variant, z);
     offset += size;
   }
@@ -65,7 +65,7 @@ void settle(const Model& model, Motion motion, std::span<double> memory) {
   for (const ActiveEffect& active : model.effects) {
     const auto size = static_cast<std::size_t>(active.effect->state_size(*model.vehicle, actuators(model)));
     const std::span<double> z = memory.subspan(offset, size);
-    active.effect->settle(motion, active.theta, z);
+    active.effect->settle(motion, active.theta, active.variant, z);
     active.effect->feel(motion, active.theta, active.variant, z);
     offset += size;
   }

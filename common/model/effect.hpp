@@ -122,9 +122,9 @@ class Effect {
   /// Size of the memory z.
   [[nodiscard]] virtual int state_size(const Vehicle&, int /*actuators*/) const { return 0; }
   /// Memory at rest in this motion (steady state).
-  virtual void settle(const Motion&, EffectTheta, std::span<double> /*z*/) const {}
+  virtual void settle(const Motion&, EffectTheta, int /*variant*/, std::span<double> /*z*/) const {}
   /// Memory after dt, exact for constant input. Sees the motion as felt before this effect.
-  virtual void advance(const Motion&, EffectTheta, double /*dt*/, std::span<double> /*z*/) const {}
+  virtual void advance(const Motion&, EffectTheta, int /*variant*/, double /*dt*/, std::span<double> /*z*/) const {}
   /// Seconds of measured motion before a window that fill the memory. Of the time constants' size, but no smooth
   /// function of them: see run_in_for().
   [[nodiscard]] virtual double run_in(EffectTheta) const { return 3.0; }

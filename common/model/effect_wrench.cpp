@@ -54,9 +54,9 @@ void EffectWrench::step(const Motion& motion, const ActuatorForces& middle, doub
     Probe& probe = probes_[i];
     if (!probe.memory.empty()) {
       if (settled_) {
-        effect_.effect->advance(halfway, probe.theta, dt, probe.memory);
+        effect_.effect->advance(halfway, probe.theta, effect_.variant, dt, probe.memory);
       } else {
-        effect_.effect->settle(motion, probe.theta, probe.memory);
+        effect_.effect->settle(motion, probe.theta, effect_.variant, probe.memory);
       }
     }
     const Vector6d total = added(base_, motion, probe, felt, load);

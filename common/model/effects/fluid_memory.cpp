@@ -74,12 +74,12 @@ class FluidMemory final : public Effect {
   int state_size(const Vehicle&, int) const override { return 2 * kAxes; }
   double run_in(EffectTheta theta) const override { return run_in_for(theta[kTime]); }
 
-  void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
+  void settle(const Motion& motion, EffectTheta, int, std::span<double> z) const override {
     const Vector6d nu_r = motion.nu_r();
     std::ranges::copy(nu_r, z.begin());
     std::ranges::copy(nu_r, z.begin() + kAxes);
   }
-  void advance(const Motion& motion, EffectTheta theta, double dt, std::span<double> z) const override {
+  void advance(const Motion& motion, EffectTheta theta, int, double dt, std::span<double> z) const override {
     const double share = theta[kTime] > 0.0 ? -std::expm1(-dt / theta[kTime]) : 1.0;
     const Vector6d nu_r = motion.nu_r();
     for (std::size_t i = 0; i < kAxes; ++i) {

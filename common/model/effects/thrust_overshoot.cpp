@@ -37,10 +37,10 @@ class ThrustOvershoot final : public Effect {
   int state_size(const Vehicle&, int actuators) const override { return actuators; }
   double run_in(EffectTheta theta) const override { return run_in_for(theta[1]); }
 
-  void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
+  void settle(const Motion& motion, EffectTheta, int, std::span<double> z) const override {
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = motion.force[static_cast<Eigen::Index>(i)];
   }
-  void advance(const Motion& motion, EffectTheta theta, double dt, std::span<double> z) const override {
+  void advance(const Motion& motion, EffectTheta theta, int, double dt, std::span<double> z) const override {
     const double share = theta[1] > 0.0 ? -std::expm1(-dt / theta[1]) : 1.0;
     for (std::size_t i = 0; i < z.size(); ++i) z[i] += share * (motion.force[static_cast<Eigen::Index>(i)] - z[i]);
   }

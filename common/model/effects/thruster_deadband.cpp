@@ -1,7 +1,9 @@
-// Physics: small commands turn no propeller (static friction, ESC threshold). Two forms: `offset` f = sign(f_c)
-// max(|f_c| - d, 0), and `step`, nothing below d and the full force above it. Source: makers' thrust curves about
-// neutral, and Coulomb's friction. Ignores: a band of its own per thruster. Revealed by small commands around zero.
-// Confused with lower thruster gain when all commands are alike in size.
+// Physics: small commands turn no propeller (static friction, ESC threshold). Forms: `offset` f = sign(f_c)
+// max(|f_c| - d, 0); `step`, nothing below d and the full force above it; `rounded`, a propeller that creeps at first,
+// f = f_c s^2 (3 - 2 s) with s = min(|f_c| / d, 1), the smoothest cubic from nothing to all. Source: makers' thrust
+// curves about neutral, and Coulomb's friction; the rounded law is an assumption. Ignores: a band of its own per
+// thruster. Revealed by small commands around zero. Confused with lower thruster gain when all commands are alike in
+// size.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +14,7 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50.0}};
-constexpr int kOffset = 0;
+enum Form { kOffset, kStep, kRounded };
 constexpr double kFirstStep = 0.04, kLastStep = 1.0;  // of the typical command
 constexpr double kNextStep = 1.15;                    // times the one before: constant commands are often close to it
 
@@ -23,10 +25,10 @@ class ThrusterDeadband final : public Effect {
   std::string_view revealed_by() const override { return "small thrust commands that change sign"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
-  std::vector<std::string> variants(const Scene&) const override { return {"offset", "step"}; }
+  std::vector<std::string> variants(const Scene&) const override { return {"offset", "step", "rounded"}; }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double typical = scene.force_rms.size() > 0 ? scene.force_rms.maxCoeff() : 1.0;
-    if (variant == kOffset) return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
+    if (variant != kStep) return {{0.05 * typical}, {0.2 * typical}, {0.5 * typical}};
     // Only commands at a step's edge tell where it is: no slope leads there from afar.
     std::vector<std::vector<double>> starts;
     for (double share = kFirstStep; share < kLastStep; share *= kNextStep) starts.push_back({share * typical});
@@ -39,6 +41,9 @@ class ThrusterDeadband final : public Effect {
     for (double& force : motion.force) {
       if (variant == kOffset) {
         force = std::copysign(std::max(std::abs(force) - half, 0.0), force);
+      } else if (variant == kRounded) {
+        const double share = std::min(std::abs(force) / half, 1.0);
+        force *= share * share * (3.0 - 2.0 * share);
       } else {
         // A flank of a tenth of the width keeps the step differentiable.
         const double share = std::clamp((std::abs(force) - 0.95 * half) / (0.1 * half), 0.0, 1.0);

@@ -3,9 +3,11 @@
 // (thruster_kinds.hpp); or it is the shaft that needs time, whose speed thrust goes with the square of: T n_dot = n_c -
 // n, f = n |n| (a regulated motor; Blanke et al. 2000). Thrust then starts slowly, and falls quickly when the shaft
 // stops; a reversal lingers at nothing; or second order: motor and water one after the other, T each (Healey et al.
-// 1995), which starts with no slope. Ignores: that the time constant shrinks with shaft speed (Yoerger 1990), two
-// refinements at once. Revealed by reversals at frequencies near 1/T, the law by steps up and down. Confused with
-// thruster_delay and, over a narrow band, with added mass.
+// 1995), which starts with no slope; or a motor whose torque is commanded, against the water's: 2 sqrt(f_r) T n_dot =
+// f_c - n |n| (Yoerger, Cooke, Slotine 1990), quick at large thrust and slow at small, T its time constant at f_r, the
+// largest thrust that the vehicle file states. Ignores: two refinements at once. Revealed by reversals at frequencies
+// near 1/T, the law by steps up and down of several sizes. Confused with thruster_delay and, over a narrow band, with
+// added mass.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,15 +20,39 @@ namespace {
 
 constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0, 0.0, true},
                                  EffectParameter{"vertical_longer", "s", 0.15, -3.0, 3.0}};
-enum Form { kAlike, kTwoKinds, kShaft, kSecondOrder };
+enum Form { kAlike, kTwoKinds, kShaft, kSecondOrder, kTorque };
+constexpr double kReferenceThrust = 10.0;  // N, where none is stated
+constexpr double kInstant = 1e-6;          // s
 
 /// s. What two kinds differ by is zero in the other forms.
 double of_vertical(EffectTheta theta) { return time_of_vertical(theta[0], theta[1]); }
+bool of_shaft(int variant) { return variant == kShaft || variant == kTorque; }
 double share_in(double dt, double time_constant) {
   return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }
 /// Shaft speed of a force, up to a factor that plays no part.
 double shaft(double force) { return std::copysign(std::sqrt(std::abs(force)), force); }
+
+/// Shaft speed after dt of n_dot = (f_c - n |n|) / c, exactly for a force that is held. A shaft that turns the other
+/// way is stopped by motor and water together, n = a tan(...), and then turns as one from rest, n = a tanh(...).
+double turned(double n, double force, double dt_over_c) {
+  if (force == 0.0) return n / (1.0 + std::abs(n) * dt_over_c);
+  const double side = std::copysign(1.0, force), a = std::sqrt(std::abs(force));
+  double left = a * dt_over_c;
+  n *= side;
+  if (n < 0.0) {
+    const double until_rest = std::atan(-n / a);
+    if (left < until_rest) return side * a * std::tan(left - until_rest);
+    left -= until_rest;
+    n = 0.0;
+  }
+  const double share = std::tanh(left);
+  return side * a * (n + a * share) / (a + n * share);
+}
+
+double reference_thrust(const Vehicle& vehicle) {
+  return vehicle.largest_thrust > 0.0 ? vehicle.largest_thrust : kReferenceThrust;
+}
 
 class ThrusterLag final : public Effect {
  public:
@@ -39,7 +65,7 @@ class ThrusterLag final : public Effect {
   std::vector<std::string> variants(const Scene& scene) const override {
     // Of a wrench nobody knows which shafts made it.
     return {"", has_both_kinds(scene) ? "vertical thrusters apart" : "-", scene.input_is_wrench ? "-" : "shaft speed",
-            "second order"};
+            "second order", scene.input_is_wrench ? "-" : "torque"};
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double slower = size_factor(*scene.vehicle, "s");
@@ -47,39 +73,46 @@ class ThrusterLag final : public Effect {
     const double each = variant == kSecondOrder ? 0.5 : 1.0;
     return {{0.08 * each * slower, 0.0}, {0.3 * each * slower, 0.0}, {0.9 * each * slower, 0.0}};
   }
-  /// Thrust and, behind it, shaft speed and thrust that follows the first, of each: advance() is not told which of them
-  /// the form asks for. The last takes longer to forget.
-  int state_size(const Vehicle&, int actuators) const override { return 3 * actuators; }
+  /// Thrust of each or, where it is the shaft that lags, its speed; behind it, thrust that follows the first.
+  int state_size(const Vehicle&, int actuators) const override { return 2 * actuators; }
+  /// The last takes longer to forget, and a shaft moved by torque slows down as it comes to rest.
   double run_in(EffectTheta theta) const override { return run_in_for(1.5 * std::max(theta[0], of_vertical(theta))); }
 
-  void settle(const Motion& motion, EffectTheta, std::span<double> z) const override {
-    const std::size_t n = z.size() / 3;
+  void settle(const Motion& motion, EffectTheta, int variant, std::span<double> z) const override {
+    const std::size_t n = z.size() / 2;
     for (std::size_t i = 0; i < n; ++i) {
-      z[i] = motion.force[static_cast<Eigen::Index>(i)];
-      z[n + i] = shaft(z[i]);
-      z[2 * n + i] = z[i];
+      const double force = motion.force[static_cast<Eigen::Index>(i)];
+      z[i] = of_shaft(variant) ? shaft(force) : force;
+      z[n + i] = z[i];
     }
   }
-  void advance(const Motion& motion, EffectTheta theta, double dt, std::span<double> z) const override {
-    const std::size_t n = z.size() / 3;
-    const bool apart = of_vertical(theta) != theta[0];
-    const double share = share_in(dt, theta[0]), of_others = apart ? share_in(dt, of_vertical(theta)) : share;
+  void advance(const Motion& motion, EffectTheta theta, int variant, double dt, std::span<double> z) const override {
+    const std::size_t n = z.size() / 2;
+    const double share = share_in(dt, theta[0]);
+    const double of_others = variant == kTwoKinds ? share_in(dt, of_vertical(theta)) : share;
     const double passed_on = theta[0] > 0.0 ? dt / theta[0] * (1.0 - share) : 0.0;
+    const double dt_over_c = dt / (2.0 * std::sqrt(reference_thrust(*motion.vehicle)) * std::max(theta[0], kInstant));
     for (std::size_t i = 0; i < n; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      const bool vertical = apart && is_vertical(*motion.vehicle, k, motion.force.size());
-      // Exact for a force that is held.
-      z[2 * n + i] += share * (motion.force[k] - z[2 * n + i]) + passed_on * (z[i] - motion.force[k]);
-      z[i] += (vertical ? of_others : share) * (motion.force[k] - z[i]);
-      z[n + i] += share * (shaft(motion.force[k]) - z[n + i]);
+      const double force = motion.force[k];
+      // Each is exact for a force that is held.
+      if (variant == kTorque) {
+        z[i] = turned(z[i], force, dt_over_c);
+      } else if (variant == kShaft) {
+        z[i] += share * (shaft(force) - z[i]);
+      } else {
+        const bool vertical = variant == kTwoKinds && is_vertical(*motion.vehicle, k, motion.force.size());
+        if (variant == kSecondOrder) z[n + i] += share * (force - z[n + i]) + passed_on * (z[i] - force);
+        z[i] += (vertical ? of_others : share) * (force - z[i]);
+      }
     }
   }
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double> z) const override {
-    const std::size_t n = z.size() / 3;
+    const std::size_t n = z.size() / 2;
     if (theta[0] <= 0.0 && of_vertical(theta) <= 0.0) return;
     for (std::size_t i = 0; i < n; ++i) {
-      motion.force[static_cast<Eigen::Index>(i)] = variant == kShaft         ? z[n + i] * std::abs(z[n + i])
-                                                   : variant == kSecondOrder ? z[2 * n + i]
+      motion.force[static_cast<Eigen::Index>(i)] = of_shaft(variant)         ? z[i] * std::abs(z[i])
+                                                   : variant == kSecondOrder ? z[n + i]
                                                                              : z[i];
     }
   }

@@ -1,11 +1,11 @@
 // Physics: as bottom_effect, with an upright wall: planes n . p = const with n = (cos b, sin b, 0) toward it, felt by
-// `force`, w = -a f R_WB^T n (a > 0 pushes away, a < 0 sucks: Bernoulli between hull and wall), or by `drag`: the
-// hull's own translational drag grows by the share c f. Each falls with the inverse square of the gap to the wall, f =
-// 1 / (d - n . p)^2, or exponentially, f = exp((n . p - d_a) / s), told for a place d_a as near as the vehicle came
-// (boundary.hpp). Bearing b and the wall's distance d from the site's origin, or the reach s, are numbers to be found.
-// Source: as there. Ignores: more than one wall (each is a form of its own search), growth of the added mass, the jets'
-// own reflection. Revealed by moving along and toward each side of the site. Confused with tether_tension (pulls along
-// a line to a point) and, with little motion across, with current.
+// `force`, w = -a f R_WB^T n (a > 0 pushes away, a < 0 draws near), by `drag`: the hull's own translational drag grows
+// by the share c f, or by `suction`: w = a v_t^2 / (d - n . p)^4 R_WB^T n, v_t the speed along the wall. Each falls
+// with the inverse square of the gap to the wall, f = 1 / (d - n . p)^2, or exponentially, f = exp((n . p - d_a) / s),
+// told for a place d_a as near as the vehicle came (boundary.hpp). Bearing b and the wall's distance d from the site's
+// origin, or the reach s, are numbers to be found. Source: as there. Ignores: more than one wall (each is a form of its
+// own search), growth of the added mass, the jets' own reflection. Revealed by moving along and toward each side of the
+// site. Confused with tether_tension (pulls along a line to a point) and, with little motion across, with current.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,10 +47,10 @@ class WallEffect final : public Effect {
   }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
-  bool multiplies_drag(int variant) const override { return !presses(variant); }
-  /// A wall that takes drag away is none.
+  bool multiplies_drag(int variant) const override { return multiplies(variant); }
+  /// A wall that takes drag away or drives off is none.
   bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const override {
-    if (!presses(variant) && theta[0] < 0.0) return false;
+    if (one_sided(variant) && theta[0] < 0.0) return false;
     return exponential(variant) || theta[kDistance] > toward(theta).dot(p_WB);
   }
   bool variants_matter() const override { return true; }
@@ -62,12 +62,14 @@ class WallEffect final : public Effect {
     const double range = (scene.p_high - scene.p_low).head<2>().maxCoeff();
     if (!scene.position || !scene.attitude || range <= kSmallestRange) return {};
     const bool pushed = dof[0] || dof[1], moves = pushed || dof[2];
-    return names(pushed, moves);
+    return names(pushed, moves, (dof[0] && dof[1]) || (pushed && dof[2]));
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const Eigen::Vector2d middle = 0.5 * (scene.p_high + scene.p_low).head<2>();
     const Eigen::Vector2d half = 0.5 * (scene.p_high - scene.p_low).head<2>();
-    const double size = presses(variant) ? 0.1 * std::max(scene.tau_rms.head<2>().norm(), 1e-2) : kStartShare;
+    const double force = 0.1 * std::max(scene.tau_rms.head<2>().norm(), 1e-2);
+    const double size = multiplies(variant) ? kStartShare : force;
+    const double speed = scene.nu_rms.head<3>().norm();
     std::vector<std::vector<double>> starts;
     for (int k = 0; k < kBearings; ++k) {
       const double bearing = 2.0 * std::numbers::pi * k / kBearings;
@@ -79,7 +81,7 @@ class WallEffect final : public Effect {
       }
       for (const double gap : kGaps) {
         const double far = gap + 0.25 * width;  // where it should be worth a tenth of the thrust
-        starts.push_back({size * far * far, bearing, edge + gap, 0.0, 0.0});
+        starts.push_back({strength_at(variant, force, far, speed), bearing, edge + gap, 0.0, 0.0});
       }
     }
     return starts;
@@ -89,8 +91,8 @@ class WallEffect final : public Effect {
     const Eigen::Vector3d n = toward(theta);
     const double along = n.dot(motion.p_WB);
     const double near = theta[0] * (exponential(variant) ? proximity_at(along - theta[kAtDistance], theta[kReach])
-                                                         : proximity(theta[kDistance] - along));
-    press(variant, near, motion.R_WB.transpose() * n, load);
+                                                         : nearness(variant, theta[kDistance] - along));
+    press(variant, near, motion.R_WB.transpose() * n, motion.nu_r().head<3>(), load);
   }
 };
 

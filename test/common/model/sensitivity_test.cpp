@@ -127,10 +127,12 @@ TEST_CASE("sensitivity: six axes, with nothing and with each kind of effect") {
 }
 
 TEST_CASE("sensitivity: where a boundary makes the hull's drag several times as large, its numbers count as often") {
-  constexpr int kExponentialDrag = 3;
+  constexpr int kExponentialDrag = 3, kSuction = 4;
   const model::Vehicle vehicle = test::vehicle_from_repository("beluga");
   check(vehicle, {test::active("wall_effect", {2.0, 0.3, 0.0, 0.5, 2.0}, kExponentialDrag)}, 83);
   check(four_axes(), {test::active("bottom_effect", {1.5, 0.0, 0.4, 0.5}, kExponentialDrag)}, 84);
+  check(four_axes(), {test::active("bottom_effect", {9.0, 2.5, 0.0, 0.0}, kSuction)}, 85);
+  check(four_axes(), {test::active("thruster_lag", {0.3, 0.0}, 4)}, 86);
 }
 
 TEST_CASE("sensitivity: five axes: roll is simulated, tilt is as measured, heading is simulated") {

@@ -206,12 +206,12 @@ TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the s
   for (const double dt : {0.01, 0.5, 7.0}) {
     std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 4)), 0.0);
     motion.nu.setZero();
-    effect.settle(motion, theta, z);
+    effect.settle(motion, theta, 0, z);
     motion.nu.setConstant(1.0);
-    effect.advance(motion, theta, 1e-12, z);  // the step of velocity happens at once
+    effect.advance(motion, theta, 0, 1e-12, z);  // the step of velocity happens at once
     double elapsed = 0.0;
     for (int i = 0; i < 10; ++i) {
-      effect.advance(motion, theta, dt, z);
+      effect.advance(motion, theta, 0, dt, z);
       elapsed += dt;
       CHECK(z[0] == doctest::Approx(-std::expm1(-elapsed / 2.0)).epsilon(1e-9));
     }
@@ -237,7 +237,7 @@ TEST_CASE("fluid_memory: on all axes that move each has its own strength") {
   motion.nu.setConstant(0.7);
   std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 6)), 0.0);
   const std::vector<double> theta{10.0, 5.0, 30.0, 5.0, 5.0, 1.0, 2.0};
-  effect.settle(motion, theta, z);
+  effect.settle(motion, theta, 0, z);
   effect.feel(motion, theta, variant, z);
   CHECK((motion.w_memory + 0.7 * Vector6d{10.0, 0.0, 30.0, 0.0, 0.0, 1.0}).norm() < 1e-12);
 

@@ -62,6 +62,7 @@ TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is t
   CHECK(bottom.rules_out(kForce, kExponentialForce));
   CHECK(bottom.rules_out(kExponentialDrag, kDrag));
   CHECK_FALSE(bottom.rules_out(kForce, kExponentialDrag));
+  CHECK(bottom.rules_out(kForce, 4));                                                    // suction
   CHECK_FALSE(model::find_effect("wall_effect")->rules_out(kForce, kExponentialForce));  // a tank has four
 
   constexpr double kStep = 90.0, kDepth = 3.0, kThickness = 0.3;  // N, m, m: buoyancy rises as a tanh of depth
@@ -75,6 +76,21 @@ TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is t
   CHECK_FALSE(bottom.looks_like(std::vector{kStep, 0.0, 0.15, kDepth}, kExponentialForce).what.empty());
   CHECK(bottom.looks_like(std::vector{-kStep, 0.0, 0.15, kDepth}, kExponentialForce).what.empty());  // suction
   CHECK(bottom.looks_like(std::vector{kStep, 5.0, 0.0, 0.0}, kForce).what.empty());
+}
+
+TEST_CASE("bottom and wall: a hull is drawn toward what it passes by, with the square of its speed along it alone") {
+  constexpr int kSuction = 4;
+  model::Motion motion;
+  motion.p_WB = {1.0, 3.0, 4.5};
+  motion.R_WB = rotation_from_euler({0.0, 0.0, 0.5 * std::numbers::pi});  // looking at the wall in the east
+  motion.nu << 0.3, 0.4, 0.0, 0.1, 0.1, 0.1;
+  const model::Load wall = load_of("wall_effect", {8.0, 0.5 * std::numbers::pi, 5.0, 0.0, 0.0}, kSuction, motion);
+  CHECK((wall.wrench.head<3>() - Eigen::Vector3d(8.0 * 0.16 / 16.0, 0.0, 0.0)).norm() < kRounding);
+  const model::Load floor = load_of("bottom_effect", {2.0, 5.0, 0.0, 0.0}, kSuction, motion);
+  CHECK((floor.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, 2.0 * 0.25 * 16.0)).norm() < kRounding);
+  motion.v_WF_B << 0.3, 0.4, 0.0;  // drifting with the water
+  CHECK(load_of("bottom_effect", {2.0, 5.0, 0.0, 0.0}, kSuction, motion).wrench.isZero(kRounding));
+  CHECK_FALSE(model::find_effect("bottom_effect")->possible(motion.p_WB, std::vector{-2.0, 5.0, 0.0, 0.0}, kSuction));
 }
 
 TEST_CASE("wall_effect: pushes away from the wall, whatever the heading") {

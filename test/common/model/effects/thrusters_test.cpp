@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "common/model/dynamics.hpp"
 #include "common/model/onset.hpp"
@@ -143,19 +145,25 @@ TEST_CASE("thruster_delay: vertical thrusters have a time of their own, and none
   CHECK(fixture.felt("thruster_delay", {0.0, 0.0}, kTwoKinds) == fixture.motion.force);
 }
 
+/// Thrust of the fixture's craft `steps` of `dt` after the command went from one value to another and stayed there.
+model::ActuatorForces lagging(const Fixture& fixture, double from, double to, std::vector<double> theta, int form,
+                              double dt, int steps) {
+  const model::Effect& effect = *model::find_effect("thruster_lag");
+  model::Motion motion = fixture.motion;
+  std::vector<double> z(static_cast<std::size_t>(effect.state_size(fixture.vehicle, 4)));
+  motion.force.setConstant(4, from);
+  effect.settle(motion, theta, form, z);
+  motion.force.setConstant(4, to);
+  for (int k = 0; k < steps; ++k) effect.advance(motion, theta, form, dt, z);
+  effect.feel(motion, theta, form, z);
+  return motion.force;
+}
+
 TEST_CASE("thruster_lag: after a step each form follows its own exponential, whatever the steps in time") {
   enum Form { kAlike, kTwoKinds, kShaft, kSecondOrder };
   const Fixture fixture;
-  const model::Effect& effect = *model::find_effect("thruster_lag");
   const auto after = [&](double from, double to, std::vector<double> theta, int form, double dt) {
-    model::Motion motion = fixture.motion;
-    std::vector<double> z(static_cast<std::size_t>(effect.state_size(fixture.vehicle, 4)));
-    motion.force.setConstant(4, from);
-    effect.settle(motion, theta, z);
-    motion.force.setConstant(4, to);
-    for (int k = 0; k < 12; ++k) effect.advance(motion, theta, dt, z);
-    effect.feel(motion, theta, form, z);
-    return motion.force;
+    return lagging(fixture, from, to, std::move(theta), form, dt, 12);
   };
   for (const double dt : {0.01, 0.05, 0.5}) {
     CAPTURE(dt);
@@ -173,21 +181,50 @@ TEST_CASE("thruster_lag: after a step each form follows its own exponential, wha
   }
 }
 
+TEST_CASE("thruster_lag: a shaft moved by torque goes as its equation says, whatever the steps in time") {
+  constexpr int kTorque = 4;
+  Fixture fixture;
+  fixture.vehicle.largest_thrust = 16.0;
+  constexpr double kTimeConstant = 0.3, kTime = 0.6;
+  const auto integrated = [&](double from, double to) {
+    constexpr int kSteps = 60000;
+    double n = std::copysign(std::sqrt(std::abs(from)), from);
+    for (int k = 0; k < kSteps; ++k)
+      n += kTime / kSteps * (to - n * std::abs(n)) / (2.0 * std::sqrt(16.0) * kTimeConstant);
+    return n * std::abs(n);
+  };
+  struct Step {
+    double from, to;
+  };
+  for (const Step& step : {Step{0.0, 9.0}, {9.0, 0.0}, {4.0, 9.0}, {9.0, 4.0}, {9.0, -4.0}, {-1.0, 16.0}, {5.0, 5.0}}) {
+    CAPTURE(step.from);
+    CAPTURE(step.to);
+    for (const int parts : {1, 7, 60}) {
+      const auto thrust = lagging(fixture, step.from, step.to, {kTimeConstant, 0.0}, kTorque, kTime / parts, parts);
+      CHECK(thrust[1] == doctest::Approx(integrated(step.from, step.to)).epsilon(1e-4));  // Euler's error
+    }
+  }
+  // Near the largest thrust it is the time constant of a first-order lag.
+  const double near = lagging(fixture, 16.0, 15.9, {kTimeConstant, 0.0}, kTorque, kTimeConstant, 1)[0];
+  CHECK(near == doctest::Approx(16.0 - 0.1 * (1.0 - std::exp(-1.0))).epsilon(1e-5));
+  CHECK(lagging(fixture, 9.0, -4.0, {0.0, 0.0}, kTorque, 0.1, 1)[0] == -4.0);
+}
+
 TEST_CASE("thruster_lag, thruster_delay: forms that these thrusters cannot tell apart are not asked for") {
   Fixture fixture;
   const auto names = [&](const char* effect) { return model::find_effect(effect)->variants(fixture.scene); };
   CHECK(names("thruster_lag") ==
-        std::vector<std::string>{"", "vertical thrusters apart", "shaft speed", "second order"});
+        std::vector<std::string>{"", "vertical thrusters apart", "shaft speed", "second order", "torque"});
   fixture.vehicle.thrusters.erase(fixture.vehicle.thrusters.begin() + 2);
   model::Allocation level(6, 3);
   level << fixture.vehicle.allocation.leftCols(2), fixture.vehicle.allocation.rightCols(1);
   fixture.vehicle.allocation = level;
   fixture.scene.force_rms = Eigen::Vector3d::Constant(5.0);
-  CHECK(names("thruster_lag") == std::vector<std::string>{"", "-", "shaft speed", "second order"});
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "-", "shaft speed", "second order", "torque"});
   CHECK(names("thruster_delay") == std::vector<std::string>{"", "-"});
   fixture.scene.force_rms = Vector6d::Constant(5.0);
   fixture.scene.input_is_wrench = true;
-  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "-", "second order"});
+  CHECK(names("thruster_lag") == std::vector<std::string>{"", "vertical thrusters apart", "-", "second order", "-"});
 }
 
 TEST_CASE("thrust_loss: bilinear in shaft speed and advance, in both directions") {
@@ -237,6 +274,19 @@ TEST_CASE("battery_sag: by voltage where it says something, by time where it is 
   CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == doctest::Approx(4.0));
   fixture.motion.voltage = 0.0;  // a gap in the log
   CHECK(fixture.felt("battery_sag", {2.0}, 0)[0] == 16.0);
+}
+
+TEST_CASE("thruster_deadband: a rounded band takes all but a trace of small commands and nothing beyond its width") {
+  Fixture fixture;
+  const auto share = [&](double command, double width) {
+    fixture.motion.force.setConstant(command);
+    return fixture.felt("thruster_deadband", {width}, 2)[0] / command;
+  };
+  CHECK(share(1.0, 2.0) == doctest::Approx(0.5));
+  CHECK(share(-1.0, 2.0) == doctest::Approx(0.5));
+  CHECK(share(0.1, 2.0) == doctest::Approx(0.00725));
+  CHECK(share(2.0, 2.0) == 1.0);
+  CHECK(share(-4.0, 2.0) == 1.0);
 }
 
 TEST_CASE("thruster_deadband: a search for the step begins close to wherever its edge may be") {
