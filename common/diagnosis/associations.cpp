@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/diagnosis/bursts.hpp"
+#include "common/diagnosis/episode.hpp"
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/oscillation.hpp"
 #include "common/diagnosis/prediction.hpp"
@@ -70,7 +71,7 @@ LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
     if (!run.at.empty()) runs_.push_back(std::move(run));
   }
   const auto axes = static_cast<double>(std::ranges::count(model.vehicle->dof, true));
-  tried_ = axes * static_cast<double>(suspects().size() + 3);
+  tried_ = axes * static_cast<double>(suspects().size() + 4);
 }
 
 std::vector<Eigen::MatrixXd> LeftOver::rows(int axis, bool (*seen)(const Trial&), const Asked& asked) const {
@@ -183,26 +184,26 @@ Association LeftOver::oscillation(int axis) const {
   return best;
 }
 
-/// What comes and goes, whatever its sign, and what was measured when it came. Moments are left out beside forces: that
-/// of the added mass multiplies the noise of one velocity with another, so its noise grows with the speed.
-Association LeftOver::in_bursts(int axis) const {
-  Association found{.axis = model::kAxisNames[static_cast<std::size_t>(axis)],
-                    .with = "bursts of no recorded cause",
-                    .log_odds = -1.0};
+std::vector<std::vector<double>> LeftOver::unforetold_along(int axis) const {
   const auto& dof = model_.vehicle->dof;
-  if (axis >= 3 && (dof[0] || dof[1] || dof[2])) return found;
+  if (axis >= 3 && (dof[0] || dof[1] || dof[2])) return {};
   const std::vector<Eigen::MatrixXd> runs = rows(axis, always, [](const Moment&, Columns&) {});
-  if (runs.empty()) return found;
+  if (runs.empty()) return {};
   const LagSums sums = sums_of(runs);
-  if (sums.samples() < kSamplesPerColumn * kBaseColumns) return found;
+  if (sums.samples() < kSamplesPerColumn * kBaseColumns) return {};
   const ColouredFit fit = identification::fit_coloured(sums, range(0, kBaseColumns), kBaseColumns);
   std::vector<Eigen::VectorXd> all;
   all.reserve(runs.size());
   for (const Eigen::MatrixXd& run : runs) all.emplace_back(run.col(kBaseColumns) - run.leftCols(kBaseColumns) * fit.x);
-  const std::vector<std::vector<double>> left = unforetold(all);
+  return unforetold(all);
+}
+
+Association LeftOver::in_bursts(int axis, std::span<const std::vector<double>> left) const {
   const Bursts told = bursts(left);
-  found.share = told.share;
-  found.log_odds = told.log_odds - std::log(tried_);
+  Association found{.axis = model::kAxisNames[static_cast<std::size_t>(axis)],
+                    .with = "bursts of no recorded cause",
+                    .share = told.share,
+                    .log_odds = told.log_odds - std::log(tried_)};
   if (found.log_odds < 0.0) return found;
   double best = 0.0;
   for (const Circumstance& one : circumstances()) {
@@ -216,6 +217,19 @@ Association LeftOver::in_bursts(int axis) const {
     best = log_odds;
     found.with = std::string("bursts, whose size goes with ") + one.name;
   }
+  return found;
+}
+
+Association LeftOver::once(int axis, std::span<const std::vector<double>> left) const {
+  const Episode told = episode(left);
+  Association found{.axis = model::kAxisNames[static_cast<std::size_t>(axis)],
+                    .share = told.share,
+                    .log_odds = told.log_odds - std::log(tried_)};
+  if (found.log_odds < 0.0) return found;
+  const Run& run = runs_[told.run];
+  const auto t = [&](std::size_t k) { return run.trial->t[run.at[k].k]; };
+  found.with = words("an event from %.0f s", t(told.first)) + words(" to %.0f s", t(told.last) + run.step) +
+               (runs_.size() > 1 ? " of " + run.trial->name : "");
   return found;
 }
 
@@ -244,7 +258,9 @@ std::vector<Association> LeftOver::associations(double share, double log_odds, d
     std::vector<Association> of_axis = of_suspects(axis);
     of_axis.push_back(step(axis));
     of_axis.push_back(oscillation(axis));
-    of_axis.push_back(in_bursts(axis));
+    const std::vector<std::vector<double>> unforetold = unforetold_along(axis);
+    of_axis.push_back(in_bursts(axis, unforetold));
+    of_axis.push_back(once(axis, unforetold));
     const double whole = size(axis);
     for (Association& one : of_axis) one.of_wrench = std::sqrt(one.share) * whole;
     std::erase_if(of_axis, [&](const Association& a) {

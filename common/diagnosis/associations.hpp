@@ -49,7 +49,14 @@ class LeftOver {
   [[nodiscard]] std::vector<Association> of_suspects(int axis) const;
   [[nodiscard]] Association step(int axis) const;
   [[nodiscard]] Association oscillation(int axis) const;
-  [[nodiscard]] Association in_bursts(int axis) const;
+  /// What of the residual neither the base columns nor its own past foretell; empty where that cannot be told, and of
+  /// moments beside forces: that of the added mass multiplies the noise of one velocity with another, so its noise
+  /// grows with the speed.
+  [[nodiscard]] std::vector<std::vector<double>> unforetold_along(int axis) const;
+  /// What comes and goes, whatever its sign, and what was measured when it came.
+  [[nodiscard]] Association in_bursts(int axis, std::span<const std::vector<double>> left) const;
+  /// What came once.
+  [[nodiscard]] Association once(int axis, std::span<const std::vector<double>> left) const;
   /// Residual over applied wrench along an axis, both without their means (rms); NaN where none is applied.
   [[nodiscard]] double size(int axis) const;
 

@@ -156,6 +156,67 @@ class ShaftLag : public Sized {
   int jets_;
 };
 
+/// A motor's torque against the water's: the shaft gains speed by what is left of both.
+class TorqueLag : public Sized {
+ public:
+  TorqueLag(const std::string&, const Craft& craft, const Site&, Random&)
+      : Sized("thruster_lag", 0.15, 3.0),
+        jets_(static_cast<int>(craft.jets.size())),
+        usual_(usual_drag(craft).head<3>().maxCoeff()) {}
+  [[nodiscard]] int memory() const override { return jets_; }
+  void thrust(const Instant&, std::span<const double> z, std::span<double> rate,
+              Eigen::VectorXd& force) const override {
+    const double inertia = 2.0 * std::sqrt(usual_) * std::max(size(), kQuickest);  // size: at the usual thrust
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      double& f = force[static_cast<Eigen::Index>(i)];
+      rate[i] = (f - z[i] * std::abs(z[i])) / inertia;
+      f = z[i] * std::abs(z[i]);
+    }
+  }
+  [[nodiscard]] Numbers parameters() const override { return {{"T_at_usual_thrust", size()}}; }
+
+ private:
+  int jets_;
+  double usual_;
+};
+
+/// A propeller that takes hold little by little.
+class SoftBand : public Sized {
+ public:
+  SoftBand(const std::string&, const Craft& craft, const Site&, Random&)
+      : Sized("thruster_deadband", 0.06 * usual_drag(craft).head<3>().maxCoeff(),
+              4.0 * usual_drag(craft).head<3>().maxCoeff()) {}
+  void thrust(const Instant&, std::span<const double>, std::span<double>, Eigen::VectorXd& force) const override {
+    for (double& f : force) f *= 1.0 - std::exp(-std::pow(f / size(), 2));
+  }
+  [[nodiscard]] Numbers parameters() const override { return {}; }  // Fathom's law is another
+};
+
+/// A hull that passes by a plane is drawn to it: the energy of its image grows as it comes nearer.
+class Suction : public Sized {
+ public:
+  Suction(const std::string& name, const Craft& craft, const Site& site, Random& random)
+      : Sized(name.substr(0, name.find(':')), 0.003, 1e4) {
+    const bool bottom = name.starts_with("bottom");
+    const int axis = bottom ? 2 : random.below(2);
+    normal_ = Vector3d::Unit(axis) * (bottom ? 1.0 : random.sign());
+    distance_ = normal_.dot(site.centre) + site.half[axis] + random.uniform(0.6, 1.2);
+    const double pace = std::max(craft.pace.head<3>().maxCoeff(), 0.05);
+    unit_ = usual_drag(craft).head<3>().maxCoeff() * std::pow(0.5 * site.half[axis] + 0.6, 4) / (pace * pace);
+  }
+  void body(const Instant& now, std::span<const double>, std::span<double>, Terms& terms) const override {
+    const double gap = std::max(distance_ - normal_.dot(now.position), 0.2);
+    const Vector3d v = now.turn * now.nu_r.head<3>();
+    const double along = v.squaredNorm() - std::pow(normal_.dot(v), 2);
+    terms.wrench.head<3>() += now.turn.transpose() * normal_ * (size() * unit_ * along / std::pow(gap, 4));
+  }
+  [[nodiscard]] Numbers parameters() const override { return {{"suction", size() * unit_}}; }
+
+ private:
+  Vector3d normal_;
+  double distance_, unit_;
+};
+
 }  // namespace
 
 const std::vector<Entry>& further() {
@@ -167,7 +228,11 @@ const std::vector<Entry>& further() {
                                        {"tether_drag:astern", {}, make<TowAstern>},
                                        {"thruster_delay:two", single, make<TwoDelays>},
                                        {"thruster_lag:two", single, make<TwoLags>},
-                                       {"thruster_lag:shaft", single, make<ShaftLag>}};
+                                       {"thruster_lag:shaft", single, make<ShaftLag>},
+                                       {"thruster_lag:torque", single, make<TorqueLag>},
+                                       {"thruster_deadband:rounded", single, make<SoftBand>},
+                                       {"bottom_effect:suction", {}, make<Suction>},
+                                       {"wall_effect:suction", {}, make<Suction>}};
   return list;
 }
 
