@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/diagnosis/words.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::diagnosis {
@@ -71,18 +72,12 @@ std::vector<const Group*> needed_groups(const Effect& effect, const Scene& scene
   return needed;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 }  // namespace
 
 std::string why_not_asked(const Effect& effect, const Scene& scene) {
   std::vector<std::string> missing;
   for (const Group* group : needed_groups(effect, scene)) missing.emplace_back(group->name);
-  if (!missing.empty()) return "not applicable: not measured: " + joined(missing);
+  if (!missing.empty()) return "not applicable: not measured: " + joined(missing, ", ");
   const Scene full = everything(effect, scene);
   if (has_form(effect, full)) return "not applicable: nothing in these runs could show it";
   if (effect.measures() && has_form(effect, without(without(full, kGroups[0]), kGroups[1])))
@@ -132,7 +127,7 @@ std::string not_measured_sentences(const std::vector<NotMeasured>& groups, const
     std::string name = group.name;
     name[0] = static_cast<char>(name[0] - 'a' + 'A');
     text += name + (group.measured == &Scene::rates ? " were" : " was") + " not measured: ";
-    if (!found->cannot_be_asked.empty()) text += joined(found->cannot_be_asked) + " could not be asked";
+    if (!found->cannot_be_asked.empty()) text += joined(found->cannot_be_asked, ", ") + " could not be asked";
     if (matters) text += (found->cannot_be_asked.empty() ? "" : ", and ") + std::string(group.unknown);
     text += ". ";
   }

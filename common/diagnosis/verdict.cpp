@@ -5,31 +5,18 @@
 #include <cstdio>
 
 #include "common/diagnosis/applicability.hpp"
+#include "common/diagnosis/foretold.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/listing.hpp"
 #include "common/diagnosis/rivals.hpp"
 #include "common/diagnosis/whiteness.hpp"
+#include "common/diagnosis/words.hpp"
 
 namespace fathom::diagnosis {
 namespace {
 
 const double kStrong = std::log(20.0);  // odds that a name is right; with less it is the likeliest, not shown
-
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
-  return text;
-}
-
-std::string joined(const std::vector<std::string>& words, const std::string& last = " and ") {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? last : ", ";
-    text += words[i];
-  }
-  return text;
-}
 
 std::string improvement_sentence(const DiagnosisResult& result) {
   const Interval& change = result.improvement;
@@ -84,70 +71,11 @@ WeakestNumber weakest_number(const DiagnosisResult& result) {
   return weakest;
 }
 
-struct Foretold {
-  std::string axis;
-  double share{};  // R2, 5 s ahead
-  bool blind{};    // to assume the average would be better
-};
-
-/// Axes of which the final model certainly foretells less than half of the motion although what is left there is not
-/// random.
-std::vector<Foretold> badly_foretold(const DiagnosisResult& result) {
-  constexpr double kHorizon = 5.0;  // s
-  std::vector<Foretold> axes;
-  for (const PredictionError& error : result.error_after.prediction) {
-    if (error.horizon_s != kHorizon) continue;
-    for (const AxisWhiteness& axis : result.residual_after) {
-      const auto i =
-          static_cast<std::size_t>(std::ranges::find(model::kAxisNames, axis.axis) - model::kAxisNames.begin());
-      if (axis.p_value < kNotRandom && error.p_half[i] < kNotRandom)
-        axes.push_back({axis.axis, error.r2[i], error.p_average[i] < kNotRandom});
-    }
-  }
-  return axes;
-}
-
-/// Axes of which the model foretells little on too little motion for that to mean anything.
-std::string hardly_shown_sentence(const DiagnosisResult& result) {
-  constexpr double kHorizon = 5.0;  // s
-  constexpr double kLittle = 0.5;   // R2
-  std::vector<std::string> axes;
-  for (const PredictionError& error : result.error_after.prediction) {
-    for (std::size_t i = 0; error.horizon_s == kHorizon && i < 6; ++i) {
-      if (error.r2[i] < kLittle) axes.emplace_back(model::kVelocityNames[i]);
-    }
-  }
-  return axes.empty() ? ""
-                      : "Of the motion along " + joined(axes) +
-                            " the validation runs show too little to tell whether the model foretells it. ";
-}
-
-std::string foretold_sentence(const std::vector<Foretold>& axes) {
-  if (axes.empty()) return "";
-  std::vector<std::string> words;
-  words.reserve(axes.size());
-  for (const Foretold& one : axes)
-    words.push_back((one.share > 0.0 ? percent(one.share) : "nothing") + " of the motion along " + one.axis);
-  return "5 s ahead the model foretells " + joined(words) + ". ";
-}
-
 std::string wiring_sentence(const WiringFault& fault) {
   return "The thrusters do not seem to be those of the vehicle's file: with " + joined(fault.readings, ", or with ") +
          ", the base model fitted anew would make " + percent(fault.error_reduction) +
          " less error. No effect is named before the file is right: try the thrusters one by one, correct it, "
          "or the axes of the recordings, and diagnose again. ";
-}
-
-/// Where thrust is followed so badly that the file itself is in doubt: axes that are badly foretold, or where more is
-/// left than was applied.
-std::vector<std::string> not_followed(const DiagnosisResult& result, const std::vector<Foretold>& foretold) {
-  std::vector<std::string> axes = astray(result.residual_after);
-  std::erase_if(axes, [&](const std::string& name) {
-    const auto& all = result.residual_after;
-    return std::ranges::find(all, name, &AxisWhiteness::axis)->explained > 0.0 &&
-           std::ranges::find(foretold, name, &Foretold::axis) == foretold.end();
-  });
-  return axes;
 }
 
 bool is_open(const EffectFound& effect) { return !effect.alternatives.empty() || !effect.unlisted.empty(); }
@@ -236,7 +164,12 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const std::vector<std::string> astray_axes = not_followed(result, foretold);
   const bool structure = !left.empty() || found.free_form || found.taken_back.value_or(0.0) > kByChance || blind ||
                          !astray_axes.empty() || promising != nullptr || result.wiring;
-  const bool stand_ins = !names.empty() && found.explained < kWholeCause;
+  const bool in_part = !names.empty() && found.explained < kWholeCause;
+  const bool idle = !names.empty() && foretells_nothing(result);
+  const bool stand_ins = in_part || idle;
+  if (idle) {
+    for (EffectFound& effect : result.effects) effect.log_odds = std::min(effect.log_odds, 0.0);
+  }
   if (names.empty()) {
     result.verdict = structure ? "unexplained" : unjudged.empty() ? "adequate" : "unjudged";
   } else if (stand_ins) {
@@ -284,7 +217,12 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
             " less than half of the applied force is accounted for: are the thrusters' order, signs, places and units "
             "those of the vehicle's file? ";
   }
-  if (stand_ins) {
+  if (idle) {
+    text +=
+        "With that, too, the model foretells no motion along any axis: did the thrusters run, and did the vehicle move "
+        "more than its sensors' noise? ";
+  }
+  if (in_part) {
     text += "Where " + joined(names) + " act" + (names.size() > 1 ? "" : "s") + ", only " + percent(found.explained) +
             " of the error that outlasts the noise is gone; a whole cause removes nearly all of it. So " +
             (names.size() > 1 ? "these may stand in" : "it may stand in") +

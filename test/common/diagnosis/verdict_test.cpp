@@ -97,6 +97,24 @@ TEST_CASE("verdict: what leaves much of the error that lasts is kept, and is no 
   CHECK(says(result.paragraph, "only 60 %"));
 }
 
+TEST_CASE("verdict: beside what foretells no motion at all no name is certain") {
+  MadeUp made;
+  made.accept("thruster_deadband", {70.0});
+  const auto concluded = [&](double r2_of_yaw) {
+    DiagnosisResult result;
+    result.error_after.prediction = {
+        {.horizon_s = 5.0, .r2 = {-0.1, -0.7, -0.02, std::nan(""), std::nan(""), r2_of_yaw}}};
+    conclude(made.found, made.left, made.scene(), result);
+    return result;
+  };
+  CHECK(concluded(0.2).verdict == "effect");
+  CHECK(concluded(0.2).effects.at(0).log_odds > 3.0);
+  const DiagnosisResult idle = concluded(-0.04);
+  CHECK(idle.verdict == "unexplained");
+  CHECK(idle.effects.at(0).log_odds <= 0.0);
+  CHECK(says(idle.paragraph, "foretells no motion along any axis: did the thrusters run"));
+}
+
 TEST_CASE("verdict: a refused effect that would save much leaves the verdict open, and says what to drive") {
   MadeUp made;
   made.refuse("current", -4.0, "log odds -4.0, 8.0 needed");
