@@ -171,18 +171,21 @@ void Navigator::use_laser(Memory& memory, const Measurement& m, const Input& inp
   use_position(memory, m, {0.0, 0.0, z}, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(sigma * sigma), input);
 }
 
+AxisGains published_gains(Source source) {
+  AxisGains k;
+  if (source == Source::kTagPose) k.value = {0.09, 0.09, 0.05};
+  if (source == Source::kLaserRange) k.value = {0.0, 0.0, 0.003};
+  if (source == Source::kOpticalFlow) {
+    k.value = {0.3, 0.3, 0.06};
+    k.rate = {0.2, 0.2, 0.2};
+  }
+  return k;
+}
+
 // Cut-offs and damping with the actual interval; or the paper's numbers, which take the interval for granted.
 AxisGains Navigator::gains(Source source, double interval, bool) const {
+  if (settings_.published_gains) return published_gains(source);
   AxisGains k;
-  if (settings_.published_gains) {
-    if (source == Source::kTagPose) k.value = {0.09, 0.09, 0.05};
-    if (source == Source::kLaserRange) k.value = {0.0, 0.0, 0.003};
-    if (source == Source::kOpticalFlow) {
-      k.value = {0.3, 0.3, 0.06};
-      k.rate = {0.2, 0.2, 0.2};
-    }
-    return k;
-  }
   const AidSettings& s = aid(source);
   if (source == Source::kDvl || source == Source::kOpticalFlow) {
     // The whole interval, however long: what a silence leaves is a bias times its length, and the share that the bias
