@@ -39,6 +39,7 @@ void NavigationFilter::start(const Eigen::Vector3d& p_WB, const Eigen::Vector3d&
   p_WB_ = p_WB;
   v_WB_ = v_WB;
   b_.setZero();
+  tilt_.setZero();
   for (std::size_t i = 0; i < 3; ++i) {
     const double sigma = sigma_p[static_cast<Eigen::Index>(i)];
     covariance_[i] = {.pp = sigma * sigma, .vv = sigma_v * sigma_v, .bb = noise_.bias_prior * noise_.bias_prior};
@@ -46,13 +47,15 @@ void NavigationFilter::start(const Eigen::Vector3d& p_WB, const Eigen::Vector3d&
 }
 
 void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& f_B) {
-  const Eigen::Vector3d a_W = R_WB * (f_B - b_) + kGravity;
+  const Eigen::Vector3d felt_B = f_B - b_;
+  const Eigen::Vector3d a_W = R_WB * (felt_B + tilt_.cross(felt_B)) + kGravity;
   p_WB_ += dt * v_WB_ + (0.5 * dt * dt) * a_W;
   v_WB_ += dt * a_W;
   const double across = noise_.acceleration * noise_.acceleration;
   const double vertical = noise_.vertical_acceleration * noise_.vertical_acceleration;
   const double noise_b = noise_.bias_walk * noise_.bias_walk;
-  // A wrong attitude turns gravity, which level passes for a bias along the body, and as such is turned up by a tilt.
+  // A bias of the accelerometer across passes for a wrong attitude while level, and a tilt turns it up until the
+  // vertical has told it; as large as what a wrong attitude makes of gravity, since the two are learnt as one.
   const double tilted = kGravity.z() * noise_.attitude * std::hypot(R_WB(2, 0), R_WB(2, 1));
   const Eigen::Vector3d noise_v{across, across,
                                 (vertical > 0.0 ? vertical : across) + 2.0 * kTiltTime * tilted * tilted};
@@ -61,11 +64,18 @@ void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eig
   }
 }
 
+// What acceleration lacks across is a wrong attitude's, which gravity multiplies, and stays across however the vehicle
+// tilts; up and down it is the accelerometer's. A tilted vehicle thus tells the accelerometer's other axes as well.
+void NavigationFilter::learn(const Eigen::Vector3d& lacking_W, const Eigen::Matrix3d& R_WB) {
+  tilt_ += R_WB.transpose() * Eigen::Vector3d{lacking_W.y(), -lacking_W.x(), 0.0} / kGravity.z();
+  b_ -= lacking_W.z() * R_WB.row(2).transpose();
+}
+
 void NavigationFilter::correct_position(const Eigen::Vector3d& innovation_W, const AxisGains& gains,
                                         const Eigen::Vector3d& variance, const Eigen::Matrix3d& R_WB) {
   p_WB_ += gains.value.cwiseProduct(innovation_W);
   v_WB_ += gains.rate.cwiseProduct(innovation_W);
-  b_ -= R_WB.transpose() * gains.second.cwiseProduct(innovation_W);
+  learn(gains.second.cwiseProduct(innovation_W), R_WB);
   for (Eigen::Index i = 0; i < 3; ++i) {
     Axis& c = covariance_[static_cast<std::size_t>(i)];
     if (gains.value[i] == 0.0) continue;
@@ -76,7 +86,7 @@ void NavigationFilter::correct_position(const Eigen::Vector3d& innovation_W, con
 void NavigationFilter::correct_velocity(const Eigen::Vector3d& innovation_B, const AxisGains& gains,
                                         const Eigen::Vector3d& variance, const Eigen::Matrix3d& R_WB) {
   v_WB_ += R_WB * gains.value.cwiseProduct(innovation_B);
-  b_ -= gains.rate.cwiseProduct(innovation_B);
+  learn(R_WB * gains.rate.cwiseProduct(innovation_B), R_WB);
   const Eigen::Matrix3d share = R_WB.cwiseAbs2();
   const Eigen::Vector3d value = share * gains.value;
   const Eigen::Vector3d rate = share * gains.rate;
@@ -90,7 +100,8 @@ void NavigationFilter::correct_velocity(const Eigen::Vector3d& innovation_B, con
 void NavigationFilter::correct_horizontal_velocity(const Eigen::Vector2d& innovation_W, const AxisGains& gains,
                                                    const Eigen::Vector2d& variance, const Eigen::Matrix3d& R_WB) {
   v_WB_.head<2>() += gains.value.head<2>().cwiseProduct(innovation_W);
-  b_ -= R_WB.transpose().leftCols<2>() * gains.rate.head<2>().cwiseProduct(innovation_W);
+  const Eigen::Vector2d across = gains.rate.head<2>().cwiseProduct(innovation_W);
+  learn({across.x(), across.y(), 0.0}, R_WB);
   for (Eigen::Index i = 0; i < 2; ++i) {
     Axis& c = covariance_[static_cast<std::size_t>(i)];
     correct(c, c.pv, c.vv, c.vb, c.vv + variance[i], 0.0, gains.value[i], -gains.rate[i]);

@@ -62,10 +62,13 @@ class NavigationFilter {
   [[nodiscard]] Matrix6d covariance_body(const Eigen::Matrix3d& R_WB) const;
 
  private:
+  void learn(const Eigen::Vector3d& lacking_W, const Eigen::Matrix3d& R_WB);
+
   Noise noise_;
   Eigen::Vector3d p_WB_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d v_WB_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d b_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d tilt_{Eigen::Vector3d::Zero()};  // rad, along B: turns what is told into what is
   std::array<AxisCovariance, 3> covariance_{};
 };
 

@@ -74,6 +74,9 @@ struct NavigatorPlaces {
   Eigen::Vector3d p_BI{Eigen::Vector3d::Zero()};  ///< m, accelerometer in the body
 };
 
+/// The paper's gains, made for one interval at 30 Hz; zero for an aid that it has none for.
+[[nodiscard]] AxisGains published_gains(Source source);
+
 class Navigator {
  public:
   using Output = std::vector<StateEstimate>;

@@ -171,27 +171,33 @@ void Navigator::use_laser(Memory& memory, const Measurement& m, const Input& inp
   use_position(memory, m, {0.0, 0.0, z}, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(sigma * sigma), input);
 }
 
+AxisGains published_gains(Source source) {
+  AxisGains k;
+  if (source == Source::kTagPose) k.value = {0.09, 0.09, 0.05};
+  if (source == Source::kLaserRange) k.value = {0.0, 0.0, 0.003};
+  if (source == Source::kOpticalFlow) {
+    k.value = {0.3, 0.3, 0.06};
+    k.rate = {0.2, 0.2, 0.2};
+  }
+  return k;
+}
+
 // Cut-offs and damping with the actual interval; or the paper's numbers, which take the interval for granted.
 AxisGains Navigator::gains(Source source, double interval, bool) const {
+  if (settings_.published_gains) return published_gains(source);
   AxisGains k;
-  if (settings_.published_gains) {
-    if (source == Source::kTagPose) k.value = {0.09, 0.09, 0.05};
-    if (source == Source::kLaserRange) k.value = {0.0, 0.0, 0.003};
-    if (source == Source::kOpticalFlow) {
-      k.value = {0.3, 0.3, 0.06};
-      k.rate = {0.2, 0.2, 0.2};
-    }
-    return k;
-  }
   const AidSettings& s = aid(source);
-  const double dt = std::clamp(interval, 0.0, kLongestInterval);
   if (source == Source::kDvl || source == Source::kOpticalFlow) {
+    // The whole interval, however long: what a silence leaves is a bias times its length, and the share that the bias
+    // gets falls with it.
+    const double dt = std::max(interval, 0.0);
     const Gains across = second_order_gains(s.cutoff, s.damping, dt);
     const Gains down = source == Source::kDvl ? second_order_gains(s.vertical_cutoff, s.vertical_damping, dt) : Gains{};
     k.value = {across.value, across.value, down.value};
     k.rate = {across.rate, across.rate, down.rate};
     return k;
   }
+  const double dt = std::clamp(interval, 0.0, kLongestInterval);
   if (s.cutoff > 0.0) {
     const double across = first_order_gains(s.cutoff, dt).value;
     k.value = {across, across, 0.0};
@@ -278,14 +284,17 @@ void Navigator::use_velocity(Memory& memory, const Measurement& m, const Eigen::
     const double spread = std::sqrt(memory.filter.covariance()[static_cast<std::size_t>(i)].vv + variance[i]);
     worst = std::max(worst, std::abs(innovation[i]) / spread);
   }
-  if (!passes(track, worst)) {
-    if (!outvoted(track)) return;
+  const bool fits = passes(track, worst);
+  if (!fits && !outvoted(track)) return;
+  // The first one tells how fast the vehicle was all along, and nothing of the accelerometer: taken as an innovation it
+  // would go into the bias, which then drives STATE away as soon as the instrument is silent.
+  if (!fits || !track.last) {
     memory.filter.set_velocity(memory.filter.velocity() + R_WB * innovation, axes, variance);
     track.refused = 0;
     track.last = m.utime;
     return;
   }
-  const double interval = track.last ? seconds_between(*track.last, m.utime) : kLongestInterval;
+  const double interval = seconds_between(*track.last, m.utime);
   track.last = m.utime;
   const AxisGains k = gains(m.source, interval, true);
   if (axes.z() > 0.0 || settings_.published_gains || R_WB(2, 2) < kLargestTiltCosine) {

@@ -122,6 +122,7 @@ class Identifier {
   void decide(Utime first);
   void take_effect(const model::Effect& effect, std::istringstream& text);
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
+  [[nodiscard]] double moment_of_leaning(const RecursiveReport& report) const;
   void compensate(RecursiveReport& report) const;
   void add_systematic(RecursiveReport& report) const;
   void release();

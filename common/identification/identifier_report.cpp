@@ -68,8 +68,17 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
     const double variance = std::max(r.square - r.mean * r.mean, 1e-12);
     const double rho = std::clamp((r.product - r.mean * r.mean) / variance, 0.0, kLargestCorrelation);
     const double known = variance / r.weight * (1.0 + rho) / (1.0 - rho);
-    estimate.residual_mean[k] = r.mean / std::sqrt(known + kOfNoAccount * kOfNoAccount);
+    const double leaning = axis == 3 || axis == 4 ? moment_of_leaning(report) : 0.0;
+    estimate.residual_mean[k] = r.mean / std::sqrt(known + kOfNoAccount * kOfNoAccount + leaning * leaning);
   }
+}
+
+// An attitude that wanders about its offset leaves a moment that no half minute averages out, and that is no fault of
+// the model's: in the noise's sigmas, what the restoring moment makes of `attitude_offset`.
+double Identifier::moment_of_leaning(const RecursiveReport& report) const {
+  const int righting = column(model::BaseParameter::G_z);
+  if (righting < 0 || !(settings_.noise_moment > 0.0)) return 0.0;
+  return settings_.attitude_offset * report.estimate(righting) / settings_.noise_moment;
 }
 
 void Identifier::remember(const RowBlock& block) {

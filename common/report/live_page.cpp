@@ -4,6 +4,7 @@
 
 #include "common/model/parameters.hpp"
 #include "common/report/contact_sheet.hpp"
+#include "common/report/filter_figures.hpp"
 #include "common/report/live_figures.hpp"
 #include "common/report/live_trial.hpp"
 #include "common/report/page_parts.hpp"
@@ -92,6 +93,30 @@ std::string table_1_1(const LiveTrialResult& result) {
          "Table 1.1. Entangled: how many times the variance is what it would be, were all other parameters known; 1 "
          "is best. Condition of all correlations: " +
          (inflation.empty() ? std::string{"-"} : number(result.entangled.condition, 3)) + ".</p></section>\n";
+}
+
+std::string filter_section(const estimation::NavigatorSettings& settings, const estimation::AidsSeen& seen,
+                           Album& album) {
+  std::string html;
+  for (const bool second : {false, true}) {
+    std::vector<DrawnFilter> drawn = filters_of(settings, seen);
+    std::erase_if(drawn, [&](const DrawnFilter& filter) { return filter.second_order != second; });
+    if (drawn.empty()) continue;
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (const DrawnFilter& filter : drawn) {
+      entries.emplace_back(filter.published ? kBeforeColour : kAfterColour,
+                           filter.words + " every " + number(1e3 * filter.interval, 3) + " ms: k_p " +
+                               number(filter.gains.value, 3) +
+                               (second ? ", k_b " + number(filter.gains.rate, 3) + " per s" : std::string{}));
+    }
+    html += std::string{"<section><h2>Figure "} +
+            (second ? "1.5: second order, velocity" : "1.4: first order, horizontal position") + "</h2>\n" +
+            key(entries) + "<p class=\"small soft\">Solid: what passes of the measurement; dashed: of the integrated " +
+            (second ? "acceleration" : "velocity") + ". Gains as the filter had them, at the median interval.</p>" +
+            "<div class=\"grid pair\">" + figure(album.place(draw_bode(drawn, BodePart::kMagnitude)), "") +
+            figure(album.place(draw_bode(drawn, BodePart::kPhase)), "") + "</div></section>\n";
+  }
+  return html;
 }
 
 std::string motion(const Recording& recording, const estimation::AidsSeen& seen, Album& album) {
@@ -233,7 +258,8 @@ std::string truth_section(const LiveTrialResult& result, const Recording& record
 }  // namespace
 
 std::string to_html(const LiveTrialResult& result, const Recording& recording, const model::Vehicle& vehicle,
-                    const model::Site& site, std::span<const Camera> pictures, const std::string& gnuplot) {
+                    const model::Site& site, std::span<const Camera> pictures,
+                    const estimation::NavigatorSettings* filters, const std::string& gnuplot) {
   Album album;
   const estimation::AidsSeen seen = estimation::aids_seen(recording, vehicle.mounts, site, trial_origin(recording));
   std::string page =
@@ -241,6 +267,7 @@ std::string to_html(const LiveTrialResult& result, const Recording& recording, c
       "content=\"width=device-width, initial-scale=1\"><title>Fathom: live trial of " +
       escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
   page += outcome(result) + mode_table(result) + table_1_1(result);
+  if (filters != nullptr) page += filter_section(*filters, seen, album);
   page += motion(recording, seen, album);
   page += contact_sheet(pictures, trial_origin(recording));
   page += evolution(recording, result, album);

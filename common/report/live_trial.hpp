@@ -11,6 +11,10 @@
 #include "common/samples/recording.hpp"
 #include "common/samples/vision.hpp"
 
+namespace fathom::estimation {
+struct NavigatorSettings;
+}
+
 namespace fathom::report {
 
 /// InputError when the log holds no STATE, no MODEL or no EXCITATION. TRUTH is not looked at.
@@ -26,9 +30,12 @@ namespace fathom::report {
 /// Plain text for a terminal, at most 100 columns.
 [[nodiscard]] std::string to_table(const LiveTrialResult& result);
 /// The page: one HTML file that opens without a network. InputError when gnuplot cannot draw. `pictures`: of its
-/// contact sheet, JPEG files with what was measured drawn in; none: no sheet.
+/// contact sheet, JPEG files with what was measured drawn in; none: no sheet. `filters`: the estimator's settings, for
+/// Figures 1.4 and 1.5; null: without these.
 [[nodiscard]] std::string to_html(const LiveTrialResult& result, const Recording& recording,
                                   const model::Vehicle& vehicle, const model::Site& site,
-                                  std::span<const Camera> pictures = {}, const std::string& gnuplot = "gnuplot");
+                                  std::span<const Camera> pictures = {},
+                                  const estimation::NavigatorSettings* filters = nullptr,
+                                  const std::string& gnuplot = "gnuplot");
 
 }  // namespace fathom::report

@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
+#include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/estimation/navigator.hpp"
 #include "common/report/live_trial.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/log_reader.hpp"
@@ -17,7 +20,7 @@ namespace {
 constexpr std::size_t kSheet = 12;  // pictures
 
 struct Options {
-  std::string log, vehicle, site, truth, out;
+  std::string log, vehicle, site, pipeline, truth, out;
 };
 
 void save(const std::string& path, const std::string& text) {
@@ -26,9 +29,18 @@ void save(const std::string& path, const std::string& text) {
   if (!file.flush()) throw InputError(path + ": cannot be written; check the folder's permissions and free space");
 }
 
+/// Of the complementary filters; none for another one.
+std::optional<estimation::NavigatorSettings> filters_in(const std::string& pipeline) {
+  if (pipeline.empty()) return std::nullopt;
+  const Config config = Config::load(pipeline).section("estimator");
+  if (!config.has("filter") || config.text("filter") != "complementary") return std::nullopt;
+  return estimation::NavigatorSettings::from(config);
+}
+
 void run(const Options& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const model::Site site = model::Site::load(options.site);
+  const auto filters = filters_in(options.pipeline);
   std::error_code failed;
   std::filesystem::create_directories(options.out, failed);
   if (failed) throw InputError(options.out + ": cannot be made (" + failed.message() + "); choose another --out");
@@ -38,8 +50,9 @@ void run(const Options& options) {
   LiveTrialResult result = report::summarise(contents.recording, vehicle, site);
   if (!options.truth.empty()) result.truth = report::compare_truth(options.truth, contents.recording);
   save(options.out + "/result.json", report::to_json(result));
-  save(options.out + "/report.html", report::to_html(result, contents.recording, vehicle, site,
-                                                     wire::read_pictures(options.log, wire::kCameraDebug, kSheet)));
+  save(options.out + "/report.html",
+       report::to_html(result, contents.recording, vehicle, site,
+                       wire::read_pictures(options.log, wire::kCameraDebug, kSheet), filters ? &*filters : nullptr));
   std::printf("%s\nresult %s/result.json\nreport %s/report.html\n", report::to_table(result).c_str(),
               options.out.c_str(), options.out.c_str());
 }
@@ -52,6 +65,7 @@ void add_trial(CLI::App& app) {
   command->add_option("log", options->log, "log of the trial (.lcmlog)")->required();
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site, "site file (YAML)")->required();
+  command->add_option("--pipeline", options->pipeline, "the estimator's file (YAML), for Figures 1.4 and 1.5");
   command->add_option("--truth", options->truth, "the simulator's truth.json, for a section of its own");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->callback([options] { run(*options); });

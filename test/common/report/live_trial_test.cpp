@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
+#include "common/estimation/navigator.hpp"
 #include "test/support/scratch.hpp"
 
 using namespace fathom;
@@ -182,4 +183,20 @@ TEST_CASE("live trial: JSON, table and page agree, and speak of truth only when 
     CHECK_MESSAGE(page.find(words) != std::string::npos, words);
   }
   CHECK(page.find("Compared with the simulator's truth") > page.find("Figure 1.19"));
+}
+
+TEST_CASE("Live trial: filters are drawn for who gives the estimator's settings, and for aids that were heard") {
+  Recording recording = trial();
+  for (int k = 0; k < 400; ++k) {
+    recording.dvl.push_back({.utime = utime_after(kStart, 0.125 * k), .v_WB_B = {0.1, 0.0, 0.0}, .valid = true});
+  }
+  const LiveTrialResult result = summarise(recording, vehicle(), site());
+  estimation::NavigatorSettings settings;
+  settings.dvl = {.used = true, .cutoff = 2.0, .damping = 1.0};
+  settings.tags = {.used = true, .cutoff = 4.0};
+  const std::string page = to_html(result, recording, vehicle(), site(), {}, &settings);
+  CHECK(page.find("velocity log every 125 ms") != std::string::npos);
+  CHECK(page.find("Figure 1.5") != std::string::npos);
+  CHECK(page.find("Figure 1.4") == std::string::npos);
+  CHECK(to_html(result, recording, vehicle(), site()).find("Figure 1.5") == std::string::npos);
 }
