@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kModelDelay = 2.0;       // s: more than the identifier is late
 constexpr std::size_t kMostModels = 100;  // of MODEL that are remembered
+// Too little of all axes for a name may be most of what one of them leaves: at twice the evidence of a name and half of
+// what it must explain, something is at work. Trials without an effect stay below half of both (docs/live.md).
+constexpr double kMoreEvidence = 2.0, kLessExplained = 0.5;
 
 }  // namespace
 
@@ -60,7 +63,11 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
                                   .numbers = suspicion.theta});
   }
   if (best.empty() || !convinces(*best.front())) {
-    ranking.verdict = evidence.structured() || leaves_much(utime) ? "unexplained" : "adequate";
+    const bool something = std::ranges::any_of(suspicions_, [&](const LiveSuspicion& s) {
+      return s.log_odds >= kMoreEvidence * settings_.accept_log_odds &&
+             s.error_reduction >= kLessExplained * settings_.smallest_reduction;
+    });
+    ranking.verdict = something || evidence.structured() || leaves_much(utime) ? "unexplained" : "adequate";
     return ranking;
   }
   const LiveSuspicion& winner = *best.front();

@@ -117,6 +117,25 @@ TEST_CASE("live ranking: each effect once, the convincing ones first and by what
   CHECK_FALSE(diagnoser.finish());
 }
 
+TEST_CASE("live ranking: certain evidence of what explains too little for a name leaves no adequate model") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 100.0, .seed = 8, .effects = {test::active("thrust_asymmetry", {-0.03})}});
+  const auto judged = [&](double smallest_reduction) {
+    LiveSettings settings = short_settings();
+    settings.smallest_reduction = smallest_reduction;
+    LiveDiagnoser diagnoser{settings, vehicle};
+    return listen(diagnoser, dive.trial).back();
+  };
+  const EffectRanking named = judged(0.005);
+  REQUIRE(named.candidates.front().name == "thrust_asymmetry");
+  REQUIRE(named.candidates.front().log_odds > 2.0 * short_settings().accept_log_odds);
+  CHECK(named.verdict == "effect");
+  const double share = named.candidates.front().error_reduction;
+  CHECK(judged(1.5 * share).verdict == "unexplained");
+  CHECK(judged(3.0 * share).verdict == "adequate");
+}
+
 TEST_CASE("live ranking: what no list holds and looks the same leaves the name open, as afterwards") {
   constexpr int kExponentialForce = 2;
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
