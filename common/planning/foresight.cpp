@@ -155,7 +155,8 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
     progress(share);
   });
 
-  // Of each effect the form that is easiest to find stands for all.
+  // Of each effect one form stands for all: of things that can act at once the one that is easiest to find, of laws of
+  // one thing the plainest that is found, which comes first.
   std::vector<Foreseen> foreseen;
   std::vector<Suspect> chosen;
   for (const model::Effect* effect : model::all_effects()) {
@@ -165,7 +166,8 @@ std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitat
       if (form.active.effect != effect) continue;
       ++out.forms;
       out.forms_found += form.found ? 1 : 0;
-      if (easiest == nullptr || form.ordinary < easiest->ordinary) easiest = &form;
+      const bool easier = easiest != nullptr && form.ordinary < easiest->ordinary;
+      if (easiest == nullptr || (easier && (effect->variants_matter() || !easiest->found))) easiest = &form;
     }
     if (easiest == nullptr) continue;
     out.form = easiest->active.variant_name;

@@ -187,9 +187,10 @@ class SoftBand : public Sized {
       : Sized("thruster_deadband", 0.06 * usual_drag(craft).head<3>().maxCoeff(),
               4.0 * usual_drag(craft).head<3>().maxCoeff()) {}
   void thrust(const Instant&, std::span<const double>, std::span<double>, Eigen::VectorXd& force) const override {
+    if (!(size() > 0.0)) return;
     for (double& f : force) f *= 1.0 - std::exp(-std::pow(f / size(), 2));
   }
-  [[nodiscard]] Numbers parameters() const override { return {}; }  // Fathom's law is another
+  [[nodiscard]] Numbers parameters() const override { return {{"d_soft", size()}}; }  // Fathom's law is another
 };
 
 /// A hull that passes by a plane is drawn to it: the energy of its image grows as it comes nearer.
