@@ -103,6 +103,7 @@ std::string filter_section(const estimation::NavigatorSettings& settings, const 
     std::erase_if(drawn, [&](const DrawnFilter& filter) { return filter.second_order != second; });
     if (drawn.empty()) continue;
     std::vector<std::pair<std::string, std::string>> entries;
+    entries.reserve(drawn.size());
     for (const DrawnFilter& filter : drawn) {
       entries.emplace_back(filter.published ? kBeforeColour : kAfterColour,
                            filter.words + " every " + number(1e3 * filter.interval, 3) + " ms: k_p " +

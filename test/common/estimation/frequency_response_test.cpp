@@ -46,17 +46,17 @@ TEST_CASE("frequency response: as computed, so the filter does, first and second
     double dt;
     bool velocity;
   };
-  for (const auto& [gains, dt, velocity] :
+  for (const Case& one :
        {Case{first_order_gains(4.0, 1.0 / 30.0), 1.0 / 30.0, false}, Case{{.value = 0.09}, 1.0 / 30.0, false},
         Case{first_order_gains(0.05, 1.0), 1.0, false},
         Case{second_order_gains(4.0, 3.0, 1.0 / 30.0), 1.0 / 30.0, true},
         Case{{.value = 0.3, .rate = 0.2}, 1.0 / 30.0, true}, Case{second_order_gains(2.0, 1.0, 0.125), 0.125, true}}) {
     for (const int samples : {3, 8, 30, 200, 1000}) {
-      CAPTURE(gains.value);
+      CAPTURE(one.gains.value);
       CAPTURE(samples);
-      const std::complex<double> computed = frequency_response(gains, dt, 1.0 / (dt * samples));
+      const std::complex<double> computed = frequency_response(one.gains, one.dt, 1.0 / (one.dt * samples));
       // Both are exact sums of the same recursion; the start has died away to exp(-33), rounding is left.
-      CHECK(std::abs(measured_response(gains, dt, samples, velocity) - computed) < 1e-10);
+      CHECK(std::abs(measured_response(one.gains, one.dt, samples, one.velocity) - computed) < 1e-10);
     }
   }
 }

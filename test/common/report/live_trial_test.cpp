@@ -61,7 +61,7 @@ Recording trial() {
 }
 
 std::string truth_file(const test::Scratch& scratch, const std::string& text) {
-  const std::string path = scratch.path("truth.json");
+  std::string path = scratch.path("truth.json");
   std::ofstream{path} << text;
   return path;
 }
