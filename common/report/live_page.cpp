@@ -180,7 +180,9 @@ std::string evolution(const Recording& recording, const LiveTrialResult& result,
     return html + "</div></section>\n";
   };
   const auto surge_sway = of_axes(result, {0, 1}), heave_yaw = of_axes(result, {2, 5}), tilt = of_axes(result, {3, 4});
-  const double modes_end = has_total ? total_begins : result.seconds;
+  // Designed segments begin with all axes at once.
+  const bool has_own = std::ranges::any_of(result.visits, [](const ModeVisit& visit) { return visit.mode != "total"; });
+  const double modes_end = !has_total ? result.seconds : has_own ? total_begins : 0.0;
   std::string html =
       section("Figure 1.15: parameters of surge and sway, modes of their own", surge_sway, 0.0, modes_end) +
       section("Figure 1.16: parameters of heave and yaw, modes of their own", heave_yaw, 0.0, modes_end) +

@@ -185,6 +185,17 @@ TEST_CASE("live trial: JSON, table and page agree, and speak of truth only when 
   CHECK(page.find("Compared with the simulator's truth") > page.find("Figure 1.19"));
 }
 
+TEST_CASE("Live trial: designed segments, of all axes at once, have no figures of modes of their own") {
+  Recording recording = trial();
+  for (Excitation& e : recording.excitation) {
+    if (e.phase == "excite") e.mode = "total";
+  }
+  const std::string page = to_html(summarise(recording, vehicle(), site()), recording, vehicle(), site());
+  CHECK(page.find("Figure 1.15") == std::string::npos);
+  CHECK(page.find("Figure 1.16") == std::string::npos);
+  CHECK(page.find("Figure 1.17") != std::string::npos);
+}
+
 TEST_CASE("Live trial: filters are drawn for who gives the estimator's settings, and for aids that were heard") {
   Recording recording = trial();
   for (int k = 0; k < 400; ++k) {
