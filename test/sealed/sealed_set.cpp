@@ -216,8 +216,6 @@ SealedSet make_set(const Plan& plan) {
     for (const auto& mechanism : set.mechanisms) mechanism->set_size(0.7 * mechanism->size());
     set.reached = false;
   }
-  if (!sound(set.train))
-    throw std::runtime_error("the vehicle runs away, however small the effect: draw another number");
   set.fit = fit_base(set.craft, set.train);
   if (plan.validates) {
     const Dive& last = set.train.back();
@@ -227,6 +225,8 @@ SealedSet make_set(const Plan& plan) {
         dive(set.craft, set.site, set.mechanisms, set.noise,
              {.begin = begin, .length = kValidation, .seed = plan.seed, .purpose = "validate", .hold = plan.hold});
   }
+  if (!sound(set.train) || (set.validate && !set.validate->sound))
+    throw std::runtime_error("the vehicle runs away, however small the effect: draw another number");
   return set;
 }
 
