@@ -88,8 +88,11 @@ Episode episode(std::span<const std::vector<double>> runs) {
   const double price = std::log(n * static_cast<double>(kLengths.size() * kLargest.size()));
   Episode found;
   for (const double share : kLargest) {
-    const double threshold = largest(share), p = std::ceil(share * n) / n;
+    const double threshold = largest(share);
     if (!(threshold > 0.0)) continue;
+    // Values that are told in steps are often equal: all that reach the threshold count.
+    const double p =
+        static_cast<double>(std::ranges::upper_bound(sizes, threshold, std::greater{}) - sizes.begin()) / n;
     for (const int length : kLengths) {
       const Place place = fullest(runs, threshold, static_cast<std::size_t>(length));
       if (place.count < kCompany) continue;

@@ -47,7 +47,12 @@ std::string foretold_sentence(const std::vector<Foretold>& axes) {
   return "5 s ahead the model foretells " + joined(words) + ". ";
 }
 
-bool foretells_nothing(const DiagnosisResult& result) {
+bool foretells_nothing(const DiagnosisResult& result, const model::Scene& fitted, const Vector6d& left) {
+  constexpr double kHalf = 0.5;  // of the motion's power
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    const double motion = fitted.nu_rms[axis] * fitted.nu_rms[axis];
+    if (fitted.vehicle->dof[static_cast<std::size_t>(axis)] && left[axis] * left[axis] < kHalf * motion) return false;
+  }
   bool asked = false;
   for (const PredictionError& error : result.error_after.prediction) {
     for (std::size_t i = 0; error.horizon_s == kHorizon && i < 6; ++i) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/model/effect.hpp"
 #include "common/samples/diagnosis_result.hpp"
 
 namespace fathom::diagnosis {
@@ -17,8 +18,10 @@ struct Foretold {
 /// Axes of which the final model certainly foretells less than half of the motion although what is left there is not
 /// random.
 [[nodiscard]] std::vector<Foretold> badly_foretold(const DiagnosisResult& result);
-/// True when it was asked for and there is no axis of which the final model foretells anything, 5 s ahead.
-[[nodiscard]] bool foretells_nothing(const DiagnosisResult& result);
+/// True when there is no axis of which the final model foretells anything, 5 s ahead, and none of whose motion in the
+/// runs that it was fitted to it explains half: `left`, residual scale per axis there, m/s and rad/s. A validation run
+/// at rest alone speaks against no name.
+[[nodiscard]] bool foretells_nothing(const DiagnosisResult& result, const model::Scene& fitted, const Vector6d& left);
 /// Where thrust is followed so badly that the file itself is in doubt: axes that are badly foretold, or where more is
 /// left than was applied.
 [[nodiscard]] std::vector<std::string> not_followed(const DiagnosisResult& result,

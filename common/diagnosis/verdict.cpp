@@ -165,7 +165,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const bool structure = !left.empty() || found.free_form || found.taken_back.value_or(0.0) > kByChance || blind ||
                          !astray_axes.empty() || promising != nullptr || result.wiring;
   const bool in_part = !names.empty() && found.explained < kWholeCause;
-  const bool idle = !names.empty() && foretells_nothing(result);
+  const bool idle = !names.empty() && foretells_nothing(result, scene, found.after.sigma);
   const bool stand_ins = in_part || idle;
   if (idle) {
     for (EffectFound& effect : result.effects) effect.log_odds = std::min(effect.log_odds, 0.0);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 
+#include "common/base/statistics.hpp"
 #include "common/estimation/frequency_response.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/text.hpp"
@@ -22,9 +24,7 @@ double median_interval(const estimation::Seen& seen) {
     if (seen.t[i] > seen.t[i - 1]) intervals.push_back(seen.t[i] - seen.t[i - 1]);
   }
   if (intervals.size() < 2) return 0.0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return median(std::move(intervals));
 }
 
 double shown(std::complex<double> response, BodePart part) {

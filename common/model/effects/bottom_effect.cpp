@@ -48,9 +48,8 @@ class BottomEffect final : public Effect {
     return exponential(variant) || theta[kBottomDepth] > p_WB.z();
   }
   bool variants_matter() const override { return true; }
-  bool rules_out(int variant, int other) const override {
-    return multiplies(variant) == multiplies(other);
-  }  // one floor
+  /// One floor.
+  bool rules_out(int variant, int other) const override { return multiplies(variant) == multiplies(other); }
   /// The upper edge of a layer of denser water lifts exponentially too, until the vehicle has gone through it.
   Unlisted looks_like(EffectTheta theta, int variant) const override {
     if (variant != kExponentialForce || theta[0] <= 0.0) return {};
@@ -68,7 +67,7 @@ class BottomEffect final : public Effect {
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double range = scene.p_high.z() - scene.p_low.z(), deepest = scene.p_high.z();
     const double force = 0.1 * std::max(scene.tau_rms.head<3>().norm(), 1e-2);
-    const double size = multiplies(variant) ? kStartShare : force;
+    const double size = multiplies(variant) ? kStartShare : force, speed = scene.nu_rms.head<2>().norm();
     std::vector<std::vector<double>> starts;
     if (exponential(variant)) {
       for (const double share : kReaches)
@@ -77,7 +76,6 @@ class BottomEffect final : public Effect {
     }
     for (const double gap : kGaps) {
       const double height = gap + 0.25 * range;  // where it should be worth a tenth of the thrust
-      const double speed = scene.nu_rms.head<2>().norm();
       starts.push_back({strength_at(variant, force, height, speed), deepest + gap, 0.0, 0.0});
     }
     return starts;

@@ -5,9 +5,9 @@
 // stops; a reversal lingers at nothing; or second order: motor and water one after the other, T each (Healey et al.
 // 1995), which starts with no slope; or a motor whose torque is commanded, against the water's: 2 sqrt(f_r) T n_dot =
 // f_c - n |n| (Yoerger, Cooke, Slotine 1990), quick at large thrust and slow at small, T its time constant at f_r, the
-// largest thrust that the vehicle file states. Ignores: two refinements at once. Revealed by reversals at frequencies
-// near 1/T, the law by steps up and down of several sizes. Confused with thruster_delay and, over a narrow band, with
-// added mass.
+// largest thrust that the vehicle file states (10 N where it states none). Ignores: two refinements at once. Revealed
+// by reversals at frequencies near 1/T, the law by steps up and down of several sizes. Confused with thruster_delay
+// and, over a narrow band, with added mass.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -44,18 +44,22 @@ TEST_CASE("episode: what was large once, for a few samples, is found where it wa
 
 TEST_CASE("episode: independent noise has one as seldom as the odds say, outliers or not") {
   constexpr int kSeeds = 2000;
-  int normal = 0, with_outliers = 0;
+  int normal = 0, with_outliers = 0, in_steps = 0;
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     std::mt19937 random{seed};
     std::student_t_distribution<double> t{2.0};  // of no variance at all
     std::vector<double> tails(kCount);
     for (double& value : tails) value = t(random);
+    std::vector<double> rounded = noise(seed);
+    for (double& value : rounded) value = std::round(value);
+    in_steps += episode(Runs{rounded}).log_odds > 3.0 ? 1 : 0;
     normal += episode(Runs{noise(seed)}).log_odds > 3.0 ? 1 : 0;
     with_outliers += episode(Runs{tails}).log_odds > 3.0 ? 1 : 0;
   }
   // Every place, length and share has a chance of exp(-3) over their number, so all together have 5 % at the most.
   CHECK(normal <= 100);
   CHECK(with_outliers <= 100);
+  CHECK(in_steps <= 100);
 }
 
 TEST_CASE("episode: one or two outliers, however large, are none; nor are neighbours across gaps") {

@@ -100,11 +100,14 @@ TEST_CASE("verdict: what leaves much of the error that lasts is kept, and is no 
 TEST_CASE("verdict: beside what foretells no motion at all no name is certain") {
   MadeUp made;
   made.accept("thruster_deadband", {70.0});
-  const auto concluded = [&](double r2_of_yaw) {
+  made.found.after.sigma.setConstant(0.005);
+  const auto concluded = [&](double r2_of_yaw, double motion = 0.006) {
     DiagnosisResult result;
     result.error_after.prediction = {
         {.horizon_s = 5.0, .r2 = {-0.1, -0.7, -0.02, std::nan(""), std::nan(""), r2_of_yaw}}};
-    conclude(made.found, made.left, made.scene(), result);
+    model::Scene scene = made.scene();
+    scene.nu_rms.setConstant(motion);
+    conclude(made.found, made.left, scene, result);
     return result;
   };
   CHECK(concluded(0.2).verdict == "effect");
@@ -113,6 +116,8 @@ TEST_CASE("verdict: beside what foretells no motion at all no name is certain") 
   CHECK(idle.verdict == "unexplained");
   CHECK(idle.effects.at(0).log_odds <= 0.0);
   CHECK(says(idle.paragraph, "foretells no motion along any axis: did the thrusters run"));
+  // The runs that it was learnt from moved, and the model follows them: a validation run at rest says nothing.
+  CHECK(concluded(-0.04, 0.2).verdict == "effect");
 }
 
 TEST_CASE("verdict: a refused effect that would save much leaves the verdict open, and says what to drive") {
