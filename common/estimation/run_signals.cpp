@@ -10,62 +10,17 @@
 #include "common/base/units.hpp"
 #include "common/estimation/freezes.hpp"
 #include "common/estimation/held_values.hpp"
+#include "common/estimation/spikes.hpp"
 #include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
 
 constexpr double kUnitTolerance =
-    1e-3;                             // of |q|: rounding to three digits passes, interpolation across a flip does not
-constexpr double kLongGap = 0.5;      // s: shorter gaps are bridged without loss
-constexpr double kFewSteps = 2.5;     // a longer step is a gap
-constexpr double kEqualSteps = 1e-3;  // of a step: whole microseconds pass
-constexpr double kSpike = 12.0;       // robust sigmas of the misfit to four neighbours
+    1e-3;                         // of |q|: rounding to three digits passes, interpolation across a flip does not
+constexpr double kLongGap = 0.5;  // s: shorter gaps are bridged without loss
 
 std::string number(double value) { return text("%.3g", value); }
-
-/// Weights of four neighbours in the cubic through them, at time 0.
-std::array<double, 4> cubic_weights(const std::array<double, 4>& t) {
-  std::array<double, 4> weight{1.0, 1.0, 1.0, 1.0};
-  for (std::size_t k = 0; k < 4; ++k) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      if (j != k) weight[k] *= t[j] / (t[j] - t[k]);
-    }
-  }
-  return weight;
-}
-
-/// Misfit of every sample to the cubic through its four neighbours; 0 beside a gap, across which nothing is foretold.
-template <class T>
-std::vector<double> neighbour_misfit(const std::vector<double>& t, const std::vector<T>& x) {
-  const double step = typical_step(t);
-  std::vector<double> misfit(x.size(), 0.0);
-  for (std::size_t i = 2; i + 2 < x.size(); ++i) {
-    const std::array<double, 4> near{t[i - 2] - t[i], t[i - 1] - t[i], t[i + 1] - t[i], t[i + 2] - t[i]};
-    const std::array<double, 4> steps{near[1] - near[0], -near[1], near[2], near[3] - near[2]};
-    const auto [least, most] = std::ranges::minmax(steps);
-    if (most > kFewSteps * step) continue;
-    if (most - least < kEqualSteps * step) {
-      misfit[i] = (x[i] - (4.0 * (x[i - 1] + x[i + 1]) - x[i - 2] - x[i + 2]) / 6.0).norm();
-      continue;
-    }
-    const std::array<double, 4> weight = cubic_weights(near);
-    double square = 1.0;
-    for (const double one : weight) square += one * one;
-    const T apart = x[i] - (weight[0] * x[i - 2] + weight[1] * x[i - 1] + weight[2] * x[i + 1] + weight[3] * x[i + 2]);
-    misfit[i] = apart.norm() * std::sqrt(70.0 / 36.0 / square);  // noise weighs as at equal steps
-  }
-  return misfit;
-}
-
-template <class T>
-std::vector<std::uint8_t> spikes(const std::vector<double>& t, const std::vector<T>& x, double floor) {
-  const std::vector<double> misfit = neighbour_misfit(t, x);
-  const double limit = std::max(kSpike * median(misfit) / 1.5, floor);  // median of a 3-norm is about 1.5 sigma
-  std::vector<std::uint8_t> bad(x.size(), 0);
-  for (std::size_t i = 0; i < x.size(); ++i) bad[i] = misfit[i] > limit ? 1 : 0;
-  return bad;
-}
 
 class Reader {
  public:
@@ -227,7 +182,7 @@ void Reader::clean(const std::string& signal, Series& series, double spike_floor
     report_held(signal, repeats, series.size());
     for (std::size_t i = 1; i < series.size(); ++i) bad[i] = series.x[i] == series.x[i - 1] ? 1 : 0;
   }
-  const std::vector<std::uint8_t> spike = spikes(series.t, series.x, spike_floor);
+  const std::vector<std::uint8_t> spike = speed_spikes(series, spike_floor);
   int leaps = 0;
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (spike[i] && !frozen[i] && (i == 0 || !spike[i - 1])) ++leaps;
