@@ -63,7 +63,7 @@ NavigatorPlaces NavigatorPlaces::of(const model::Mounts& mounts, const model::Si
   for (const model::CameraMount& camera : mounts.cameras) {
     places.cameras[camera.name] = {.p_BC = camera.mount.p_BS, .R_BC = camera.mount.R_BS};
   }
-  for (const model::Tag& tag : site.tags) places.tags[tag.id] = tag.p_WT;
+  for (const model::Tag& tag : site.tags) places.tags[tag.number()] = tag.p_WT;
   places.floor = site.floor;
   places.walls = {Eigen::Vector2d{site.south, site.west}, Eigen::Vector2d{site.north, site.east}};
   if (mounts.ahrs) places.p_BI = mounts.ahrs->p_BS;

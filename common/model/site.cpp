@@ -11,9 +11,26 @@ namespace fathom::model {
 namespace {
 
 void add_tag(const Config& config, const std::string& key, Tag tag, bool twice_allowed, Site& site) {
-  if (!twice_allowed && site.tag(tag.id) != nullptr)
-    config.fail(key, "two tags have the number " + std::to_string(tag.id));
+  const std::string family = site.family_of(tag);
+  const bool twice = site.tag(family, tag.id) != nullptr;
+  if (twice && !twice_allowed) config.fail(key, "two tags have the number " + std::to_string(tag.id));
+  const Tag* other = site.tag(tag.number());
+  if (other != nullptr && !twice) {
+    config.fail(key, "tag " + std::to_string(tag.id) + " of " + family + " and tag " + std::to_string(other->id) +
+                         " of " + site.family_of(*other) + " would both be number " + std::to_string(tag.number()) +
+                         " in TAG_POSE: state another 'number' for one of them");
+  }
   site.tags.push_back(std::move(tag));
+}
+
+// Of a tag or a poster.
+void read_family(const Config& config, const Site& site, Tag& tag) {
+  if (config.has("number")) tag.own_number = config.integer("number");
+  if (!config.has("family")) return;
+  tag.family = config.text("family");
+  const std::vector<std::string>& families = site.search.families;
+  if (std::none_of(families.begin(), families.end(), [&](const auto& each) { return same_family(each, tag.family); }))
+    config.fail("family", "'families' of 'tag_search' does not name " + tag.family + ": nobody would look for it");
 }
 
 // A poster: rows of equal tags in one plane. The first is at the top left as one reads it; numbers rise to the right,
@@ -26,12 +43,17 @@ void read_poster(const Config& config, bool twice_allowed, Site& site) {
   if (size > pitch) config.fail("pitch", "the tags overlap: 'pitch' is smaller than 'size'");
   const Eigen::Vector3d middle = config.vector3("middle", "m");
   const Eigen::Matrix3d R_WT = rotation_from_euler(config.vector3("rotation", "rad"));
+  Tag tag{.size = size, .R_WT = R_WT};
+  read_family(config, site, tag);
+  const std::optional<int> first_number = tag.own_number;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Eigen::Vector3d p_T{pitch * (column - 0.5 * (columns - 1)), pitch * (row - 0.5 * (rows - 1)), 0.0};
-      add_tag(config, "first",
-              {.id = first + row * columns + column, .size = size, .p_WT = middle + R_WT * p_T, .R_WT = R_WT},
-              twice_allowed, site);
+      const int place = row * columns + column;
+      tag.id = first + place;
+      tag.p_WT = middle + R_WT * p_T;
+      if (first_number) tag.own_number = *first_number + place;
+      add_tag(config, "first", tag, twice_allowed, site);
     }
   }
 }
@@ -65,17 +87,21 @@ void read_water(const Config& config, Site& site) {
   if (site.floor <= site.surface) water.fail("floor", "'floor' must lie below the surface: z points down");
 }
 
-// Numbers that stand twice are of no use to pictures: neither tag can be told from the other.
+// What is printed on two tags is of no use to pictures: neither can be told from the other.
 void drop_doubtful(Site& site) {
-  const auto doubtful = [&](const Tag& tag) {
-    return std::count_if(site.tags.begin(), site.tags.end(), [&](const Tag& each) { return each.id == tag.id; }) > 1;
+  const auto alike = [&](const Tag& a, const Tag& b) {
+    return a.id == b.id && same_family(site.family_of(a), site.family_of(b));
   };
+  std::vector<TagName>& doubtful = site.doubtful_tags;
   for (const Tag& tag : site.tags) {
-    const auto known = std::find(site.doubtful_tags.begin(), site.doubtful_tags.end(), tag.id);
-    if (doubtful(tag) && known == site.doubtful_tags.end()) site.doubtful_tags.push_back(tag.id);
+    if (std::ranges::count_if(site.tags, [&](const Tag& each) { return alike(each, tag); }) < 2) continue;
+    const TagName name{site.family_of(*site.tag(site.family_of(tag), tag.id)), tag.id};
+    if (std::ranges::find(doubtful, name) == doubtful.end()) doubtful.push_back(name);
   }
   std::erase_if(site.tags, [&](const Tag& tag) {
-    return std::find(site.doubtful_tags.begin(), site.doubtful_tags.end(), tag.id) != site.doubtful_tags.end();
+    return std::ranges::any_of(doubtful, [&](const TagName& each) {
+      return each.id == tag.id && same_family(each.family, site.family_of(tag));
+    });
   });
 }
 
@@ -86,19 +112,23 @@ Site read(const std::string& path, bool pictures_alone) {
   if (!pictures_alone || config.has("water")) read_water(config, site);
   if (!pictures_alone || config.has("declination")) site.declination = config.quantity("declination", "rad");
   if (config.has("walls")) read_walls(config.section("walls"), site);
+  if (config.has("tag_search")) read_search(config.section("tag_search"), site.search);
   if (config.has("tags")) {
     for (const Config& one : config.list("tags")) {
-      add_tag(one, "id",
-              {.id = one.integer("id"),
-               .size = one.positive("size", "m"),
-               .p_WT = one.vector3("position", "m"),
-               .R_WT = rotation_from_euler(one.vector3("rotation", "rad"))},
-              pictures_alone, site);
+      Tag tag{.id = one.integer("id"),
+              .size = one.positive("size", "m"),
+              .p_WT = one.vector3("position", "m"),
+              .R_WT = rotation_from_euler(one.vector3("rotation", "rad"))};
+      read_family(one, site, tag);
+      add_tag(one, "id", tag, pictures_alone, site);
     }
   }
-  if (config.has("tag_search")) read_search(config.section("tag_search"), site.search);
   if (config.has("camera")) site.lens = Lens::from(config.section("camera"));
-  if (config.has("poster")) read_poster(config.section("poster"), pictures_alone, site);
+  if (config.is_section("poster")) {
+    read_poster(config.section("poster"), pictures_alone, site);
+  } else if (config.has("poster")) {
+    for (const Config& one : config.list("poster")) read_poster(one, pictures_alone, site);
+  }
   drop_doubtful(site);
   if (config.has("transponders")) {
     for (const Config& one : config.list("transponders")) {
@@ -117,9 +147,43 @@ Site Site::load(const std::string& path) { return read(path, false); }
 
 Site Site::load_for_pictures(const std::string& path) { return read(path, true); }
 
-const Tag* Site::tag(int id) const {
-  const auto found = std::find_if(tags.begin(), tags.end(), [id](const Tag& each) { return each.id == id; });
+const Tag* Site::tag(int number) const {
+  const auto found = std::ranges::find(tags, number, &Tag::number);
   return found == tags.end() ? nullptr : &*found;
+}
+
+const Tag* Site::tag(std::string_view family, int id) const {
+  const auto found = std::ranges::find_if(
+      tags, [&](const Tag& each) { return each.id == id && same_family(family_of(each), family); });
+  return found == tags.end() ? nullptr : &*found;
+}
+
+const std::string& Site::family_of(const Tag& tag) const {
+  return tag.family.empty() ? search.families.front() : tag.family;
+}
+
+std::string Site::doubts() const {
+  std::string numbers;
+  for (const auto& [family, id] : doubtful_tags) {
+    numbers += (numbers.empty() ? "" : ", ") + std::to_string(id);
+    if (search.families.size() > 1) numbers += " (" + family + ")";
+  }
+  return numbers.empty() ? "" : "the site's map has two tags of number " + numbers + ": neither is used";
+}
+
+void Site::look_for(const std::vector<std::string>& families) {
+  const bool named = std::ranges::any_of(tags, [](const Tag& tag) { return !tag.family.empty(); });
+  for (Tag& tag : tags) {
+    if (named) tag.family = family_of(tag);
+  }
+  search.families = families;
+}
+
+bool same_family(std::string_view a, std::string_view b) {
+  constexpr std::string_view kFront = "tag";
+  if (a.starts_with(kFront)) a.remove_prefix(kFront.size());
+  if (b.starts_with(kFront)) b.remove_prefix(kFront.size());
+  return a == b;
 }
 
 }  // namespace fathom::model

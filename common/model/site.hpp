@@ -6,11 +6,21 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "common/model/lens.hpp"
 
 namespace fathom::model {
+
+/// What is printed on a tag: numbers are those of a family, as the AprilTag library names it.
+struct TagName {
+  std::string family;
+  int id{};
+  bool operator==(const TagName&) const = default;
+  bool operator<(const TagName& other) const { return std::tie(family, id) < std::tie(other.family, other.id); }
+};
 
 /// A fiducial tag. Frame T: origin in its middle, x to the right and y down as one reads it, z into it.
 struct Tag {
@@ -18,7 +28,15 @@ struct Tag {
   double size{};                                  ///< m, edge of the black square
   Eigen::Vector3d p_WT{Eigen::Vector3d::Zero()};  ///< m
   Eigen::Matrix3d R_WT{Eigen::Matrix3d::Identity()};
+  std::string family{};             ///< empty: the first that is looked for here
+  std::optional<int> own_number{};  ///< where tags of two families have the same id
+
+  /// Which of a site's frames T it is: no two have the same. That of TAG_POSE.
+  [[nodiscard]] int number() const { return own_number.value_or(id); }
 };
+
+/// Families may be named without the library's "tag" in front.
+[[nodiscard]] bool same_family(std::string_view a, std::string_view b);
 
 /// Something that answers an acoustic ping.
 struct Transponder {
@@ -48,7 +66,7 @@ struct Site {
   double east{kNone}, west{-kNone};    ///< m, y of the walls
   double declination{};                ///< rad, heading of magnetic north in W
   std::vector<Tag> tags;
-  std::vector<int> doubtful_tags;  ///< numbers that stand twice in the map: pictures cannot tell which; not in `tags`
+  std::vector<TagName> doubtful_tags;  ///< what stands twice in the map: pictures cannot tell which; not in `tags`
   TagSearch search;
   std::optional<Lens> lens;               ///< of the camera that took pictures here, where no vehicle file states it
   std::vector<Transponder> transponders;  ///< order of RANGES
@@ -58,10 +76,17 @@ struct Site {
   /// InputError with file and line when anything is missing, unknown, or in a wrong unit.
   [[nodiscard]] static Site load(const std::string& path);
   /// The same for recorded pictures alone: water and declination may be left out,
-  /// and a number that two tags have costs these two, not the site.
+  /// and what is printed on two tags costs these two, not the site.
   [[nodiscard]] static Site load_for_pictures(const std::string& path);
   /// The tag of that number, or nullptr.
-  [[nodiscard]] const Tag* tag(int id) const;
+  [[nodiscard]] const Tag* tag(int number) const;
+  /// The tag on which this is printed, or nullptr.
+  [[nodiscard]] const Tag* tag(std::string_view family, int id) const;
+  [[nodiscard]] const std::string& family_of(const Tag& tag) const;
+  /// Other families are looked for. A map that names none is then of the first of these; one that does is as it was.
+  void look_for(const std::vector<std::string>& families);
+  /// A line about the doubtful tags; empty when there are none.
+  [[nodiscard]] std::string doubts() const;
   [[nodiscard]] double depth() const { return floor - surface; }
 };
 

@@ -103,7 +103,7 @@ class Adjustment {
         settings_{settings},
         f_{lens_.fx, lens_.fy, lens_.cx, lens_.cy},
         k_{lens_.distortion} {
-    for (const model::Tag& tag : site_.tags) tags_[tag.id] = block(tag.R_WT, tag.p_WT);
+    for (const model::Tag& tag : site_.tags) tags_[tag.number()] = block(tag.R_WT, tag.p_WT);
     add_corners(views);
     add_priors();
     if (settings.lens && focal_kept) problem_.SetManifold(f_.data(), new ceres::SubsetManifold(4, {0, 1}));
@@ -125,7 +125,7 @@ class Adjustment {
     lens.cy = f_[3];
     lens.distortion = k_;
     for (model::Tag& tag : result.site.tags) {
-      const Block& b = tags_.at(tag.id);
+      const Block& b = tags_.at(tag.number());
       tag.R_WT = rotation(b);
       tag.p_WT = {b[3], b[4], b[5]};
     }
@@ -175,23 +175,24 @@ class Adjustment {
     } else if (!fixed.empty()) {
       problem_.SetManifold(k_.data(), new ceres::SubsetManifold(5, fixed));
     }
-    for (auto& [id, b] : tags_) {
+    for (auto& [number, b] : tags_) {
       if (!problem_.HasParameterBlock(b.data())) continue;
       if (!settings_.map) {
         problem_.SetParameterBlockConstant(b.data());
         continue;
       }
       const double turn = settings_.flat ? settings_.flat_turn : 3.0, up = settings_.flat ? settings_.flat_sigma : 1.0;
-      const double across = surveyed(id) ? settings_.map_sigma : 10.0;
-      const double height = surveyed(id) ? std::min(up, settings_.map_sigma) : up;
-      const Block sigma{turn, turn, surveyed(id) ? 0.1 : 10.0, across, across, height};
+      const double across = surveyed(number) ? settings_.map_sigma : 10.0;
+      const double height = surveyed(number) ? std::min(up, settings_.map_sigma) : up;
+      const Block sigma{turn, turn, surveyed(number) ? 0.1 : 10.0, across, across, height};
       problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<Prior, 6, 6>(new Prior{b, sigma}), nullptr, b.data());
-      if (surveyed_.empty() && id == site_.tags.front().id) problem_.SetParameterBlockConstant(b.data());  // the origin
+      const bool origin = surveyed_.empty() && number == site_.tags.front().number();
+      if (origin) problem_.SetParameterBlockConstant(b.data());
     }
   }
 
-  [[nodiscard]] bool surveyed(int id) const {
-    return std::find(surveyed_.begin(), surveyed_.end(), id) != surveyed_.end();
+  [[nodiscard]] bool surveyed(int number) const {
+    return std::find(surveyed_.begin(), surveyed_.end(), number) != surveyed_.end();
   }
 
   void find_lens_sigma(Calibration& result) {
@@ -264,12 +265,12 @@ Reprojection reproject(const model::Site& site, const std::vector<View>& views) 
     if (fix->n_tags > 1) result.per_view.push_back(fix->rms);
     for (const TagSighting& tag : tags) {
       if (tag.verdict != TagVerdict::kAccepted) continue;
-      const auto [p_CT, R_CT] = locator.in_camera(*fix, tag.id);
-      const double h = 0.5 * site.tag(tag.id)->size;
+      const auto [p_CT, R_CT] = locator.in_camera(*fix, *tag.mapped);
+      const double h = 0.5 * site.tag(*tag.mapped)->size;
       const std::array<Eigen::Vector3d, 4> corners{{{-h, h, 0.0}, {h, h, 0.0}, {h, -h, 0.0}, {-h, -h, 0.0}}};
       for (std::size_t i = 0; i < 4; ++i) {
         const Eigen::Vector2d seen = projection.pixel(p_CT + R_CT * corners[i]);
-        result.residuals.push_back({v, tag.id, i, tag.corners[i], seen - tag.corners[i]});
+        result.residuals.push_back({v, *tag.mapped, i, tag.corners[i], seen - tag.corners[i]});
       }
     }
   }

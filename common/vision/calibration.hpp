@@ -38,7 +38,7 @@ struct CalibrationSettings {
 /// A corner in a picture and what is left of it.
 struct Residual {
   std::size_t view{};
-  int tag{};
+  int tag{};             ///< its number in the site
   std::size_t corner{};  ///< in the order of sightings
   Eigen::Vector2d pixel{Eigen::Vector2d::Zero()}, error{Eigen::Vector2d::Zero()};
 };

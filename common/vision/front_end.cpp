@@ -101,7 +101,7 @@ bool FrontEnd::look_again(const cv::Mat& grey) {
   constexpr std::size_t kMost = 3;                   // regions in a picture: time
   bool more = false;
   std::size_t looked = 0;
-  for (const auto& [id, corners] : locator_.missing(*sight_.fix, sight_.tags)) {
+  for (const auto& [printed, corners] : locator_.missing(*sight_.fix, sight_.tags)) {
     Eigen::Vector2d low = corners[0], high = corners[0];
     for (const Eigen::Vector2d& each : corners) {
       low = low.cwiseMin(each);
@@ -114,7 +114,7 @@ bool FrontEnd::look_again(const cv::Mat& grey) {
         whole & cv::Rect{cv::Point{static_cast<int>(low.x() - margin), static_cast<int>(low.y() - margin)},
                          cv::Point{static_cast<int>(high.x() + margin) + 1, static_cast<int>(high.y() + margin) + 1}};
     for (const TagSighting& tag : near_detector_->step(grey, region)) {
-      if (tag.id != id) continue;
+      if (tag.id != printed.id || !model::same_family(tag.family, printed.family)) continue;
       sight_.tags.push_back(tag);
       more = true;
       break;
@@ -220,10 +220,10 @@ std::vector<TagPose> FrontEnd::tag_poses(const std::string& camera) const {
   if (!sight_.fix || sight_.fix->ambiguous || sight_.picture != PictureState::kGood) return poses;
   for (const TagSighting& tag : sight_.tags) {
     if (tag.verdict != TagVerdict::kAccepted) continue;
-    const auto [p_CT, R_CT] = locator_.in_camera(*sight_.fix, tag.id);
+    const auto [p_CT, R_CT] = locator_.in_camera(*sight_.fix, *tag.mapped);
     poses.push_back({.utime = utime_,
                      .camera = camera,
-                     .tag = tag.id,
+                     .tag = *tag.mapped,
                      .p_CT = p_CT,
                      .q_CT = Eigen::Quaterniond{R_CT},
                      .reprojection_error = tag.reprojection});

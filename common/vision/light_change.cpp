@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <array>
 #include <cmath>
 
 namespace fathom::vision {
@@ -14,8 +13,11 @@ constexpr int kRounds = 2;
 constexpr float kFarthest = 0.5F;  // px
 constexpr float kLeast = 50.0F;    // texture, square of brightness per px, over the window, beside light
 
+/// A square of brightness, a column per row of the picture.
 template <int Size>
-using Window = std::array<float, static_cast<std::size_t>(Size* Size)>;
+using Window = Eigen::Matrix<float, Size, Size>;
+template <int Size>
+using Row = Eigen::Map<const Eigen::Matrix<float, Size, 1>>;
 
 // A square of the picture, its middle between pixels; false when it is not all within.
 template <int Size>
@@ -26,16 +28,41 @@ bool cut(const cv::Mat& picture, const cv::Point2f& middle, Window<Size>& to) {
   if (x0 < 0 || y0 < 0 || x0 + Size >= picture.cols || y0 + Size >= picture.rows) return false;
   const float u = left - static_cast<float>(x0), v = top - static_cast<float>(y0);
   const float a = (1 - u) * (1 - v), b = u * (1 - v), c = (1 - u) * v, d = u * v;
-  float* out = to.data();
   for (int y = 0; y < Size; ++y) {
-    const std::uint8_t* row = picture.ptr<std::uint8_t>(y0 + y) + x0;
-    const std::uint8_t* next = picture.ptr<std::uint8_t>(y0 + y + 1) + x0;
-    for (int x = 0; x < Size; ++x) {
-      *out++ = a * static_cast<float>(row[x]) + b * static_cast<float>(row[x + 1]) + c * static_cast<float>(next[x]) +
-               d * static_cast<float>(next[x + 1]);
-    }
+    const float* row = picture.ptr<float>(y0 + y) + x0;
+    const float* next = picture.ptr<float>(y0 + y + 1) + x0;
+    to.col(y) = a * Row<Size>{row} + b * Row<Size>{row + 1} + c * Row<Size>{next} + d * Row<Size>{next + 1};
   }
   return true;
+}
+
+constexpr int kPixels = kSide * kSide;
+using Columns = Eigen::Matrix<float, kPixels, kUnknown>;
+
+// Slopes, brightness less its mean, one, and where in the window; the last three are the same in every window.
+Columns positions() {
+  Columns by;
+  by.leftCols<3>().setZero();
+  by.col(3).setOnes();
+  for (int y = 0, i = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x, ++i) {
+      by(i, 4) = static_cast<float>(x - kHalf);
+      by(i, 5) = static_cast<float>(y - kHalf);
+    }
+  }
+  return by;
+}
+
+// by^T by, each product once.
+Eigen::Matrix<float, kUnknown, kUnknown> products(const Columns& by) {
+  Eigen::Matrix<float, kUnknown, kUnknown> sums = Eigen::Matrix<float, kUnknown, kUnknown>::Zero();
+  for (int j = 0; j < 3; ++j) {
+    for (int i = j; i < kUnknown; ++i) sums(i, j) = sums(j, i) = by.col(i).dot(by.col(j));
+  }
+  // Of one and places, whose middle is 0.
+  constexpr int kSquares = kSide * kHalf * (kHalf + 1) * kSide / 3;  // of places along one side
+  sums.diagonal().tail<3>() << static_cast<float>(kPixels), static_cast<float>(kSquares), static_cast<float>(kSquares);
+  return sums;
 }
 
 }  // namespace
@@ -45,23 +72,16 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
   constexpr int kWide = kSide + 2;
   Window<kWide> wide;
   if (!cut<kWide>(before, from, wide)) return {};
-  // Columns: the slopes; then the light: brightness less its mean, one, and where in the window.
-  static constexpr int kPixels = kSide * kSide;
-  Eigen::Matrix<float, kPixels, kUnknown> by;
-  Eigen::Matrix<float, kPixels, 1> first;
-  for (int y = 0, i = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x, ++i) {
-      const float* at = wide.data() + (y + 1) * kWide + x + 1;
-      first[i] = *at;
-      by(i, 0) = 0.5F * (at[1] - at[-1]);
-      by(i, 1) = 0.5F * (at[kWide] - at[-kWide]);
-      by(i, 4) = static_cast<float>(x - kHalf);
-      by(i, 5) = static_cast<float>(y - kHalf);
-    }
-  }
-  by.col(2) = first.array() - first.mean();
-  by.col(3).setOnes();
-  const Eigen::Matrix<float, kUnknown, kUnknown> information = by.transpose() * by;
+  static const Columns kPositions = positions();
+  Columns by;
+  by.rightCols<3>() = kPositions.rightCols<3>();
+  const auto column = [&](int i) { return Eigen::Map<Window<kSide>>{by.col(i).data()}; };
+  const auto part = [&](int x, int y) { return wide.block<kSide, kSide>(1 + x, 1 + y); };
+  column(0) = 0.5F * (part(1, 0) - part(-1, 0));
+  column(1) = 0.5F * (part(0, 1) - part(0, -1));
+  const Window<kSide> first = part(0, 0);
+  column(2) = first.array() - first.mean();
+  const Eigen::Matrix<float, kUnknown, kUnknown> information = products(by);
   const Eigen::LDLT<Eigen::Matrix<float, kUnknown, kUnknown>> solver{information};
   const Eigen::Matrix4f light = information.bottomRightCorner<4, 4>() + 1e-3F * Eigen::Matrix4f::Identity();
   const Eigen::Matrix2f texture =
@@ -74,8 +94,9 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
   Window<kSide> seen;
   for (int round = 0; round < kRounds; ++round) {
     if (!cut<kSide>(now, end, seen)) return {};
-    const Eigen::Map<const Eigen::Matrix<float, kPixels, 1>> second{seen.data()};
-    const Eigen::Matrix<float, kUnknown, 1> step = solver.solve(by.transpose() * (second - first));
+    const Window<kSide> changed = seen - first;
+    const Eigen::Map<const Eigen::Matrix<float, kPixels, 1>> change{changed.data()};
+    const Eigen::Matrix<float, kUnknown, 1> step = solver.solve(by.transpose() * change);
     end.x -= step[0];
     end.y -= step[1];
   }

@@ -8,7 +8,7 @@
 
 namespace fathom::vision {
 
-/// `from`, `to`: px of `before` and `now` (8 bits). Nothing when the window leaves a picture, has no texture beside
+/// `from`, `to`: px of `before` and `now` (float). Nothing when the window leaves a picture, has no texture beside
 /// what light could have made, or the end is further than half a pixel away: then `to` is as good as is known.
 [[nodiscard]] std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv::Mat& now,
                                                               const cv::Point2f& from, const cv::Point2f& to);

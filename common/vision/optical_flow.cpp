@@ -41,8 +41,8 @@ struct FlowTracker::State {
   FlowSettings settings;
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat small, mask;  // mask: empty, or 0 where there are no features
-  cv::Mat smooth, smooth_before;
+  cv::Mat small, mask;                     // mask: empty, or 0 where there are no features
+  cv::Mat blurred, smooth, smooth_before;  // the last two in float
   std::vector<cv::Point2f> features, found, back;
   std::vector<unsigned char> ok, ok_back;
   std::vector<float> errors;
@@ -78,7 +78,8 @@ struct FlowTracker::State {
     // smoother pictures; not found in them, for moving light is smooth too.
     constexpr double kSmooth = 1.0;  // px, reduced
     std::swap(smooth, smooth_before);
-    cv::GaussianBlur(small, smooth, {5, 5}, kSmooth);
+    cv::GaussianBlur(small, blurred, {5, 5}, kSmooth);
+    blurred.convertTo(smooth, CV_32F);
   }
 
   void choose_features() {

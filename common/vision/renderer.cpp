@@ -104,7 +104,7 @@ void Renderer::paint_floor(std::uint64_t seed) {
 }
 
 void Renderer::paint_tag(const model::Tag& tag) {
-  const TagCells printed = tag_cells(site_.search.families.front(), tag.id);
+  const TagCells printed = tag_cells(site_.family_of(tag), tag.id);
   const double cell = tag.size / printed.border;
   const double half = 0.5 * cell * (printed.cells.cols + 2);  // a white cell more all around
   const Eigen::Matrix2d R_TW = tag.R_WT.topLeftCorner<2, 2>().transpose();

@@ -48,27 +48,40 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+// Families count alike: of two tags of one id the second gets a number that nobody has.
+model::Tag with_number(const model::Site& site, model::Tag tag) {
+  constexpr int kStep = 1000;
+  for (int number = tag.id; site.tag(number) != nullptr;) tag.own_number = number += kStep;
+  return tag;
+}
+
+model::Tag new_tag(const model::Site& site, const model::TagName& name, double size) {
+  const bool first = model::same_family(name.family, site.search.families.front());
+  return with_number(site, {.id = name.id, .size = size, .family = first ? "" : name.family});
+}
+
 }  // namespace
 
 SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size, bool flat) {
   SurveyStart start{.site = site, .surveyed = {}};
-  for (const model::Tag& tag : site.tags) start.surveyed.push_back(tag.id);
+  for (const model::Tag& tag : site.tags) start.surveyed.push_back(tag.number());
   if (size <= 0.0) return start;
-  std::map<int, int> sightings;
+  std::map<model::TagName, int> sightings;
   for (const View& view : views) {
-    for (const TagSighting& tag : view.tags) sightings[tag.id] += tag.margin >= least_margin(tag.family) ? 1 : 0;
+    for (const TagSighting& tag : view.tags)
+      sightings[{tag.family, tag.id}] += tag.margin >= least_margin(tag.family) ? 1 : 0;
   }
   if (start.site.tags.empty() && !sightings.empty()) {
     const auto most = std::max_element(sightings.begin(), sightings.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    start.site.tags.push_back({.id = most->first, .size = size});
+    start.site.tags.push_back(new_tag(start.site, most->first, size));
   }
   const std::optional<double> level = flat ? level_of(start.site.tags) : std::nullopt;
   // Each round places the tags that were seen together with known ones.
   const Projection projection{*site.lens};
   for (bool more = true; more;) {
     more = false;
-    std::map<int, std::vector<Pose>> placed;
+    std::map<model::TagName, std::vector<Pose>> placed;
     TagLocator locator{start.site, site.lens, {}};
     for (const View& view : views) {
       std::vector<TagSighting> tags = view.tags;
@@ -76,13 +89,14 @@ SurveyStart start_survey(const model::Site& site, const std::vector<View>& views
       const auto fix = locator.step(0, tags, std::nullopt);
       if (!fix) continue;
       for (const TagSighting& tag : tags) {
-        if (tag.verdict != TagVerdict::kOutsideMap || sightings[tag.id] < kLeastSightings) continue;
-        if (const auto pose = place(projection, tag, size, fix->pose)) placed[tag.id].push_back(*pose);
+        const model::TagName name{tag.family, tag.id};
+        if (tag.verdict != TagVerdict::kOutsideMap || sightings[name] < kLeastSightings) continue;
+        if (const auto pose = place(projection, tag, size, fix->pose)) placed[name].push_back(*pose);
       }
     }
-    for (const auto& [id, poses] : placed) {
+    for (const auto& [name, poses] : placed) {
       if (static_cast<int>(poses.size()) < kLeastSightings) continue;
-      model::Tag tag{.id = id, .size = size};
+      model::Tag tag = new_tag(start.site, name, size);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         std::vector<double> values;
         for (const Pose& each : poses) values.push_back(each.p_WC[axis]);

@@ -9,7 +9,7 @@ namespace fathom::vision {
 
 struct SurveyStart {
   model::Site site;           ///< with the tags that were not in the map
-  std::vector<int> surveyed;  ///< numbers that were
+  std::vector<int> surveyed;  ///< numbers of those that were
 };
 
 /// `flat`: new tags lie in the plane of the known ones, where that is level. `size`: of tags that are not in the map

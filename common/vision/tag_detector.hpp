@@ -35,7 +35,8 @@ struct TagSighting {
   double margin{};  ///< decision margin of the library, in brightness
   /// px, middle of the first pixel is (0, 0); in the order of the library: T's (-x, +y), (+x, +y), (+x, -y), (-x, -y).
   std::array<Eigen::Vector2d, 4> corners;
-  double edge{};  ///< px, mean length of the edges
+  double edge{};              ///< px, mean length of the edges
+  std::optional<int> mapped;  ///< number of the site's tag on which this is printed
   TagVerdict verdict{TagVerdict::kAccepted};
   /// False for a corner that the picture's border cuts off: the library closes the outline somewhere.
   std::array<bool, 4> sound{true, true, true, true};

@@ -40,13 +40,13 @@ void TagLocator::judge_by_map(std::vector<TagSighting>& tags) {
   candidates_.clear();
   for (TagSighting& tag : tags) {
     tag.reprojection = -1.0;
+    tag.mapped.reset();
     const bool clear = tag.margin >= site_.search.least_margin.value_or(least_margin(tag.family));
-    const bool doubtful =
-        std::find(site_.doubtful_tags.begin(), site_.doubtful_tags.end(), tag.id) != site_.doubtful_tags.end();
-    // A map's numbers are those of the first family.
-    const std::string& first = site_.search.families.front();
-    const bool of_map = tag.family == first || tag.family == "tag" + first;
-    const model::Tag* known = of_map ? site_.tag(tag.id) : nullptr;
+    const bool doubtful = std::any_of(
+        site_.doubtful_tags.begin(), site_.doubtful_tags.end(),
+        [&](const model::TagName& each) { return each.id == tag.id && model::same_family(each.family, tag.family); });
+    const model::Tag* known = site_.tag(tag.family, tag.id);
+    if (known != nullptr) tag.mapped = known->number();
     if (doubtful) {
       tag.verdict = TagVerdict::kDoubtful;
     } else if (known == nullptr && !site_.tags.empty()) {
@@ -91,8 +91,8 @@ std::vector<Correspondence> TagLocator::corners_of(const std::vector<bool>& chos
   return points;
 }
 
-// Which tags a pose explains, to within a limit [edges of each tag] or its gate. Of two with one number the nearer
-// counts.
+// Which tags a pose explains, to within a limit [edges of each tag] or its gate. Of two that are printed alike the
+// nearer counts.
 void TagLocator::choose(double limit, Consensus& consensus) const {
   const Pose& pose = consensus.fitted.pose;
   consensus.agrees.assign(candidates_.size(), false);
@@ -103,7 +103,7 @@ void TagLocator::choose(double limit, Consensus& consensus) const {
     const double e = error(tag, pose);
     if (e > std::max(gate(tag, pose), limit * tag.tag->edge)) continue;
     const bool rival = std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
-      return each.tag != tag.tag && each.tag->id == tag.tag->id && error(each, pose) < e;
+      return each.tag != tag.tag && each.tag->mapped == tag.tag->mapped && error(each, pose) < e;
     });
     if (rival) continue;
     consensus.agrees[i] = true;
@@ -274,7 +274,7 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
       continue;
     }
     for (std::size_t k = 0; k < n; ++k) {
-      if (best->agrees[k] && candidates_[k].tag->id == each.tag->id) each.tag->verdict = TagVerdict::kTwice;
+      if (best->agrees[k] && candidates_[k].tag->mapped == each.tag->mapped) each.tag->verdict = TagVerdict::kTwice;
     }
   }
   fix.pose = best->fitted.pose;
@@ -289,13 +289,13 @@ std::optional<CameraFix> TagLocator::step(Utime utime, std::vector<TagSighting>&
   return fix;
 }
 
-std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> TagLocator::missing(
-    const CameraFix& fix, const std::vector<TagSighting>& seen) const {
+std::vector<TagLocator::Expected> TagLocator::missing(const CameraFix& fix,
+                                                      const std::vector<TagSighting>& seen) const {
   constexpr double kBorder = -5.0, kSteepest = 0.3;  // px: the prediction errs, at the picture's edge too
-  std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> result;
+  std::vector<Expected> result;
   for (const model::Tag& tag : site_.tags) {
     const bool known =
-        std::any_of(seen.begin(), seen.end(), [&](const TagSighting& each) { return each.id == tag.id; });
+        std::any_of(seen.begin(), seen.end(), [&](const TagSighting& each) { return each.mapped == tag.number(); });
     const Eigen::Vector3d to = tag.p_WT - fix.pose.p_WC;
     if (known || to.dot(tag.R_WT.col(2)) < kSteepest * to.norm()) continue;
     std::array<Eigen::Vector2d, 4> corners;
@@ -308,13 +308,13 @@ std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> TagLocator::missing(
       corners[i] = projection_->pixel(p_C);
       whole = projection_->inside(corners[i], kBorder);
     }
-    if (whole) result.emplace_back(tag.id, corners);
+    if (whole) result.push_back({{site_.family_of(tag), tag.id}, corners});
   }
   return result;
 }
 
-std::pair<Eigen::Vector3d, Eigen::Matrix3d> TagLocator::in_camera(const CameraFix& fix, int id) const {
-  const model::Tag& tag = *site_.tag(id);
+std::pair<Eigen::Vector3d, Eigen::Matrix3d> TagLocator::in_camera(const CameraFix& fix, int number) const {
+  const model::Tag& tag = *site_.tag(number);
   return {fix.pose.R_WC.transpose() * (tag.p_WT - fix.pose.p_WC), fix.pose.R_WC.transpose() * tag.R_WT};
 }
 

@@ -41,11 +41,14 @@ class TagLocator {
   std::optional<CameraFix> step(Utime utime, std::vector<TagSighting>& tags,
                                 const std::optional<Eigen::Vector3d>& down_C);
   void reset();
-  /// Where tags of the map that are not among `seen` must be in the picture, whole: number and corners.
-  [[nodiscard]] std::vector<std::pair<int, std::array<Eigen::Vector2d, 4>>> missing(
-      const CameraFix& fix, const std::vector<TagSighting>& seen) const;
+  struct Expected {
+    model::TagName name;
+    std::array<Eigen::Vector2d, 4> corners;  ///< px
+  };
+  /// Where tags of the map that are not among `seen` must be in the picture, whole.
+  [[nodiscard]] std::vector<Expected> missing(const CameraFix& fix, const std::vector<TagSighting>& seen) const;
   /// Place of a tag of the map in the camera: X_CT.
-  [[nodiscard]] std::pair<Eigen::Vector3d, Eigen::Matrix3d> in_camera(const CameraFix& fix, int id) const;
+  [[nodiscard]] std::pair<Eigen::Vector3d, Eigen::Matrix3d> in_camera(const CameraFix& fix, int number) const;
   [[nodiscard]] const std::optional<Projection>& projection() const { return projection_; }
 
  private:

@@ -11,18 +11,12 @@ FrontEndSettings with_families(FrontEndSettings settings, const model::Site& sit
   return settings;
 }
 
-std::string doubts(const model::Site& site) {
-  std::string numbers;
-  for (const int id : site.doubtful_tags) numbers += (numbers.empty() ? "" : ", ") + std::to_string(id);
-  return numbers.empty() ? "" : "the site's map has two tags of number " + numbers + ": neither is used";
-}
-
 }  // namespace
 
 Watch::Watch(const model::Site& site, const model::CameraMount& camera, const std::optional<model::LaserMount>& laser,
              FrontEndSettings settings)
     : camera_{camera},
-      map_complaint_{doubts(site)},
+      map_complaint_{site.doubts()},
       front_end_{site, camera.lens, laser, with_families(std::move(settings), site)},
       complaint_{map_complaint_} {}
 

@@ -70,12 +70,11 @@ void print(const char* what, const vision::Reprojection& error) {
 void run(const Options& options) {
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
-  if (!options.families.empty()) site.search.families = options.families;
+  if (!options.families.empty()) site.look_for(options.families);
   if (options.map_sigma > 0.0) site.search.map_sigma = options.map_sigma;  // what may disagree with the map, too
   if (site.name.empty()) site.name = "surveyed";
-  for (const int id : site.doubtful_tags) {
-    std::fprintf(stderr, "fathom: %s: two tags have the number %d; neither is used\n", options.site.c_str(), id);
-  }
+  if (const std::string doubts = site.doubts(); !doubts.empty())
+    std::fprintf(stderr, "fathom: %s: %s\n", options.site.c_str(), doubts.c_str());
   const Mounted camera = mounted(options.vehicle, options.camera);
   if (camera.lens) site.lens = camera.lens;
   const bool site_has_lens = site.lens.has_value();
@@ -102,7 +101,7 @@ void run(const Options& options) {
   int seen = 0;
   for (const vision::View& view : views) {
     for (const vision::TagSighting& tag : view.tags)
-      seen += site.tag(tag.id) != nullptr && std::ranges::find(tag.sound, false) == tag.sound.end() ? 4 : 0;
+      seen += site.tag(tag.family, tag.id) != nullptr && std::ranges::find(tag.sound, false) == tag.sound.end() ? 4 : 0;
   }
   if (result.n_corners < seen * 4 / 5) {
     std::printf(
@@ -131,7 +130,8 @@ void run(const Options& options) {
   std::printf("distortion %.5f %.5f %.5f %.5f %.5f\n", lens.distortion[0], lens.distortion[1], lens.distortion[2],
               lens.distortion[3], lens.distortion[4]);
   for (const model::Tag& tag : result.site.tags) {
-    const model::Tag* was = site.tag(tag.id);
+    const model::Tag* was = site.tag(site.family_of(tag), tag.id);
+    if (site.search.families.size() > 1) std::printf("%s ", site.family_of(tag).c_str());
     std::printf("tag %-4d %9.4f %9.4f %9.4f m", tag.id, tag.p_WT.x(), tag.p_WT.y(), tag.p_WT.z());
     if (was != nullptr) std::printf(", moved %.1f mm", 1e3 * (tag.p_WT - was->p_WT).norm());
     std::printf("\n");

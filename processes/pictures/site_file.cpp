@@ -90,8 +90,11 @@ void write_site(const std::string& path, const vision::Calibration& calibration,
   out += "}\ncamera: {" + lens_keys(*site.lens) + "}\ntags:\n";
   for (const model::Tag& tag : site.tags) {
     const Eigen::Vector3d e = euler_from_rotation(tag.R_WT) * 180.0 / M_PI;
-    out += text("  - {id: %d, size: %.6f m, position: %.5f %.5f %.5f m, rotation: %.4f %.4f %.4f deg}\n", tag.id,
-                tag.size, tag.p_WT.x(), tag.p_WT.y(), tag.p_WT.z(), e.x(), e.y(), e.z());
+    out += text("  - {id: %d, size: %.6f m, position: %.5f %.5f %.5f m, rotation: %.4f %.4f %.4f deg", tag.id, tag.size,
+                tag.p_WT.x(), tag.p_WT.y(), tag.p_WT.z(), e.x(), e.y(), e.z());
+    if (!tag.family.empty()) out += ", family: " + tag.family;
+    if (tag.own_number) out += text(", number: %d", *tag.own_number);
+    out += "}\n";
   }
   std::ofstream file{path};
   if (!file) throw InputError(path + ": cannot be written; check that the folder exists and is yours");

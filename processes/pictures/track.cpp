@@ -86,7 +86,7 @@ std::string drawing_name(const std::string& folder, const std::string& frame) {
 void run(const Options& options) {
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
-  if (!options.families.empty()) site.search.families = options.families;
+  if (!options.families.empty()) site.look_for(options.families);
   const Mounted camera = mounted(options.vehicle, options.camera);
   std::optional<model::Lens> lens = camera.lens ? camera.lens : site.lens;
   if (camera.lens && site.lens && differ(*camera.lens, *site.lens)) {
@@ -103,9 +103,8 @@ void run(const Options& options) {
     if (file.has("vision")) settings = vision::FrontEndSettings::from(file.section("vision"));
   }
   settings.detector.families = site.search.families;
-  for (const int id : site.doubtful_tags) {
-    std::fprintf(stderr, "fathom: %s: two tags have the number %d; neither is used\n", options.site.c_str(), id);
-  }
+  if (const std::string doubts = site.doubts(); !doubts.empty())
+    std::fprintf(stderr, "fathom: %s: %s\n", options.site.c_str(), doubts.c_str());
   const auto source = open(options.source, options.rate);
   if (lens && lens->undistorted()) {
     std::fprintf(stderr, "fathom: the lens has no distortion; if nobody has calibrated it: fathom calibrate\n");

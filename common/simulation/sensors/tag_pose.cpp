@@ -72,7 +72,7 @@ class TagPoseSensor final : public Sensor {
     samples.emplace_back(
         TagPose{.utime = moment.utime,
                 .camera = camera_.name,
-                .tag = tag.id,
+                .tag = tag.number(),
                 .p_CT = p,
                 .q_CT = (quaternion_from_rotation_vector(turn) * Eigen::Quaterniond{R_CT}).normalized(),
                 .reprojection_error = wild ? 5.0 * error : error});

@@ -70,9 +70,43 @@ TEST_CASE("site: for pictures alone water may be missing, and a number that two 
   CHECK(site.search.least_margin == 9.0);
   REQUIRE(site.lens);
   CHECK(site.lens->cx == 319.5);
-  CHECK(site.doubtful_tags == std::vector<int>{3});
+  CHECK(site.doubtful_tags == std::vector<TagName>{{"tag16h5", 3}});
   REQUIRE(site.tags.size() == 1);
   CHECK(site.tags.front().id == 4);
+}
+
+TEST_CASE("site: two families whose ids overlap; what stands twice is refused, and of what TAG_POSE could not tell") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("site.yaml");
+  const auto load = [&](const std::string& tags) {
+    test::write_bytes(path, "site: x\ntag_search: {families: [tag36h11, tag16h5]}\n" + tags);
+    return Site::load_for_pictures(path);
+  };
+  const auto refused = [&](const std::string& tags) {
+    return test::complaint_of<InputError>([&] { static_cast<void>(load(tags)); });
+  };
+  const std::string rows = "rows: 1, columns: 2, size: 0.1 m, pitch: 0.2 m, rotation: 0 0 0 deg";
+  const std::string first = "poster:\n  - {first: 3, middle: 0 0 0 m, " + rows + "}\n";
+  const Site site = load(first + "  - {first: 3, family: 16h5, number: 100, middle: 1 0 0 m, " + rows + "}\n");
+  REQUIRE(site.tags.size() == 4);
+  CHECK(site.doubts().empty());
+  CHECK(site.tag("tag36h11", 4) == site.tag(4));
+  CHECK(site.tag("tag16h5", 4) == site.tag(101));
+  CHECK(site.tag(101)->p_WT.x() == doctest::Approx(1.1));
+  CHECK(site.tag("tag25h9", 4) == nullptr);
+  Site others = site;
+  others.look_for({"tag16h5"});  // those of the first family do not become the second's
+  CHECK(others.tag("tag16h5", 4)->number() == 101);
+
+  const std::string same = "  - {first: 4, family: tag16h5, middle: 1 0 0 m, " + rows + "}\n";
+  CHECK(refused(first + same).find("site.yaml:5: tag 4 of tag16h5 and tag 4 of tag36h11 would both be number 4") !=
+        std::string::npos);
+  CHECK(refused(first + "  - {first: 4, family: tag25h9, middle: 1 0 0 m, " + rows + "}\n")
+            .find("'tag_search' does not name tag25h9") != std::string::npos);
+  const std::string again = "  - {first: 5, family: 16h5, number: 9, middle: 1 0 0 m, " + rows + "}\n";
+  const Site twice = load(first + again + again);
+  CHECK(twice.doubts() == "the site's map has two tags of number 5 (16h5), 6 (16h5): neither is used");
+  CHECK(twice.tags.size() == 2);
 }
 
 TEST_CASE("site: open water has no walls, a transceiver and transponders") {

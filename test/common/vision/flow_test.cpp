@@ -136,14 +136,14 @@ TEST_CASE("flow: a divergence that moves features by less than a pixel is read i
 TEST_CASE("flow: light that changes over a feature does not move it") {
   constexpr float kStart = 0.3F;  // px
   constexpr double kGood = 0.03;
-  cv::Mat before(40, 40, CV_8UC1), now(40, 40, CV_8UC1);
+  cv::Mat before(40, 40, CV_32FC1), now(40, 40, CV_32FC1);
   const Eigen::Vector2d shift{1.3, -0.7};
   const auto floor = [](double x, double y) { return 90.0 + 25.0 * std::sin(0.7 * x + 0.3 * y) * std::cos(0.5 * y); };
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 40; ++x) {
-      before.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(floor(x, y));
+      before.at<float>(y, x) = cv::saturate_cast<std::uint8_t>(floor(x, y));
       const double there = floor(x - shift.x(), y - shift.y());
-      now.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(1.1 * there + 5.0 + 0.8 * (x - 20) - 0.5 * (y - 20));
+      now.at<float>(y, x) = cv::saturate_cast<std::uint8_t>(1.1 * there + 5.0 + 0.8 * (x - 20) - 0.5 * (y - 20));
     }
   }
   const cv::Point2f from{19.3F, 20.6F}, true_end{20.6F, 19.9F};
@@ -152,7 +152,7 @@ TEST_CASE("flow: light that changes over a feature does not move it") {
   CHECK(std::hypot(end->x - true_end.x, end->y - true_end.y) < kGood);
   CHECK_FALSE(end_in_changed_light(before, now, {3.0F, 20.0F}, true_end));                   // at the border
   CHECK_FALSE(end_in_changed_light(before, now, from, true_end + cv::Point2f{1.5F, 1.0F}));  // far off
-  CHECK_FALSE(end_in_changed_light(cv::Mat(40, 40, CV_8UC1, cv::Scalar{80}), now, from, true_end));
+  CHECK_FALSE(end_in_changed_light(cv::Mat(40, 40, CV_32FC1, cv::Scalar{80}), now, from, true_end));
 }
 
 TEST_CASE("flow: moving light on a bare floor is not taken for motion") {

@@ -222,7 +222,7 @@ TEST_CASE("attitude: between samples, a little ahead, by rates; nothing where th
 
 TEST_CASE("watch: two tags of one number in the map cost these two and are said") {
   model::Site place = site();
-  place.doubtful_tags = {12};
+  place.doubtful_tags = {{"tag36h11", 12}};
   std::erase_if(place.tags, [](const model::Tag& t) { return t.id == 12; });
   Renderer renderer{site(), lens(), std::nullopt, {}, 17};
   Watch watch{place, mount(), std::nullopt, {}};
