@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
@@ -22,18 +23,28 @@ namespace fathom::identification {
 namespace {
 
 using Packet = double __attribute__((vector_size(32)));
+using Lanes = std::int64_t __attribute__((vector_size(32)));
 constexpr std::ptrdiff_t kMost = 32;
 
 FATHOM_INLINE void load(Packet& p, const double* from) { std::memcpy(&p, from, sizeof(p)); }
 FATHOM_INLINE void store(double* to, const Packet& p) { std::memcpy(to, &p, sizeof(p)); }
 
+// The last packet of a vector whose numbers behind n are anybody's.
+FATHOM_INLINE void load_last(Packet& p, const double* from, std::ptrdiff_t n) {
+  static constexpr std::array<std::int64_t, 8> kMask{-1, -1, -1, -1, 0, 0, 0, 0};
+  Lanes lanes, mask;
+  std::memcpy(&lanes, from + (n - 1) / 4 * 4, sizeof(lanes));
+  std::memcpy(&mask, kMask.data() + 3 - (n - 1) % 4, sizeof(mask));
+  lanes &= mask;
+  std::memcpy(&p, &lanes, sizeof(p));
+}
+
+FATHOM_INLINE double sum_of(const Packet& p) { return (p[0] + p[2]) + (p[1] + p[3]); }
+
 // f = U' h, four columns at a time; what lies below the diagonal is zero, so whole packets are walked.
 template <int Packets>
-FATHOM_INLINE void project(const double* U, const double* h, std::ptrdiff_t n, double* f) {
+FATHOM_INLINE void project(const double* U, const Packet* H, std::ptrdiff_t n, Packet* F) {
   constexpr std::ptrdiff_t kStride = 4 * Packets;
-  Packet H[Packets];  // NOLINT(modernize-avoid-c-arrays): of vectors, whose attributes std::array would drop
-  FATHOM_UNROLLED
-  for (int i = 0; i < Packets; ++i) load(H[i], h + 4 * i);
   FATHOM_UNROLLED
   for (int b = 0; b < Packets; ++b) {
     Packet sum[4];  // NOLINT(modernize-avoid-c-arrays)
@@ -58,33 +69,47 @@ FATHOM_INLINE void project(const double* U, const double* h, std::ptrdiff_t n, d
         __builtin_shufflevector(even01, even23, 0, 1, 4, 5) + __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
     const Packet odd =
         __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5) + __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7);
-    store(f + 4 * b, even + odd);
+    F[b] = even + odd;
   }
 }
 
 // Bierman's inner loop over columns with all packets of the gain in registers. Nothing special is needed at the
 // diagonal: the gain of parameter i is zero until column i, whose unit entry starts it.
 template <int Packets>
-FATHOM_INLINE double update(double* U, double* D, const double* h, std::ptrdiff_t n, double variance, double* gain) {
+FATHOM_INLINE Taken take(const Recursion& all, const double* h, double y, double variance, double* gain) {
   constexpr std::ptrdiff_t kStride = 4 * Packets;
-  alignas(32) std::array<double, kMost> f, g, lambda;
-  project<Packets>(U, h, n, f.data());
+  const Recursion to = all;  // what is stored through pointers cannot change it
+  const std::ptrdiff_t n = to.n;
+  alignas(32) std::array<double, kMost> g, lambda;
+  Packet H[Packets];  // NOLINT(modernize-avoid-c-arrays): of vectors, whose attributes std::array would drop
+  Packet F[Packets];  // NOLINT(modernize-avoid-c-arrays)
+  FATHOM_UNROLLED
+  for (int b = 0; b < Packets - 1; ++b) load(H[b], h + 4 * b);
+  load_last(H[Packets - 1], h, n);
+  project<Packets>(to.U, H, n, F);
+  Packet foretold{};
+  FATHOM_UNROLLED
+  for (int b = 0; b < Packets; ++b) {
+    Packet x;
+    load(x, to.x + 4 * b);
+    foretold += H[b] * x;
+  }
+  const double innovation = y - sum_of(foretold);
   // The denominators are running sums, packet by packet: one addition behind another for each four columns.
   Packet last = {0.0, 0.0, 0.0, variance}, per_last = 1.0 / (last + Packet{1.0, 1.0, 1.0, 0.0});
   FATHOM_UNROLLED
   for (int b = 0; b < Packets; ++b) {
-    Packet F, d;
-    load(F, f.data() + 4 * b);
-    load(d, D + 4 * b);
-    const Packet G = d * F, zero{};
-    Packet alpha = F * G;
+    Packet d;
+    load(d, to.D + 4 * b);
+    const Packet G = d * F[b], zero{};
+    Packet alpha = F[b] * G;
     alpha += __builtin_shufflevector(zero, alpha, 0, 4, 5, 6);
     alpha += __builtin_shufflevector(zero, alpha, 0, 1, 4, 5);
     alpha += __builtin_shufflevector(last, last, 3, 3, 3, 3);
     const Packet per_alpha = 1.0 / alpha;
     store(g.data() + 4 * b, G);
-    store(lambda.data() + 4 * b, -F * __builtin_shufflevector(per_last, per_alpha, 3, 4, 5, 6));
-    store(D + 4 * b, d * (__builtin_shufflevector(last, alpha, 3, 4, 5, 6) * per_alpha));
+    store(lambda.data() + 4 * b, -F[b] * __builtin_shufflevector(per_last, per_alpha, 3, 4, 5, 6));
+    store(to.D + 4 * b, d * (__builtin_shufflevector(last, alpha, 3, 4, 5, 6) * per_alpha));
     last = alpha;
     per_last = per_alpha;
   }
@@ -93,10 +118,12 @@ FATHOM_INLINE double update(double* U, double* D, const double* h, std::ptrdiff_
   for (int b = 0; b < Packets; ++b) K[b] = Packet{};
   FATHOM_UNROLLED
   for (int B = 0; B < Packets; ++B) {
-    const std::ptrdiff_t end = std::min<std::ptrdiff_t>(4 * B + 4, n);
-    for (std::ptrdiff_t j = 4 * B; j < end; ++j) {
+    FATHOM_UNROLLED
+    for (int c = 0; c < 4; ++c) {
+      const std::ptrdiff_t j = 4 * B + c;
+      if (B == Packets - 1 && j >= n) break;
       const double shrink = lambda[static_cast<std::size_t>(j)], add = g[static_cast<std::size_t>(j)];
-      double* column = U + j * kStride;
+      double* column = to.U + j * kStride;
       FATHOM_UNROLLED
       for (int b = 0; b <= B; ++b) {
         Packet beta;
@@ -106,9 +133,22 @@ FATHOM_INLINE double update(double* U, double* D, const double* h, std::ptrdiff_
       }
     }
   }
+  const double one_by_alpha = per_last[(n - 1) % 4];
+  const double residual = innovation * std::sqrt(variance * one_by_alpha);
+  const double step = innovation * one_by_alpha, per_variance = 1.0 / variance, weight = residual * per_variance;
   FATHOM_UNROLLED
-  for (int b = 0; b < Packets; ++b) store(gain + 4 * b, K[b]);
-  return per_last[(n - 1) % 4];
+  for (int b = 0; b < Packets; ++b) {
+    Packet x, free, score, information;
+    load(x, to.x + 4 * b);
+    load(free, to.free + 4 * b);
+    load(score, to.score + 4 * b);
+    load(information, to.information + 4 * b);
+    store(gain + 4 * b, K[b]);
+    store(to.x + 4 * b, x + step * K[b] * free);
+    store(to.score + 4 * b, score + weight * H[b]);
+    store(to.information + 4 * b, information + per_variance * (H[b] * H[b]));
+  }
+  return {residual, one_by_alpha};
 }
 
 template <int Packets>
@@ -156,24 +196,67 @@ void covariance_column(const double* U, const double* D, std::ptrdiff_t n, std::
 }
 
 FATHOM_ALSO_WITH_AVX
-double bierman_update(double* U, double* D, const double* h, std::ptrdiff_t n, double variance, double* gain) {
-  switch (padded(n) / 4) {
+Taken take_row(const Recursion& to, const double* h, double y, double variance, double* gain) {
+  switch (padded(to.n) / 4) {
     case 1:
-      return update<1>(U, D, h, n, variance, gain);
+      return take<1>(to, h, y, variance, gain);
     case 2:
-      return update<2>(U, D, h, n, variance, gain);
+      return take<2>(to, h, y, variance, gain);
     case 3:
-      return update<3>(U, D, h, n, variance, gain);
+      return take<3>(to, h, y, variance, gain);
     case 4:
-      return update<4>(U, D, h, n, variance, gain);
+      return take<4>(to, h, y, variance, gain);
     case 5:
-      return update<5>(U, D, h, n, variance, gain);
+      return take<5>(to, h, y, variance, gain);
     case 6:
-      return update<6>(U, D, h, n, variance, gain);
+      return take<6>(to, h, y, variance, gain);
     case 7:
-      return update<7>(U, D, h, n, variance, gain);
+      return take<7>(to, h, y, variance, gain);
     default:
-      return update<8>(U, D, h, n, variance, gain);
+      return take<8>(to, h, y, variance, gain);
+  }
+}
+
+FATHOM_ALSO_WITH_AVX
+void add_scores(const ScoreSums& to, const double* score, double keep) {
+  for (std::ptrdiff_t i = 0; i < to.n; i += 4) {
+    Packet s, last, before, squares, fourth, one, two;
+    load(s, score + i);
+    load(last, to.last + i);
+    load(before, to.before + i);
+    load(squares, to.squares + i);
+    load(fourth, to.fourth + i);
+    load(one, to.one_before + i);
+    load(two, to.two_before + i);
+    const Packet square = s * s;
+    store(to.squares + i, keep * squares + square);
+    store(to.fourth + i, keep * fourth + square * square);
+    store(to.one_before + i, keep * one + s * last);
+    store(to.two_before + i, keep * two + s * before);
+    store(to.before + i, last);
+    store(to.last + i, s);
+  }
+}
+
+FATHOM_ALSO_WITH_AVX
+std::uint32_t violated(const double* x, const double* sign, std::ptrdiff_t n) {
+  Lanes bits{}, bit{1, 2, 4, 8};
+  for (std::ptrdiff_t i = 0; i < n; i += 4, bit <<= 4) {
+    Packet value, wanted;
+    load(value, x + i);
+    load(wanted, sign + i);
+    bits |= (value * wanted < Packet{}) & bit;
+  }
+  return static_cast<std::uint32_t>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+}
+
+FATHOM_ALSO_WITH_AVX
+void add_multiple(double* x, double factor, const double* v, std::ptrdiff_t n) {
+  for (std::ptrdiff_t i = 0; i < n; i += 4) {
+    Packet to, from;
+    load(to, x + i);
+    load(from, v + i);
+    store(x + i, to + factor * from);
   }
 }
 

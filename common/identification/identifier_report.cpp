@@ -17,7 +17,7 @@ constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 4";
+constexpr char kHeader[] = "fathom identifier 5";
 
 void put(std::string& text, double value) {
   std::array<char, 32> number{};

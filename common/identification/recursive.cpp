@@ -2,6 +2,7 @@
 #include "common/identification/recursive.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -31,7 +32,7 @@ RecursiveEstimator::RecursiveEstimator(RecursiveSettings settings) : settings_(s
     }
     settings_.cap(i) = std::max(settings_.cap(i), settings_.sigma(i));
   }
-  sign_.resize(n);
+  sign_ = ParameterVector::Zero(padded(n));
   for (Eigen::Index i = 0; i < n; ++i) sign_(i) = settings_.signs[static_cast<std::size_t>(i)];
   if (!(settings_.forgetting > 0.0 && settings_.forgetting <= 1.0)) {
     throw InputError("recursive estimator: forgetting must lie in (0, 1]");
@@ -42,30 +43,33 @@ RecursiveEstimator::RecursiveEstimator(RecursiveSettings settings) : settings_(s
 void RecursiveEstimator::reset() {
   const Eigen::Index n = settings_.mean.size();
   state_ = State{};
-  state_.estimate = settings_.mean;
+  const ParameterVector none = ParameterVector::Zero(padded(n));
+  state_.estimate = none;
+  state_.estimate.head(n) = settings_.mean;
   state_.U = ParameterMatrix::Zero(padded(n), n);
   state_.U.diagonal().setOnes();
-  state_.D = ParameterVector::Zero(padded(n));
+  state_.D = none;
   state_.D.head(n) = settings_.sigma.cwiseAbs2();
-  state_.information = ParameterVector::Zero(n);
   state_.derivatives = ParameterVector::Zero(n);
-  state_.score0 = ParameterVector::Zero(n);
-  state_.score1 = ParameterVector::Zero(n);
-  state_.score2 = ParameterVector::Zero(n);
-  state_.fourth = ParameterVector::Zero(n);
-  state_.last_score = state_.score_before = ParameterVector::Zero(n);
-  any_frozen_ = false;
-  score_ = score_square_ = ParameterVector::Zero(n);
+  state_.information = state_.score0 = state_.score1 = state_.score2 = state_.fourth = none;
+  state_.last_score = state_.score_before = score_ = none;
+  count_frozen();
+}
+
+void RecursiveEstimator::count_frozen() {
+  free_ = ParameterVector::Ones(padded(size()));
+  for (Eigen::Index i = 0; i < size(); ++i) free_(i) = state_.frozen[static_cast<std::size_t>(i)] ? 0.0 : 1.0;
+  any_frozen_ = !(free_.array() == 1.0).all();
 }
 
 void RecursiveEstimator::freeze(int parameter) {
   state_.frozen.at(static_cast<std::size_t>(parameter)) = true;
-  any_frozen_ = true;
+  count_frozen();
 }
 
 void RecursiveEstimator::resume(int parameter) {
   state_.frozen.at(static_cast<std::size_t>(parameter)) = false;
-  any_frozen_ = std::any_of(state_.frozen.begin(), state_.frozen.end(), [](bool f) { return f; });
+  count_frozen();
   state_.steps_until_check = 0.0;
 }
 
@@ -75,7 +79,7 @@ void RecursiveEstimator::resume(int parameter) {
 void RecursiveEstimator::forget() {
   if (settings_.forgetting >= 1.0) return;
   const double growth = 1.0 / settings_.forgetting;
-  const Eigen::Index n = state_.estimate.size();
+  const Eigen::Index n = size();
   if (!any_frozen_ && state_.steps_until_check >= 1.0) {
     state_.D *= growth;
     state_.steps_until_check -= 1.0;
@@ -99,37 +103,26 @@ void RecursiveEstimator::forget() {
   state_.steps_until_check = std::max(0.0, steps);
 }
 
-// One scalar row; then, for frozen parameters, Schmidt's
-// gain: they are not moved, and what the optimal update took from their variance is given back.
+// One scalar row; then, for frozen parameters, Schmidt's gain: they are not moved, and what the optimal update took
+// from their variance is given back.
 void RecursiveEstimator::take(const Row& row) {
-  const Eigen::Index n = state_.estimate.size();
-  alignas(32) std::array<double, kMaxParameters> h, gain;
-  std::copy_n(row.h.data(), n, h.data());
-  std::fill(h.begin() + n, h.begin() + state_.U.rows(), 0.0);
-  const double innovation = row.y - row.h.dot(state_.estimate);
-  const double per_variance = 1.0 / row.variance;
-  const double per_alpha = bierman_update(state_.U.data(), state_.D.data(), h.data(), n, row.variance, gain.data());
-
-  const double step = innovation * per_alpha;
-  if (!any_frozen_) {
-    state_.estimate += step * Eigen::Map<const Eigen::VectorXd, Eigen::Aligned32>(gain.data(), n);
-  } else {
+  const Eigen::Index n = size();
+  alignas(32) std::array<double, kMaxParameters> gain;
+  const auto [residual, per_alpha] = take_row({.U = state_.U.data(),
+                                               .D = state_.D.data(),
+                                               .x = state_.estimate.data(),
+                                               .score = score_.data(),
+                                               .information = state_.information.data(),
+                                               .free = free_.data(),
+                                               .n = n},
+                                              row.h.data(), row.y, row.variance, gain.data());
+  if (any_frozen_) {
     ParameterVector v = ParameterVector::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (state_.frozen[static_cast<std::size_t>(i)]) {
-        v(i) = gain[static_cast<std::size_t>(i)];
-      } else {
-        state_.estimate(i) += gain[static_cast<std::size_t>(i)] * step;
-      }
+      if (state_.frozen[static_cast<std::size_t>(i)]) v(i) = gain[static_cast<std::size_t>(i)];
     }
     add_outer(per_alpha, v);
   }
-
-  // The innovation has variance alpha; scaled by sqrt(variance / alpha) it has the row's, from the first step on.
-  const double residual = innovation * std::sqrt(row.variance * per_alpha);
-  const double weight = residual * per_variance;
-  score_ += weight * row.h;
-  state_.information.array() += per_variance * row.h.array().square();
 
   AxisStatistics& axis = state_.axes[static_cast<std::size_t>(row.axis)];
   const double off = residual - axis.mean;
@@ -145,7 +138,7 @@ void RecursiveEstimator::take(const Row& row) {
 
 // U D U' += factor v v' (Agee & Turner 1972); v is used up.
 void RecursiveEstimator::add_outer(double factor, ParameterVector& v) {
-  for (Eigen::Index j = state_.estimate.size() - 1; j >= 0 && factor > 0.0; --j) {
+  for (Eigen::Index j = size() - 1; j >= 0 && factor > 0.0; --j) {
     if (v(j) == 0.0) continue;
     const double before = state_.D(j);
     const double after = before + factor * v(j) * v(j);
@@ -162,25 +155,28 @@ void RecursiveEstimator::add_outer(double factor, ParameterVector& v) {
 void RecursiveEstimator::step(std::span<const Row> rows) {
   forget();
   const double keep = settings_.forgetting;
-  state_.information *= keep;
-  state_.derivatives *= keep;
+  if (keep < 1.0) {
+    state_.information *= keep;
+    state_.derivatives *= keep;
+  }
   score_.setZero();
   for (const Row& row : rows) {
     take(row);
     if (row.derivative >= 0 && !state_.frozen[static_cast<std::size_t>(row.derivative)])
       state_.derivatives(row.derivative) += 1.0 / row.variance;
   }
-  score_square_ = score_.cwiseAbs2();
-  state_.score0 = keep * state_.score0 + score_square_;
-  state_.fourth = keep * state_.fourth + score_square_.cwiseAbs2();
-  state_.score1 = keep * state_.score1 + score_.cwiseProduct(state_.last_score);
-  state_.score2 = keep * state_.score2 + score_.cwiseProduct(state_.score_before);
-  state_.score_before.swap(state_.last_score);
-  state_.last_score.swap(score_);
+  add_scores({.squares = state_.score0.data(),
+              .fourth = state_.fourth.data(),
+              .one_before = state_.score1.data(),
+              .two_before = state_.score2.data(),
+              .last = state_.last_score.data(),
+              .before = state_.score_before.data(),
+              .n = size()},
+             score_.data(), keep);
 }
 
 ParameterMatrix RecursiveEstimator::covariance() const {
-  const Eigen::Index n = state_.estimate.size();
+  const Eigen::Index n = size();
   ParameterMatrix P = ParameterMatrix::Zero(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index k = j; k < n; ++k) {
@@ -194,49 +190,45 @@ ParameterMatrix RecursiveEstimator::covariance() const {
 // A few violated signs are the usual case. The point nearest to the estimate where all of them are zero needs their
 // columns of P alone; when it obeys the others, and every one of them pushes the right way, it is the solution.
 ParameterVector RecursiveEstimator::projected() const {
-  constexpr Eigen::Index kFew = 4;
-  const Eigen::Index n = state_.estimate.size();
-  std::array<Eigen::Index, kFew> held{};
+  constexpr std::size_t kFew = 4;
+  const Eigen::Index n = size();
   alignas(32) std::array<std::array<double, kMaxParameters>, kFew> columns;
-  Eigen::Index count = 0, ready = 0;
+  std::array<Eigen::Index, kFew> held{};
+  std::size_t count = 0;
   ParameterVector x = state_.estimate;
-  if ((x.array() * sign_.array()).minCoeff() >= 0.0) return x;
-  while (true) {
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (x(i) * sign_(i) >= 0.0) continue;
-      if (count == kFew) return project_on_signs(state_.estimate, covariance(), settings_.signs);
-      held[static_cast<std::size_t>(count++)] = i;
-    }
-    if (count == ready) return x;
-    for (; ready < count; ++ready) {
-      covariance_column(state_.U.data(), state_.D.data(), n, held[static_cast<std::size_t>(ready)],
-                        columns[static_cast<std::size_t>(ready)].data());
+  for (std::uint32_t broken = violated(x.data(), sign_.data(), n); broken != 0;) {
+    for (; broken != 0; broken &= broken - 1) {
+      if (count == kFew) return project_on_signs(unconstrained(), covariance(), settings_.signs);
+      held[count] = std::countr_zero(broken);
+      covariance_column(state_.U.data(), state_.D.data(), n, held[count], columns[count].data());
+      ++count;
     }
     // The multipliers solve A l = -x_held with A the held block of P: symmetric and positive, so no pivots.
     std::array<std::array<double, kFew>, kFew> A;
     std::array<double, kFew> l;
-    for (std::size_t r = 0; r < static_cast<std::size_t>(count); ++r) {
+    for (std::size_t r = 0; r < count; ++r) {
       l[r] = -state_.estimate(held[r]);
-      for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c)
-        A[r][c] = columns[c][static_cast<std::size_t>(held[r])];
+      for (std::size_t c = 0; c < count; ++c) A[r][c] = columns[c][static_cast<std::size_t>(held[r])];
     }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      for (std::size_t r = k + 1; r < static_cast<std::size_t>(count); ++r) {
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t r = k + 1; r < count; ++r) {
         const double share = A[r][k] / A[k][k];
-        for (std::size_t c = k + 1; c < static_cast<std::size_t>(count); ++c) A[r][c] -= share * A[k][c];
+        for (std::size_t c = k + 1; c < count; ++c) A[r][c] -= share * A[k][c];
         l[r] -= share * l[k];
       }
     }
-    for (std::size_t k = static_cast<std::size_t>(count); k-- > 0;) {
-      for (std::size_t c = k + 1; c < static_cast<std::size_t>(count); ++c) l[k] -= A[k][c] * l[c];
+    for (std::size_t k = count; k-- > 0;) {
+      for (std::size_t c = k + 1; c < count; ++c) l[k] -= A[k][c] * l[c];
       l[k] /= A[k][k];
-      if (!(l[k] * sign_(held[k]) >= 0.0)) return project_on_signs(state_.estimate, covariance(), settings_.signs);
+      if (!(l[k] * sign_(held[k]) >= 0.0)) return project_on_signs(unconstrained(), covariance(), settings_.signs);
     }
     x = state_.estimate;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-      x += l[k] * Eigen::Map<const Eigen::VectorXd, Eigen::Aligned32>(columns[k].data(), n);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) x(held[k]) = 0.0;
+    for (std::size_t k = 0; k < count; ++k) add_multiple(x.data(), l[k], columns[k].data(), n);
+    for (std::size_t k = 0; k < count; ++k) x(held[k]) = 0.0;
+    broken = violated(x.data(), sign_.data(), n);
   }
+  x.conservativeResize(n);
+  return x;
 }
 
 // The estimate errs by P times the sum of the scores. White residuals of the stated variance give that sum a variance
@@ -246,7 +238,7 @@ ParameterVector RecursiveEstimator::projected() const {
 // the information is taken at its word. Where residuals are smaller than stated, the statement counts as if so many
 // independent scores had told it: a few quiet seconds prove little.
 ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
-  const Eigen::Index n = state_.estimate.size();
+  const Eigen::Index n = size();
   const ParameterVector prior = settings_.sigma.cwiseAbs2().cwiseInverse();
   ParameterVector factor = ParameterVector::Ones(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -272,8 +264,8 @@ ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
 RecursiveReport RecursiveEstimator::report() const {
   RecursiveReport report;
   report.covariance = covariance();
-  report.estimate = project_on_signs(state_.estimate, report.covariance, settings_.signs);
-  const Eigen::Index n = state_.estimate.size();
+  const Eigen::Index n = size();
+  report.estimate = project_on_signs(unconstrained(), report.covariance, settings_.signs);
   for (Eigen::Index i = 0; i < n; ++i) {
     report.active[static_cast<std::size_t>(i)] =
         settings_.signs[static_cast<std::size_t>(i)] != 0 && report.estimate(i) == 0.0;
@@ -289,17 +281,18 @@ RecursiveReport RecursiveEstimator::report() const {
 
 void RecursiveEstimator::restore(const State& state) {
   const Eigen::Index n = settings_.mean.size();
-  const bool fits = state.estimate.size() == n && state.D.size() == padded(n) && state.U.rows() == padded(n) &&
-                    state.U.cols() == n && state.information.size() == n && state.derivatives.size() == n &&
-                    state.score0.size() == n && state.score1.size() == n && state.score2.size() == n &&
-                    state.fourth.size() == n && state.last_score.size() == n && state.score_before.size() == n;
+  const auto full = [&](const ParameterVector& v) { return v.size() == padded(n); };
+  const bool fits = full(state.estimate) && full(state.D) && state.U.rows() == padded(n) && state.U.cols() == n &&
+                    state.derivatives.size() == n && full(state.information) && full(state.score0) &&
+                    full(state.score1) && full(state.score2) && full(state.fourth) && full(state.last_score) &&
+                    full(state.score_before);
   if (!fits) throw InputError("recursive estimator: saved state is of another number of parameters");
   if (!state.estimate.allFinite() || !state.U.allFinite() || !state.D.allFinite() ||
       !(state.D.head(n).minCoeff() > 0.0)) {
     throw InputError("recursive estimator: saved state is not finite or its covariance is not positive");
   }
   state_ = state;
-  any_frozen_ = std::any_of(state_.frozen.begin(), state_.frozen.end(), [](bool f) { return f; });
+  count_frozen();
 }
 
 }  // namespace fathom::identification

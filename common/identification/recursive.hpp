@@ -40,10 +40,11 @@ struct RecursiveReport {
 
 class RecursiveEstimator {
  public:
-  /// Everything that step() changes: copy it to save, hand it back to resume.
+  /// Everything that step() changes: copy it to save, hand it back to resume. Vectors, and the rows of U, are rounded up
+  /// to packets by zeros (bierman.hpp).
   struct State {
     ParameterVector estimate;  ///< unconstrained
-    ParameterMatrix U;         ///< unit upper triangular; rows, and D, rounded up to packets by zeros
+    ParameterMatrix U;         ///< unit upper triangular
     ParameterVector D;
     std::array<bool, kMaxParameters> frozen{};
     std::int64_t updates{};  ///< rows used
@@ -72,8 +73,8 @@ class RecursiveEstimator {
   [[nodiscard]] ParameterVector projected() const;
   [[nodiscard]] RecursiveReport report() const;
 
-  [[nodiscard]] int size() const { return static_cast<int>(state_.estimate.size()); }
-  [[nodiscard]] const ParameterVector& unconstrained() const { return state_.estimate; }
+  [[nodiscard]] int size() const { return static_cast<int>(settings_.mean.size()); }
+  [[nodiscard]] ParameterVector unconstrained() const { return state_.estimate.head(size()); }
   [[nodiscard]] ParameterMatrix covariance() const;  ///< nominal: trusts the stated variances
   [[nodiscard]] const State& state() const { return state_; }
   /// InputError when the state is of another size, not finite, or its covariance not positive.
@@ -82,6 +83,7 @@ class RecursiveEstimator {
   void reset();
 
  private:
+  void count_frozen();
   void forget();
   void take(const Row& row);
   void add_outer(double factor, ParameterVector& v);
@@ -91,7 +93,7 @@ class RecursiveEstimator {
   State state_;
   ParameterVector sign_;  // of the settings, 0 where free
   bool any_frozen_{};
-  ParameterVector score_, score_square_;
+  ParameterVector free_, score_;  // 1 where not frozen; of the step that is being taken; padded
 };
 
 }  // namespace fathom::identification

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <random>
+#include <vector>
 
 using namespace fathom::identification;
 
@@ -16,7 +17,10 @@ TEST_CASE("bierman: P, gain and denominator are those of the plain formulas, for
     CAPTURE(n);
     const std::ptrdiff_t m = padded(n);
     Eigen::MatrixXd U = Eigen::MatrixXd::Zero(m, n);
-    Eigen::VectorXd D = Eigen::VectorXd::Zero(m), h = Eigen::VectorXd::Zero(m), gain = Eigen::VectorXd::Zero(m);
+    Eigen::VectorXd D = Eigen::VectorXd::Zero(m), gain = D, x = D, score = D, information = D, free = D;
+    Eigen::VectorXd h = Eigen::VectorXd::Constant(m, std::nan(""));  // what lies behind n does not count
+    free.head(n).setOnes();
+    free(n / 2) = n > 1 ? 0.0 : 1.0;
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < j; ++i) U(i, j) = 0.5 * normal(engine);
       U(j, j) = 1.0;
@@ -27,12 +31,27 @@ TEST_CASE("bierman: P, gain and denominator are those of the plain formulas, for
       for (int i = 0; i < n; ++i) h(i) = i % 3 == row % 3 ? 0.0 : normal(engine);
       const double variance = 0.1 + 0.2 * row;
       const Eigen::MatrixXd P = P_of();
-      const Eigen::VectorXd Ph = P * h.head(n);
-      const double alpha = variance + h.head(n).dot(Ph);
-      const double per_alpha = bierman_update(U.data(), D.data(), h.data(), n, variance, gain.data());
+      const Eigen::VectorXd expected = P * h.head(n);
+      const double alpha = variance + h.head(n).dot(expected);
+      const double y = normal(engine), innovation = y - h.head(n).dot(x.head(n));
+      const Eigen::VectorXd x_before = x, score_before = score, information_before = information;
+      const auto [residual, per_alpha] = take_row({.U = U.data(),
+                                                   .D = D.data(),
+                                                   .x = x.data(),
+                                                   .score = score.data(),
+                                                   .information = information.data(),
+                                                   .free = free.data(),
+                                                   .n = n},
+                                                  h.data(), y, variance, gain.data());
+      CHECK(residual == doctest::Approx(innovation * std::sqrt(variance / alpha)).epsilon(1e-9));
+      const Eigen::VectorXd moved = (expected * innovation / alpha).cwiseProduct(free.head(n));
+      CHECK((x - x_before).head(n).isApprox(moved, 1e-9));
+      CHECK((score - score_before).head(n).isApprox(h.head(n) * residual / variance, 1e-9));
+      CHECK((information - information_before).head(n).isApprox(h.head(n).cwiseAbs2() / variance, 1e-9));
+      for (const Eigen::VectorXd* each : {&x, &score, &information, &gain}) CHECK(each->tail(m - n).isZero(0.0));
       CHECK(per_alpha == doctest::Approx(1.0 / alpha).epsilon(1e-9));
-      CHECK((gain.head(n) - Ph).norm() <= 1e-10 * Ph.norm());
-      CHECK((P_of() - (P - Ph * Ph.transpose() / alpha)).norm() <= 1e-10 * P.norm());
+      CHECK((gain.head(n) - expected).norm() <= 1e-10 * expected.norm());
+      CHECK((P_of() - (P - expected * expected.transpose() / alpha)).norm() <= 1e-10 * P.norm());
       for (int j = 0; j < n; ++j) {
         CHECK(U(j, j) == 1.0);
         CHECK(U.col(j).tail(m - j - 1).isZero(0.0));
@@ -42,5 +61,52 @@ TEST_CASE("bierman: P, gain and denominator are those of the plain formulas, for
       covariance_column(U.data(), D.data(), n, n / 2, column.data());
       CHECK((column.head(n) - P_of().col(n / 2)).norm() <= 1e-12 * P.norm());
     }
+  }
+}
+
+TEST_CASE("bierman: sums of scores and broken signs are those of plain loops, for every number of parameters") {
+  std::mt19937 engine{6};
+  std::normal_distribution<double> normal;
+  for (int n = 1; n <= 32; ++n) {
+    CAPTURE(n);
+    const std::ptrdiff_t m = padded(n);
+    constexpr double kKeep = 0.9;
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(m), fourth = squares, one = squares, two = squares, last = squares,
+                    before = squares;
+    Eigen::VectorXd expected = squares, expected_fourth = squares, expected_one = squares, expected_two = squares;
+    std::vector<Eigen::VectorXd> scores{squares, squares};
+    for (int step = 0; step < 6; ++step) {
+      Eigen::VectorXd score = Eigen::VectorXd::Zero(m);
+      for (int i = 0; i < n; ++i) score(i) = normal(engine);
+      add_scores({.squares = squares.data(),
+                  .fourth = fourth.data(),
+                  .one_before = one.data(),
+                  .two_before = two.data(),
+                  .last = last.data(),
+                  .before = before.data(),
+                  .n = n},
+                 score.data(), kKeep);
+      expected = kKeep * expected + score.cwiseAbs2();
+      expected_fourth = kKeep * expected_fourth + score.cwiseAbs2().cwiseAbs2();
+      expected_one = kKeep * expected_one + score.cwiseProduct(scores.back());
+      expected_two = kKeep * expected_two + score.cwiseProduct(scores[scores.size() - 2]);
+      scores.push_back(score);
+    }
+    CHECK((squares - expected).norm() <= 1e-12 * expected.norm());
+    CHECK((fourth - expected_fourth).norm() <= 1e-12 * expected_fourth.norm());
+    CHECK((one - expected_one).norm() <= 1e-12 * expected.norm());
+    CHECK((two - expected_two).norm() <= 1e-12 * expected.norm());
+    CHECK(last == scores.back());
+    CHECK(before == scores[scores.size() - 2]);
+    Eigen::VectorXd sign = Eigen::VectorXd::Zero(m);
+    std::uint32_t broken = 0;
+    for (int i = 0; i < n; ++i) {
+      sign(i) = i % 3 - 1;
+      if (last(i) * sign(i) < 0.0) broken |= 1U << i;
+    }
+    CHECK(violated(last.data(), sign.data(), n) == broken);
+    Eigen::VectorXd sum = last;
+    add_multiple(sum.data(), 2.5, before.data(), n);
+    CHECK((sum - last - 2.5 * before).norm() <= 1e-12 * sum.norm());
   }
 }
