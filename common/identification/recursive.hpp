@@ -40,8 +40,8 @@ struct RecursiveReport {
 
 class RecursiveEstimator {
  public:
-  /// Everything that step() changes: copy it to save, hand it back to resume. Vectors, and the rows of U, are rounded up
-  /// to packets by zeros (bierman.hpp).
+  /// Everything that step() changes: copy it to save, hand it back to resume. Vectors, and the rows of U, are rounded
+  /// up to packets by zeros (bierman.hpp).
   struct State {
     ParameterVector estimate;  ///< unconstrained
     ParameterMatrix U;         ///< unit upper triangular
