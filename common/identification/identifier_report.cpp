@@ -155,7 +155,11 @@ void Identifier::decide(Utime first) {
   std::size_t count{};
   std::int64_t updates{};
   RecursiveEstimator::State s;
-  if (header != kHeader || !(text >> utime >> updates >> count) || count != parameters_.size()) return;
+  if (header != kHeader) {
+    ++rejected_["saved state of another version"];
+    return;
+  }
+  if (!(text >> utime >> updates >> count) || count != parameters_.size()) return;
   const double age = seconds_between(utime, first);
   if (age < 0.0 || age > offered_within_) return;
   for (const model::BaseParameter parameter : parameters_) {

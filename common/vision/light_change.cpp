@@ -39,18 +39,18 @@ bool cut(const cv::Mat& picture, const cv::Point2f& middle, Window<Size>& to) {
 constexpr int kPixels = kSide * kSide;
 using Columns = Eigen::Matrix<float, kPixels, kUnknown>;
 
-// Slopes, brightness less its mean, one, and where in the window; the last three are the same in every window.
-Columns positions() {
-  Columns by;
-  by.leftCols<3>().setZero();
-  by.col(3).setOnes();
+// One, and where in the window: the last three columns, the same in every window. Before them the slopes, and
+// brightness less its mean.
+Eigen::Matrix<float, kPixels, 3> positions() {
+  Eigen::Matrix<float, kPixels, 3> last;
+  last.col(0).setOnes();
   for (int y = 0, i = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x, ++i) {
-      by(i, 4) = static_cast<float>(x - kHalf);
-      by(i, 5) = static_cast<float>(y - kHalf);
+      last(i, 1) = static_cast<float>(x - kHalf);
+      last(i, 2) = static_cast<float>(y - kHalf);
     }
   }
-  return by;
+  return last;
 }
 
 // by^T by, each product once.
@@ -72,9 +72,9 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
   constexpr int kWide = kSide + 2;
   Window<kWide> wide;
   if (!cut<kWide>(before, from, wide)) return {};
-  static const Columns kPositions = positions();
+  static const Eigen::Matrix<float, kPixels, 3> kPositions = positions();
   Columns by;
-  by.rightCols<3>() = kPositions.rightCols<3>();
+  by.rightCols<3>() = kPositions;
   const auto column = [&](int i) { return Eigen::Map<Window<kSide>>{by.col(i).data()}; };
   const auto part = [&](int x, int y) { return wide.block<kSide, kSide>(1 + x, 1 + y); };
   column(0) = 0.5F * (part(1, 0) - part(-1, 0));

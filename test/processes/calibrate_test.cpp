@@ -2,13 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 
-#include "common/vision/jpeg.hpp"
-#include "test/common/vision/scene.hpp"
+#include "test/common/vision/picture_folder.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 
@@ -39,13 +37,7 @@ model::Site real_floor(const model::Site& planned) {
 
 template <class PoseAt>
 void take(const model::Site& place, const std::string& folder, int n, PoseAt pose_at) {
-  std::filesystem::create_directories(folder);
-  vision::Renderer renderer{place, real_lens(), std::nullopt, {}, 31};
-  for (int i = 0; i < n; ++i) {
-    const auto bytes = vision::encode_jpeg(renderer.step(0.1 * i, pose_at(i)), 92);
-    std::ofstream out{folder + "/" + std::to_string(i) + ".jpg", std::ios::binary};
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
+  write_pictures(vision::Renderer{place, real_lens(), std::nullopt, {}, 31}, folder, n, pose_at);
 }
 
 vision::Pose over_board(int i) {

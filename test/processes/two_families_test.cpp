@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include <vector>
 
-#include "common/vision/jpeg.hpp"
 #include "common/wire/log_reader.hpp"
-#include "test/common/vision/scene.hpp"
+#include "test/common/vision/picture_folder.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 
@@ -35,16 +33,6 @@ vision::Pose along(int i) {
               0.1 * std::cos(1.3 * i), 0.1 * i);
 }
 
-void take(const model::Site& place, const std::string& folder) {
-  std::filesystem::create_directories(folder);
-  vision::Renderer renderer{place, lens(), std::nullopt, {}, 51};
-  for (int i = 0; i < kPictures; ++i) {
-    const auto bytes = vision::encode_jpeg(renderer.step(0.1 * i, along(i)), 92);
-    std::ofstream out{folder + "/" + std::to_string(i) + ".jpg", std::ios::binary};
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
-}
-
 struct Scene {
   Scratch scratch;
   std::string pictures = scratch.path("pictures"), site = scratch.path("two.yaml");
@@ -52,7 +40,7 @@ struct Scene {
 
   Scene() {
     std::ofstream{site} << two_families_text();
-    take(two_families(), pictures);
+    write_pictures(vision::Renderer{two_families(), lens(), std::nullopt, {}, 51}, pictures, kPictures, along);
   }
   [[nodiscard]] test::Ran track(const std::string& map, const std::string& more = "") const {
     return shell(program("fathom") + " track " + pictures + " --site " + map + " --vehicle " + vehicle + " --csv " +
@@ -60,37 +48,32 @@ struct Scene {
   }
 };
 
-/// Rows of the table of detections: family and verdict.
-std::map<std::pair<std::string, std::string>, int> detections(const std::string& path) {
+std::vector<std::vector<std::string>> rows(const std::string& path) {
   std::ifstream in{path};
-  std::string line;
-  std::getline(in, line);
-  std::map<std::pair<std::string, std::string>, int> count;
-  while (std::getline(in, line)) {
-    std::vector<std::string> cells;
+  std::vector<std::vector<std::string>> all;
+  for (std::string line; std::getline(in, line);) {
     std::istringstream words{line};
-    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
-    ++count[{cells[1], cells[13]}];
+    all.emplace_back();
+    for (std::string cell; std::getline(words, cell, ',');) all.back().push_back(cell);
   }
+  return all;
+}
+
+/// Family and verdict of the table of detections.
+std::map<std::pair<std::string, std::string>, int> detections(const std::string& path) {
+  std::map<std::pair<std::string, std::string>, int> count;
+  for (const auto& row : rows(path)) ++count[{row.at(1), row.at(13)}];
   return count;
 }
 
 double worst_place(const std::string& path) {
-  std::ifstream in{path};
-  std::string line;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  std::istringstream head{line};
-  for (std::string cell; std::getline(head, cell, ',');) names.push_back(cell);
-  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), "p_WC_x_m") - names.begin());
-  REQUIRE(at < names.size());
+  const auto table = rows(path);
+  REQUIRE(table.size() == kPictures + 1);
+  const auto at = static_cast<std::size_t>(std::ranges::find(table[0], "p_WC_x_m") - table[0].begin());
   double worst = 0.0;
-  for (int i = 0; std::getline(in, line); ++i) {
-    std::vector<std::string> cells;
-    std::istringstream words{line};
-    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
-    REQUIRE_FALSE(cells[at].empty());
-    const Eigen::Vector3d p{std::stod(cells[at]), std::stod(cells[at + 1]), std::stod(cells[at + 2])};
+  for (int i = 0; i < kPictures; ++i) {
+    const auto& row = table[static_cast<std::size_t>(i) + 1];
+    const Eigen::Vector3d p{std::stod(row.at(at)), std::stod(row.at(at + 1)), std::stod(row.at(at + 2))};
     worst = std::max(worst, (p - along(i).p_WC).norm());
   }
   return worst;

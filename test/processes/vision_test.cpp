@@ -8,9 +8,8 @@
 #include <sstream>
 
 #include "common/base/event_log.hpp"
-#include "common/vision/jpeg.hpp"
 #include "common/wire/log_reader.hpp"
-#include "test/common/vision/scene.hpp"
+#include "test/common/vision/picture_folder.hpp"
 #include "test/support/channels.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
@@ -29,17 +28,13 @@ constexpr double kPlace = 0.01;  // m: a tag at 1.3 m, 0.2 px, JPEG
 
 // The tank of config/sites/tank.yaml seen by the camera of the SeaBotix, as JPEG files.
 void make_pictures(const std::string& folder) {
-  std::filesystem::create_directories(folder);
   const model::Site place = model::Site::load(std::string{FATHOM_SOURCE_DIR} + "/config/sites/tank.yaml");
-  vision::Renderer renderer{place, lens(), laser(), {}, 21};
-  for (int i = 0; i < kPictures; ++i) {
-    const auto bytes =
-        vision::encode_jpeg(renderer.step(0.1 * i, pose({0.02 * i, 0.01 * i, 0.2}, 0.0, 0.0, 1.5708)), 92);
-    std::ofstream out{folder + "/" + std::to_string(i) + ".jpg", std::ios::binary};
-    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (i == 5) out.seekp(2000);  // one is damaged
-    if (i == 5) out.write("garbage garbage garbage", 23);
-  }
+  write_pictures(vision::Renderer{place, lens(), laser(), {}, 21}, folder, kPictures, [](int i) {
+    return pose({0.02 * i, 0.01 * i, 0.2}, 0.0, 0.0, 1.5708);
+  });
+  std::fstream damaged{folder + "/5.jpg", std::ios::in | std::ios::out | std::ios::binary};
+  damaged.seekp(2000);
+  damaged.write("garbage garbage garbage", 23);
 }
 
 std::map<std::string, std::vector<std::string>> messages(const std::string& path) {
@@ -68,9 +63,10 @@ TEST_CASE("vision: hears and says what docs/messages.md tells, as does camera_dr
   std::ofstream{scratch.path("camera.yaml")} << "camera_driver: {camera: down, pictures: x, rate: 10 Hz}\n";
   const std::vector<std::pair<std::string, std::string>> all{
       {"vision", kConfig}, {"camera_driver", " --config " + scratch.path("camera.yaml")}};
-  for (const auto& [name, config] : all) {
+  for (const auto& process : all) {
+    const std::string& name = process.first;
     CAPTURE(name);
-    const auto ran = shell(program(name) + config + " --interface");
+    const auto ran = shell(program(name) + process.second + " --interface");
     REQUIRE_MESSAGE(ran.code == 0, ran.text);
     const test::Channels actual = test::channels_of(ran.text), stated = test::channels_in_docs(name);
     CHECK(actual.hears == stated.hears);

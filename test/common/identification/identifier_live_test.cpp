@@ -199,6 +199,11 @@ TEST_CASE("identifier: a saved state of another time, another vehicle, or a dama
   CHECK_FALSE(takes(saved, other, 10.0));
   CHECK_FALSE(takes(saved.substr(0, saved.size() / 2), vehicle(), 10.0));
   CHECK_FALSE(takes("rubbish\n1 2 3", vehicle(), 10.0));
+  Identifier newer{settings(), vehicle()};
+  newer.offer("fathom identifier 4" + saved.substr(saved.find('\n')), 10.0);
+  feed(newer, streams(32.0), 30.5, 1e9);
+  CHECK_FALSE(newer.resumed());
+  CHECK(newer.rejected().at("saved state of another version") == 1);
   std::string poisoned = saved;
   poisoned.replace(poisoned.find("0x"), 4, "nan ");
   CHECK_FALSE(takes(poisoned, vehicle(), 10.0));
