@@ -12,7 +12,6 @@ namespace {
 constexpr double kMostHarm = 0.02;  // growth of the validation error: what predicts worse is not what the model lacked
 constexpr double kPromised = 0.1;   // of the training error: so much must show elsewhere
 constexpr double kKept = 0.25;      // of what was promised
-constexpr double kMostOfIt = 0.5;   // of the lasting error: an effect that is there, if perhaps not alone
 constexpr double kWorthKeeping = 0.05;  // fall of the validation error
 
 }  // namespace
@@ -26,7 +25,7 @@ bool carries_over(const SearchResult& found, const Interval& change, double fore
 }
 
 double share_on(std::span<const Trial> unseen, const SearchResult& found, const model::Vehicle& vehicle,
-                const Settings& settings) {
+                const Settings& settings, const std::array<bool, 6>& random) {
   if (identification::cut_windows(unseen, found.window).empty()) return 1.0;
   identification::FitSettings fits = settings.fit;
   fits.window = found.window;
@@ -37,7 +36,7 @@ double share_on(std::span<const Trial> unseen, const SearchResult& found, const 
     const LastingError before = lasting_error(windows, found.before.model, lead, moment);
     // Where nothing lasts so long, nothing is told by its absence.
     if (moment > kWhiteNoise && !certainly_lacking(before)) continue;
-    share = std::max(share, share_explained(before, lasting_error(windows, found.after.model, lead, moment)));
+    share = std::max(share, share_explained(before, lasting_error(windows, found.after.model, lead, moment), random));
   }
   return share;
 }

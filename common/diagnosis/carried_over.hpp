@@ -1,6 +1,7 @@
 // What runs that no fit has seen say of all that was accepted together.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "common/diagnosis/prediction.hpp"
@@ -13,8 +14,9 @@ namespace fathom::diagnosis {
 [[nodiscard]] bool carries_over(const SearchResult& found, const Interval& change, double foreseen);
 
 /// Share of the lasting error on `unseen` that the accepted effects explain; 1 when the runs are too short to tell.
+/// What is left along axes of `random` does not count.
 [[nodiscard]] double share_on(std::span<const Trial> unseen, const SearchResult& found, const model::Vehicle& vehicle,
-                              const Settings& settings);
+                              const Settings& settings, const std::array<bool, 6>& random = {});
 
 /// Whether what explains `share` of the lasting error is worth keeping: either most of a cause, or, without its name,
 /// for predictions that surely (`change`: improvement) gain. What random forces leave is imitated a little by much.

@@ -1,6 +1,7 @@
 #include "common/diagnosis/diagnoser.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/own_run.hpp"
 #include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/random_rest.hpp"
 #include "common/diagnosis/search.hpp"
 #include "common/diagnosis/traces.hpp"
 #include "common/diagnosis/verdict.hpp"
@@ -91,6 +93,12 @@ std::vector<Association> left_in(std::span<const Trial> train, std::span<const T
   }
   std::ranges::stable_sort(left, std::greater{}, &Association::share);
   return left;
+}
+
+double length_of(std::span<const Trial> trials) {
+  double length = 0.0;
+  for (const Trial& trial : trials) length += static_cast<double>(trial.size()) * trial.dt;
+  return length;
 }
 
 /// A table whose columns repeat one number says nothing, however long it is.
@@ -264,6 +272,10 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
     result.own_in_validation.clear();
   }
   const std::vector<Association> left = left_in(train, unseen, found, learnt, vehicle, settings);
+  if (found.explained < kWholeCause) {
+    const std::array<bool, 6> random = random_rest(result.residual_after, left, length_of(unseen));
+    found.explained_of_structure = share_on(unseen, found, vehicle, settings, random);
+  }
   report.traces = traces_of(unseen, found.before.model, found.after.model, residual_before, residual_after);
   found.after.model = std::move(learnt);
   result.parameters_before = found.before.parameters();

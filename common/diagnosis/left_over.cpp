@@ -71,11 +71,12 @@ bool certainly_lacking(const LastingError& error) {
   return ((error.square - kCertain * error.error).array() > 0.0).any();
 }
 
-double share_explained(const LastingError& before, const LastingError& after) {
+double share_explained(const LastingError& before, const LastingError& after, const std::array<bool, 6>& random) {
   double weighted = 0.0, weights = 0.0;
   for (int axis = 0; axis < 6; ++axis) {
     if (before.square[axis] <= 0.0 || after.all[axis] <= 0.0) continue;
-    const double left = std::max(after.square[axis] - kCertain * after.error[axis], 0.0);
+    const bool noise = random[static_cast<std::size_t>(axis)];
+    const double left = noise ? 0.0 : std::max(after.square[axis] - kCertain * after.error[axis], 0.0);
     const double gone = 1.0 - left / before.square[axis];
     if (gone <= 0.0) continue;
     const double weight = std::max(before.square[axis] - after.square[axis], 0.0) / after.all[axis];

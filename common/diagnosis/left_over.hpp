@@ -3,6 +3,8 @@
 // a filter has coloured takes a longer moment to forget.
 #pragma once
 
+#include <array>
+
 #include "common/identification/trajectory_fit.hpp"
 
 namespace fathom::diagnosis {
@@ -11,6 +13,8 @@ namespace fathom::diagnosis {
 /// everything that it causes, and a stand-in leaves its own wrong form behind. Where right names and stand-ins meet in
 /// some two hundred data sets of three simulators (docs/decisions/020).
 constexpr double kWholeCause = 0.97;
+
+constexpr double kMostOfIt = 0.5;  ///< of the lasting error: an effect that is there, if perhaps not alone
 
 constexpr double kWhiteNoise = 0.1;     // s: what sensors filter is forgotten by then
 constexpr double kFilteredNoise = 0.5;  // s: what an estimator has coloured is forgotten by then
@@ -32,8 +36,10 @@ struct LastingError {
 
 /// Share (0..1) of the lasting error of `before` that is gone in `after`, over the axes where something is gone, each
 /// with the weight of what is gone from it over what is left there in all. What is left counts only as far as noise
-/// cannot be it (two standard errors). Where nothing is gone: 0, or 1 if nothing was certainly lacking.
-[[nodiscard]] double share_explained(const LastingError& before, const LastingError& after);
+/// cannot be it (two standard errors), and not along axes of `random`, where it is a random force. Where nothing is
+/// gone: 0, or 1 if nothing was certainly lacking.
+[[nodiscard]] double share_explained(const LastingError& before, const LastingError& after,
+                                     const std::array<bool, 6>& random = {});
 
 /// Log odds that a name is right, given that it stands for `share` of what was lacking: even at kWholeCause, four times
 /// better for half of that left.

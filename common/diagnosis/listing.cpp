@@ -56,12 +56,12 @@ model::Unlisted unlisted_for(const Judged& judged, const SearchResult& found) {
 
 }  // namespace
 
-void list_effects(const SearchResult& found, DiagnosisResult& result) {
+void list_effects(const SearchResult& found, double share, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
     const std::vector<Alternative> alternatives = alternatives_of(judged, found);
     const model::Unlisted unlisted = unlisted_for(judged, found);
-    double log_odds = at_most_for(found.explained, log_odds_among(judged.log_odds, alternatives));
+    double log_odds = at_most_for(share, log_odds_among(judged.log_odds, alternatives));
     if (!unlisted.what.empty()) log_odds = std::min(log_odds, kEven);
     const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),
                                      [&](const Judged& j) { return j.effect == judged.effect; });

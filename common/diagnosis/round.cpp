@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr double kClearlyLess = 0.6;     // of the best gain so far, on a spread
 constexpr double kAlike = 0.7;           // correlation of what two candidates change
 constexpr double kRestart = 0.1;         // of the screened size: where a fit that went astray begins again
 constexpr double kMuch = 0.5;            // of the winner's gain
+constexpr double kClearlyMore = 2.0;     // log odds over those needed: so much would show beside noise
 constexpr const char* kTrifle = "not evident beside what is too little or too quick to count";
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
@@ -87,6 +89,7 @@ Round::Round(Answers& answers, Promises& promises, const TrajectoryFit& problem,
       promises_{promises},
       problem_{problem},
       reference_{reference},
+      train_{train},
       settings_{settings},
       tried_{tried},
       progress_{progress},
@@ -109,7 +112,8 @@ std::optional<Winner> Round::fit_best(Which first, std::size_t few, std::size_t 
     const std::size_t next = *hopeful;
     std::optional<FitResult> fit = fit_in_full(next, best_share);
     if (fit && answers_.judged[next].reason.empty() &&
-        (!best || better(answers_, next, *fit, *best, reference_.cost, settings_.accept_log_odds)))
+        (!best || better(answers_, next, *fit, *best, reference_.cost, settings_.accept_log_odds)) &&
+        counts_beside_memory(next, *fit))
       best = Winner{next, std::move(*fit)};
   }
   if (best && !counts_beside_trifles(*best)) {
@@ -138,6 +142,27 @@ bool Round::counts_beside_trifles(const Winner& best) const {
   Judged beside = answers_.judged[best.place];
   judge_by_odds(beside, *most, fit_with(problem_, *most, both, screened), tried_);
   return evident(beside, settings_) && beside.error_reduction >= settings_.smallest_reduction;
+}
+
+/// A random force with a memory may look like the effect. Where there is one, which explains more, the effect must be
+/// evident beside it, unless forces would hardly show it.
+bool Round::counts_beside_memory(std::size_t i, const FitResult& fit) {
+  if (!random_) random_.emplace(reference_.model, train_);
+  const RandomForce::Answer answer = random_->ask(fit.model);
+  Judged& judged = answers_.judged[i];
+  const auto windows = static_cast<double>(problem_.windows().size());
+  const double cost = price(judged.effect->numbers(judged.variant), windows, tried_);
+  const double odds = answer.both - answer.memory - cost, needed = needed_log_odds(judged, settings_);
+  judged.beside_memory = odds;
+  const bool noisy = answer.memory > std::max(answer.effect, needed);
+  if (odds >= needed || !noisy || answer.expected - cost < kClearlyMore * needed) return true;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "a random force with a memory explains as much: log odds %.1f beside one, %.1f needed", odds, needed);
+  judged.reason = text;
+  promises_.refused(answers_, i);
+  stands_.erase(i);
+  return false;
 }
 
 /// What changes the same motion in the same way is measured by the promise of that, not by what its fit has kept:

@@ -6,6 +6,7 @@
 
 #include "common/diagnosis/held_out.hpp"
 #include "common/diagnosis/questions.hpp"
+#include "common/diagnosis/random_force.hpp"
 
 namespace fathom::diagnosis {
 
@@ -33,12 +34,14 @@ class Round {
  private:
   [[nodiscard]] bool looks_like(std::size_t place, const Winner& best) const;
   [[nodiscard]] bool counts_beside_trifles(const Winner& best) const;
+  bool counts_beside_memory(std::size_t i, const identification::FitResult& fit);
   std::optional<identification::FitResult> fit_in_full(std::size_t i, double best_share);
 
   Answers& answers_;
   Promises& promises_;
   const identification::TrajectoryFit& problem_;
   const identification::FitResult& reference_;
+  std::span<const Trial> train_;
   const Settings& settings_;
   int tried_;
   const Progress& progress_;
@@ -47,6 +50,7 @@ class Round {
   std::map<std::size_t, identification::FitResult> stands_;   // by place: fitted in full, and nothing speaks against it
   std::map<std::size_t, identification::FitResult> trifles_;  // evident, but too little or too quick to count
   std::optional<CrossValidation> checked_;                    // of the reference, made when the first fit is judged
+  std::optional<RandomForce> random_;                         // of the reference, made when the first fit wins
 };
 
 }  // namespace fathom::diagnosis

@@ -20,6 +20,7 @@ struct Judged {
   double error_reduction{};
   double held_out_blocks{};
   double held_out_runs{};
+  double beside_memory{};  ///< log odds beside a random force that its own past foretells; 0 until asked
   double change{1.0};      ///< of the predicted velocity, share of the measured one; 1 until a fit has told
   bool in_the_way{false};  ///< numbers that have the vehicle where it cannot be
   bool lasting{false};     ///< an onset at the edge of the data
@@ -46,8 +47,9 @@ struct SearchResult {
   std::vector<Judged> accepted;  ///< in the order of acceptance
   std::vector<Judged> refused;   ///< best form of every other effect, from the last round
   std::optional<FreeForm> free_form{};
-  double window{};        ///< s, of the final fits
-  double explained{1.0};  ///< by the accepted effects, of the lasting error on runs that no fit has seen
+  double window{};                  ///< s, of the final fits
+  double explained{1.0};            ///< by the accepted effects, of the lasting error on runs that no fit has seen
+  double explained_of_structure{};  ///< the same without what is left as a random force (random_rest.hpp)
   /// Best log odds, on the training runs, of what was accepted there and did not help the validation run.
   std::optional<double> taken_back{};
 };

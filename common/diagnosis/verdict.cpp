@@ -133,6 +133,15 @@ std::string taken_back_sentence(const SearchResult& found) {
 /// better witness that there is none.
 constexpr double kByChance = 8.0;
 
+/// As much of a whole cause as what stands beside a random force may be: nine to one.
+constexpr double kInNoise = 0.99;
+
+/// Whether the effects are evident beside a random force, which is all that is left beside them.
+bool stand_in_noise(const SearchResult& found) {
+  return found.explained >= kMostOfIt && found.explained_of_structure >= kWholeCause &&
+         std::ranges::all_of(found.accepted, [](const Judged& judged) { return judged.beside_memory >= kByChance; });
+}
+
 /// The refused effect that would save most of the error; none when that is little, or when the validation run has just
 /// told that it saves nothing there.
 const Judged* promising_of(const SearchResult& found) {
@@ -148,14 +157,6 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
               DiagnosisResult& result, const std::string& unjudged) {
   result.explained = found.accepted.empty() ? 1.0 : found.explained;
   result.goes_with.assign(left.begin(), left.end());
-  list_effects(found, result);
-  const std::size_t asked = list_candidates(found, scene, result);
-  result.not_measured = not_measured(scene);
-  std::vector<std::string> names, open;
-  for (const EffectFound& effect : result.effects) {
-    names.push_back(effect.name);
-    if (is_open(effect)) open.push_back(effect.name + " (or " + joined(instead_of(effect), " or ") + ")");
-  }
   const std::vector<Foretold> foretold = badly_foretold(result);
   // Worse than to assume the average: whatever is at work, the model does not explain it.
   const bool blind = std::ranges::any_of(foretold, &Foretold::blind);
@@ -164,7 +165,16 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const std::vector<std::string> astray_axes = not_followed(result, foretold);
   const bool structure = !left.empty() || found.free_form || found.taken_back.value_or(0.0) > kByChance || blind ||
                          !astray_axes.empty() || promising != nullptr || result.wiring;
-  const bool in_part = !names.empty() && found.explained < kWholeCause;
+  const bool in_noise = !structure && found.explained < kWholeCause && stand_in_noise(found);
+  list_effects(found, in_noise ? kInNoise : found.explained, result);
+  const std::size_t asked = list_candidates(found, scene, result);
+  result.not_measured = not_measured(scene);
+  std::vector<std::string> names, open;
+  for (const EffectFound& effect : result.effects) {
+    names.push_back(effect.name);
+    if (is_open(effect)) open.push_back(effect.name + " (or " + joined(instead_of(effect), " or ") + ")");
+  }
+  const bool in_part = !names.empty() && found.explained < kWholeCause && !in_noise;
   const bool idle = !names.empty() && foretells_nothing(result, scene, found.after.sigma);
   const bool stand_ins = in_part || idle;
   if (idle) {
@@ -209,6 +219,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
         text += "Which form of " + effect.name + " it is remains open: " + joined(effect.other_forms, "; ") + ". ";
     }
     text += unjudged.empty() ? improvement_sentence(result) : unjudged;
+    if (in_noise) text += "What is left goes with nothing that was measured. " + memory_sentence(result);
   }
   text += foretold_sentence(foretold);
   if (result.verdict == "adequate" && foretold.empty()) text += hardly_shown_sentence(result);

@@ -97,6 +97,30 @@ TEST_CASE("verdict: what leaves much of the error that lasts is kept, and is no 
   CHECK(says(result.paragraph, "only 60 %"));
 }
 
+TEST_CASE("verdict: where all that is left is a random force, a name that is evident beside one is likely") {
+  MadeUp made;
+  Judged& current = made.accept("current", {0.1, 0.0});
+  current.beside_memory = 50.0;
+  made.found.explained = 0.6;
+  made.found.explained_of_structure = 0.99;
+  const DiagnosisResult result = made.concluded();
+  CHECK(result.verdict == "effect");
+  CHECK(result.effects.at(0).log_odds == doctest::Approx(std::log(9.0)));
+  CHECK(says(result.paragraph, "Most likely the base model lacks: current"));
+  CHECK(says(result.paragraph, "What is left goes with nothing that was measured"));
+  made.left = {{.axis = "X", .with = "thrust", .share = 0.2}};
+  CHECK(made.concluded().verdict == "unexplained");
+  made.left.clear();
+  made.found.accepted.front().beside_memory = 3.0;  // such a force might imitate it
+  CHECK(made.concluded().verdict == "unexplained");
+  made.found.accepted.front().beside_memory = 50.0;
+  made.found.explained_of_structure = 0.8;
+  CHECK(made.concluded().verdict == "unexplained");
+  made.found.explained_of_structure = 0.99;
+  made.found.explained = 0.3;
+  CHECK(made.concluded().verdict == "unexplained");
+}
+
 TEST_CASE("verdict: beside what foretells no motion at all no name is certain") {
   MadeUp made;
   made.accept("thruster_deadband", {70.0});

@@ -232,6 +232,8 @@ TEST_CASE("thrust_loss: bilinear in shaft speed and advance, in both directions"
   fixture.motion.nu[0] = 0.5;
   CHECK(fixture.felt("thrust_loss", {0.8}, 0)[0] == doctest::Approx(16.0 - 0.8 * 4.0 * 0.5));
   CHECK(fixture.felt("thrust_loss", {0.1}, 1)[0] == doctest::Approx(16.0 - 0.1 * 16.0 * 0.5));
+  CHECK(fixture.felt("thrust_loss", {0.8}, 2) == fixture.felt("thrust_loss", {0.8}, 0));
+  CHECK(fixture.felt("thrust_loss", {0.1}, 3) == fixture.felt("thrust_loss", {0.1}, 1));
   CHECK(fixture.felt("thrust_loss", {0.8}, 0)[1] == doctest::Approx(-16.0 - 0.8 * 4.0 * 0.5));  // crash stop gains
   fixture.motion.nu[0] = -0.5;
   CHECK(fixture.felt("thrust_loss", {0.8}, 0)[1] == doctest::Approx(-16.0 + 0.8 * 4.0 * 0.5));
@@ -244,6 +246,7 @@ TEST_CASE("thrust_loss: turning moves the thrusters too, and water that moves al
   fixture.motion.nu[5] = 1.0;
   // The port thruster, 4.75 cm to port, is carried ahead when the bow turns to starboard.
   CHECK(fixture.felt("thrust_loss", {0.8}, 0)[0] == doctest::Approx(16.0 - 0.8 * 4.0 * 0.0475));
+  for (const int of_hull : {2, 3}) CHECK(fixture.felt("thrust_loss", {0.8}, of_hull) == fixture.motion.force);
   fixture.motion.nu << 0.4, 0.0, 0.0, 0.0, 0.0, 0.0;
   fixture.motion.v_WF_B.x() = 0.4;
   CHECK(fixture.felt("thrust_loss", {0.8}, 0) == fixture.motion.force);
