@@ -60,6 +60,7 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
       locator_{site, lens, settings.locator},
       loose_locator_{site, std::nullopt, settings.locator},
       floor_{site.floor} {
+  check_map(site);
   if (settings.detector.decimation > 1.0) {
     DetectorSettings near = settings.detector;
     near.decimation = 1.0;

@@ -52,7 +52,8 @@ struct Sight {
 
 class FrontEnd {
  public:
-  /// Without a lens there are detections alone. The floor is that of the site, or the plane of its tags.
+  /// Without a lens there are detections alone. The floor is that of the site, or the plane of its tags. InputError for
+  /// a map with tags that their family does not have.
   FrontEnd(const model::Site& site, const std::optional<model::Lens>& lens,
            const std::optional<model::LaserMount>& laser, const FrontEndSettings& settings);
 

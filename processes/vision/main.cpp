@@ -11,6 +11,7 @@
 #include "common/model/mounts.hpp"
 #include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
+#include "common/vision/threads.hpp"
 #include "common/vision/watch.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   return runtime::main(
       "vision", argc, argv,
       [&](runtime::Process& process) {
+        vision::use_one_core();
         process.publishes<fathom_lcm::tag_pose_t>(wire::kTagPose);
         process.publishes<fathom_lcm::optical_flow_t>(wire::kOpticalFlow);
         process.publishes<fathom_lcm::laser_range_t>(wire::kLaserRange);
