@@ -126,7 +126,14 @@ bool FrontEnd::look_again(const cv::Mat& grey) {
 
 void FrontEnd::find_dot(const Picture& picture, const std::optional<Eigen::Vector3d>& normal_C) {
   witness_->move(sight_.flow);
-  const auto& spots = laser_->look(picture.bgr, picture.grey, picture.halved_colour);
+  constexpr double kBorder = 1.5;  // of a tag's extent: the white border that it is printed on
+  paper_.clear();
+  for (const TagSighting& tag : sight_.tags) {
+    const Eigen::Vector2d middle = 0.25 * (tag.corners[0] + tag.corners[1] + tag.corners[2] + tag.corners[3]);
+    paper_.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) paper_.back()[i] = middle + kBorder * (tag.corners[i] - middle);
+  }
+  const auto& spots = laser_->look(picture.bgr, picture.grey, picture.halved_colour, paper_);
   std::optional<FloorDistance> by_tags;
   if (sight_.fix && !sight_.fix->ambiguous && floor_ > sight_.fix->pose.p_WC.z()) {
     by_tags = {.distance = floor_ - sight_.fix->pose.p_WC.z(),

@@ -91,6 +91,7 @@ class FrontEnd {
   std::optional<FlowTracker> tracker_;
   std::optional<LaserFinder> laser_;
   std::optional<BeamWitness> witness_;  ///< beside the laser
+  std::vector<LaserFinder::Outline> paper_;
   PictureCheck check_;
   std::optional<Eigen::Matrix3d> attitude_before_;  ///< R_WC of the picture before
   std::optional<CameraFix> fix_before_;             ///< of the picture before, when its pose is no guess

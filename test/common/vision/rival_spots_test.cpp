@@ -110,7 +110,7 @@ TEST_CASE("laser: a glint that stays in the picture is not told where tags have 
     CHECK(std::abs(sight.laser->p_CL.z() - renderer.dot(at)->z()) < 3.0 * sight.laser->sigma_range);
   }
   MESSAGE("told " << told << ", refused " << refused << " of 40");
-  CHECK(told + refused > 35);
+  CHECK(refused > 20);
 }
 
 TEST_CASE("flow: the laser's dot and other bright spots do not outshine a bare floor") {
