@@ -63,6 +63,7 @@ LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount
     : projection_{lens}, mount_{mount}, settings_{settings} {
   // Equal steps of inverse distance are nearly equal steps in the picture.
   constexpr int kSteps = 4000;
+  const bool folds = projection_.folds();
   for (int i = 0; i <= kSteps; ++i) {
     const double inverse =
         1.0 / settings.farthest + (1.0 / settings.nearest - 1.0 / settings.farthest) * static_cast<double>(i) / kSteps;
@@ -71,6 +72,7 @@ LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount
     if (!(s > 0.0) || !(p_C.z() > 0.0)) continue;
     const Eigen::Vector2d pixel = projection_.pixel(p_C);
     if (!projection_.inside(pixel, 1.0)) continue;
+    if (folds && !projection_.sees(pixel)) break;  // nearer, it only seems to come back
     if (line_.empty() || (pixel - line_.back()).norm() >= 1.0) line_.push_back(pixel);
   }
 }

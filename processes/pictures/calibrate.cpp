@@ -132,6 +132,7 @@ void run(const Options& options) {
   }
   std::printf("distortion %.5f %.5f %.5f %.5f %.5f\n", lens.distortion[0], lens.distortion[1], lens.distortion[2],
               lens.distortion[3], lens.distortion[4]);
+  if (const std::string doubts = vision::lens_doubts(lens); !doubts.empty()) std::printf("%s\n", doubts.c_str());
   for (const model::Tag& tag : result.site.tags) {
     const model::Tag* was = site.tag(site.family_of(tag), tag.id);
     if (site.search.families.size() > 1) std::printf("%s ", site.family_of(tag).c_str());

@@ -112,6 +112,8 @@ void run(const Options& options) {
   if (lens && lens->undistorted()) {
     std::fprintf(stderr, "fathom: the lens has no distortion; if nobody has calibrated it: fathom calibrate\n");
   }
+  if (const std::string doubts = lens ? vision::lens_doubts(*lens) : std::string{}; !doubts.empty())
+    std::fprintf(stderr, "fathom: %s\n", doubts.c_str());
   vision::FrontEnd front_end{site, lens, camera.laser, settings};
   TrackTables tables{options.csv, camera.R_BC};
   if (!options.drawings.empty()) {

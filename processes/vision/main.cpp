@@ -72,6 +72,9 @@ int main(int argc, char** argv) {
           process.log_info("the lens of camera '" + name +
                            "' has no distortion; if nobody has calibrated it: fathom calibrate");
         }
+        if (const std::string doubts = vision::lens_doubts(used.camera.lens); !doubts.empty()) {
+          process.log_warning("camera '" + name + "': " + doubts);
+        }
         process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
           const auto sample = wire::decode(message);
           if (!sample) return process.reject(wire::kAhrs);
