@@ -128,8 +128,10 @@ LaserState BeamWitness::verdict(const LaserFinder& finder, const LaserDot& spot,
   };
   const bool with_beam = moves == Moves::kWithBeam;
   if (by_tags) {
-    // Something may stand on the floor; nothing lies below it.
-    if (beyond(*by_tags)) return with_beam && distance < by_tags->distance ? spot.state : LaserState::kAgainstTags;
+    // A glint of the beam in its window goes along with it as the dot does: several tags are believed, and a range to
+    // what stands on the floor is not told. A lone tag may be in a wrong place, or of a wrong size.
+    const bool nearer = by_tags->lone_tag && with_beam && distance < by_tags->distance;
+    if (beyond(*by_tags)) return nearer ? spot.state : LaserState::kAgainstTags;
     agrees = true;
     return spot.state;
   }

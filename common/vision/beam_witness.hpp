@@ -17,6 +17,7 @@ namespace fathom::vision {
 /// Distance of the camera to the floor, along the floor's normal.
 struct FloorDistance {
   double distance{}, sigma{};  ///< m
+  bool lone_tag{false};        ///< told by one tag alone, which nothing confirms
 };
 
 class BeamWitness {

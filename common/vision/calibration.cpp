@@ -141,7 +141,8 @@ class Adjustment {
   void add_corners(const std::vector<View>& views) {
     // Where new tags were only placed one after the other, what fits is seen after the adjustment.
     model::Site rough = site_;
-    if (surveyed_.size() < site_.tags.size()) rough.search.map_sigma = std::max(rough.search.map_sigma, settings_.size);
+    if (surveyed_.size() < site_.tags.size())
+      rough.search.map_sigma = std::max(rough.search.map_sigma, settings_.sizes.largest());
     const Reprojection start = reproject(rough, views);
     std::set<std::size_t> used;
     for (const Residual& each : start.residuals) used.insert(each.view);
@@ -224,7 +225,7 @@ Calibration calibrate(const model::Site& site, const std::vector<View>& pictures
   std::vector<View> views = pictures;
   for (View& view : views) view.tags = whole(std::move(view.tags));
   if (!site.lens) throw InputError("calibration begins with a lens: state 'camera' in the site's file");
-  const SurveyStart start = start_survey(site, views, settings.size, settings.flat);
+  const SurveyStart start = start_survey(site, views, settings.sizes, settings.flat);
   if (start.site.tags.empty()) throw InputError("no tags are known: state 'tags' in the site's file, or --size");
   const auto shown = std::count_if(views.begin(), views.end(), [](const View& view) { return !view.tags.empty(); });
   if (settings.lens && shown < kLeastViews) {

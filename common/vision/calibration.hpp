@@ -10,6 +10,7 @@
 #include "common/model/site.hpp"
 #include "common/vision/camera_pose.hpp"
 #include "common/vision/tag_detector.hpp"
+#include "common/vision/tag_sizes.hpp"
 
 namespace fathom::vision {
 
@@ -32,7 +33,7 @@ struct CalibrationSettings {
   bool given{true};
   double focal_sigma{0.1};    ///< share of the focal length that is given
   double centre_sigma{20.0};  ///< px
-  double size{0.0};           ///< m, of tags that are not in the map; 0: such tags are left out
+  TagSizes sizes{};           ///< of tags that are not in the map; others are left out
 };
 
 /// A corner in a picture and what is left of it.

@@ -60,6 +60,7 @@ FrontEnd::FrontEnd(const model::Site& site, const std::optional<model::Lens>& le
       locator_{site, lens, settings.locator},
       loose_locator_{site, std::nullopt, settings.locator},
       floor_{site.floor} {
+  check_map(site);
   if (settings.detector.decimation > 1.0) {
     DetectorSettings near = settings.detector;
     near.decimation = 1.0;
@@ -86,7 +87,7 @@ void FrontEnd::reset() {
   attitude_before_.reset();
   fix_before_.reset();
   range_utime_.reset();
-  utime_ = 0;
+  utime_ = tracked_ = 0;
   last_range_ = 0.0;
 }
 
@@ -125,10 +126,19 @@ bool FrontEnd::look_again(const cv::Mat& grey) {
 
 void FrontEnd::find_dot(const Picture& picture, const std::optional<Eigen::Vector3d>& normal_C) {
   witness_->move(sight_.flow);
-  const auto& spots = laser_->look(picture.bgr, picture.grey, picture.halved_colour);
+  constexpr double kBorder = 1.5;  // of a tag's extent: the white border that it is printed on
+  paper_.clear();
+  for (const TagSighting& tag : sight_.tags) {
+    const Eigen::Vector2d middle = 0.25 * (tag.corners[0] + tag.corners[1] + tag.corners[2] + tag.corners[3]);
+    paper_.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) paper_.back()[i] = middle + kBorder * (tag.corners[i] - middle);
+  }
+  const auto& spots = laser_->look(picture.bgr, picture.grey, picture.halved_colour, paper_);
   std::optional<FloorDistance> by_tags;
   if (sight_.fix && !sight_.fix->ambiguous && floor_ > sight_.fix->pose.p_WC.z()) {
-    by_tags = {floor_ - sight_.fix->pose.p_WC.z(), std::sqrt(sight_.fix->covariance(2, 2))};
+    by_tags = {.distance = floor_ - sight_.fix->pose.p_WC.z(),
+               .sigma = std::sqrt(sight_.fix->covariance(2, 2)),
+               .lone_tag = sight_.fix->n_tags == 1};
   }
   const Eigen::Vector3d normal = normal_C.value_or(Eigen::Vector3d::UnitZ());
   sight_.laser = witness_->judge(*laser_, picture.bgr, spots, normal, by_tags);
@@ -156,6 +166,15 @@ void FrontEnd::find_range(const std::optional<Eigen::Vector3d>& normal_C) {
     last_range_sigma_ = sight_.range_sigma;
     range_utime_ = utime_;
   }
+}
+
+// A sensor's rotation was taken between two stamps; each of them errs.
+Eigen::Matrix3d FrontEnd::sensor_turn_covariance(const Picture& picture, const Eigen::Matrix3d& turn) const {
+  const double interval = std::max(seconds_between(tracked_, picture.utime), 1e-6);
+  const Eigen::Vector3d w = rotation_vector_from_quaternion(Eigen::Quaterniond{turn}) / interval;  // rad/s
+  const double sensor = settings_.flow.rotation_sigma * interval;
+  return sensor * sensor * Eigen::Matrix3d::Identity() +
+         2.0 * picture.stamp_sigma * picture.stamp_sigma * w * w.transpose();
 }
 
 const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::Matrix3d>& R_WC,
@@ -201,7 +220,14 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   }
   attitude_before_ = R_WC;
   fix_before_ = fixed;
+  if (turn && !turn_covariance && picture.stamp_sigma > 0.0)
+    turn_covariance = sensor_turn_covariance(picture, turn.value());
   sight_.flow = tracker_->step(picture.utime, picture.grey, turn, down_C, turn_covariance);
+  tracked_ = picture.utime;
+  if (sight_.flow.interval > 0.0) {
+    const double share = std::sqrt(2.0) * picture.stamp_sigma / sight_.flow.interval;
+    sight_.flow.covariance += share * share * sight_.flow.rate * sight_.flow.rate.transpose();
+  }
   if (laser_ && !picture.bgr.empty()) find_dot(picture, down_C);
   find_range(down_C);
   const bool fresh = range_utime_ && seconds_between(*range_utime_, picture.utime) <= settings_.range_memory;

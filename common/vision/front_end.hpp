@@ -34,6 +34,7 @@ struct Picture {
   Utime utime{};
   cv::Mat grey, bgr;
   bool halved_colour{false};  ///< colour came with half the resolution of `grey`
+  double stamp_sigma{};       ///< s, error of `utime`, for each picture its own
 };
 
 /// Everything that one picture told.
@@ -52,7 +53,8 @@ struct Sight {
 
 class FrontEnd {
  public:
-  /// Without a lens there are detections alone. The floor is that of the site, or the plane of its tags.
+  /// Without a lens there are detections alone. The floor is that of the site, or the plane of its tags. InputError for
+  /// a map with tags that their family does not have.
   FrontEnd(const model::Site& site, const std::optional<model::Lens>& lens,
            const std::optional<model::LaserMount>& laser, const FrontEndSettings& settings);
 
@@ -76,6 +78,7 @@ class FrontEnd {
  private:
   [[nodiscard]] bool look_again(const cv::Mat& grey);
   void find_dot(const Picture& picture, const std::optional<Eigen::Vector3d>& normal_C);
+  [[nodiscard]] Eigen::Matrix3d sensor_turn_covariance(const Picture& picture, const Eigen::Matrix3d& turn) const;
   void find_range(const std::optional<Eigen::Vector3d>& normal_C);
 
   model::Site site_;
@@ -88,11 +91,12 @@ class FrontEnd {
   std::optional<FlowTracker> tracker_;
   std::optional<LaserFinder> laser_;
   std::optional<BeamWitness> witness_;  ///< beside the laser
+  std::vector<LaserFinder::Outline> paper_;
   PictureCheck check_;
   std::optional<Eigen::Matrix3d> attitude_before_;  ///< R_WC of the picture before
   std::optional<CameraFix> fix_before_;             ///< of the picture before, when its pose is no guess
   double floor_{};
-  Utime utime_{};
+  Utime utime_{}, tracked_{};  ///< of the last picture, and of the last that flow has seen
   std::optional<Utime> range_utime_;
   double last_range_{}, last_range_sigma_{};
   Sight sight_;

@@ -43,6 +43,8 @@ const char* name(LaserState state) {
       return "more than one spot";
     case LaserState::kNotRound:
       return "not a dot";
+    case LaserState::kClipped:
+      return "among overexposed pixels";
     case LaserState::kOffLine:
       return "not on the beam";
     case LaserState::kOutOfRange:
@@ -61,6 +63,7 @@ LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount
     : projection_{lens}, mount_{mount}, settings_{settings} {
   // Equal steps of inverse distance are nearly equal steps in the picture.
   constexpr int kSteps = 4000;
+  const bool folds = projection_.folds();
   for (int i = 0; i <= kSteps; ++i) {
     const double inverse =
         1.0 / settings.farthest + (1.0 / settings.nearest - 1.0 / settings.farthest) * static_cast<double>(i) / kSteps;
@@ -69,6 +72,7 @@ LaserFinder::LaserFinder(const model::Lens& lens, const model::LaserMount& mount
     if (!(s > 0.0) || !(p_C.z() > 0.0)) continue;
     const Eigen::Vector2d pixel = projection_.pixel(p_C);
     if (!projection_.inside(pixel, 1.0)) continue;
+    if (folds && !projection_.sees(pixel)) break;  // nearer, it only seems to come back
     if (line_.empty() || (pixel - line_.back()).norm() >= 1.0) line_.push_back(pixel);
   }
 }
@@ -101,6 +105,38 @@ void LaserFinder::find_daylight(const cv::Mat& bgr) {
   tint_ = std::clamp(*middle, 1.0, kMost);
 }
 
+// Brightness that nothing printed exceeds. On a floor without paper a shell is the brightest, and no dot.
+double LaserFinder::white_at(const Eigen::Vector2d& pixel) const {
+  constexpr double kNone = 1e3;
+  if (!paper_) return white_;
+  const bool on_paper = std::any_of(paper_->begin(), paper_->end(), [&](const Outline& outline) {
+    int to_the_left = 0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Eigen::Vector2d edge = outline[(i + 1) % outline.size()] - outline[i], to = pixel - outline[i];
+      to_the_left += edge.x() * to.y() - edge.y() * to.x() > 0.0 ? 1 : 0;
+    }
+    return to_the_left == 0 || to_the_left == static_cast<int>(outline.size());
+  });
+  return on_paper ? white_ : kNone;
+}
+
+// Among pixels that are overexposed a dot does not show; what does is its fringe, off its middle.
+bool LaserFinder::among_clipped(const cv::Mat& bgr, const Eigen::Vector2d& pixel) const {
+  constexpr double kShare = 0.2;
+  const double inner = 0.6 * settings_.largest, outer = 1.5 * settings_.largest;
+  int clipped = 0, n = 0;
+  for (int y = static_cast<int>(pixel.y() - outer); y <= static_cast<int>(pixel.y() + outer); ++y) {
+    for (int x = static_cast<int>(pixel.x() - outer); x <= static_cast<int>(pixel.x() + outer); ++x) {
+      const double r = (Eigen::Vector2d{x, y} - pixel).norm();
+      if (x < 0 || y < 0 || x >= bgr.cols || y >= bgr.rows || r < inner || r > outer) continue;
+      ++n;
+      const cv::Vec3b& c = bgr.at<cv::Vec3b>(y, x);
+      clipped += c[1] >= kSaturated && c[1] - tint_ * std::max(c[0], c[2]) < settings_.least_contrast ? 1 : 0;
+    }
+  }
+  return clipped > kShare * n;
+}
+
 void LaserFinder::measure_strip(const cv::Mat& bgr) {
   strip_.clear();
   const int half = static_cast<int>(std::ceil(settings_.strip));
@@ -108,12 +144,13 @@ void LaserFinder::measure_strip(const cv::Mat& bgr) {
     const Eigen::Vector2d along = (line_[std::min(i + 1, line_.size() - 1)] - line_[i > 0 ? i - 1 : 0]).normalized();
     const Eigen::Vector2d across{-along.y(), along.x()};
     double best = -255.0;
+    const double white = white_at(line_[i]);
     Eigen::Vector2d where = line_[i];
     for (int k = -half; k <= half; ++k) {
       const Eigen::Vector2d p = line_[i] + k * across;
       if (!projection_.inside(p, 1.0)) continue;
       const double g =
-          excess(bgr, tint_, white_, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+          excess(bgr, tint_, white, static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
       if (g > best) {
         best = g;
         where = p;
@@ -124,7 +161,7 @@ void LaserFinder::measure_strip(const cv::Mat& bgr) {
 }
 
 // Middle of what stands out around the spot, weighted by how much; false when it is no dot.
-bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
+bool LaserFinder::refine(const cv::Mat& bgr, double white, LaserDot& dot) const {
   const int radius = static_cast<int>(std::lround(1.5 * settings_.largest));
   Eigen::Vector2d middle = dot.pixel;
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
@@ -138,7 +175,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
       const int x = u + static_cast<int>(std::lround(radius * std::cos(angle)));
       const int y = v + static_cast<int>(std::lround(radius * std::sin(angle)));
       if (x < 0 || y < 0 || x >= bgr.cols || y >= bgr.rows) continue;
-      ring += excess(bgr, tint_, white_, x, y);
+      ring += excess(bgr, tint_, white, x, y);
       ++n_ring;
     }
     ring = n_ring > 0 ? ring / n_ring : 0.0;
@@ -148,7 +185,7 @@ bool LaserFinder::refine(const cv::Mat& bgr, LaserDot& dot) const {
     Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
     for (int y = std::max(v - radius, 0); y <= std::min(v + radius, bgr.rows - 1); ++y) {
       for (int x = std::max(u - radius, 0); x <= std::min(u + radius, bgr.cols - 1); ++x) {
-        const double w = excess(bgr, tint_, white_, x, y) - floor;
+        const double w = excess(bgr, tint_, white, x, y) - floor;
         if (w <= 0.0) continue;
         const Eigen::Vector2d p{x, y};
         sum += w;
@@ -228,12 +265,14 @@ bool LaserFinder::has_a_neighbour(std::size_t peak, double typical, double contr
 std::optional<Eigen::Vector2d> LaserFinder::spot_near(const cv::Mat& bgr, const Eigen::Vector2d& place,
                                                       double contrast) const {
   LaserDot dot{.pixel = place, .contrast = contrast};
-  if (!refine(bgr, dot)) return {};
+  if (!refine(bgr, white_, dot)) return {};
   return dot.pixel;
 }
 
-const std::vector<LaserDot>& LaserFinder::look(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour) {
+const std::vector<LaserDot>& LaserFinder::look(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour,
+                                               std::optional<std::span<const Outline>> paper) {
   spots_.assign(1, {});
+  paper_ = paper;
   if (bgr.channels() != 3) {
     spots_.front().state = LaserState::kNoColour;
     return spots_;
@@ -272,8 +311,10 @@ const std::vector<LaserDot>& LaserFinder::look(const cv::Mat& bgr, const cv::Mat
     }
     if (!halved_colour && has_a_neighbour(best, typical, dot.contrast)) {  // halved, colour has steps of its own
       dot.state = LaserState::kTwo;
-    } else if (!refine(bgr, dot)) {
+    } else if (!refine(bgr, white_at(dot.pixel), dot)) {
       dot.state = LaserState::kNotRound;
+    } else if (among_clipped(bgr, dot.pixel)) {
+      dot.state = LaserState::kClipped;
     } else {
       dot.state = LaserState::kFound;
       // What draws a dot out draws its middle away by as much.

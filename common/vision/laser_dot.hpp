@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
@@ -29,6 +30,7 @@ enum class LaserState {
   kDark,
   kTwo,
   kNotRound,
+  kClipped,  ///< among pixels that are overexposed
   kOffLine,
   kOutOfRange,
   kPaint,        ///< it moves with the floor
@@ -57,7 +59,11 @@ class LaserFinder {
 
   /// The same in two steps, for who knows more than the picture: every spot on the line, the strongest first (kFound:
   /// it could be the dot; one that says why there is none when there are none), and which of them is the dot.
-  [[nodiscard]] const std::vector<LaserDot>& look(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour);
+  /// `paper`: outlines of what is printed on white paper; a spot elsewhere must be green, to be bright is not enough.
+  /// Left out: paper may be anywhere.
+  using Outline = std::array<Eigen::Vector2d, 4>;  ///< px
+  [[nodiscard]] const std::vector<LaserDot>& look(const cv::Mat& bgr, const cv::Mat& grey, bool halved_colour,
+                                                  std::optional<std::span<const Outline>> paper = std::nullopt);
   [[nodiscard]] static LaserDot choose(std::span<const LaserDot> spots);
   /// Middle of a spot as strong as `contrast`, about, near a place in some picture of the same light.
   [[nodiscard]] std::optional<Eigen::Vector2d> spot_near(const cv::Mat& bgr, const Eigen::Vector2d& place,
@@ -71,7 +77,9 @@ class LaserFinder {
   };
   void find_daylight(const cv::Mat& bgr);
   void measure_strip(const cv::Mat& bgr);
-  [[nodiscard]] bool refine(const cv::Mat& bgr, LaserDot& dot) const;
+  [[nodiscard]] double white_at(const Eigen::Vector2d& pixel) const;
+  [[nodiscard]] bool refine(const cv::Mat& bgr, double white, LaserDot& dot) const;
+  [[nodiscard]] bool among_clipped(const cv::Mat& bgr, const Eigen::Vector2d& pixel) const;
   double sharpen(const cv::Mat& grey, LaserDot& dot) const;
   void triangulate(double pixel_sigma, LaserDot& dot) const;
   [[nodiscard]] bool has_a_neighbour(std::size_t peak, double typical, double contrast) const;
@@ -84,8 +92,9 @@ class LaserFinder {
   std::vector<Spot> strip_;
   std::vector<LaserDot> spots_;
   std::vector<double> sorted_;
-  double white_{255.0};  ///< brightness in green
-  double tint_{1.0};     ///< green over the stronger other colour of what daylight shows in this water
+  std::optional<std::span<const Outline>> paper_;  ///< of this picture
+  double white_{255.0};                            ///< brightness in green
+  double tint_{1.0};  ///< green over the stronger other colour of what daylight shows in this water
 };
 
 }  // namespace fathom::vision

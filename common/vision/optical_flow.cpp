@@ -49,7 +49,24 @@ struct FlowTracker::State {
   std::vector<Track> tracks;
   std::vector<FlowRow> rows;
 
-  State(const model::Lens& lens, const FlowSettings& s) : projection{lens}, settings{s} {}
+  State(const model::Lens& lens, const FlowSettings& s) : projection{lens}, settings{s} {
+    if (projection.folds()) leave_out_folded();
+  }
+
+  [[nodiscard]] cv::Size reduced_size() const {
+    const model::Lens& lens = projection.lens();
+    return {cvRound(lens.width / settings.reduction), cvRound(lens.height / settings.reduction)};  // as cv::resize
+  }
+  // No features where the lens says no direction.
+  void leave_out_folded() {
+    mask = cv::Mat(reduced_size(), CV_8UC1, cv::Scalar{255});
+    for (int y = 0; y < mask.rows; ++y) {
+      for (int x = 0; x < mask.cols; ++x) {
+        const cv::Point2f p{static_cast<float>(x), static_cast<float>(y)};
+        if (!projection.sees(whole(p))) mask.at<std::uint8_t>(y, x) = 0;
+      }
+    }
+  }
 
   [[nodiscard]] cv::Size window() const {
     const int side = settings.reduction > 1.5 ? 15 : 21;
@@ -148,10 +165,8 @@ FlowTracker& FlowTracker::operator=(FlowTracker&&) noexcept = default;
 const std::vector<Track>& FlowTracker::tracks() const { return state_->tracks; }
 
 void FlowTracker::leave_out(const std::vector<Eigen::Vector2d>& line, double reach) {
-  const model::Lens& lens = state_->projection.lens();
   const double r = state_->settings.reduction;
-  const cv::Size size{cvRound(lens.width / r), cvRound(lens.height / r)};  // as cv::resize rounds
-  if (state_->mask.empty()) state_->mask = cv::Mat(size, CV_8UC1, cv::Scalar{255});
+  if (state_->mask.empty()) state_->mask = cv::Mat(state_->reduced_size(), CV_8UC1, cv::Scalar{255});
   for (const Eigen::Vector2d& each : line) {
     cv::circle(state_->mask, state_->reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0}, cv::FILLED);
   }

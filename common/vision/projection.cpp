@@ -1,9 +1,11 @@
 #include "common/vision/projection.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "common/base/units.hpp"
 #include "common/vision/lens_equations.hpp"
 
 namespace fathom::vision {
@@ -49,6 +51,59 @@ Eigen::Vector2d Projection::undistorted(const Eigen::Vector2d& pixel) const {
     if (!(at.norm() < kFarthest)) return seen;
   }
   return at;
+}
+
+bool Projection::sees(const Eigen::Vector2d& pixel) const {
+  if (lens_.undistorted()) return true;
+  constexpr int kSteps = 10;
+  constexpr double kStep = 1e-6, kBack = 1e-6;
+  const Eigen::Vector2d seen{(pixel.x() - lens_.cx) / lens_.fx, (pixel.y() - lens_.cy) / lens_.fy};
+  const Eigen::Vector2d at = undistorted(pixel);
+  const auto value = [&](const Eigen::Vector2d& p) {
+    return distorted<double>(lens_.kind, lens_.distortion.data(), p.x(), p.y());
+  };
+  if (!((value(at) - seen).norm() < kBack)) return false;
+  // From the middle outward the picture grows: beyond a fold it would be another direction's.
+  for (int i = 1; i <= kSteps; ++i) {
+    const Eigen::Vector2d p = static_cast<double>(i) / kSteps * at;
+    Eigen::Matrix2d by;
+    by.col(0) = value(p + Eigen::Vector2d{kStep, 0.0}) - value(p - Eigen::Vector2d{kStep, 0.0});
+    by.col(1) = value(p + Eigen::Vector2d{0.0, kStep}) - value(p - Eigen::Vector2d{0.0, kStep});
+    if (!(by.determinant() > 0.0)) return false;
+  }
+  return true;
+}
+
+std::optional<Eigen::Vector2d> Projection::first_unseen() const {
+  constexpr int kEvery = 8;  // px
+  if (lens_.undistorted()) return {};
+  for (int y = 0; y < lens_.height; y += kEvery) {
+    for (int x = 0; x < lens_.width; x += kEvery) {
+      const Eigen::Vector2d pixel{x, y};
+      if (!sees(pixel)) return pixel;
+    }
+  }
+  return {};
+}
+
+std::string lens_doubts(const model::Lens& lens) {
+  constexpr double kNarrowest = 0.01, kWidest = 3.0;        // rad
+  if (lens.kind == model::Lens::Kind::kFisheye) return {};  // its picture may be a disc
+  const Projection projection{lens};
+  const double middle = 0.5 * lens.height;
+  const Eigen::Vector3d left = projection.ray({0.0, middle}).direction;
+  const double view = std::acos(std::clamp(left.dot(projection.ray({lens.width - 1.0, middle}).direction), -1.0, 1.0));
+  if (!(view > kNarrowest && view < kWidest)) {
+    return "the lens sees " + std::to_string(view / kDegree).substr(0, 5) +
+           " deg from left to right: is 'focal' in pixels, and 'width' that of this camera?";
+  }
+  if (const auto unseen = projection.first_unseen()) {
+    return "the lens's distortion folds back within the picture, at pixel " + std::to_string(std::lround(unseen->x())) +
+           " " + std::to_string(std::lround(unseen->y())) +
+           " for one: what is there is left out; calibrate with tags up to the corners, or with fewer coefficients "
+           "(fathom calibrate --distortion)";
+  }
+  return {};
 }
 
 Ray Projection::ray(const Eigen::Vector2d& pixel) const {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
 
 #include "common/model/lens.hpp"
 
@@ -26,6 +28,12 @@ class Projection {
   [[nodiscard]] Ray ray(const Eigen::Vector2d& pixel) const;
   /// The same as a point at z = 1, a port's offset neglected: small against what a camera sees.
   [[nodiscard]] Eigen::Vector2d normalized(const Eigen::Vector2d& pixel) const;
+  /// False where a distortion folds back (a polynomial beyond where it was fitted): nothing projects there, or what
+  /// does is seen elsewhere too.
+  [[nodiscard]] bool sees(const Eigen::Vector2d& pixel) const;
+  /// Whether there are such places in the picture.
+  [[nodiscard]] bool folds() const { return first_unseen().has_value(); }
+  [[nodiscard]] std::optional<Eigen::Vector2d> first_unseen() const;  ///< px, to within some
   [[nodiscard]] bool inside(const Eigen::Vector2d& pixel, double border = 0.0) const;
   [[nodiscard]] const model::Lens& lens() const { return lens_; }
 
@@ -33,5 +41,8 @@ class Projection {
   [[nodiscard]] Eigen::Vector2d undistorted(const Eigen::Vector2d& pixel) const;
   model::Lens lens_;
 };
+
+/// A line about a lens that cannot be meant so; empty when there is nothing to say.
+[[nodiscard]] std::string lens_doubts(const model::Lens& lens);
 
 }  // namespace fathom::vision

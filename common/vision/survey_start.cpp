@@ -62,19 +62,21 @@ model::Tag new_tag(const model::Site& site, const model::TagName& name, double s
 
 }  // namespace
 
-SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size, bool flat) {
+SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, const TagSizes& sizes, bool flat) {
   SurveyStart start{.site = site, .surveyed = {}};
   for (const model::Tag& tag : site.tags) start.surveyed.push_back(tag.number());
-  if (size <= 0.0) return start;
+  if (sizes.empty()) return start;
   std::map<model::TagName, int> sightings;
   for (const View& view : views) {
-    for (const TagSighting& tag : view.tags)
-      sightings[{tag.family, tag.id}] += tag.margin >= least_margin(tag.family) ? 1 : 0;
+    for (const TagSighting& tag : view.tags) {
+      const model::TagName name{tag.family, tag.id};
+      if (sizes.of(name)) sightings[name] += tag.margin >= least_margin(tag.family) ? 1 : 0;
+    }
   }
   if (start.site.tags.empty() && !sightings.empty()) {
     const auto most = std::max_element(sightings.begin(), sightings.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    start.site.tags.push_back(new_tag(start.site, most->first, size));
+    start.site.tags.push_back(new_tag(start.site, most->first, *sizes.of(most->first)));
   }
   const std::optional<double> level = flat ? level_of(start.site.tags) : std::nullopt;
   // Each round places the tags that were seen together with known ones.
@@ -91,12 +93,12 @@ SurveyStart start_survey(const model::Site& site, const std::vector<View>& views
       for (const TagSighting& tag : tags) {
         const model::TagName name{tag.family, tag.id};
         if (tag.verdict != TagVerdict::kOutsideMap || sightings[name] < kLeastSightings) continue;
-        if (const auto pose = place(projection, tag, size, fix->pose)) placed[name].push_back(*pose);
+        if (const auto pose = place(projection, tag, *sizes.of(name), fix->pose)) placed[name].push_back(*pose);
       }
     }
     for (const auto& [name, poses] : placed) {
       if (static_cast<int>(poses.size()) < kLeastSightings) continue;
-      model::Tag tag = new_tag(start.site, name, size);
+      model::Tag tag = new_tag(start.site, name, *sizes.of(name));
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         std::vector<double> values;
         for (const Pose& each : poses) values.push_back(each.p_WC[axis]);

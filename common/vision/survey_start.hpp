@@ -12,8 +12,9 @@ struct SurveyStart {
   std::vector<int> surveyed;  ///< numbers of those that were
 };
 
-/// `flat`: new tags lie in the plane of the known ones, where that is level. `size`: of tags that are not in the map
-/// [m]; 0: they are left out. Without any map the tag that is seen most is the origin and lies flat.
-[[nodiscard]] SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, double size, bool flat);
+/// `flat`: new tags lie in the plane of the known ones, where that is level. `sizes`: of tags that are not in the
+/// map; those without one are left out. Without any map the tag that is seen most is the origin and lies flat.
+[[nodiscard]] SurveyStart start_survey(const model::Site& site, const std::vector<View>& views, const TagSizes& sizes,
+                                       bool flat);
 
 }  // namespace fathom::vision

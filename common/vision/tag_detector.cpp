@@ -15,6 +15,7 @@ extern "C" {
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <tuple>
 
 #include "common/base/error.hpp"
@@ -105,6 +106,25 @@ const char* name(TagVerdict verdict) {
 double least_margin(const std::string& name) {
   const Family* known = family(name);
   return known == nullptr ? 0.0 : known->least_margin;
+}
+
+int tags_of(const std::string& name) {
+  const Family* known = need_family(name);
+  apriltag_family_t* made = known->create();
+  const auto count = static_cast<int>(made->ncodes);
+  known->destroy(made);
+  return count;
+}
+
+void check_map(const model::Site& site) {
+  std::map<std::string, int> counts;
+  for (const model::Tag& tag : site.tags) {
+    const std::string& name = site.family_of(tag);
+    if (!counts.contains(name)) counts[name] = tags_of(name);
+    if (tag.id >= 0 && tag.id < counts[name]) continue;
+    throw InputError("the site's map has a tag " + std::to_string(tag.id) + ", and " + name + " has 0 to " +
+                     std::to_string(counts[name] - 1) + " alone; 'tag_search' of the site names another family");
+  }
 }
 
 struct TagDetector::State {

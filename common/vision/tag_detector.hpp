@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/model/lens.hpp"
+#include "common/model/site.hpp"
 
 namespace fathom::vision {
 
@@ -67,6 +68,11 @@ class TagDetector {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// How many tags a family has; their numbers begin at 0. InputError for a family that the library does not know.
+[[nodiscard]] int tags_of(const std::string& family);
+/// InputError when a map names a tag that its family does not have: it would never be found.
+void check_map(const model::Site& site);
 
 /// Decision margin that a tag of this family needs when nothing else supports it: random squares pass for tags of weak
 /// families.

@@ -22,7 +22,9 @@ std::array<Eigen::Vector3d, 4> world_corners(const model::Tag& tag) {
 
 TagLocator::TagLocator(const model::Site& site, const std::optional<model::Lens>& lens, const LocatorSettings& settings)
     : site_{site}, settings_{settings} {
-  if (lens) projection_.emplace(*lens);
+  if (!lens) return;
+  projection_.emplace(*lens);
+  folds_ = projection_->folds();
 }
 
 void TagLocator::reset() {
@@ -57,7 +59,8 @@ void TagLocator::judge_by_map(std::vector<TagSighting>& tags) {
       Candidate candidate{.tag = &tag, .normal = known->R_WT.col(2), .clear = clear};
       const auto corners = world_corners(*known);
       for (std::size_t i = 0; i < 4; ++i) {
-        if (tag.sound[i]) candidate.corners.push_back({corners[i], tag.corners[i]});
+        if (tag.sound[i] && (!folds_ || projection_->sees(tag.corners[i])))
+          candidate.corners.push_back({corners[i], tag.corners[i]});
       }
       tag.verdict = TagVerdict::kCut;
       if (candidate.corners.empty()) continue;

@@ -83,6 +83,7 @@ class TagLocator {
 
   model::Site site_;
   std::optional<Projection> projection_;
+  bool folds_{false};  ///< somewhere in the picture
   LocatorSettings settings_;
   std::vector<Candidate> candidates_;
   std::optional<Pose> last_;

@@ -1,5 +1,8 @@
 #include "common/vision/watch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/vision/drawing.hpp"
 #include "common/vision/jpeg.hpp"
 
@@ -43,11 +46,14 @@ bool Watch::see(const Camera& sample) {
     turned = R_BC.transpose() * turn->toRotationMatrix() * R_BC;
   last_ = sample.utime;
   picture_.utime = sample.utime;
+  scatter_.step(sample.utime);
+  picture_.stamp_sigma = scatter_.sigma();
+  judge_stamps();
   if (const auto q_WB = attitudes_.at(sample.utime)) R_WC = q_WB->toRotationMatrix() * R_BC;
   const Sight& sight = front_end_.step(picture_, R_WC, turned);
   const bool again = sight.picture == PictureState::kRepeated || sight.picture == PictureState::kFrozen;
   if (!again) tracked_ = sample.utime;
-  complaint_ = map_complaint_;
+  complaint_ = map_complaint_.empty() ? scatter_complaint_ : map_complaint_;
   if (sight.picture == PictureState::kOtherSize) {
     complaint_ = "pictures have " + std::to_string(picture_.grey.cols) + " x " + std::to_string(picture_.grey.rows) +
                  " pixels, camera '" + camera_.name + "' of the vehicle file " + std::to_string(camera_.width) + " x " +
@@ -57,6 +63,20 @@ bool Watch::see(const Camera& sample) {
   }
   count();
   return true;
+}
+
+// Flow's scale errs by twice the square of what stamps err, in intervals: 1 % where they err by 7 %.
+void Watch::judge_stamps() {
+  constexpr double kScatter = 0.07, kQuiet = 0.05;  // of an interval
+  const double share = scatter_.sigma() / std::max(scatter_.interval(), 1e-6);
+  if (share < kQuiet) {
+    scatter_complaint_.clear();
+  } else if (share > kScatter && scatter_complaint_.empty()) {
+    scatter_complaint_ =
+        "stamps of camera '" + camera_.name + "' scatter by " + std::to_string(std::lround(1e3 * scatter_.sigma())) +
+        " ms: speeds by optical flow err with them; state 'rate' or 'stamp: kernel' of camera_driver, or "
+        "relieve its host";
+  }
 }
 
 void Watch::count() {
@@ -71,6 +91,7 @@ void Watch::count() {
 void Watch::reset() {
   front_end_.reset();
   attitudes_.reset();
+  scatter_.reset();
   last_ = 0;
   tracked_ = 0;
 }

@@ -11,6 +11,7 @@
 #include "common/samples/sensors.hpp"
 #include "common/vision/attitude_history.hpp"
 #include "common/vision/front_end.hpp"
+#include "common/vision/stamp_scatter.hpp"
 
 namespace fathom::vision {
 
@@ -34,11 +35,13 @@ class Watch {
 
  private:
   void count();
+  void judge_stamps();
 
   model::CameraMount camera_;
-  std::string map_complaint_;
+  std::string map_complaint_, scatter_complaint_;
   FrontEnd front_end_;
   AttitudeHistory attitudes_;
+  StampScatter scatter_;
   Picture picture_;
   bool readable_{false};
   Utime last_{}, tracked_{};  ///< of the last picture that came, and that was read

@@ -56,6 +56,8 @@ DeviceCamera::DeviceCamera(runtime::Process& process, DeviceSettings settings)
     : process_{process},
       settings_{std::move(settings)},
       camera_{pictures::open_camera(settings_.device)},
+      stamps_{settings_.kernel_stamps || !(settings_.device.rate > 0.0) ? std::nullopt
+                                                                        : std::optional{settings_.device.rate}},
       last_{now()} {
   process_.log_info(settings_.device.device + ": " + camera_->description());
 }
@@ -93,9 +95,12 @@ void DeviceCamera::publish(pictures::Frame frame) {
   }
   if (std::exchange(lost_, false)) process_.log_info(settings_.device.device + ": the camera is back");
   complaint_.clear();
+  const auto stamp = stamps_.step(frame.arrival);
+  if (const std::string news = stamps_.news(); !news.empty()) process_.log_warning(settings_.device.device + news);
+  if (!stamp) return;
   ++count_;
   const double since = settings_.latency + (settings_.kernel_stamps ? *frame.age : 0.0);
-  const Utime utime = utime_after(frame.arrival, -since);
+  const Utime utime = utime_after(*stamp, -since);
   process_.publish(wire::kCamera,
                    wire::encode(as_message(std::move(frame), utime, settings_.camera, settings_.quality)));
 }
@@ -140,7 +145,7 @@ runtime::Process::Condition DeviceCamera::condition() const {
   if (std::isfinite(age_) && count_ > 0) {
     detail += ", from the kernel's stamp to arrival " + std::to_string(std::lround(1e3 * age_)) + " ms";
   }
-  return {.unhealthy = unhealthy, .detail = detail};
+  return {.unhealthy = unhealthy, .detail = detail + stamps_.detail()};
 }
 
 }  // namespace fathom::camera_driver

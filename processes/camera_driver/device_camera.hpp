@@ -8,6 +8,7 @@
 
 #include "common/pictures/camera.hpp"
 #include "common/runtime/process.hpp"
+#include "processes/camera_driver/arrival_stamps.hpp"
 
 namespace fathom {
 class Config;
@@ -41,6 +42,7 @@ class DeviceCamera {
   runtime::Process& process_;
   DeviceSettings settings_;
   std::unique_ptr<pictures::Camera> camera_;
+  ArrivalStamps stamps_;
   std::string complaint_;
   double last_{}, last_try_{};  ///< s of the newest picture, and of the last attempt to open
   double age_{};                ///< s from the kernel's stamp to arrival, of the newest picture

@@ -38,8 +38,10 @@ int main(int argc, char** argv) {
     if (config.has("pictures")) return serve<RecordedPictures>(process, RecordedSettings::from(config));
     if (!config.text("device").starts_with("tcp:")) return serve<DeviceCamera>(process, DeviceSettings::from(config));
     serve<NetworkCamera>(
-        process, NetworkSettings{.camera = config.text("camera"),
-                                 .endpoint = link::Endpoint::parse(config.text("device"), config.where("device")),
-                                 .latency = config.not_negative("latency", "s")});
+        process,
+        NetworkSettings{.camera = config.text("camera"),
+                        .endpoint = link::Endpoint::parse(config.text("device"), config.where("device")),
+                        .latency = config.not_negative("latency", "s"),
+                        .rate = config.has("rate") ? std::optional{config.positive("rate", "Hz")} : std::nullopt});
   });
 }

@@ -21,6 +21,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 NetworkCamera::NetworkCamera(runtime::Process& process, NetworkSettings settings)
     : process_{process},
       settings_{std::move(settings)},
+      stamps_{settings_.rate},
       link_{settings_.endpoint,
             [this](std::span<const std::uint8_t> bytes, Utime arrival) { received(bytes, arrival); },
             [this](bool up, const std::string& why) { changed(up, why); }} {}
@@ -61,9 +62,12 @@ void NetworkCamera::publish(std::vector<std::uint8_t> jpeg) {
     return;
   }
   complaint_.clear();
-  ++count_;
   last_ = now();
-  Camera sample{.utime = utime_after(begun_, -settings_.latency),
+  const auto stamp = stamps_.step(begun_);
+  if (const std::string news = stamps_.news(); !news.empty()) process_.log_warning(settings_.endpoint.text + news);
+  if (!stamp) return;
+  ++count_;
+  Camera sample{.utime = utime_after(*stamp, -settings_.latency),
                 .camera = settings_.camera,
                 .width = grey.cols,
                 .height = grey.rows};
@@ -82,7 +86,7 @@ runtime::Process::Condition NetworkCamera::condition() const {
   }
   return {.unhealthy = unhealthy,
           .detail = "pictures " + std::to_string(count_) + ", unreadable " + std::to_string(unreadable_) + ", torn " +
-                    std::to_string(stream_.torn())};
+                    std::to_string(stream_.torn()) + stamps_.detail()};
 }
 
 }  // namespace fathom::camera_driver

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,13 +10,15 @@
 #include "common/link/link.hpp"
 #include "common/runtime/process.hpp"
 #include "common/vision/jpeg_stream.hpp"
+#include "processes/camera_driver/arrival_stamps.hpp"
 
 namespace fathom::camera_driver {
 
 struct NetworkSettings {
   std::string camera;
   link::Endpoint endpoint;
-  double latency{};  ///< s from the exposure to a picture's first bytes
+  double latency{};            ///< s from the exposure to a picture's first bytes
+  std::optional<double> rate;  ///< Hz, kept by the camera: pictures that come late are stamped when they were taken
 };
 
 class NetworkCamera {
@@ -32,6 +35,7 @@ class NetworkCamera {
   runtime::Process& process_;
   NetworkSettings settings_;
   vision::JpegStream stream_;
+  ArrivalStamps stamps_;
   std::string why_{"the line is not open yet"}, complaint_;
   Utime begun_{};       ///< arrival of the first bytes of the picture that is coming
   double last_{};       ///< s of the newest picture, or since the line came up

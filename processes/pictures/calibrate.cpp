@@ -21,9 +21,9 @@ namespace {
 struct Options {
   std::string source, site, out, picture, vehicle, camera, what{"all"};
   int distortion{2}, every{1}, held_out{0};
-  double size{0.0}, map_sigma{0.0}, focal{0.0}, focal_sigma{0.1};
+  double map_sigma{0.0}, focal{0.0}, focal_sigma{0.1};
   bool not_flat{false};
-  std::vector<std::string> families;
+  std::vector<std::string> families, sizes;
 };
 
 std::vector<vision::View> look(const Options& options, model::Site& site) {
@@ -78,6 +78,9 @@ void run(const Options& options) {
   const Mounted camera = mounted(options.vehicle, options.camera);
   if (camera.lens) site.lens = camera.lens;
   const bool site_has_lens = site.lens.has_value();
+  vision::check_map(site);
+  const vision::TagSizes sizes = vision::TagSizes::parse(options.sizes);
+  sizes.check_against(site);
   std::vector<vision::View> views = look(options, site), held;
   if (options.held_out > 1) {
     std::vector<vision::View> kept;
@@ -94,7 +97,7 @@ void run(const Options& options) {
                                        .map_sigma = site.search.map_sigma,
                                        .given = site_has_lens,
                                        .focal_sigma = options.focal_sigma,
-                                       .size = options.size};
+                                       .sizes = sizes};
   const vision::Calibration result = vision::calibrate(site, views, settings);
   std::printf("%d pictures, %d corners; %s\n", result.n_views, result.n_corners,
               result.converged ? "converged" : ("not converged: " + result.message).c_str());
@@ -129,6 +132,7 @@ void run(const Options& options) {
   }
   std::printf("distortion %.5f %.5f %.5f %.5f %.5f\n", lens.distortion[0], lens.distortion[1], lens.distortion[2],
               lens.distortion[3], lens.distortion[4]);
+  if (const std::string doubts = vision::lens_doubts(lens); !doubts.empty()) std::printf("%s\n", doubts.c_str());
   for (const model::Tag& tag : result.site.tags) {
     const model::Tag* was = site.tag(site.family_of(tag), tag.id);
     if (site.search.families.size() > 1) std::printf("%s ", site.family_of(tag).c_str());
@@ -164,8 +168,11 @@ void add_calibrate(CLI::App& app) {
       ->check(CLI::IsMember({"all", "lens", "map"}));
   command->add_option("--distortion", options->distortion, "coefficients that are adjusted: 0, 2, 4 or 5")
       ->check(CLI::IsMember({0, 2, 4, 5}));
-  command->add_option("--size", options->size, "m, edge of tags that are not in the map; left out: they stay outside")
-      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--size", options->sizes,
+                   "m, edge of tags that are not in the map: of all (0.15), of a family (16h5=0.15) or of one tag "
+                   "(16h5:3=0.12), more than once if wanted; left out: they stay outside")
+      ->allow_extra_args(false);
   command->add_option("--map-sigma", options->map_sigma, "m, how well the map is known; left out: the site's")
       ->check(CLI::PositiveNumber);
   command->add_option("--focal", options->focal, "px, a focal length to begin with")->check(CLI::PositiveNumber);

@@ -12,6 +12,7 @@
 #include "common/model/site.hpp"
 #include "common/pictures/source.hpp"
 #include "common/vision/drawing.hpp"
+#include "common/vision/threads.hpp"
 #include "processes/pictures/commands.hpp"
 #include "processes/pictures/mounted.hpp"
 #include "processes/pictures/track_tables.hpp"
@@ -46,6 +47,7 @@ class Summary {
     constexpr int kTold = 10;
     if (unread_ <= kTold) std::fprintf(stderr, "fathom: %s; the picture is left out\n", problem.c_str());
   }
+  [[nodiscard]] bool none_read() const { return pictures_ == unread_; }
   void print(bool has_lens, bool has_map, bool has_laser) {
     std::printf("%-34s %d\n", "pictures", pictures_);
     if (unread_ > 0) std::printf("%-34s %d\n", "  that could not be read", unread_);
@@ -84,6 +86,7 @@ std::string drawing_name(const std::string& folder, const std::string& frame) {
 }
 
 void run(const Options& options) {
+  vision::use_one_core();
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
   if (!options.families.empty()) site.look_for(options.families);
@@ -109,6 +112,8 @@ void run(const Options& options) {
   if (lens && lens->undistorted()) {
     std::fprintf(stderr, "fathom: the lens has no distortion; if nobody has calibrated it: fathom calibrate\n");
   }
+  if (const std::string doubts = lens ? vision::lens_doubts(*lens) : std::string{}; !doubts.empty())
+    std::fprintf(stderr, "fathom: %s\n", doubts.c_str());
   vision::FrontEnd front_end{site, lens, camera.laser, settings};
   TrackTables tables{options.csv, camera.R_BC};
   if (!options.drawings.empty()) {
@@ -144,6 +149,7 @@ void run(const Options& options) {
     std::fprintf(stderr, "fathom: %s\n", remark.c_str());
   tables.close();
   summary.print(lens.has_value(), !site.tags.empty(), camera.laser.has_value());
+  if (summary.none_read()) throw InputError(options.source + ": none of its pictures can be read");
   std::printf("written: %s, %s%s%s\n", options.csv.c_str(), tables.frames_path().c_str(),
               options.drawings.empty() ? "" : ", ", options.drawings.c_str());
 }

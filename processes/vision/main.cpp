@@ -11,6 +11,7 @@
 #include "common/model/mounts.hpp"
 #include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
+#include "common/vision/threads.hpp"
 #include "common/vision/watch.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/sensors.hpp"
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   return runtime::main(
       "vision", argc, argv,
       [&](runtime::Process& process) {
+        vision::use_one_core();
         process.publishes<fathom_lcm::tag_pose_t>(wire::kTagPose);
         process.publishes<fathom_lcm::optical_flow_t>(wire::kOpticalFlow);
         process.publishes<fathom_lcm::laser_range_t>(wire::kLaserRange);
@@ -69,6 +71,9 @@ int main(int argc, char** argv) {
         if (watch.front_end().lens() && watch.front_end().lens()->undistorted()) {
           process.log_info("the lens of camera '" + name +
                            "' has no distortion; if nobody has calibrated it: fathom calibrate");
+        }
+        if (const std::string doubts = vision::lens_doubts(used.camera.lens); !doubts.empty()) {
+          process.log_warning("camera '" + name + "': " + doubts);
         }
         process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
           const auto sample = wire::decode(message);

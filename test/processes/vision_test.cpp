@@ -116,6 +116,17 @@ TEST_CASE("camera_driver: a camera that is missing or none at all is told in one
   }
 }
 
+TEST_CASE("fathom track: pictures of which none can be read are an error; each has its row all the same") {
+  const Scratch scratch;
+  std::filesystem::create_directories(scratch.path("pictures"));
+  for (const char* name : {"/a.png", "/b.jpg"}) std::ofstream{scratch.path("pictures") + name} << "no picture";
+  const auto ran =
+      shell(program("fathom") + " track " + scratch.path("pictures") + " --csv " + scratch.path("out.csv"));
+  CHECK(ran.code == 1);
+  CHECK_MESSAGE(ran.says("none of its pictures can be read"), ran.text);
+  CHECK(lines(scratch.path("out.frames.csv")).size() == 3);
+}
+
 TEST_CASE("fathom track: a row per detection and per picture, a damaged one said and left out, drawings") {
   const Scratch scratch;
   make_pictures(scratch.path("pictures"));

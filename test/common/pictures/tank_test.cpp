@@ -160,7 +160,8 @@ TEST_CASE("tank: a survey from nothing but the tags' size and a lens lies within
   const auto source = pictures::open(kData + "tank_tag16h5", 10.0);
   std::vector<vision::View> views;
   while (auto frame = source->next()) views.push_back({frame->name, detector.step(pictures::in_grey(frame->picture))});
-  const vision::Calibration survey = vision::calibrate(blank, views, {.size = author.tags.front().size});
+  const vision::Calibration survey =
+      vision::calibrate(blank, views, {.sizes = vision::TagSizes{author.tags.front().size}});
   CHECK(survey.converged);
   int compared = 0;
   double worst = 0.0;

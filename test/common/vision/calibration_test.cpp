@@ -75,7 +75,7 @@ TEST_CASE("calibration: a survey from nothing but the size finds where the tags 
   model::Site blank;
   blank.lens = lens();
   blank.search = truth.search;
-  const Calibration found = calibrate(blank, views, {.lens = false, .size = 0.15});
+  const Calibration found = calibrate(blank, views, {.lens = false, .sizes = TagSizes{0.15}});
   CHECK(found.converged);
   REQUIRE(found.site.tags.size() >= 20);
   CHECK(found.site.tags.front().p_WT.norm() == 0.0);  // the origin stays where it is, and level
@@ -126,7 +126,7 @@ TEST_CASE("calibration: nothing to go by is said") {
   CHECK_THROWS_AS(static_cast<void>(calibrate(blank, {}, {})), InputError);
   blank.lens = lens();
   CHECK_THROWS_AS(static_cast<void>(calibrate(blank, {}, {})), InputError);
-  CHECK_THROWS_AS(static_cast<void>(calibrate(blank, {View{}}, {.size = 0.1})), InputError);
+  CHECK_THROWS_AS(static_cast<void>(calibrate(blank, {View{}}, {.sizes = TagSizes{0.1}})), InputError);
 }
 
 }  // namespace fathom::vision

@@ -89,6 +89,30 @@ TEST_CASE("laser: what takes the dot's place elsewhere is not believed before it
   CHECK_FALSE(front_end.laser_range("down"));
 }
 
+TEST_CASE("laser: a glint that stays in the picture is not told where tags have the floor elsewhere") {
+  constexpr double kNearer = 0.6;  // m, where the beam would be seen at its place
+  Renderer renderer{site(), lens(), laser(), {.laser = 0.6}, 21};
+  FrontEnd front_end{site(), lens(), laser(), {}};
+  const Eigen::Vector2d glint = Projection{lens()}.pixel({laser().p_CE.x(), 0.0, kNearer});
+  int told = 0, refused = 0;
+  for (int i = 0; i < 40; ++i) {
+    const double t = i / 30.0;
+    const Pose at = pose({0.2 * t, 0.1 * t, 0.4 + 0.1 * std::sin(2.0 * t)}, 0.05 * std::sin(t), 0.02, 0.2 * t);
+    cv::Mat bgr = renderer.step(t, at).clone();
+    add_spot(bgr, glint, 2.0, 1.5);
+    const Sight& sight =
+        front_end.step({.utime = utime_after(1'000'000, t), .grey = grey_of(bgr), .bgr = bgr}, at.R_WC);
+    REQUIRE(sight.fix);
+    REQUIRE(sight.fix->n_tags > 1);
+    refused += sight.laser->state == LaserState::kAgainstTags ? 1 : 0;
+    if (sight.laser->state != LaserState::kFound) continue;
+    ++told;
+    CHECK(std::abs(sight.laser->p_CL.z() - renderer.dot(at)->z()) < 3.0 * sight.laser->sigma_range);
+  }
+  MESSAGE("told " << told << ", refused " << refused << " of 40");
+  CHECK(refused > 20);
+}
+
 TEST_CASE("flow: the laser's dot and other bright spots do not outshine a bare floor") {
   for (const double second : {0.0, 2.0}) {
     CAPTURE(second);
