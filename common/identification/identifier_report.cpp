@@ -131,6 +131,7 @@ std::string Identifier::save_text() const {
   all(s.last_scores);
   all(s.last_sums);
   put(text, s.oldest);
+  put(text, s.steps);
   put(text, s.steps_until_check);
   for (const AxisStatistics& axis : s.axes) {
     for (const double value : {axis.weight, axis.mean, axis.variance, axis.covariance, axis.last}) put(text, value);
@@ -190,6 +191,7 @@ void Identifier::decide(Utime first) {
     all(s.last_scores);
     all(s.last_sums);
     s.oldest = static_cast<int>(take(text));
+    s.steps = take(text);
     s.steps_until_check = take(text);
     for (AxisStatistics& axis : s.axes) {
       for (double* value : {&axis.weight, &axis.mean, &axis.variance, &axis.covariance, &axis.last})

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLargestCorrelation = 0.995;  // beyond this the AR(1) factor says more about the sample than the noise
 constexpr double kDoubt = 2.0;                 // standard errors of a correlation
-constexpr double kLeastFreedom = 3.0;          // with less nothing is said of a noise
+constexpr double kLeastFreedom = 3.0;          // with less the noise is as stated, or larger
 constexpr double kOverlap = 1.5;               // independent sums that as many overlapping ones of one length are worth
 
 }  // namespace
@@ -161,6 +161,7 @@ void RecursiveEstimator::step(std::span<const Row> rows) {
     state_.information *= keep;
     state_.derivatives *= keep;
   }
+  state_.steps = keep * state_.steps + 1.0;
   score_.setZero();
   for (const Row& row : rows) {
     take(row);
@@ -240,8 +241,8 @@ ParameterVector RecursiveEstimator::projected() const {
 // the long-run variance through Bartlett's window (Newey & West 1987; compare Grauer & Morelli 2016). This sees the
 // colour of residual and regressor together, noise that swings as well as noise that lasts; where one sum resembles the
 // one before it beyond doubt, their memory is longer still, and goes on as AR(1) of such sums. The prior's share of the
-// information is taken at its word. A noise smaller than stated is believed as far as so many scores can tell it
-// (Student); until then what is stated holds.
+// information is taken at its word. So many scores tell a noise so well (Student); until they tell something, it is not
+// smaller than stated.
 ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
   const Eigen::Index n = size();
   const ParameterVector prior = settings_.sigma.cwiseAbs2().cwiseInverse();
@@ -250,7 +251,8 @@ ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
     const double squares = state_.score0(i), information = state_.information(i);
     if (!(squares > 0.0 && information > 0.0)) continue;
     // Gauss's fourth moment is three variances squared: of scores all alike in size this is their number.
-    const double count = state_.fourth(i) > 0.0 ? 3.0 * squares * squares / state_.fourth(i) : 1.0;
+    const double alike = state_.fourth(i) > 0.0 ? 3.0 * squares * squares / state_.fourth(i) : 1.0;
+    const double count = std::min(alike, state_.steps);
     const double freedom = kOverlap * count / kTogether;
     double seen = state_.together(i) / (kTogether * information);
     if (seen > 0.0) {
@@ -258,7 +260,8 @@ ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
       const double rho = std::clamp(resembles, 0.0, kLargestCorrelation);
       seen *= (1.0 + rho) / (1.0 - rho);
     }
-    if (seen < 1.0) seen = freedom < kLeastFreedom ? 1.0 : std::min(1.0, seen * student_widening(freedom));
+    seen *= student_widening(std::max(freedom, kLeastFreedom));
+    if (freedom < kLeastFreedom) seen = std::max(seen, 1.0);
     // Of P that much is the prior's: P = P (1 / sigma^2 + information) P.
     const double told = std::min(1.0, P.col(i).cwiseAbs2().dot(prior) / P(i, i));
     factor(i) = told + (1.0 - told) * seen;

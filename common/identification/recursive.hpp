@@ -56,6 +56,7 @@ class RecursiveEstimator {
     std::array<AxisStatistics, 6> axes{};
     ParameterVector information;  ///< sum of h^2 / variance
     ParameterVector derivatives;  ///< sum of 1 / variance over the rows that taught it as their derivative
+    double steps{};               ///< effective number of them
     ParameterVector score0;       ///< sum of the squared score, score = sum over rows of h * residual / variance
     ParameterVector fourth;       ///< sum of the score's fourth power: how many scores these sums are made of
     ParameterVector together;     ///< sum of the squares of what kTogether successive scores add up to
