@@ -12,8 +12,8 @@ namespace fathom::diagnosis {
 namespace {
 
 constexpr Eigen::Index kTogether = 12;  // rows
-constexpr double kMemory = 0.3;        // correlation over two instants: far from white
-constexpr double kSignificance = 4.0;  // standard errors of that correlation
+constexpr double kMemory = 0.3;         // correlation over two instants: far from white
+constexpr double kSignificance = 4.0;   // standard errors of that correlation
 constexpr double kSmallestMassRatio = 0.1;
 constexpr double kNegligible = 0.01;  // of the applied wrench's variance
 
@@ -71,8 +71,8 @@ void LiveEvidence::add(int axis, const Eigen::Ref<const Eigen::VectorXd>& row, d
   memory.last[0] = head;
 }
 
-// A thousand columns are megabytes, which are walked once for several rows: a column stays near meanwhile. Each product is
-// added by itself and in the rows' order. Many candidates have no part in many axes.
+// A thousand columns are megabytes, which are walked once for several rows: a column stays near meanwhile. Each product
+// is added by itself and in the rows' order. Many candidates have no part in many axes.
 void LiveEvidence::sum_up() {
   for (Eigen::Index column = 0; column < size_; ++column) {
     for (Eigen::Index k = 0; k < waits_; ++k) {

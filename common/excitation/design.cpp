@@ -163,8 +163,8 @@ Segment Designer::next(const StateEstimate& state, double turned, const ModelEst
     scale[i] = std::max(std::abs(value), settings_.smallest_scale * sigma);
     // A model that is hardly known yet must still predict a finite motion.
     const double size = std::max(std::abs(ordinary.mean), settings_.smallest_scale * sigma);
-    // Nor does a mass that nothing has count: so light a vehicle would leave the fence in every rehearsal, nothing would be
-    // flown that could tell more of it, and it would stay.
+    // Nor does a mass that nothing has count: so light a vehicle would leave the fence in every rehearsal, nothing
+    // would be flown that could tell more of it, and it would stay.
     if (model::sign_constraint(parameter) > 0 && value < kPossible * size) value = size;
     if (model::sign_constraint(parameter) < 0) value = std::min(value, -kLightest * size);
     model_.theta[model::index(parameter)] = value;

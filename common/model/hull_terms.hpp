@@ -1,5 +1,5 @@
-// What the hull feels in still water, whatever its actuators do, term by term: for who asks what many forces would do to
-// one motion.
+// What the hull feels in still water, whatever its actuators do, term by term: for who asks what many forces would do
+// to one motion.
 #pragma once
 
 #include "common/model/dynamics.hpp"
