@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLargestCorrelation = 0.995;  // beyond this the AR(1) factor says more about the sample than the noise
 constexpr double kDoubt = 2.0;                 // standard errors of a correlation
-constexpr double kLeastFreedom = 3.0;          // with less the noise is as stated, or larger
+constexpr double kStatedFreedom = 3.0;         // of the stated noise: with two a variance has no mean
 constexpr double kOverlap = 1.5;               // independent sums that as many overlapping ones of one length are worth
 
 }  // namespace
@@ -241,8 +241,9 @@ ParameterVector RecursiveEstimator::projected() const {
 // the long-run variance through Bartlett's window (Newey & West 1987; compare Grauer & Morelli 2016). This sees the
 // colour of residual and regressor together, noise that swings as well as noise that lasts; where one sum resembles the
 // one before it beyond doubt, their memory is longer still, and goes on as AR(1) of such sums. The prior's share of the
-// information is taken at its word. So many scores tell a noise so well (Student); until they tell something, it is not
-// smaller than stated.
+// information is taken at its word. So many scores tell a noise so well (Student). Where they are smaller than stated,
+// the statement counts as if it were the least that has a mean: a few quiet seconds prove little, and what no score
+// shows keeps some room.
 ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
   const Eigen::Index n = size();
   const ParameterVector prior = settings_.sigma.cwiseAbs2().cwiseInverse();
@@ -260,8 +261,8 @@ ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
       const double rho = std::clamp(resembles, 0.0, kLargestCorrelation);
       seen *= (1.0 + rho) / (1.0 - rho);
     }
-    seen *= student_widening(std::max(freedom, kLeastFreedom));
-    if (freedom < kLeastFreedom) seen = std::max(seen, 1.0);
+    if (seen < 1.0) seen = (kStatedFreedom + freedom * seen) / (kStatedFreedom + freedom);
+    seen *= student_widening(kStatedFreedom + freedom);
     // Of P that much is the prior's: P = P (1 / sigma^2 + information) P.
     const double told = std::min(1.0, P.col(i).cwiseAbs2().dot(prior) / P(i, i));
     factor(i) = told + (1.0 - told) * seen;
