@@ -53,4 +53,17 @@ double f_quantile(double probability, double freedom) {
   return 0.5 * (low + high);
 }
 
+// Fisher and Cornish 1960 (Abramowitz and Stegun 26.7.5): f_quantile(0.05, freedom) without a search.
+double student_widening(double freedom) {
+  constexpr double z = 1.959964;
+  constexpr double z2 = z * z;
+  const double inverse = 1.0 / freedom;
+  const double g1 = (z2 + 1.0) / 4.0;
+  const double g2 = ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
+  const double g3 = (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
+  const double g4 = ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
+  const double t_over_z = 1.0 + inverse * (g1 + inverse * (g2 + inverse * (g3 + inverse * g4)));
+  return t_over_z * t_over_z;
+}
+
 }  // namespace fathom

@@ -9,5 +9,9 @@ namespace fathom {
 [[nodiscard]] double f_tail(double f, double freedom);
 /// The value that is exceeded with `probability`: the inverse of f_tail.
 [[nodiscard]] double f_quantile(double probability, double freedom);
+/// The square of what Student's t exceeds in size with a probability of 5 %, over that of a Gaussian number: by how
+/// much a variance that was seen with so much freedom must be widened to give 95 % intervals. To 1 % from freedom 3
+/// upwards.
+[[nodiscard]] double student_widening(double freedom);
 
 }  // namespace fathom

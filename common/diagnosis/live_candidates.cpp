@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/model/effect_size.hpp"
+#include "common/model/hull_terms.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -93,11 +94,12 @@ void LiveCandidates::add(int form, const std::vector<double>& theta) {
 void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForces& middle, double dt,
                           Eigen::Ref<WrenchColumns> wrench, Eigen::Ref<WrenchColumns> momentum) {
   model::Load load;
-  const Vector6d absent = model::generalised_force(base_, motion, load);
+  const model::HullTerms hull{base_, motion};
+  const Vector6d absent = model::generalised_force(base_, motion, hull, load);
   model::Motion halfway = motion;
   halfway.t -= 0.5 * dt;
   halfway.force = middle;
-  model::Motion felt;
+  model::Motion felt = motion;
   Vector6d at_start = Vector6d::Zero();
   Vector6d momentum_at_start = Vector6d::Zero();
   for (Probe& probe : probes_) {
@@ -108,10 +110,16 @@ void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForc
         probe.effect->settle(motion, probe.theta, probe.variant, probe.memory);
       }
     }
-    felt = motion;
-    if (probe.effect->measures()) felt.nu = unmeasured(*probe.effect, motion.nu, probe.theta, probe.variant);
+    felt.nu = probe.effect->measures() ? unmeasured(*probe.effect, motion.nu, probe.theta, probe.variant) : motion.nu;
+    felt.v_WF_B = motion.v_WF_B;  // and all else that feel() may alter
+    felt.a_WF_B = motion.a_WF_B;
+    felt.w_memory = motion.w_memory;
+    felt.force = motion.force;
     probe.effect->feel(felt, probe.theta, probe.variant, probe.memory);
-    const Vector6d force = model::generalised_force(base_, felt, load);
+    // Most alter no more than thrust, and there are a thousand of them.
+    const bool as_hull = !probe.effect->measures() && !model::water_moves(felt);
+    const Vector6d force = as_hull ? model::generalised_force(base_, felt, hull, load)  //
+                                   : model::generalised_force(base_, felt, load);
     probe.effect->load(felt, probe.theta, probe.variant, load);
     const Vector6d total = force + load.wrench;
     const bool is_start = probe.per_step == 0.0;

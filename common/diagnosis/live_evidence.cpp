@@ -11,8 +11,9 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kMemory = 0.3;        // correlation over two instants: far from white
-constexpr double kSignificance = 4.0;  // standard errors of that correlation
+constexpr Eigen::Index kTogether = 12;  // rows
+constexpr double kMemory = 0.3;         // correlation over two instants: far from white
+constexpr double kSignificance = 4.0;   // standard errors of that correlation
 constexpr double kSmallestMassRatio = 0.1;
 constexpr double kNegligible = 0.01;  // of the applied wrench's variance
 
@@ -33,6 +34,7 @@ LiveEvidence::LiveEvidence(const LiveCandidates& candidates, const Eigen::Vector
   }
   within_at_.push_back(at);
   total_.setZero(size_, size_);
+  waiting_.setZero(size_, kTogether);
   open_ = empty_block();
   for (AxisMemory& memory : memory_) {
     memory.now.setZero(base_ + 1, base_ + 1);
@@ -47,7 +49,8 @@ LiveEvidence::Block LiveEvidence::empty_block() const {
 }
 
 void LiveEvidence::add(int axis, const Eigen::Ref<const Eigen::VectorXd>& row, double applied) {
-  total_.selfadjointView<Eigen::Upper>().rankUpdate(row);
+  if (waits_ == waiting_.cols()) sum_up();
+  waiting_.col(waits_++) = row;
   open_.head.noalias() += row.head(base_ + 1) * row.transpose();
   for (std::size_t s = 0; s < candidates_.starts().size(); ++s) {
     const LiveStart& start = candidates_.starts()[s];
@@ -66,6 +69,18 @@ void LiveEvidence::add(int axis, const Eigen::Ref<const Eigen::VectorXd>& row, d
     ++memory.pairs;
   }
   memory.last[0] = head;
+}
+
+// A thousand columns are megabytes, which are walked once for several rows: a column stays near meanwhile. Each product
+// is added by itself and in the rows' order. Many candidates have no part in many axes.
+void LiveEvidence::sum_up() {
+  for (Eigen::Index column = 0; column < size_; ++column) {
+    for (Eigen::Index k = 0; k < waits_; ++k) {
+      const double factor = waiting_(column, k);
+      if (factor != 0.0) total_.col(column).head(column + 1) += factor * waiting_.col(k).head(column + 1);
+    }
+  }
+  waits_ = 0;
 }
 
 void LiveEvidence::next_instant() {
@@ -101,6 +116,7 @@ void LiveEvidence::close_block() {
 }
 
 void LiveEvidence::project() {
+  sum_up();
   const Eigen::Index rest = size_ - base_;
   Eigen::MatrixXd normal = total_.topLeftCorner(base_, base_).selfadjointView<Eigen::Upper>();
   normal.diagonal() += prior_information_;

@@ -67,6 +67,7 @@ class LiveEvidence {
                                   const Eigen::VectorXd& own) const;
   [[nodiscard]] LiveSuspicion fit(const LiveStart& start, double& cost) const;
   [[nodiscard]] Block empty_block() const;
+  void sum_up();
 
   const LiveCandidates& candidates_;
   Eigen::VectorXd prior_information_;
@@ -75,7 +76,9 @@ class LiveEvidence {
   Eigen::Index base_;
   Eigen::Index size_;
   std::vector<Eigen::Index> within_at_;
-  Eigen::MatrixXd total_;  // upper triangle
+  Eigen::MatrixXd total_;    // upper triangle
+  Eigen::MatrixXd waiting_;  // rows of an instant, as columns, that total_ lacks
+  Eigen::Index waits_{};
   std::vector<Block> blocks_;
   Block open_;
   int open_parts_{};

@@ -14,7 +14,8 @@ namespace fathom::excitation {
 namespace {
 
 constexpr double kStep = 0.05;      // s of the prediction
-constexpr double kLightest = 0.2;   // share of the prior's size that a predicted mass keeps: it must move finitely
+constexpr double kLightest = 0.2;   // share of the prior's size that a predicted drag keeps
+constexpr double kPossible = 0.3;   // of the prior's size: no mass is less, as LeavingSettings::lightest_share
 constexpr double kBendWorth = 0.5;  // a segment that the fence alters all the time is worth half of what it promises
 
 double log_det(const Eigen::MatrixXd& matrix) {
@@ -162,7 +163,9 @@ Segment Designer::next(const StateEstimate& state, double turned, const ModelEst
     scale[i] = std::max(std::abs(value), settings_.smallest_scale * sigma);
     // A model that is hardly known yet must still predict a finite motion.
     const double size = std::max(std::abs(ordinary.mean), settings_.smallest_scale * sigma);
-    if (model::sign_constraint(parameter) > 0) value = std::max(value, kLightest * size);
+    // Nor does a mass that nothing has count: so light a vehicle would leave the fence in every rehearsal, nothing
+    // would be flown that could tell more of it, and it would stay.
+    if (model::sign_constraint(parameter) > 0 && value < kPossible * size) value = size;
     if (model::sign_constraint(parameter) < 0) value = std::min(value, -kLightest * size);
     model_.theta[model::index(parameter)] = value;
   }

@@ -220,21 +220,23 @@ Taken take_row(const Recursion& to, const double* h, double y, double variance, 
 FATHOM_ALSO_WITH_AVX
 void add_scores(const ScoreSums& to, const double* score, double keep) {
   for (std::ptrdiff_t i = 0; i < to.n; i += 4) {
-    Packet s, last, before, squares, fourth, one, two;
+    Packet s, sum, oldest_score, oldest_sum, squares, fourth, together, apart;
     load(s, score + i);
-    load(last, to.last + i);
-    load(before, to.before + i);
+    load(sum, to.sum + i);
+    load(oldest_score, to.oldest_score + i);
+    load(oldest_sum, to.oldest_sum + i);
     load(squares, to.squares + i);
     load(fourth, to.fourth + i);
-    load(one, to.one_before + i);
-    load(two, to.two_before + i);
+    load(together, to.together + i);
+    load(apart, to.apart + i);
     const Packet square = s * s;
+    sum += s - oldest_score;
     store(to.squares + i, keep * squares + square);
     store(to.fourth + i, keep * fourth + square * square);
-    store(to.one_before + i, keep * one + s * last);
-    store(to.two_before + i, keep * two + s * before);
-    store(to.before + i, last);
-    store(to.last + i, s);
+    store(to.together + i, keep * together + sum * sum);
+    store(to.apart + i, keep * apart + sum * oldest_sum);
+    store(to.oldest_score + i, s);
+    store(to.oldest_sum + i, sum);
   }
 }
 

@@ -30,10 +30,12 @@ struct Taken {
 /// Takes in h . x = y of noise `variance`; what h has behind n does not count. Leaves P h in `gain`.
 Taken take_row(const Recursion& to, const double* h, double y, double variance, double* gain);
 
-/// Products of a step's scores with themselves and with those of one and two steps before, `keep` of the old ones left.
+/// Powers of a step's scores, and products of their sums over some steps, `keep` of the old ones left.
 struct ScoreSums {
-  double *squares, *fourth, *one_before, *two_before;
-  double *last, *before;  ///< scores of the last two steps
+  double *squares, *fourth;
+  double *together, *apart;           ///< a sum's square; its product with the sum of just as many steps before
+  const double* sum;                  ///< as the step before left it
+  double *oldest_score, *oldest_sum;  ///< which leave; the step's own take their places
   std::ptrdiff_t n;
 };
 void add_scores(const ScoreSums& to, const double* score, double keep);

@@ -17,7 +17,7 @@ constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 5";
+constexpr char kHeader[] = "fathom identifier 6";
 
 void put(std::string& text, double value) {
   std::array<char, 32> number{};
@@ -125,11 +125,13 @@ std::string Identifier::save_text() const {
   all(s.information);
   all(s.derivatives);
   all(s.score0);
-  all(s.score1);
-  all(s.score2);
+  all(s.together);
+  all(s.apart);
   all(s.fourth);
-  all(s.last_score);
-  all(s.score_before);
+  all(s.last_scores);
+  all(s.last_sums);
+  put(text, s.oldest);
+  put(text, s.steps);
   put(text, s.steps_until_check);
   for (const AxisStatistics& axis : s.axes) {
     for (const double value : {axis.weight, axis.mean, axis.variance, axis.covariance, axis.last}) put(text, value);
@@ -183,11 +185,13 @@ void Identifier::decide(Utime first) {
     all(s.information);
     all(s.derivatives);
     all(s.score0);
-    all(s.score1);
-    all(s.score2);
+    all(s.together);
+    all(s.apart);
     all(s.fourth);
-    all(s.last_score);
-    all(s.score_before);
+    all(s.last_scores);
+    all(s.last_sums);
+    s.oldest = static_cast<int>(take(text));
+    s.steps = take(text);
     s.steps_until_check = take(text);
     for (AxisStatistics& axis : s.axes) {
       for (double* value : {&axis.weight, &axis.mean, &axis.variance, &axis.covariance, &axis.last})

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/base/distributions.hpp"
 #include "common/base/error.hpp"
 #include "common/identification/bierman.hpp"
 
@@ -14,8 +15,9 @@ namespace fathom::identification {
 namespace {
 
 constexpr double kLargestCorrelation = 0.995;  // beyond this the AR(1) factor says more about the sample than the noise
-constexpr double kDoubtOfRatio = 16.0;         // four standard errors, squared
-constexpr double kStatedScores = 20.0;  // independent ones that the stated noise is worth: a third of it in doubt
+constexpr double kDoubt = 2.0;                 // standard errors of a correlation
+constexpr double kStatedFreedom = 3.0;         // of the stated noise: with two a variance has no mean
+constexpr double kOverlap = 1.5;               // independent sums that as many overlapping ones of one length are worth
 
 }  // namespace
 
@@ -51,8 +53,8 @@ void RecursiveEstimator::reset() {
   state_.D = none;
   state_.D.head(n) = settings_.sigma.cwiseAbs2();
   state_.derivatives = ParameterVector::Zero(n);
-  state_.information = state_.score0 = state_.score1 = state_.score2 = state_.fourth = none;
-  state_.last_score = state_.score_before = score_ = none;
+  state_.information = state_.score0 = state_.fourth = state_.together = state_.apart = score_ = none;
+  state_.last_scores = state_.last_sums = ParameterMatrix::Zero(padded(n), kTogether);
   count_frozen();
 }
 
@@ -159,6 +161,7 @@ void RecursiveEstimator::step(std::span<const Row> rows) {
     state_.information *= keep;
     state_.derivatives *= keep;
   }
+  state_.steps = keep * state_.steps + 1.0;
   score_.setZero();
   for (const Row& row : rows) {
     take(row);
@@ -167,12 +170,14 @@ void RecursiveEstimator::step(std::span<const Row> rows) {
   }
   add_scores({.squares = state_.score0.data(),
               .fourth = state_.fourth.data(),
-              .one_before = state_.score1.data(),
-              .two_before = state_.score2.data(),
-              .last = state_.last_score.data(),
-              .before = state_.score_before.data(),
+              .together = state_.together.data(),
+              .apart = state_.apart.data(),
+              .sum = state_.last_sums.col((state_.oldest + kTogether - 1) % kTogether).data(),
+              .oldest_score = state_.last_scores.col(state_.oldest).data(),
+              .oldest_sum = state_.last_sums.col(state_.oldest).data(),
               .n = size()},
              score_.data(), keep);
+  state_.oldest = (state_.oldest + 1) % kTogether;
 }
 
 ParameterMatrix RecursiveEstimator::covariance() const {
@@ -232,11 +237,13 @@ ParameterVector RecursiveEstimator::projected() const {
 }
 
 // The estimate errs by P times the sum of the scores. White residuals of the stated variance give that sum a variance
-// equal to the information; what it really is, is read off the scores: their size, and their correlation over one step
-// and two taken as ARMA(1, 1) (the effective sample size; compare Grauer & Morelli 2016): windows that overlap make the
-// one, residuals with a memory the other. This sees the colour of residual and regressor together. The prior's share of
-// the information is taken at its word. Where residuals are smaller than stated, the statement counts as if so many
-// independent scores had told it: a few quiet seconds prove little.
+// equal to the information; what it really is, is read off the scores: sums of kTogether steps that overlap, which is
+// the long-run variance through Bartlett's window (Newey & West 1987; compare Grauer & Morelli 2016). This sees the
+// colour of residual and regressor together, noise that swings as well as noise that lasts; where one sum resembles the
+// one before it beyond doubt, their memory is longer still, and goes on as AR(1) of such sums. The prior's share of the
+// information is taken at its word. So many scores tell a noise so well (Student). Where they are smaller than stated,
+// the statement counts as if it were the least that has a mean: a few quiet seconds prove little, and what no score
+// shows keeps some room.
 ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
   const Eigen::Index n = size();
   const ParameterVector prior = settings_.sigma.cwiseAbs2().cwiseInverse();
@@ -245,15 +252,17 @@ ParameterVector RecursiveEstimator::inflation(const ParameterMatrix& P) const {
     const double squares = state_.score0(i), information = state_.information(i);
     if (!(squares > 0.0 && information > 0.0)) continue;
     // Gauss's fourth moment is three variances squared: of scores all alike in size this is their number.
-    const double count = state_.fourth(i) > 0.0 ? 3.0 * squares * squares / state_.fourth(i) : 1.0;
-    const double rho = std::clamp(state_.score1(i) / squares, 0.0, kLargestCorrelation);
-    // Two correlations, each known to 1 / sqrt(count): where the first is no more than that, AR(1).
-    const double doubt = kDoubtOfRatio / count;
-    const double fades = rho * (state_.score2(i) / squares + doubt) / (rho * rho + doubt);
-    const double longer = 1.0 + 2.0 * rho / (1.0 - std::clamp(fades, 0.0, kLargestCorrelation));
-    double seen = squares * longer / information;
-    const double scores = count / longer;
-    if (seen < 1.0) seen = (kStatedScores + scores * seen) / (kStatedScores + scores);
+    const double alike = state_.fourth(i) > 0.0 ? 3.0 * squares * squares / state_.fourth(i) : 1.0;
+    const double count = std::min(alike, state_.steps);
+    const double freedom = kOverlap * count / kTogether;
+    double seen = state_.together(i) / (kTogether * information);
+    if (seen > 0.0) {
+      const double resembles = state_.apart(i) / state_.together(i) - kDoubt / std::sqrt(freedom);
+      const double rho = std::clamp(resembles, 0.0, kLargestCorrelation);
+      seen *= (1.0 + rho) / (1.0 - rho);
+    }
+    if (seen < 1.0) seen = (kStatedFreedom + freedom * seen) / (kStatedFreedom + freedom);
+    seen *= student_widening(kStatedFreedom + freedom);
     // Of P that much is the prior's: P = P (1 / sigma^2 + information) P.
     const double told = std::min(1.0, P.col(i).cwiseAbs2().dot(prior) / P(i, i));
     factor(i) = told + (1.0 - told) * seen;
@@ -282,10 +291,11 @@ RecursiveReport RecursiveEstimator::report() const {
 void RecursiveEstimator::restore(const State& state) {
   const Eigen::Index n = settings_.mean.size();
   const auto full = [&](const ParameterVector& v) { return v.size() == padded(n); };
+  const auto last = [&](const ParameterMatrix& m) { return m.rows() == padded(n) && m.cols() == kTogether; };
   const bool fits = full(state.estimate) && full(state.D) && state.U.rows() == padded(n) && state.U.cols() == n &&
                     state.derivatives.size() == n && full(state.information) && full(state.score0) &&
-                    full(state.score1) && full(state.score2) && full(state.fourth) && full(state.last_score) &&
-                    full(state.score_before);
+                    full(state.fourth) && full(state.together) && full(state.apart) && last(state.last_scores) &&
+                    last(state.last_sums) && state.oldest >= 0 && state.oldest < kTogether;
   if (!fits) throw InputError("recursive estimator: saved state is of another number of parameters");
   if (!state.estimate.allFinite() || !state.U.allFinite() || !state.D.allFinite() ||
       !(state.D.head(n).minCoeff() > 0.0)) {

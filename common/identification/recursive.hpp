@@ -40,6 +40,11 @@ struct RecursiveReport {
 
 class RecursiveEstimator {
  public:
+  /// Steps over which scores are summed to see how they hang together: two of the identifier's windows. Windows that
+  /// overlap share their noise, and an error of the velocity between two has one sign in the first and the other in the
+  /// second.
+  static constexpr int kTogether = 8;
+
   /// Everything that step() changes: copy it to save, hand it back to resume. Vectors, and the rows of U, are rounded
   /// up to packets by zeros (bierman.hpp).
   struct State {
@@ -51,11 +56,14 @@ class RecursiveEstimator {
     std::array<AxisStatistics, 6> axes{};
     ParameterVector information;  ///< sum of h^2 / variance
     ParameterVector derivatives;  ///< sum of 1 / variance over the rows that taught it as their derivative
+    double steps{};               ///< effective number of them
     ParameterVector score0;       ///< sum of the squared score, score = sum over rows of h * residual / variance
-    ParameterVector score1;       ///< sum of score times the score before
-    ParameterVector score2;       ///< sum of score times the one two steps before
     ParameterVector fourth;       ///< sum of the score's fourth power: how many scores these sums are made of
-    ParameterVector last_score, score_before;
+    ParameterVector together;     ///< sum of the squares of what kTogether successive scores add up to
+    ParameterVector apart;        ///< sum of its products with what as many scores before it add up to
+    ParameterMatrix last_scores;  ///< of the last kTogether steps, a column each, written round and round
+    ParameterMatrix last_sums;    ///< likewise
+    int oldest{};                 ///< of the columns
     double steps_until_check{};
   };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "common/model/hull_terms.hpp"
+
 namespace fathom::model {
 namespace {
 
@@ -18,6 +20,13 @@ std::ptrdiff_t registry_rank(const Effect* effect) {
 int actuators(const Model& model) { return static_cast<int>(model.allocation.cols()); }
 
 Vector6d inertia_diagonal(const Model& model) { return model.theta.head<6>(); }
+
+/// By actuators and by what effects remember.
+Vector6d pushed(const Model& model, const Motion& motion) {
+  Vector6d force = motion.w_memory;  // column by column: six rows at a time are quicker than a product of unknown size
+  for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
+  return force;
+}
 
 }  // namespace
 
@@ -76,39 +85,52 @@ Vector6d hull_drag(const Model& model, const Vector6d& nu_r) {
          model.theta.segment<6>(index(BaseParameter::X_uu)).cwiseProduct(nu_r.cwiseAbs().cwiseProduct(nu_r));
 }
 
+// Kirchhoff: C(nu) nu = [w x P; w x L + v x P] with momenta P, L (Fossen 2011, eq. 6.44 for diagonal M).
+HullTerms::HullTerms(const Model& model, const Motion& motion) : drag{hull_drag(model, motion.nu)} {
+  const auto& theta = model.theta;
+  const Vector6d inertia = inertia_diagonal(model);
+  const Eigen::Vector3d v = motion.nu.head<3>();
+  const Eigen::Vector3d w = motion.nu.tail<3>();
+  const Eigen::Vector3d momentum = inertia.head<3>().cwiseProduct(v);
+  const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
+  coriolis << w.cross(momentum), w.cross(angular) + v.cross(momentum);
+  const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
+  restoring << theta[index(BaseParameter::W_B)] * down_B, theta.segment<3>(index(BaseParameter::G_x)).cross(down_B);
+}
+
+Vector6d generalised_force(const Model& model, const Motion& motion, const HullTerms& hull, Load& load) {
+  Vector6d force = pushed(model, motion) - hull.coriolis;
+  load.clear();
+  load.drag = hull.drag;
+  force += load.drag;
+  force += hull.restoring;
+  for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
+  return force + load.wrench;
+}
+
 Vector6d generalised_force(const Model& model, const Motion& motion, Load& load) {
+  if (!water_moves(motion)) return generalised_force(model, motion, HullTerms{model, motion}, load);
   const auto& theta = model.theta;
   const Vector6d inertia = inertia_diagonal(model);
   const Vector6d nu_r = motion.nu_r();
   const Eigen::Vector3d v = motion.nu.head<3>();
   const Eigen::Vector3d w = motion.nu.tail<3>();
-  const bool water_moves = !motion.v_WF_B.isZero(0.0) || !motion.a_WF_B.isZero(0.0);
+  Vector6d force = pushed(model, motion);
 
-  Vector6d force = motion.w_memory;  // column by column: six rows at a time are quicker than a product of unknown size
-  for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
-
-  // Kirchhoff: C(nu) nu = [w x P; w x L + v x P] with momenta P, L (Fossen 2011, eq. 6.44 for diagonal M).
-  if (!water_moves) {
-    const Eigen::Vector3d momentum = inertia.head<3>().cwiseProduct(v);
-    const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
-    force.head<3>() -= w.cross(momentum);
-    force.tail<3>() -= w.cross(angular) + v.cross(momentum);
-  } else {
-    // The rigid share weighs the same along every axis, so that v x m v = 0: still water is not needed for rest.
-    const double stated = model.vehicle->mass;
-    const double mass = stated > 0.0 ? stated : kUnknownRigidShare * inertia.head<3>().mean();
-    const Eigen::Vector3d added = inertia.head<3>() - Eigen::Vector3d::Constant(mass);
-    const Eigen::Vector3d v_r = nu_r.head<3>();
-    const Eigen::Vector3d momentum_r = added.cwiseProduct(v_r);
-    const Eigen::Vector3d momentum = mass * v;
-    const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
-    // Steady water in W: its velocity seen in B turns with the body, nu_c_dot = -w x v_c.
-    force.head<3>() -= w.cross(momentum + momentum_r) + added.cwiseProduct(w.cross(motion.v_WF_B));
-    force.tail<3>() -= w.cross(angular) + v_r.cross(momentum_r);
-    // Accelerating water drags the added mass along, and its pressure gradient pushes the displaced water's share
-    // (Froude-Krylov), which for a vehicle near neutral buoyancy weighs as much as the vehicle: m + A in all.
-    force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
-  }
+  // The rigid share weighs the same along every axis, so that v x m v = 0: still water is not needed for rest.
+  const double stated = model.vehicle->mass;
+  const double mass = stated > 0.0 ? stated : kUnknownRigidShare * inertia.head<3>().mean();
+  const Eigen::Vector3d added = inertia.head<3>() - Eigen::Vector3d::Constant(mass);
+  const Eigen::Vector3d v_r = nu_r.head<3>();
+  const Eigen::Vector3d momentum_r = added.cwiseProduct(v_r);
+  const Eigen::Vector3d momentum = mass * v;
+  const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
+  // Steady water in W: its velocity seen in B turns with the body, nu_c_dot = -w x v_c.
+  force.head<3>() -= w.cross(momentum + momentum_r) + added.cwiseProduct(w.cross(motion.v_WF_B));
+  force.tail<3>() -= w.cross(angular) + v_r.cross(momentum_r);
+  // Accelerating water drags the added mass along, and its pressure gradient pushes the displaced water's share
+  // (Froude-Krylov), which for a vehicle near neutral buoyancy weighs as much as the vehicle: m + A in all.
+  force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
 
   load.clear();
   load.drag = hull_drag(model, nu_r);

@@ -16,6 +16,7 @@ namespace {
 constexpr std::array<const char*, 6> kMotionNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kUnitTolerance = 0.01;      // an axis typed with three digits is still a unit vector
 constexpr double kTriangleTolerance = 1e-9;  // a flat plate meets the triangle inequality exactly
+constexpr double kWithWater = 6.0;           // times the rigid body, as LeavingSettings::heaviest_share
 constexpr double kControlTolerance = 1e-6;   // of a unit wrench, in the units of the allocation
 constexpr double kAgreementTolerance =
     0.02;  // allocation typed with two digits against the one computed from positions
@@ -175,7 +176,21 @@ void check_authority(const Config& config, const Vehicle& vehicle) {
   }
 }
 
-Prior read_prior(const Config& config, const std::string& key, BaseParameter parameter) {
+// All mass in the hull's corners is the most that a rigid body can have; some more for the water that turns with it.
+void check_moment(const Config& section, const std::string& key, BaseParameter parameter, double mean,
+                  const Vehicle& vehicle) {
+  const int turn = index(parameter) - index(BaseParameter::I_X);
+  if (turn < 0 || turn > 2) return;
+  if (vehicle.mass <= 0.0 || vehicle.hull.minCoeff() <= 0.0) return;
+  Eigen::Vector3d corner = 0.5 * vehicle.hull;
+  corner[turn] = 0.0;
+  const double largest = kWithWater * vehicle.mass * corner.squaredNorm();
+  if (mean <= largest) return;
+  section.fail("mean", "'" + key + "' of " + number(mean) + " kg m^2 is impossible: with this 'mass' and 'hull', " +
+                           "water included, it is at most " + number(largest) + " kg m^2; correct one of the three");
+}
+
+Prior read_prior(const Config& config, const std::string& key, BaseParameter parameter, const Vehicle& vehicle) {
   const std::string wanted{unit(parameter)};
   const Config section = config.section(key);
   const Prior prior{section.quantity("mean", wanted), section.quantity("sigma", wanted)};
@@ -183,6 +198,7 @@ Prior read_prior(const Config& config, const std::string& key, BaseParameter par
   if (sign_constraint(parameter) > 0 && prior.mean <= 0.0) {
     section.fail("mean", "'" + key + "' must be positive");
   }
+  check_moment(section, key, parameter, prior.mean, vehicle);
   if (sign_constraint(parameter) < 0 && prior.mean > 0.0) {
     section.fail("mean", "'" + key + "' must not be positive: drag opposes motion (Fossen's sign)");
   }
@@ -204,7 +220,7 @@ void read_parameters(const Config& config, Vehicle& vehicle) {
       if (std::find(vehicle.parameters.begin(), vehicle.parameters.end(), name) == vehicle.parameters.end()) {
         priors.fail(name, "'" + name + "' has a prior but is not enabled; add it to 'parameters' or free its motion");
       }
-      stated.emplace_back(name, read_prior(priors, name, *parameter));
+      stated.emplace_back(name, read_prior(priors, name, *parameter, vehicle));
     }
   }
   for (const std::string& name : vehicle.parameters) {

@@ -35,9 +35,9 @@ std::string near_url(const std::string& url) {
   return url.substr(0, at) + "ttl=0" + (end == std::string::npos ? "" : url.substr(end));
 }
 
-bool is_picture(const std::string& channel) { return channel == "CAMERA" || channel == "CAMERA_DEBUG"; }
-
 }  // namespace
+
+bool is_picture(const std::string& channel) { return std::ranges::find(kPictures, channel) != std::end(kPictures); }
 
 Url Url::parse(const std::string& text, const std::string& argument) {
   const auto complain = [&](const std::string& what) { return InputError(argument + " " + text + ": " + what); };

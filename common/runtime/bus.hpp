@@ -1,6 +1,7 @@
 // Where messages come from and go to: a live LCM bus or event logs, told apart by their URL.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/event_log.hpp"
@@ -100,6 +102,10 @@ class LiveInput {
   std::exception_ptr failure_;  ///< caught inside liblcm's C frames, rethrown outside
   std::vector<std::unique_ptr<lcm::LCM>> buses_;
 };
+
+/// Channels whose messages are hundreds of kilobytes.
+inline constexpr std::array<std::string_view, 2> kPictures{"CAMERA", "CAMERA_DEBUG"};
+[[nodiscard]] bool is_picture(const std::string& channel);
 
 /// The one place messages go to. Pictures stay on their host even where the bus reaches others (ttl above 0): one alone
 /// is more than a cable to the surface carries beside everything else, and a message above the network's packet size is

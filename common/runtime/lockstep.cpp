@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/runtime/bus.hpp"
 #include "common/runtime/recorder.hpp"
 
 namespace fathom::runtime {
@@ -18,7 +19,32 @@ std::string list(const std::vector<std::string>& names) {
 }  // namespace
 
 bool is_free_channel(const std::string& channel) {
-  return channel == "OPERATOR" || channel == "HEALTH" || channel == "PROCESS_INFO";
+  return std::ranges::find(kFreeChannels, channel) != std::end(kFreeChannels);
+}
+
+bool travels_alone(const std::string& channel) { return is_free_channel(channel) || is_picture(channel); }
+
+void Said::add(const std::string& name, std::span<const std::uint8_t> message) {
+  const bool alone = travels_alone(name);
+  channel.push_back(name);
+  size.push_back(alone ? 0 : static_cast<std::int32_t>(message.size()));
+  if (!alone) bytes.insert(bytes.end(), message.begin(), message.end());
+}
+
+std::vector<std::span<const std::uint8_t>> enclosed(const fathom_lcm::lockstep_t& phase) {
+  std::vector<std::span<const std::uint8_t>> messages;
+  messages.reserve(phase.channel.size());
+  std::span<const std::uint8_t> left = phase.bytes;
+  for (std::size_t i = 0; i < phase.channel.size(); ++i) {
+    const std::int32_t size = i < phase.size.size() ? phase.size[i] : 0;
+    if (size < 0 || static_cast<std::size_t>(size) > left.size()) {
+      throw InputError(
+          "LOCKSTEP: a phase whose sizes are not those of its messages; is every process of the same build?");
+    }
+    messages.push_back(left.first(static_cast<std::size_t>(size)));
+    left = left.subspan(static_cast<std::size_t>(size));
+  }
+  return messages;
 }
 
 Follower::Follower(std::string name, std::vector<std::string> heard)
@@ -39,6 +65,7 @@ void Follower::announced(const fathom_lcm::lockstep_t& phase) {
     if (!all && phase.channel.front() != name_) return;
     ends_ = true;
     answer_ = {};
+    said_ = {};
     answer_.utime = phase.utime;
     answer_.process = name_;
     answer_.tick = phase.tick;
@@ -51,12 +78,18 @@ void Follower::announced(const fathom_lcm::lockstep_t& phase) {
 std::optional<std::vector<Follower::Message>> Follower::next() {
   if (phases_.empty()) return {};
   const fathom_lcm::lockstep_t& phase = phases_.front();
-  std::vector<std::size_t> order, wanted(heard_.size(), 0);
-  for (const std::string& channel : phase.channel) {
-    const auto found = std::find(heard_.begin(), heard_.end(), channel);
+  const std::vector<std::span<const std::uint8_t>> bodies = enclosed(phase);
+  std::vector<std::size_t> wanted(heard_.size(), 0);
+  struct Entry {
+    std::size_t hearing;
+    std::span<const std::uint8_t> body;
+  };
+  std::vector<Entry> order;
+  for (std::size_t i = 0; i < phase.channel.size(); ++i) {
+    const auto found = std::find(heard_.begin(), heard_.end(), phase.channel[i]);
     if (found == heard_.end()) continue;
-    order.push_back(static_cast<std::size_t>(found - heard_.begin()));
-    ++wanted[order.back()];
+    order.push_back({static_cast<std::size_t>(found - heard_.begin()), bodies[i]});
+    if (bodies[i].empty()) ++wanted[order.back().hearing];
   }
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (waiting_[i].size() < wanted[i]) return {};
@@ -70,8 +103,15 @@ std::optional<std::vector<Follower::Message>> Follower::next() {
   for (std::size_t i = 0; i < heard_.size() && phase.phase == 0; ++i) {
     while (is_free_channel(heard_[i]) && waiting_[i].size() > wanted[i]) take(i);
   }
-  for (const std::size_t each : order) take(each);
+  for (const Entry& each : order) {
+    if (each.body.empty()) {
+      take(each.hearing);
+    } else {
+      messages.push_back({each.hearing, {each.body.begin(), each.body.end()}});
+    }
+  }
   answer_ = {};
+  said_ = {};
   answer_.utime = phase.utime;
   answer_.process = name_;
   answer_.tick = phase.tick;
@@ -80,12 +120,17 @@ std::optional<std::vector<Follower::Message>> Follower::next() {
   return messages;
 }
 
-void Follower::said(const std::string& channel) {
-  if (!is_free_channel(channel)) answer_.said.push_back(channel);
+void Follower::said(const std::string& channel, std::span<const std::uint8_t> bytes) {
+  if (!is_free_channel(channel)) said_.add(channel, bytes);
 }
 
 fathom_lcm::lockstep_ack_t Follower::answer() {
+  answer_.said = std::move(said_.channel);
+  answer_.size = std::move(said_.size);
+  answer_.bytes = std::move(said_.bytes);
+  said_ = {};
   answer_.n_said = static_cast<std::int32_t>(answer_.said.size());
+  answer_.n_bytes = static_cast<std::int32_t>(answer_.bytes.size());
   answer_.n_heard = 0;
   return answer_;
 }
@@ -137,7 +182,7 @@ void Conductor::hear(const fathom_lcm::lockstep_ack_t& ack) {
     throw InputError("lockstep: two processes answer as " + ack.process + "; stop one of them");
   }
   waiting_for_.erase(asked);
-  said_[ack.process] = ack.said;
+  said_[ack.process] = {ack.said, ack.size, ack.bytes};
   for (const std::string& channel : ack.said) ++total_[channel];
   answered_ = waiting_for_.empty();
 }
@@ -154,13 +199,29 @@ void Conductor::call() {
     if (concerned) waiting_for_.push_back(name);
   }
   phase_.n_messages = static_cast<std::int32_t>(phase_.channel.size());
+  phase_.n_bytes = static_cast<std::int32_t>(phase_.bytes.size());
 }
 
-fathom_lcm::lockstep_t Conductor::begin(Utime utime, std::vector<std::string> channels) {
+void Conductor::clear() {
+  phase_.channel.clear();
+  phase_.size.clear();
+  phase_.bytes.clear();
+}
+
+void Conductor::enclose(Said&& said) {
+  said.size.resize(said.channel.size(), 0);
+  phase_.channel.insert(phase_.channel.end(), said.channel.begin(), said.channel.end());
+  phase_.size.insert(phase_.size.end(), said.size.begin(), said.size.end());
+  phase_.bytes.insert(phase_.bytes.end(), said.bytes.begin(), said.bytes.end());
+  said = {};
+}
+
+fathom_lcm::lockstep_t Conductor::begin(Utime utime, Said said) {
   phase_.utime = utime;
   ++phase_.tick;
   phase_.phase = 0;
-  phase_.channel = std::move(channels);
+  clear();
+  enclose(std::move(said));
   call();
   return phase_;
 }
@@ -168,14 +229,10 @@ fathom_lcm::lockstep_t Conductor::begin(Utime utime, std::vector<std::string> ch
 std::optional<fathom_lcm::lockstep_t> Conductor::next() {
   if (!answered_) return {};
   answered_ = false;
-  phase_.channel.clear();
+  clear();
   std::vector<std::string> speakers = names_;
   if (phase_.phase < 0) speakers.push_back(ending_);
-  for (const std::string& name : speakers) {
-    std::vector<std::string>& said = said_[name];
-    phase_.channel.insert(phase_.channel.end(), said.begin(), said.end());
-    said.clear();
-  }
+  for (const std::string& name : speakers) enclose(std::move(said_[name]));
   ++phase_.phase;
   call();
   if (waiting_for_.empty() && (recorded_.empty() || phase_.channel.empty())) return {};
@@ -209,8 +266,11 @@ std::optional<fathom_lcm::lockstep_t> Conductor::finish(Utime utime) {
   phase_.utime = utime;
   ++phase_.tick;
   phase_.phase = -1;
+  clear();
   phase_.channel = {*next};
+  phase_.size = {0};
   phase_.n_messages = 1;
+  phase_.n_bytes = 0;
   waiting_for_ = {*next};
   names_.erase(next);
   ending_ = waiting_for_.front();

@@ -2,6 +2,7 @@
 // simulator conducts, all others follow; no mind knows of it. docs/decisions/011-lockstep.md tells why it is built so.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +11,9 @@
 #include <fathom_lcm/lockstep_t.hpp>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -21,7 +24,23 @@ inline constexpr char kLockstep[] = "LOCKSTEP";
 inline constexpr char kLockstepAck[] = "LOCKSTEP_ACK";
 
 /// Channels that come when they come: no phase waits for them, and nobody lists what he says there.
+inline constexpr std::array<std::string_view, 3> kFreeChannels{"OPERATOR", "HEALTH", "PROCESS_INFO"};
 [[nodiscard]] bool is_free_channel(const std::string& channel);
+
+/// Messages that are not enclosed in LOCKSTEP: those that nobody waits for, and pictures, which are too large.
+[[nodiscard]] bool travels_alone(const std::string& channel);
+
+/// What somebody said in a phase, in order.
+struct Said {
+  std::vector<std::string> channel;
+  std::vector<std::int32_t> size{};  ///< byte, of each message; 0: it travels alone
+  std::vector<std::uint8_t> bytes{};
+  void add(const std::string& name, std::span<const std::uint8_t> message);
+};
+
+/// The bytes of each message of a phase; none where it travels alone. InputError when the sizes are not those of the
+/// bytes.
+[[nodiscard]] std::vector<std::span<const std::uint8_t>> enclosed(const fathom_lcm::lockstep_t& phase);
 
 /// A process's side: keeps messages until their phase is announced.
 class Follower {
@@ -38,8 +57,8 @@ class Follower {
   void announced(const fathom_lcm::lockstep_t& phase);
   /// The messages of the next phase, in order, once all of them are here; nothing before. An empty list never comes.
   [[nodiscard]] std::optional<std::vector<Message>> next();
-  /// Counts a message that was said in the phase that next() gave.
-  void said(const std::string& channel);
+  /// Takes a message that was said in the phase that next() gave.
+  void said(const std::string& channel, std::span<const std::uint8_t> bytes);
   /// The answer to that phase.
   [[nodiscard]] fathom_lcm::lockstep_ack_t answer();
   /// What is said until the first phase comes.
@@ -56,6 +75,7 @@ class Follower {
   std::vector<std::deque<std::vector<std::uint8_t>>> waiting_;  ///< per hearing
   std::deque<fathom_lcm::lockstep_t> phases_;
   fathom_lcm::lockstep_ack_t answer_{};
+  Said said_;
   bool started_{false}, ends_{false};
 };
 
@@ -73,7 +93,7 @@ class Conductor {
   /// Those who have not said hello yet.
   [[nodiscard]] std::vector<std::string> absent() const;
   /// Begins a control interval with what the simulator said in it. To be published.
-  [[nodiscard]] fathom_lcm::lockstep_t begin(Utime utime, std::vector<std::string> channels);
+  [[nodiscard]] fathom_lcm::lockstep_t begin(Utime utime, Said said);
   /// The phase to be published next; nothing while answers are missing or when the interval is over.
   [[nodiscard]] std::optional<fathom_lcm::lockstep_t> next();
   /// Nobody has anything left to handle.
@@ -90,10 +110,12 @@ class Conductor {
 
  private:
   void call();
+  void clear();
+  void enclose(Said&& said);
 
   std::vector<std::string> names_;
   std::map<std::string, std::vector<std::string>> heard_;  ///< by process
-  std::map<std::string, std::vector<std::string>> said_;   ///< in this phase, by process
+  std::map<std::string, Said> said_;                       ///< in this phase, by process
   std::map<std::string, std::int64_t> total_;
   std::map<std::string, std::int64_t> recorded_;  ///< newest interval that a recorder has written, by its name
   std::vector<std::string> waiting_for_;

@@ -67,6 +67,7 @@ void Process::on_real_time(std::function<void(double)> callback) { state_->real_
 void Process::on_end(std::function<void()> callback) { state_->end = std::move(callback); }
 void Process::waits_with(Wait wait) { state_->wait = std::move(wait); }
 void Process::stop() { state_->ended = true; }
+void Process::overhears(Overhear overhear) { state_->overhear = std::move(overhear); }
 void Process::on_health(std::function<Condition()> ask) { state_->condition = std::move(ask); }
 void Process::goes_by(const std::string& name) {
   state_->known_as = name;
@@ -121,7 +122,8 @@ void Process::send(const std::string& channel, const std::string& type, Utime ut
   if (!state_->out) throw std::logic_error("publish before run()");
   state_->out->write(channel, buffer_, utime);
   ++state_->published;
-  if (state_->follower) state_->follower->said(channel);
+  if (state_->follower) state_->follower->said(channel, buffer_);
+  if (state_->overhear) state_->overhear(channel, buffer_);
 }
 
 // Channels are judged one by one: an operator's clock may differ from a replayed log's. After a jump all begin anew, so
@@ -251,13 +253,16 @@ void Process::run_live() {
 // As run_live(), but messages wait until the simulator announces the phase that they belong to.
 void Process::run_lockstep() {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();  // even "latest" channels keep every message
-  std::vector<Subscription> subscriptions;
+  std::vector<Subscription> subscriptions{{kLockstep, kAll}};
   std::vector<std::string> heard;
+  std::vector<std::size_t> hearing_of{0};  // by subscription
   for (const Hearing& hearing : state_->hearings) {
-    subscriptions.push_back({hearing.channel, kAll});
+    if (travels_alone(hearing.channel)) {
+      subscriptions.push_back({hearing.channel, kAll});
+      hearing_of.push_back(heard.size());
+    }
     heard.push_back(hearing.channel);
   }
-  subscriptions.push_back({kLockstep, kAll});
   state_->follower.emplace(state_->name, heard);
   Follower& follower = *state_->follower;
   state_->out.emplace(state_->arguments.out);
@@ -273,8 +278,8 @@ void Process::run_lockstep() {
   while (!state_->stop->raised() && !state_->ended) {
     state_->live->wait(state_->stop->descriptor(), kWaitMs);
     while (auto message = state_->live->next()) {
-      if (message->subscription < heard.size()) {
-        follower.arrived(message->subscription, std::move(message->bytes));
+      if (message->subscription > 0) {
+        follower.arrived(hearing_of[message->subscription], std::move(message->bytes));
         continue;
       }
       fathom_lcm::lockstep_t phase{};

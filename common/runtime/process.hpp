@@ -79,6 +79,9 @@ class Process {
   /// one of the descriptors is readable, when it has served what it waits for, or after so many milliseconds.
   using Wait = std::function<void(std::span<const int> descriptors, int milliseconds)>;
   void waits_with(Wait wait);
+  /// Called with every message that was published, as it went out.
+  using Overhear = std::function<void(const std::string& channel, std::span<const std::uint8_t> bytes)>;
+  void overhears(Overhear overhear);
   /// Ends run() as SIGINT would: what the process served has come to its end.
   void stop();
   /// What HEALTH says beside its counts: "" when all is well, else why the state is "unhealthy"; and details.

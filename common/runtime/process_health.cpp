@@ -46,11 +46,12 @@ void Process::report_health(const std::string& state, const std::string& reason)
   };
   for (std::size_t i = 0; i < state_->hearings.size(); ++i) {
     Hearing& hearing = state_->hearings[i];
-    const auto dropped = state_->live ? static_cast<std::int64_t>(state_->live->dropped(i)) : 0;
+    const bool counts = state_->live && !state_->follower;  // in lockstep every message is kept
+    const auto dropped = counts ? static_cast<std::int64_t>(state_->live->dropped(i)) : 0;
     health.dropped += dropped;
     health.rejected += hearing.rejected;
     tell(hearing, "dropped", dropped);
-    if (state_->live) tell(hearing, "skipped", static_cast<std::int64_t>(state_->live->skipped(i)));
+    if (counts) tell(hearing, "skipped", static_cast<std::int64_t>(state_->live->skipped(i)));
     tell(hearing, "rejected", hearing.rejected);
     const double rate = static_cast<double>(std::exchange(hearing.arrived, 0)) / std::max(elapsed.count(), 0.1);
     const bool paced = !state_->follower && hearing.channel != kLockstepAck;  // lockstep is as fast as it can

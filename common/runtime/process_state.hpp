@@ -56,6 +56,7 @@ struct Process::State {
   std::function<void()> end{};
   std::function<void(double)> real_time{};
   Wait wait{};
+  Overhear overhear{};
   std::function<Condition()> condition{};
   bool ended{false};
   std::optional<StopSignal> stop{};

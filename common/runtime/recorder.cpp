@@ -20,17 +20,25 @@ namespace {
 
 constexpr int kWaitMs = 50;
 
-/// Of lockstep, of liblcm, of deputies and sheriffs, of `fathom bus`: no phase lists it, and nothing follows from it.
-bool is_machinery(const std::string& channel) {
-  return channel == kLockstepAck || channel == "LCM_SELF_TEST" || channel.starts_with("PM_") ||
-         channel.starts_with("BUS_");
+/// What a recorder must hear itself: all else is enclosed in LOCKSTEP.
+std::vector<Subscription> subscriptions(const std::vector<std::string>& without) {
+  std::vector<Subscription> found{{kLockstep, std::numeric_limits<std::size_t>::max()}};
+  std::vector<std::string> alone{std::begin(kFreeChannels), std::end(kFreeChannels)};
+  alone.insert(alone.end(), std::begin(kPictures), std::end(kPictures));
+  for (const std::string& channel : alone) {
+    if (std::ranges::find(without, channel) == without.end()) {
+      found.push_back({channel, std::numeric_limits<std::size_t>::max()});
+    }
+  }
+  return found;
 }
 
 void run(const Arguments& arguments, const std::string& path, const std::vector<std::string>& without) {
   StopSignal stop;
   Output log{Url::parse("file://" + path, "--file")};
   Output bus{arguments.out};
-  LiveInput live{arguments.in, {{kEveryChannel, std::numeric_limits<std::size_t>::max()}}};
+  const std::vector<Subscription> heard = subscriptions(without);
+  LiveInput live{arguments.in, heard};
   Arrangement arrangement{[&](const std::string& channel, std::vector<std::uint8_t>& bytes, Utime utime) {
                             log.write(channel, bytes, utime);
                           },
@@ -58,9 +66,9 @@ void run(const Arguments& arguments, const std::string& path, const std::vector<
     live.wait(stop.descriptor(), kWaitMs);
     while (auto message = live.next()) {
       health.heard();
-      if (is_machinery(message->channel)) continue;
-      if (message->channel != kLockstep) {
-        arrangement.arrived(message->channel, std::move(message->bytes));
+      const std::string& channel = heard[message->subscription].channel;
+      if (channel != kLockstep) {
+        arrangement.arrived(channel, std::move(message->bytes));
         continue;
       }
       fathom_lcm::lockstep_t phase{};
@@ -101,26 +109,39 @@ void Arrangement::announced(const fathom_lcm::lockstep_t& phase) {
   if (phase.phase < 0) {
     ended_ = ended_ || phase.channel.empty();  // else one process ends, and its last words are announced
   } else {
-    phases_.push_back(phase);
-    std::erase_if(phases_.back().channel, [&](const std::string& channel) { return without_.contains(channel); });
+    Phase& told = phases_.emplace_back(Phase{phase.utime, phase.tick, phase.phase, {}});
+    const auto bodies = enclosed(phase);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (without_.contains(phase.channel[i])) continue;
+      told.messages.push_back({phase.channel[i], {bodies[i].begin(), bodies[i].end()}});
+    }
   }
   write_complete();
 }
 
 void Arrangement::write_complete() {
   while (!phases_.empty()) {
-    const fathom_lcm::lockstep_t& phase = phases_.front();
+    Phase& phase = phases_.front();
     std::map<std::string, std::size_t> wanted;
-    for (const std::string& channel : phase.channel) ++wanted[channel];
+    for (const Message& each : phase.messages) {
+      if (each.bytes.empty()) ++wanted[each.channel];
+    }
     for (const auto& [channel, count] : wanted) {
       if (waiting_[channel].size() < count) return;
     }
     utime_ = phase.utime;
     for (auto& [channel, messages] : waiting_) {  // from outside of lockstep: an operator, health
-      while (phase.phase == 0 && is_free_channel(channel) && messages.size() > wanted[channel]) put(channel, utime_);
+      while (phase.number == 0 && is_free_channel(channel) && messages.size() > wanted[channel]) put(channel, utime_);
     }
-    for (const std::string& channel : phase.channel) put(channel, utime_);
-    if (phase.phase == 0) tick_ = phase.tick;
+    for (Message& each : phase.messages) {
+      if (each.bytes.empty()) {
+        put(each.channel, utime_);
+      } else {
+        write_(each.channel, each.bytes, utime_);
+        ++count_;
+      }
+    }
+    if (phase.number == 0) tick_ = phase.tick;
     phases_.pop_front();
   }
   if (!ended_) return;

@@ -38,11 +38,21 @@ class Arrangement {
  private:
   void write_complete();
   void put(const std::string& channel, Utime utime);
+  struct Message {
+    std::string channel;
+    std::vector<std::uint8_t> bytes;  ///< none: it comes by its own channel
+  };
+  struct Phase {
+    Utime utime{};
+    std::int64_t tick{};
+    std::int32_t number{};
+    std::vector<Message> messages;
+  };
 
   Write write_;
   std::set<std::string> without_;
   std::map<std::string, std::deque<std::vector<std::uint8_t>>> waiting_;
-  std::deque<fathom_lcm::lockstep_t> phases_;
+  std::deque<Phase> phases_;
   Utime utime_{};
   std::int64_t tick_{-1}, count_{};
   bool ended_{false};

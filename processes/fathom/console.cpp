@@ -26,9 +26,16 @@ std::optional<Message> message_of(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-Console::Console(const std::string& url)
+Console::Console(const std::string& url, Hears what)
     : url_{runtime::Url::parse(url, "--bus")},
-      input_{{url_}, {{wire::kThrusters, 1}, {wire::kExcitation, 1}, {wire::kHealth, 200}, {wire::kState, 1}}},
+      heard_{{wire::kExcitation, 1}},
+      input_{{url_},
+             [&] {
+               if (what == Hears::kAll) {
+                 heard_.insert(heard_.end(), {{wire::kThrusters, 1}, {wire::kHealth, 200}, {wire::kState, 1}});
+               }
+               return heard_;
+             }()},
       output_{url_} {
   if (!url_.live()) throw InputError("--bus " + url + ": an operator needs a live bus");
 }
@@ -49,11 +56,12 @@ void Console::say(const Operator& order) {
 }
 
 void Console::hear(const runtime::LiveInput::Message& message) {
-  if (message.subscription == 0) {
+  const std::string& channel = heard_[message.subscription].channel;
+  if (channel == wire::kThrusters) {
     if (const auto one = message_of<fathom_lcm::thrusters_t>(message.bytes)) vehicle_time = one->utime;
-  } else if (message.subscription == 1) {
+  } else if (channel == wire::kExcitation) {
     if (const auto one = message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
-  } else if (message.subscription == 2) {
+  } else if (channel == wire::kHealth) {
     if (const auto one = message_of<fathom_lcm::health_t>(message.bytes)) {
       if (const auto heard = wire::decode(*one)) health[heard->process] = *heard;
     }

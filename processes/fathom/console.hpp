@@ -15,8 +15,10 @@ namespace fathom::tool {
 
 class Console {
  public:
+  /// Whoever hears less is woken less: a bus in lockstep carries ten thousand messages a second.
+  enum class Hears { kAll, kExcitation };
   /// InputError when the URL is no live bus.
-  explicit Console(const std::string& url);
+  explicit Console(const std::string& url, Hears what = Hears::kAll);
   /// Hears for so long, or until `enough`.
   void listen(double seconds, const std::function<bool()>& enough = {});
   void say(const Operator& order);
@@ -30,6 +32,7 @@ class Console {
   void hear(const runtime::LiveInput::Message& message);
 
   runtime::Url url_;
+  std::vector<runtime::Subscription> heard_;
   runtime::LiveInput input_;
   runtime::Output output_;
 };

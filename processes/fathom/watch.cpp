@@ -47,7 +47,7 @@ std::string line(const Excitation& e, double t) {
 void watch(const Options& options) {
   runtime::StopSignal stop;
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  Console console{options.url};
+  Console console{options.url, Console::Hears::kExcitation};
   std::optional<Utime> origin;
   std::string said, stage;
   while (!stop.raised()) {

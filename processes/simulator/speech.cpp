@@ -56,8 +56,8 @@ void declare_speech(runtime::Process& process) {
   process.publishes<fathom_lcm::truth_t>(wire::kTruth);
 }
 
-const char* speak(runtime::Process& process, Darkroom& darkroom, const simulation::Sample& sample) {
-  return std::visit(
+void speak(runtime::Process& process, Darkroom& darkroom, const simulation::Sample& sample) {
+  std::visit(
       [&](const auto& one) {
         if constexpr (std::is_same_v<std::decay_t<decltype(one)>, simulation::Exposure>) {
           if (darkroom.has_line()) {
@@ -68,7 +68,6 @@ const char* speak(runtime::Process& process, Darkroom& darkroom, const simulatio
         } else {
           process.publish(channel_of(one), wire::encode(one));
         }
-        return channel_of(one);
       },
       sample);
 }

@@ -9,7 +9,7 @@ namespace fathom::simulator {
 
 /// Declares every channel that speak() uses.
 void declare_speech(runtime::Process& process);
-/// Publishes a sample; exposures become pictures. Returns its channel.
-const char* speak(runtime::Process& process, Darkroom& darkroom, const simulation::Sample& sample);
+/// Publishes a sample; exposures become pictures.
+void speak(runtime::Process& process, Darkroom& darkroom, const simulation::Sample& sample);
 
 }  // namespace fathom::simulator

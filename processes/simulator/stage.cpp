@@ -51,7 +51,12 @@ Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkro
       schedule_{options.schedule()},
       gate_{options.token},
       pilot_{pilot} {
-  if (!options.wait_for.empty()) conductor_.emplace(options.wait_for);
+  if (options.wait_for.empty()) return;
+  conductor_.emplace(options.wait_for);
+  process_.overhears([this](const std::string& channel, std::span<const std::uint8_t> bytes) {
+    const bool own_order = channel == wire::kOperator;  // which keeps its place, unlike an operator's
+    if (channel != runtime::kLockstep && (own_order || !runtime::is_free_channel(channel))) said_.add(channel, bytes);
+  });
 }
 
 void Stage::hear(const WrenchCommand& command) { gate_.hear(command, simulator_.now()); }
@@ -227,7 +232,6 @@ void Stage::give_orders() {
     gate_.hear(order, simulator_.now());
     ++own_orders_;
     process_.publish(wire::kOperator, wire::encode(order));
-    said_.emplace_back(wire::kOperator);
     process_.log_info("operator: " + (order.abort ? std::string{"abort"} : order.order));
     if (order.abort) schedule_.resize(next_order_);
   }
@@ -251,14 +255,14 @@ void Stage::advance() {
   simulator_.command(
       {.utime = utime, .tau = gate_.wrench(utime), .life = 2.0 * static_cast<double>(simulator_.interval()) * 1e-6});
   const std::vector<simulation::Sample>& samples = simulator_.step();
-  said_.clear();
+  said_ = {};
   give_orders();
   if (has_lines()) {
     for (std::size_t i = 0; i < samples.size(); ++i) waiting_.push_back({simulator_.due()[i], samples[i]});
     return tell_changes();
   }
-  for (const simulation::Sample& sample : samples) said_.emplace_back(speak(process_, darkroom_, sample));
-  if (conductor_) process_.publish(runtime::kLockstep, conductor_->begin(simulator_.now(), said_));
+  for (const simulation::Sample& sample : samples) speak(process_, darkroom_, sample);
+  if (conductor_) process_.publish(runtime::kLockstep, conductor_->begin(simulator_.now(), std::move(said_)));
   tell_changes();
 }
 

@@ -85,7 +85,7 @@ class Stage {
   int introductions_{};
   std::int64_t commands_{}, excitations_{};
   std::optional<Utime> over_since_;  ///< when the supervisor said that the trial is over
-  std::vector<std::string> said_;
+  runtime::Said said_;               ///< in this interval
   struct Waiting {
     Utime due{};
     simulation::Sample sample;

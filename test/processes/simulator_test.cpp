@@ -135,6 +135,9 @@ TEST_CASE("simulator: minds in lockstep, and the same minds on the recorded log:
   REQUIRE(live["MODEL"].size() > 50);
   CHECK(messages(scratch.path("state.lcmlog"))["STATE"] == live["STATE"]);
   CHECK(messages(scratch.path("model.lcmlog"))["MODEL"] == live["MODEL"]);
+  const auto health = wire::read_log(scratch.path("run.lcmlog")).recording.health;
+  CHECK(!health.empty());
+  CHECK(std::ranges::all_of(health, [](const Health& each) { return each.dropped == 0; }));  // all are kept
 }
 
 TEST_CASE(

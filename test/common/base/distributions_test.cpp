@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <initializer_list>
+
 namespace fathom {
 
 TEST_CASE("F: tail probabilities and quantiles of the tables") {
@@ -10,6 +12,14 @@ TEST_CASE("F: tail probabilities and quantiles of the tables") {
   CHECK(f_tail(6.63, 1e6) == doctest::Approx(0.01).epsilon(kTable));
   CHECK(f_quantile(0.05, 20) == doctest::Approx(4.351).epsilon(kTable));
   CHECK(f_tail(0.0, 5) == 1.0);
+}
+
+TEST_CASE("Student: the quick widening is that of the quantile") {
+  constexpr double kGaussian = 1.959964 * 1.959964;
+  for (const double freedom : {3.0, 4.5, 8.0, 20.0, 100.0, 1e5}) {
+    CAPTURE(freedom);
+    CHECK(student_widening(freedom) == doctest::Approx(f_quantile(0.05, freedom) / kGaussian).epsilon(0.01));
+  }
 }
 
 TEST_CASE("incomplete beta: closed forms and symmetry") {

@@ -246,6 +246,40 @@ TEST_CASE("supervisor: without a model it tries again, gives up, and says what i
   CHECK(loop.supervisor.reason() == "done, but not settled: yaw: no MODEL came");
 }
 
+// Two attempts of 16 s have brought the sum of variances to a multiple of what is needed; variances fall as one over
+// time.
+TEST_CASE("supervisor: a mode that lacks information alone, and would have it within one more attempt, is given that") {
+  struct Case {
+    double sum, ratio;
+    bool given;
+  };
+  constexpr double kNeeded = 0.08, kGood = 1.0, kWrong = 9.0;
+  for (const auto& [sum, ratio, given] :
+       std::vector<Case>{{1.4 * kNeeded, kGood, true}, {1.6 * kNeeded, kGood, false}, {1.4 * kNeeded, kWrong, false}}) {
+    CAPTURE(sum);
+    CAPTURE(ratio);
+    Loop loop;
+    loop.settings.supervisor.most_dwell = 16.0;
+    loop.settings.supervisor.schedule.resize(1);
+    REQUIRE(loop.settings.supervisor.schedule[0].threshold == doctest::Approx(kNeeded));
+    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.run(0.2);
+    loop.arm();
+    for (int i = 0; i < 1200 && loop.supervisor.phase() != Phase::kDone; ++i) {
+      loop.run(0.1);
+      ModelEstimate model = finished(loop.settings.vehicle, loop.plant.utime());
+      for (ModeMetric& each : model.modes) each.sum = sum;
+      model.residual_ratio.setConstant(ratio);
+      loop.supervisor.hear(model);
+    }
+    REQUIRE(loop.supervisor.visits().size() == 1);
+    const auto& visit = loop.supervisor.visits()[0];
+    CHECK_FALSE(visit.left);
+    CHECK((visit.ended - visit.begun > 3 * 16.0) == given);
+    CHECK(visit.ended - visit.begun < 4 * 16.0);
+  }
+}
+
 TEST_CASE("supervisor: a silent identifier stops the excitation, where that is wished") {
   for (const bool models : {true, false}) {
     CAPTURE(models);

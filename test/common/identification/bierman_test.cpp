@@ -71,33 +71,41 @@ TEST_CASE("bierman: sums of scores and broken signs are those of plain loops, fo
     CAPTURE(n);
     const std::ptrdiff_t m = padded(n);
     constexpr double kKeep = 0.9;
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(m), fourth = squares, one = squares, two = squares, last = squares,
-                    before = squares;
-    Eigen::VectorXd expected = squares, expected_fourth = squares, expected_one = squares, expected_two = squares;
-    std::vector<Eigen::VectorXd> scores{squares, squares};
-    for (int step = 0; step < 6; ++step) {
-      Eigen::VectorXd score = Eigen::VectorXd::Zero(m);
+    constexpr int kTogether = 3;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(m);
+    Eigen::VectorXd squares = none, fourth = none, together = none, apart = none;
+    Eigen::VectorXd expected = none, expected_fourth = none, expected_together = none, expected_apart = none;
+    Eigen::MatrixXd last_scores = Eigen::MatrixXd::Zero(m, kTogether), last_sums = last_scores;
+    std::vector<Eigen::VectorXd> scores(2 * kTogether, none);  // none came before
+    for (int step = 0; step < 9; ++step) {
+      Eigen::VectorXd score = none;
       for (int i = 0; i < n; ++i) score(i) = normal(engine);
+      const int oldest = step % kTogether;
       add_scores({.squares = squares.data(),
                   .fourth = fourth.data(),
-                  .one_before = one.data(),
-                  .two_before = two.data(),
-                  .last = last.data(),
-                  .before = before.data(),
+                  .together = together.data(),
+                  .apart = apart.data(),
+                  .sum = last_sums.col((oldest + kTogether - 1) % kTogether).data(),
+                  .oldest_score = last_scores.col(oldest).data(),
+                  .oldest_sum = last_sums.col(oldest).data(),
                   .n = n},
                  score.data(), kKeep);
+      scores.push_back(score);
+      Eigen::VectorXd sum = none, sum_before = none;
+      for (int k = 0; k < kTogether; ++k) {
+        sum += scores[scores.size() - 1 - static_cast<std::size_t>(k)];
+        sum_before += scores[scores.size() - 1 - static_cast<std::size_t>(k + kTogether)];
+      }
       expected = kKeep * expected + score.cwiseAbs2();
       expected_fourth = kKeep * expected_fourth + score.cwiseAbs2().cwiseAbs2();
-      expected_one = kKeep * expected_one + score.cwiseProduct(scores.back());
-      expected_two = kKeep * expected_two + score.cwiseProduct(scores[scores.size() - 2]);
-      scores.push_back(score);
+      expected_together = kKeep * expected_together + sum.cwiseAbs2();
+      expected_apart = kKeep * expected_apart + sum.cwiseProduct(sum_before);
     }
     CHECK((squares - expected).norm() <= 1e-12 * expected.norm());
     CHECK((fourth - expected_fourth).norm() <= 1e-12 * expected_fourth.norm());
-    CHECK((one - expected_one).norm() <= 1e-12 * expected.norm());
-    CHECK((two - expected_two).norm() <= 1e-12 * expected.norm());
-    CHECK(last == scores.back());
-    CHECK(before == scores[scores.size() - 2]);
+    CHECK((together - expected_together).norm() <= 1e-12 * expected_together.norm());
+    CHECK((apart - expected_apart).norm() <= 1e-12 * expected_together.norm());
+    const Eigen::VectorXd last = scores.back(), before = scores[scores.size() - 2];
     Eigen::VectorXd sign = Eigen::VectorXd::Zero(m);
     std::uint32_t broken = 0;
     for (int i = 0; i < n; ++i) {

@@ -94,6 +94,13 @@ TEST_CASE("vehicle: impossible things are refused with file and line") {
   CHECK(complaint(kHead + dof + "inertia: 1 0 1 kg m^2\n") ==
         "vehicle_test.yaml:5: 'inertia' must be positive about every axis");
   CHECK(complaint(kHead + dof + "inertia: 1 1 2 kg m^2\n") == "no complaint");
+  const std::string hull =
+      "hull: 0.6 0.8 0.2 m\npriors:\n";  // corners 0.5 m from the vertical: 8 kg there are 2 kg m^2
+  CHECK(
+      complaint(kHead + dof + hull + "  I_Z: {mean: 12.1 kg m^2, sigma: 1 kg m^2}\n") ==
+      "vehicle_test.yaml:7: 'I_Z' of 12.1 kg m^2 is impossible: with this 'mass' and 'hull', water included, it is at "
+      "most 12 kg m^2; correct one of the three");
+  CHECK(complaint(kHead + dof + hull + "  I_Z: {mean: 11.9 kg m^2, sigma: 1 kg m^2}\n") == "no complaint");
   CHECK(complaint(kHead + "dof: [surge, heave]\n" + kThrusters) ==
         "vehicle_test.yaml:5: the thrusters cannot produce heave by itself; leave it out of 'dof' or correct their "
         "geometry");

@@ -26,6 +26,9 @@ fathom_lcm::lockstep_t phase_of(std::int64_t tick, int phase, const Names& chann
 
 std::vector<std::uint8_t> text(const std::string& word) { return {word.begin(), word.end()}; }
 
+/// Messages that come by their own channels.
+Said alone(const Names& channels) { return {.channel = channels}; }
+
 fathom_lcm::lockstep_ack_t hello(const std::string& name, const Names& heard) { return Follower{name, heard}.hello(); }
 
 fathom_lcm::lockstep_ack_t answer(const std::string& name, const fathom_lcm::lockstep_t& phase, const Names& said) {
@@ -54,8 +57,8 @@ TEST_CASE("follower: a phase begins when all its messages are here, in the condu
   CHECK((*messages)[0].bytes == text("a1"));
   CHECK((*messages)[1].bytes == text("d1"));
   CHECK((*messages)[2].bytes == text("a2"));
-  follower.said("STATE");
-  follower.said("HEALTH");
+  follower.said("STATE", text("s"));
+  follower.said("HEALTH", text("h"));
   const auto ack = follower.answer();
   CHECK(ack.said == Names{"STATE"});
   CHECK(ack.tick == 0);
@@ -80,9 +83,69 @@ TEST_CASE(
   CHECK_FALSE(follower.ends());
   follower.announced(phase_of(3, -1, {"supervisor"}));
   CHECK(follower.ends());
-  follower.said("WRENCH_COMMAND");
+  follower.said("WRENCH_COMMAND", text("w"));
   CHECK(follower.answer().said == Names{"WRENCH_COMMAND"});
   CHECK(follower.answer().tick == 3);
+}
+
+TEST_CASE("what is said in a phase is enclosed in the next one, for followers and for the log; pictures travel alone") {
+  Conductor conductor{{"vision", "estimator", "recorder"}};
+  conductor.hear(hello("vision", {"CAMERA"}));
+  conductor.hear(hello("estimator", {"TAG_POSE", "CAMERA"}));
+  conductor.hear(hello("recorder", {kEveryChannel}));
+  Said said;
+  said.add("CAMERA", text("large"));
+  said.add("TAG_POSE", text("t1"));
+  said.add("TAG_POSE", text("tag 2"));
+  const auto first = conductor.begin(7, said);
+  Follower estimator{"estimator", {"TAG_POSE", "CAMERA"}}, vision{"vision", {"CAMERA"}};
+  std::vector<std::string> log;
+  Arrangement arrangement{[&](const std::string& channel, std::vector<std::uint8_t>& bytes, Utime) {
+    log.push_back(channel + " " + std::string(bytes.begin(), bytes.end()));
+  }};
+  for (Follower* each : {&estimator, &vision}) each->announced(first);
+  arrangement.announced(first);
+  CHECK_FALSE(vision.next());
+  CHECK_FALSE(estimator.next());
+  CHECK(log.empty());
+  estimator.arrived(1, text("large"));
+  vision.arrived(0, text("large"));
+  arrangement.arrived("CAMERA", text("large"));
+  CHECK(log == Names{"CAMERA large", "TAG_POSE t1", "TAG_POSE tag 2"});
+  const auto messages = estimator.next();
+  REQUIRE(messages);
+  REQUIRE(messages->size() == 3);
+  CHECK((*messages)[0].bytes == text("large"));
+  CHECK((*messages)[1].bytes == text("t1"));
+  CHECK((*messages)[2].bytes == text("tag 2"));
+  estimator.said("STATE", text("state"));
+  REQUIRE(vision.next());
+  vision.said("OPTICAL_FLOW", text("flow"));
+  vision.said("CAMERA_DEBUG", text("drawn"));
+  conductor.hear(estimator.answer());
+  conductor.hear(vision.answer());
+  const auto second = conductor.next();  // over the wire and back
+  REQUIRE(second);
+  std::vector<std::uint8_t> wire(static_cast<std::size_t>(second->getEncodedSize()));
+  REQUIRE(second->encode(wire.data(), 0, static_cast<int>(wire.size())) > 0);
+  fathom_lcm::lockstep_t heard{};
+  REQUIRE(heard.decode(wire.data(), 0, static_cast<int>(wire.size())) == static_cast<int>(wire.size()));
+  arrangement.announced(heard);
+  CHECK(log.size() == 3);  // the drawn picture is waited for
+  arrangement.arrived("CAMERA_DEBUG", text("drawn"));
+  CHECK(log.back() == "STATE state");  // the order of the names: vision, estimator
+  CHECK(log[3] == "OPTICAL_FLOW flow");
+  CHECK(log[4] == "CAMERA_DEBUG drawn");
+}
+
+TEST_CASE("a phase whose sizes are not those of its messages is refused") {
+  fathom_lcm::lockstep_t phase = phase_of(0, 0, {"AHRS"});
+  phase.size = {3};
+  phase.bytes = text("ab");
+  CHECK(test::complaint_of<InputError>([&] { static_cast<void>(enclosed(phase)); }).find("same build") !=
+        std::string::npos);
+  phase.size = {-1};
+  CHECK_THROWS_AS(static_cast<void>(enclosed(phase)), InputError);
 }
 
 TEST_CASE("conductor: at the end each process goes in its turn, and those behind it hear its last words") {
@@ -90,7 +153,7 @@ TEST_CASE("conductor: at the end each process goes in its turn, and those behind
   conductor.hear(hello("recorder", {kEveryChannel}));
   conductor.hear(hello("estimator", {"AHRS"}));
   conductor.hear(hello("identifier", {"STATE"}));
-  static_cast<void>(conductor.begin(0, {"TRUTH"}));
+  static_cast<void>(conductor.begin(0, alone({"TRUTH"})));
   REQUIRE(conductor.over());
   const auto first = conductor.finish(7);
   REQUIRE(first);
@@ -127,7 +190,7 @@ TEST_CASE("conductor: phases follow the messages until nobody has anything left 
   conductor.hear(hello("identifier", {"STATE", "THRUSTERS"}));
   CHECK(conductor.absent().empty());
 
-  auto phase = conductor.begin(5, {"THRUSTERS", "AHRS"});
+  auto phase = conductor.begin(5, alone({"THRUSTERS", "AHRS"}));
   CHECK_FALSE(conductor.over());
   CHECK(conductor.waiting_for() == "estimator, identifier");
   conductor.hear(answer("identifier", phase, {}));
@@ -149,7 +212,7 @@ TEST_CASE("conductor: phases follow the messages until nobody has anything left 
   CHECK(conductor.over());
   CHECK(conductor.said("WRENCH_COMMAND") == 1);
 
-  phase = conductor.begin(6, {"TRUTH"});  // nobody hears it
+  phase = conductor.begin(6, alone({"TRUTH"}));  // nobody hears it
   CHECK(phase.tick == 1);
   CHECK(conductor.over());
 }
@@ -160,7 +223,7 @@ TEST_CASE("conductor: strangers, doubles and restarts are named") {
         std::string::npos);
   conductor.hear(hello("estimator", {"AHRS"}));
   conductor.hear(hello("estimator", {"AHRS"}));  // said again until it is heard
-  const auto phase = conductor.begin(0, {"AHRS"});
+  const auto phase = conductor.begin(0, alone({"AHRS"}));
   conductor.hear(hello("estimator", {"AHRS"}));  // one that was still under way
   conductor.hear(answer("estimator", phase, {}));
   CHECK(test::complaint_of<InputError>([&] {
@@ -176,10 +239,10 @@ TEST_CASE("conductor: a recorder may be behind, but not by more than the bus can
   fathom_lcm::lockstep_ack_t ack{};
   ack.process = "recorder";
   for (std::int64_t tick = 0; tick < Conductor::kRecorderBehind - 1; ++tick) {
-    static_cast<void>(conductor.begin(tick, {"AHRS"}));
+    static_cast<void>(conductor.begin(tick, alone({"AHRS"})));
     CHECK(conductor.over());
   }
-  static_cast<void>(conductor.begin(99, {"AHRS"}));
+  static_cast<void>(conductor.begin(99, alone({"AHRS"})));
   CHECK_FALSE(conductor.over());
   CHECK(conductor.waiting_for() == "recorder");
   ack.tick = 8;
