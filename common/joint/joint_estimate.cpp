@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kHistory = 512;     // states: 5 s at 100 Hz
 constexpr double kUnknownMass = 3.0;      // of 1/m's prior: its standard deviation, unknown to a factor of four
 constexpr double kLightest = 20.0;        // times lighter than expected than which nothing is taken to be
+constexpr double kWellKnown = 0.15;      // share of an inertia: so well it must be known for an axis to begin
 constexpr double kStartSpeed = 0.02;      // m/s added to what STATE says of itself: it has seen the same samples
 constexpr double kStartPosition = 0.01;   // m likewise
 
@@ -241,7 +242,7 @@ void JointEstimate::begin(const Event& event) {
   Vector6d sigma;
   sigma << state.sigma.head<3>().array() + kStartPosition, state.sigma.segment<3>(6).array() + kStartSpeed;
   filter_.start(state.p_WB, state.nu, sigma, 2.0 * navigator_.rate_noise);
-  running_ = started_ = true;
+  running_ = true;
   refused_in_a_row_ = 0;
 }
 
@@ -269,6 +270,18 @@ void JointEstimate::go_to(Utime utime) {
 ParameterMatrix JointEstimate::covariance() const {
   const ParameterMatrix slope = filter_.model().physical_slope(filter_.parameters());
   return slope * filter_.parameter_covariance() * slope.transpose();
+}
+
+void JointEstimate::offer(const ParameterVector& mean, const ParameterMatrix& covariance) {
+  if (started_) return;
+  const Normalised& model = filter_.model();
+  started_ = true;
+  for (int axis = 0; axis < 6; ++axis) {
+    const int k = model.inertia_of(axis);
+    if (k < 0 || model.moves(axis)) continue;
+    if (mean(k) > 0.0 && std::sqrt(covariance(k, k)) < kWellKnown * mean(k)) filter_.teach(axis, mean, covariance);
+    started_ = started_ && (filter_.model().moves(axis) || !model.simulated(axis));
+  }
 }
 
 bool JointEstimate::restore(const ParameterVector& mean, const ParameterMatrix& covariance) {

@@ -53,7 +53,10 @@ class JointEstimate {
   /// Goes on to the next attitude that nothing can come before any more; its time, or nothing when there is none.
   [[nodiscard]] std::optional<Utime> next();
 
-  /// It follows the vehicle, or has done so: its parameters are more than a prior.
+  /// What somebody else knows of the parameters, in SI, at the time that next() has reached. Taken on for every axis whose
+  /// inertia it knows well enough and that has not begun: from there on this axis is learnt here.
+  void offer(const ParameterVector& mean, const ParameterMatrix& covariance);
+  /// Every axis is learnt here.
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] std::int64_t rows() const { return rows_; }
   [[nodiscard]] const JointFilter& filter() const { return filter_; }

@@ -8,9 +8,10 @@
 namespace fathom::joint {
 namespace {
 
-constexpr double kLargestStep = 0.15;   // of a decay within a step of the second order
-constexpr int kMostSteps = 8;           // within one prediction: wild estimates shall not take for ever
-constexpr double kFree = 20.0;          // m/s^2 or rad/s^2 in one second: axes that only follow what is measured
+constexpr double kLargestStep = 0.5;    // of a decay within a step of the fourth order: right to 5e-4
+constexpr int kMostSteps = 4;           // within one prediction: wild estimates shall not take for ever
+constexpr double kFreeSpeed = 0.5;      // m/s^2 in one second: axes that only follow what is measured
+constexpr double kFreeRate = 5.0;       // rad/s^2 in one second, likewise
 constexpr double kPreciseBeyond = 1e3;  // prior over noise beyond which the update is Joseph's to the letter
 
 }  // namespace
@@ -48,7 +49,48 @@ ParameterMatrix JointFilter::parameter_covariance() const {
 
 void JointFilter::hold(int parameter, bool held) {
   held_[static_cast<std::size_t>(parameter)] = held;
-  any_held_ = std::ranges::any_of(held_, [](bool each) { return each; });
+  count_still();
+}
+
+bool JointFilter::still(int parameter) const {
+  const auto k = static_cast<std::size_t>(parameter);
+  return held_[k] || !model_.moves(model::axis(model_.parameters()[k]));
+}
+
+void JointFilter::count_still() {
+  any_still_ = false;
+  for (int k = 0; k < model_.size(); ++k) any_still_ = any_still_ || still(k);
+}
+
+void JointFilter::teach(int axis, const ParameterVector& mean, const ParameterMatrix& covariance) {
+  model_.move(axis);
+  std::array<int, model::kBaseParameterCount> own{};
+  Eigen::Index n = 0;
+  for (int k = 0; k < model_.size(); ++k) {
+    if (model::axis(model_.parameters()[static_cast<std::size_t>(k)]) == axis) own[static_cast<std::size_t>(n++)] = k;
+  }
+  const int inertia = model_.inertia_of(axis);
+  ParameterMatrix slope = ParameterMatrix::Zero(n, n), theirs(n, n);  // d phi / d theta
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int k = own[static_cast<std::size_t>(i)];
+    const double m = mean(inertia);
+    x_(part::kParameters + k) = (k == inertia ? 1.0 : mean(k)) / m;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const int l = own[static_cast<std::size_t>(j)];
+      theirs(i, j) = covariance(k, l);
+      if (l == inertia) slope(i, j) = -(k == inertia ? 1.0 : mean(k)) / (m * m);
+    }
+    if (k != inertia) slope(i, i) = 1.0 / m;
+    P_.row(part::kParameters + k).setZero();
+    P_.col(part::kParameters + k).setZero();
+  }
+  const ParameterMatrix known = slope * theirs * slope.transpose();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      P_(part::kParameters + own[static_cast<std::size_t>(i)], part::kParameters + own[static_cast<std::size_t>(j)]) =
+          known(i, j);
+  }
+  count_still();
 }
 
 bool JointFilter::restore(const ParameterVector& mean, const ParameterMatrix& covariance) {
@@ -80,18 +122,27 @@ void JointFilter::move(double dt, const Eigen::Matrix3d& R_from, const Eigen::Ma
   Rows S = Rows::Zero(6, n);
   S.middleCols<6>(part::kNu).setIdentity();
   AccelerationSlope slope;
-  const auto grow = [&](const Rows& at, double by, Rows& to) {
-    to.noalias() += by * (slope.by_motion.rightCols<6>() * at);
-    to.middleCols<3>(part::kAttitude) += by * slope.by_motion.leftCols<3>();
-    to.rightCols(parameters) += by * slope.by_parameters;
+  Vector6d a, sum;
+  Rows by, sums;  // their derivatives
+  const auto feel = [&](const Vector6d& at, const Rows& moved) {
+    a = model_.acceleration(phi, at, R, tau, &slope);
+    by.noalias() = slope.by_motion.rightCols<6>() * moved;
+    by.middleCols<3>(part::kAttitude) += slope.by_motion.leftCols<3>();
+    by.rightCols(parameters) += slope.by_parameters;
   };
-  for (int k = 0; k < steps; ++k) {
-    const Vector6d begin = model_.acceleration(phi, nu, R, tau, &slope);
-    Rows middle = S;
-    grow(S, 0.5 * h, middle);
-    const Vector6d a = model_.acceleration(phi, nu + 0.5 * h * begin, R, tau, &slope);
-    grow(middle, h, S);
-    nu += h * a;
+  for (int k = 0; k < steps; ++k) {  // Runge and Kutta's of the fourth order
+    feel(nu, S);
+    sum = a;
+    sums = by;
+    feel(nu + 0.5 * h * a, S + 0.5 * h * by);
+    sum += 2.0 * a;
+    sums += 2.0 * by;
+    feel(nu + 0.5 * h * a, S + 0.5 * h * by);
+    sum += 2.0 * a;
+    sums += 2.0 * by;
+    feel(nu + h * a, S + h * by);
+    nu += h / 6.0 * (sum + a);
+    S += h / 6.0 * (sums + by);
   }
   const Eigen::Matrix3d from = R_from * turn, to = R_to * turn;
   F.setZero(9, n);
@@ -121,7 +172,7 @@ void JointFilter::predict(double dt, const Eigen::Matrix3d& R_from, const Eigen:
 
 void JointFilter::diffuse(double dt) {
   for (int axis = 0; axis < 6; ++axis) {
-    const double free = kFree, lacks = axis < 3 ? noise_.acceleration : noise_.turning;
+    const double free = axis < 3 ? kFreeSpeed : kFreeRate, lacks = axis < 3 ? noise_.acceleration : noise_.turning;
     const double density = model_.moves(axis) ? lacks : free;
     P_(part::kNu + axis, part::kNu + axis) += density * density * dt;
   }
@@ -156,17 +207,17 @@ bool JointFilter::take(const JointRow& row, double innovation, double gate, Join
   if (!std::isfinite(variance) || !(variance > 0.0) || !std::isfinite(innovation)) return false;
   if (innovation * innovation > gate * gate * variance) return false;
   JointVector gain = with / variance;
-  if (any_held_) {
+  if (any_still_) {
     for (int k = 0; k < model_.size(); ++k) {
-      if (!held_[static_cast<std::size_t>(k)]) continue;
+      if (!still(k)) continue;
       // What is held is the number in SI: its share of an inertia that goes on being learnt follows that one.
       const int j = model_.divisor(k);
-      const bool follows = j >= 0 && j != k && !held_[static_cast<std::size_t>(j)];
+      const bool follows = j >= 0 && j != k && !still(j);
       const Eigen::Index at = part::kParameters + k, by = part::kParameters + j;
       gain(at) = follows && x_(by) > 0.0 ? x_(at) / x_(by) * gain(by) : 0.0;
     }
   }
-  if (!any_held_ && known < kPreciseBeyond * row.variance) {
+  if (!any_still_ && known < kPreciseBeyond * row.variance) {
     P_.noalias() -= gain * with.transpose();
   } else {  // (I - k h') P (I - k h')' + k r k', and what noise and state share
     P_.noalias() -= gain * prior.transpose();

@@ -63,6 +63,9 @@ class JointFilter {
   /// Rows of one instant, all linearised now; refused beyond `gate` standard deviations. How many were taken.
   int update(std::span<JointRow> rows, double gate);
 
+  /// An axis begins to be moved by the model, and its parameters to be learnt: means and covariance of all of them in
+  /// SI, of which those of this axis are taken. Its inertia must be positive.
+  void teach(int axis, const ParameterVector& mean, const ParameterMatrix& covariance);
   /// A held parameter keeps value and variance, and its doubt still widens that of the others (Schmidt 1966).
   void hold(int parameter, bool held);
 
@@ -83,13 +86,15 @@ class JointFilter {
             const Vector6d& tau, Transition& F);
   void diffuse(double dt);
   bool take(const JointRow& row, double innovation, double gate, JointVector& moved);
+  [[nodiscard]] bool still(int parameter) const;
+  void count_still();
 
   Normalised model_;
   JointNoise noise_;
   JointVector x_;
   JointMatrix P_;
   std::array<bool, model::kBaseParameterCount> held_{};
-  bool any_held_{};
+  bool any_still_{true};
 };
 
 }  // namespace fathom::joint

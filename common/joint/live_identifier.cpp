@@ -56,6 +56,7 @@ const LiveIdentifier::Output& LiveIdentifier::step(const StateEstimate& state) {
   joint_->hear(state);
   while (const auto reached = joint_->next()) {
     while (!pending_.empty() && pending_.front().model.utime <= *reached) {
+      teach(pending_.front().model);
       say(pending_.front());
       pending_.pop_front();
     }
@@ -88,6 +89,16 @@ const LiveIdentifier::Output& LiveIdentifier::finish() {
   for (const Pending& pending : pending_) say(pending);
   pending_.clear();
   return output_;
+}
+
+// Linear in its parameters, the recursive estimate converges from anywhere; a Kalman filter on unknown inertias need not.
+// What the joint estimate takes over is of samples before, and what it learns of samples after: none counts twice.
+void LiveIdentifier::teach(const ModelEstimate& model) {
+  if (joint_->started() || !model.effects.empty()) return;
+  const auto n = static_cast<Eigen::Index>(model.parameters.size());
+  ParameterVector mean(n);
+  for (Eigen::Index i = 0; i < n; ++i) mean(i) = model.parameters[static_cast<std::size_t>(i)].value;
+  joint_->offer(mean, Eigen::Map<const Eigen::MatrixXd>(model.covariance.data(), n, n));
 }
 
 bool LiveIdentifier::speaks(const ModelEstimate& model) const {

@@ -60,6 +60,7 @@ class LiveIdentifier {
     identification::RowBlock rows;
   };
   void stash(const Output& output);
+  void teach(const ModelEstimate& model);
   void say(const Pending& pending);
   [[nodiscard]] ModelEstimate with_joint(ModelEstimate model) const;
   [[nodiscard]] bool speaks(const ModelEstimate& model) const;

@@ -49,15 +49,6 @@ ParameterVector Normalised::physical(const ParameterVector& phi) const {
   return theta;
 }
 
-ParameterVector Normalised::normalised(const ParameterVector& theta) const {
-  ParameterVector phi(theta.size());
-  for (int k = 0; k < size(); ++k) {
-    const int j = divisor(k);
-    phi(k) = j < 0 ? theta(k) : (j == k ? 1.0 : theta(k)) / theta(j);
-  }
-  return phi;
-}
-
 ParameterMatrix Normalised::physical_slope(const ParameterVector& phi) const {
   ParameterMatrix slope = ParameterMatrix::Zero(phi.size(), phi.size());
   for (int k = 0; k < size(); ++k) {
@@ -82,7 +73,7 @@ Vector6d Normalised::acceleration(const ParameterVector& phi, const Vector6d& nu
   const Vector6d force = tau - Y * theta;
   Vector6d mu = Vector6d::Zero();
   for (std::size_t i = 0; i < 6; ++i) {
-    if (dof_[i]) mu[static_cast<Eigen::Index>(i)] = phi(mass_[i]);
+    if (moves_[i]) mu[static_cast<Eigen::Index>(i)] = phi(mass_[i]);
   }
   if (slope != nullptr) {
     model::Motion motion;
@@ -104,7 +95,7 @@ Vector6d Normalised::acceleration(const ParameterVector& phi, const Vector6d& nu
     }
     for (std::size_t i = 0; i < 6; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
-      if (dof_[i]) slope->by_parameters(axis, mass_[i]) += force[axis];
+      if (moves_[i]) slope->by_parameters(axis, mass_[i]) += force[axis];
     }
   }
   return mu.cwiseProduct(force);
@@ -113,7 +104,7 @@ Vector6d Normalised::acceleration(const ParameterVector& phi, const Vector6d& nu
 double Normalised::quickest(const ParameterVector& phi, const Vector6d& nu) const {
   double rate = 0.0;
   for (std::size_t i = 0; i < 6; ++i) {
-    if (!dof_[i]) continue;
+    if (!moves_[i]) continue;
     const double linear = linear_[i] < 0 ? 0.0 : phi(linear_[i]);
     const double quadratic = quadratic_[i] < 0 ? 0.0 : 2.0 * phi(quadratic_[i]) * std::abs(nu[static_cast<int>(i)]);
     rate = std::max(rate, std::abs(linear + quadratic));

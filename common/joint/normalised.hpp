@@ -32,11 +32,16 @@ class Normalised {
   [[nodiscard]] const std::vector<model::BaseParameter>& parameters() const { return parameters_; }
   /// Number of the inertia by which a parameter is divided; itself where it is an inertia; -1: by none.
   [[nodiscard]] int divisor(int k) const { return divisor_[static_cast<std::size_t>(k)]; }
-  [[nodiscard]] bool moves(int axis) const { return dof_[static_cast<std::size_t>(axis)]; }
+  /// Whether the model moves this axis. At first it moves none: an axis whose inertia nobody knows is better followed.
+  [[nodiscard]] bool moves(int axis) const { return moves_[static_cast<std::size_t>(axis)]; }
+  /// From now on it does, where it is a simulated degree of freedom.
+  void move(int axis) { moves_[static_cast<std::size_t>(axis)] = dof_[static_cast<std::size_t>(axis)]; }
+  [[nodiscard]] bool simulated(int axis) const { return dof_[static_cast<std::size_t>(axis)]; }
+  /// Number of the inertia of an axis; -1: none.
+  [[nodiscard]] int inertia_of(int axis) const { return mass_[static_cast<std::size_t>(axis)]; }
 
-  /// In SI, and back.
+  /// In SI.
   [[nodiscard]] ParameterVector physical(const ParameterVector& phi) const;
-  [[nodiscard]] ParameterVector normalised(const ParameterVector& theta) const;
   /// d physical / d phi.
   [[nodiscard]] ParameterMatrix physical_slope(const ParameterVector& phi) const;
 
@@ -54,7 +59,7 @@ class Normalised {
   std::vector<int> divisor_;
   std::array<int, 6> mass_{};  // parameter of each axis's inertia; -1: none
   std::array<int, 6> linear_{}, quadratic_{};
-  std::array<bool, 6> dof_{};
+  std::array<bool, 6> dof_{}, moves_{};
   ParameterVector heaviest_;
 };
 
