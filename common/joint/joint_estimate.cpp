@@ -92,6 +92,7 @@ JointSettings JointSettings::from(const Config& config) {
   s.acceleration = config.positive("unmodelled_acceleration", "m/s^2");
   s.turning = config.positive("unmodelled_turning", "rad/s^2");
   s.attitude_memory = config.positive("attitude_memory", "s");
+  s.inertial_scale = config.not_negative("inertial_scale", "");
   return s;
 }
 
@@ -103,6 +104,7 @@ JointEstimate::JointEstimate(const JointSettings& settings, const identification
       places_{places},
       max_input_gap_{identifier.max_input_gap},
       freeze_delay_{identifier.freeze_delay},
+      attitude_offset_{identifier.attitude_offset},
       lag_{longest_delay(navigator)},
       filter_{[&] {
         const Prior prior = prior_of(identifier, vehicle);
@@ -269,7 +271,42 @@ void JointEstimate::go_to(Utime utime) {
 
 ParameterMatrix JointEstimate::covariance() const {
   const ParameterMatrix slope = filter_.model().physical_slope(filter_.parameters());
-  return slope * filter_.parameter_covariance() * slope.transpose();
+  ParameterMatrix all = slope * filter_.parameter_covariance() * slope.transpose();
+  add_systematic(all);
+  return all;
+}
+
+// What no residual shows. Accelerations and rates that are all off by the same share s explain every force as well with
+// inertias divided by 1 + s, and rates with linear drag by that and quadratic drag by its square. An attitude that is off
+// turns the restoring moment.
+void JointEstimate::add_systematic(ParameterMatrix& covariance) const {
+  using enum model::BaseParameter;
+  const auto& parameters = filter_.model().parameters();
+  const ParameterVector known = estimate();
+  const auto widen = [&](const ParameterVector& along) { covariance += along * along.transpose(); };
+  const ParameterVector none = ParameterVector::Zero(known.size());
+  ParameterVector felt = none, turned = none;
+  int righting = -1;
+  for (int k = 0; k < filter_.model().size(); ++k) {
+    const model::BaseParameter parameter = parameters[static_cast<std::size_t>(k)];
+    const double off = settings_.inertial_scale * known(k);
+    if (parameter == G_z) righting = k;
+    if (parameter >= W_B) continue;
+    if (model::axis(parameter) > 2) {
+      turned(k) = (parameter >= X_uu ? 2.0 : 1.0) * off;
+    } else if (parameter <= m_Z) {
+      felt(k) = off;
+    }
+  }
+  widen(felt);
+  widen(turned);
+  for (int k = 0; righting >= 0 && k < filter_.model().size(); ++k) {
+    const model::BaseParameter parameter = parameters[static_cast<std::size_t>(k)];
+    if (parameter != G_x && parameter != G_y) continue;
+    ParameterVector tilted = none;
+    tilted(k) = attitude_offset_ * known(righting);
+    widen(tilted);
+  }
 }
 
 void JointEstimate::offer(const ParameterVector& mean, const ParameterMatrix& covariance) {
@@ -278,10 +315,11 @@ void JointEstimate::offer(const ParameterVector& mean, const ParameterMatrix& co
   started_ = true;
   for (int axis = 0; axis < 6; ++axis) {
     const int k = model.inertia_of(axis);
-    if (k < 0 || model.moves(axis)) continue;
+    if (k < 0 || model.moves(axis) || !model.simulated(axis)) continue;
     if (mean(k) > 0.0 && std::sqrt(covariance(k, k)) < kWellKnown * mean(k)) filter_.teach(axis, mean, covariance);
     started_ = started_ && (filter_.model().moves(axis) || !model.simulated(axis));
   }
+  if (started_) filter_.teach_rest(mean, covariance);
 }
 
 bool JointEstimate::restore(const ParameterVector& mean, const ParameterMatrix& covariance) {

@@ -24,7 +24,8 @@ struct JointSettings {
   double acceleration{3e-3};      ///< m/s^2, mean over a second of what the model lacks along X Y Z
   double turning{1e-2};           ///< rad/s^2, likewise about K M N
   double attitude_memory{30.0};   ///< s for which an attitude's error goes on
-  /// Keys: unmodelled_acceleration, unmodelled_turning, attitude_memory.
+  double inertial_scale{0.0};     ///< share by which accelerometers and gyros may be off in proportion
+  /// Keys: unmodelled_acceleration, unmodelled_turning, attitude_memory, inertial_scale.
   [[nodiscard]] static JointSettings from(const Config& config);
 };
 
@@ -105,12 +106,13 @@ class JointEstimate {
   void use_others(const Event& event);
   void use_inertial(const Event& event, double dt);
   [[nodiscard]] bool of_floor(const Eigen::Vector3d& p_B, const Eigen::Matrix3d& R_WB) const;
+  void add_systematic(ParameterMatrix& covariance) const;
   void correct(std::size_t count, const char* refused);
 
   JointSettings settings_;
   estimation::NavigatorSettings navigator_;
   estimation::NavigatorPlaces places_;
-  double max_input_gap_, freeze_delay_, lag_;
+  double max_input_gap_, freeze_delay_, attitude_offset_, lag_;
   JointFilter filter_;
   std::vector<Event> waiting_;  // in the order of time, then kind; the first done_ are used up
   std::size_t done_{};

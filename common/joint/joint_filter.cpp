@@ -54,7 +54,8 @@ void JointFilter::hold(int parameter, bool held) {
 
 bool JointFilter::still(int parameter) const {
   const auto k = static_cast<std::size_t>(parameter);
-  return held_[k] || !model_.moves(model::axis(model_.parameters()[k]));
+  const int axis = model::axis(model_.parameters()[k]);
+  return held_[k] || !(model_.simulated(axis) ? model_.moves(axis) : rest_taught_);
 }
 
 void JointFilter::count_still() {
@@ -90,6 +91,19 @@ void JointFilter::teach(int axis, const ParameterVector& mean, const ParameterMa
       P_(part::kParameters + own[static_cast<std::size_t>(i)], part::kParameters + own[static_cast<std::size_t>(j)]) =
           known(i, j);
   }
+  count_still();
+}
+
+void JointFilter::teach_rest(const ParameterVector& mean, const ParameterMatrix& covariance) {
+  for (int k = 0; k < model_.size(); ++k) {
+    if (model_.simulated(model::axis(model_.parameters()[static_cast<std::size_t>(k)]))) continue;
+    const Eigen::Index at = part::kParameters + k;
+    x_(at) = mean(k);
+    P_.row(at).setZero();
+    P_.col(at).setZero();
+    P_(at, at) = covariance(k, k);
+  }
+  rest_taught_ = true;
   count_still();
 }
 

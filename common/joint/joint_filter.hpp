@@ -66,6 +66,8 @@ class JointFilter {
   /// An axis begins to be moved by the model, and its parameters to be learnt: means and covariance of all of them in
   /// SI, of which those of this axis are taken. Its inertia must be positive.
   void teach(int axis, const ParameterVector& mean, const ParameterMatrix& covariance);
+  /// The same for what belongs to axes that are not simulated and enters the others' equations.
+  void teach_rest(const ParameterVector& mean, const ParameterMatrix& covariance);
   /// A held parameter keeps value and variance, and its doubt still widens that of the others (Schmidt 1966).
   void hold(int parameter, bool held);
 
@@ -94,7 +96,7 @@ class JointFilter {
   JointVector x_;
   JointMatrix P_;
   std::array<bool, model::kBaseParameterCount> held_{};
-  bool any_still_{true};
+  bool any_still_{true}, rest_taught_{false};
 };
 
 }  // namespace fathom::joint

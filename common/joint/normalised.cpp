@@ -30,7 +30,8 @@ Normalised::Normalised(const model::Vehicle& vehicle, std::vector<BaseParameter>
   }
   divisor_.reserve(parameters_.size());
   for (const BaseParameter parameter : parameters_) {
-    divisor_.push_back(mass_[static_cast<std::size_t>(model::axis(parameter))]);
+    const auto axis = static_cast<std::size_t>(model::axis(parameter));
+    divisor_.push_back(dof_[axis] ? mass_[axis] : -1);
   }
 }
 
