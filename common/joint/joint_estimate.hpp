@@ -83,6 +83,7 @@ class JointEstimate {
   struct Seen {
     Eigen::Vector3d a{Eigen::Vector3d::Zero()}, b{Eigen::Vector3d::Zero()};
     int repeated{};
+    Utime utime{};
   };
   struct Wish {
     Utime utime{};
@@ -99,6 +100,7 @@ class JointEstimate {
   [[nodiscard]] Eigen::Matrix3d told(Utime utime) const;
   [[nodiscard]] const StateEstimate* state_at(Utime utime) const;
   [[nodiscard]] bool frozen(const Event& event);
+  [[nodiscard]] double lasting(Kind kind, Utime utime, double systematic);
   void use(std::size_t first, std::size_t last);
   void use_tags(std::size_t first, std::size_t last);
   void use_flow(const Event& event);

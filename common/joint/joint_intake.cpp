@@ -12,6 +12,8 @@ constexpr double kTagsCommonError = 4.0;  // tags in one picture share errors: t
 constexpr int kRepeats = 4;               // bit by bit the same: no noisy sensor does that while moving
 constexpr double kNearWall = 0.1;         // m
 constexpr int kPatience = 60;             // rows refused in a row before the motion is taken to be the wrong one
+constexpr double kLasts = 1.0;             // s that heights and places are off by the same: until other tags are in view
+constexpr double kShortest = 5e-3;         // s between two pictures
 constexpr double kNearest = 0.05;         // m along the optical axis: nearer nothing is seen
 
 double square(double value) { return value * value; }
@@ -36,6 +38,14 @@ bool JointEstimate::frozen(const Event& event) {
   if (seen.repeated < kRepeats) return false;
   ++rejected_["joint estimate: frozen"];
   return true;
+}
+
+// An error that lasts for a while, in many samples: as large a noise of each as leaves the same over longer times.
+double JointEstimate::lasting(Kind kind, Utime utime, double systematic) {
+  Seen& seen = seen_[static_cast<std::size_t>(kind)];
+  const double interval = std::clamp(seconds_between(seen.utime, utime), kShortest, kLasts);
+  seen.utime = utime;
+  return square(systematic) * 2.0 * kLasts / interval;
 }
 
 // What is seen at p_B tells of the floor only where the floor is.
@@ -84,8 +94,9 @@ void JointEstimate::use_tags(std::size_t first, std::size_t last) {
   see_point(filter_.state(), here, p_WT / n, arm / n, std::span{at_once_}.first<3>());
   const double down = navigator_.tags.vertical_noise > 0.0 ? navigator_.tags.vertical_noise : noise;
   const double count = std::min(n, kTagsCommonError);
-  at_once_[0].variance = at_once_[1].variance = square(noise) / count;
-  at_once_[2].variance = square(down) / count;
+  const double stays = lasting(Kind::kTag, waiting_[first].utime, navigator_.tags.systematic);
+  at_once_[0].variance = at_once_[1].variance = square(noise) / count + stays;
+  at_once_[2].variance = square(down) / count + stays;
   correct(3, "joint estimate: TAG_POSE refused");
 }
 
@@ -94,7 +105,8 @@ void JointEstimate::use_laser(const Event& event) {
   const Eigen::Vector3d arm = event.camera->p_BC + event.camera->R_BC * event.a;
   if (!of_floor(arm, true_attitude(filter_.state(), here))) return;
   see_floor(filter_.state(), here, *places_.floor, arm, at_once_[0]);
-  at_once_[0].variance = square(navigator_.laser.noise) + square(event.sigma);
+  at_once_[0].variance = square(navigator_.laser.noise) + square(event.sigma) +
+                         lasting(Kind::kLaser, event.utime, navigator_.laser.systematic);
   correct(1, "joint estimate: LASER_RANGE refused");
 }
 
