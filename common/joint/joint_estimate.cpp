@@ -17,6 +17,9 @@ constexpr std::size_t kHistory = 512;     // states: 5 s at 100 Hz
 constexpr double kUnknownMass = 3.0;      // of 1/m's prior: its standard deviation, unknown to a factor of four
 constexpr double kLightest = 20.0;        // times lighter than expected than which nothing is taken to be
 constexpr double kWellKnown = 0.15;      // share of an inertia: so well it must be known for an axis to begin
+constexpr int kScoresOfASecond = 100;     // attitudes
+constexpr int kSecondsSeen = 40;          // that the innovations' colour looks back...
+constexpr int kSecondsBefore = 20;        // ...beside so many that were as they should be
 constexpr double kStartSpeed = 0.02;      // m/s added to what STATE says of itself: it has seen the same samples
 constexpr double kStartPosition = 0.01;   // m likewise
 
@@ -110,7 +113,8 @@ JointEstimate::JointEstimate(const JointSettings& settings, const identification
         const Prior prior = prior_of(identifier, vehicle);
         return JointFilter{Normalised{vehicle, columns_of(vehicle), prior.heaviest},
                            noise_of(settings, identifier, navigator), prior.mean, prior.sigma};
-      }()} {
+      }()},
+      prior_{filter_} {
   waiting_.reserve(2 * kHistory);
   states_.resize(kHistory);
 }
@@ -164,8 +168,9 @@ void JointEstimate::hear(Utime utime, std::vector<int> held) {
 
 void JointEstimate::obey(Utime utime) {
   while (!wishes_.empty() && seconds_between(wishes_.front().utime, utime) >= freeze_delay_) {
+    held_ = wishes_.front().held;
     for (int k = 0; k < filter_.model().size(); ++k)
-      filter_.hold(k, std::ranges::find(wishes_.front().held, k) != wishes_.front().held.end());
+      filter_.hold(k, std::ranges::find(held_, k) != held_.end());
     wishes_.erase(wishes_.begin());
   }
 }
@@ -253,7 +258,17 @@ void JointEstimate::follow_attitude(const Event& event) {
   go_to(event.utime);
   use_inertial(event, dt);
   constexpr double kFastest = 20.0;  // m/s and rad/s: beyond, it is not the vehicle that moves so
-  if (!filter_.finite() || filter_.nu().cwiseAbs().maxCoeff() > kFastest) lose("it ran away");
+  if (!filter_.sane()) return begin_anew("its numbers were impossible");
+  if (filter_.nu().cwiseAbs().maxCoeff() > kFastest) lose("it ran away");
+}
+
+// What was learnt is of no use: the recursive estimate has to teach it once more.
+void JointEstimate::begin_anew(const char* why) {
+  lose(why);
+  filter_ = prior_;
+  for (const int k : held_) filter_.hold(k, true);
+  started_ = false;
+  colour_ = {};
 }
 
 Eigen::Matrix3d JointEstimate::told(Utime utime) const {
@@ -272,8 +287,26 @@ void JointEstimate::go_to(Utime utime) {
 ParameterMatrix JointEstimate::covariance() const {
   const ParameterMatrix slope = filter_.model().physical_slope(filter_.parameters());
   ParameterMatrix all = slope * filter_.parameter_covariance() * slope.transpose();
+  ParameterVector wider(all.rows());
+  for (int k = 0; k < filter_.model().size(); ++k) {
+    const int axis = model::axis(filter_.model().parameters()[static_cast<std::size_t>(k)]);
+    wider(k) = std::sqrt(std::max(1.0, colour_[static_cast<std::size_t>(axis)].ratio));
+  }
+  all = wider.asDiagonal() * all * wider.asDiagonal();
   add_systematic(all);
   return all;
+}
+
+// Innovations of a right model are white: over a second their sum's square is their number on average. What the model
+// lacks goes on for longer and shows there first; by so much the intervals are too narrow.
+void JointEstimate::look_at(int axis, double score) {
+  Colour& colour = colour_[static_cast<std::size_t>(axis)];
+  colour.sum += score;
+  if (++colour.count < kScoresOfASecond) return;
+  colour.seconds = std::min(colour.seconds + 1, kSecondsSeen);
+  colour.ratio += (colour.sum * colour.sum / colour.count - colour.ratio) / (kSecondsBefore + colour.seconds);
+  colour.sum = 0.0;
+  colour.count = 0;
 }
 
 // What no residual shows. Accelerations and rates that are all off by the same share s explain every force as well with

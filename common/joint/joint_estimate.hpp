@@ -85,6 +85,13 @@ class JointEstimate {
     int repeated{};
     Utime utime{};
   };
+  /// Whether what is left of accelerations and rates is as white as it should be.
+  struct Colour {
+    double sum{};  ///< of scores within the present second
+    int count{};
+    double ratio{1.0};  ///< of the squared sums of a second to their number, over the last ones
+    int seconds{};
+  };
   struct Wish {
     Utime utime{};
     std::vector<int> held;
@@ -109,6 +116,8 @@ class JointEstimate {
   void use_inertial(const Event& event, double dt);
   [[nodiscard]] bool of_floor(const Eigen::Vector3d& p_B, const Eigen::Matrix3d& R_WB) const;
   void add_systematic(ParameterMatrix& covariance) const;
+  void look_at(int axis, double score);
+  void begin_anew(const char* why);
   void correct(std::size_t count, const char* refused);
 
   JointSettings settings_;
@@ -116,6 +125,7 @@ class JointEstimate {
   estimation::NavigatorPlaces places_;
   double max_input_gap_, freeze_delay_, attitude_offset_, lag_;
   JointFilter filter_;
+  const JointFilter prior_;
   std::vector<Event> waiting_;  // in the order of time, then kind; the first done_ are used up
   std::size_t done_{};
   std::vector<StateEstimate> states_;  // a ring
@@ -128,6 +138,8 @@ class JointEstimate {
   std::optional<Utime> input_at_;
   Vector6d tau_{Vector6d::Zero()};
   std::array<Seen, 8> seen_{};
+  std::array<Colour, 6> colour_{};
+  std::vector<int> held_;
   std::array<JointRow, 3> at_once_;
   bool running_{false}, started_{false};
   int refused_in_a_row_{};

@@ -63,6 +63,14 @@ void JointFilter::count_still() {
   for (int k = 0; k < model_.size(); ++k) any_still_ = any_still_ || still(k);
 }
 
+bool JointFilter::sane() const {
+  if (!x_.allFinite() || !P_.diagonal().allFinite() || P_.diagonal().minCoeff() < 0.0) return false;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (model_.moves(axis) && model_.clamped(parameters(), model_.inertia_of(axis))) return false;
+  }
+  return true;
+}
+
 void JointFilter::teach(int axis, const ParameterVector& mean, const ParameterMatrix& covariance) {
   model_.move(axis);
   std::array<int, model::kBaseParameterCount> own{};
@@ -201,14 +209,15 @@ void JointFilter::diffuse(double dt) {
 int JointFilter::update(std::span<JointRow> rows, double gate) {
   JointVector moved = JointVector::Zero(size());
   int taken = 0;
-  for (const JointRow& row : rows) {
+  for (JointRow& row : rows) {
     const double innovation = row.innovation - row.h.dot(moved);
+    row.score = 0.0;
     if (take(row, innovation, gate, moved)) ++taken;
   }
   return taken;
 }
 
-bool JointFilter::take(const JointRow& row, double innovation, double gate, JointVector& moved) {
+bool JointFilter::take(JointRow& row, double innovation, double gate, JointVector& moved) {
   const Eigen::Index n = size();
   const JointVector prior = row.of_motion
                                 ? JointVector{P_.leftCols<part::kParameters>() * row.h.head<part::kParameters>()}
@@ -220,6 +229,7 @@ bool JointFilter::take(const JointRow& row, double innovation, double gate, Join
   const double variance = known + 2.0 * row.h.segment<6>(part::kNu).dot(row.shared) + row.variance;
   if (!std::isfinite(variance) || !(variance > 0.0) || !std::isfinite(innovation)) return false;
   if (innovation * innovation > gate * gate * variance) return false;
+  row.score = innovation / std::sqrt(variance);
   JointVector gain = with / variance;
   if (any_still_) {
     for (int k = 0; k < model_.size(); ++k) {

@@ -47,6 +47,7 @@ struct JointRow {
   /// Covariance of its noise with the state's [rows kNu...], where the measurement feels what also moves the vehicle.
   Vector6d shared{Vector6d::Zero()};
   bool of_motion{true};  ///< h is zero behind part::kParameters
+  double score{};        ///< set by update(): the innovation in its standard deviations; 0 where it was refused
 };
 
 class JointFilter {
@@ -80,14 +81,15 @@ class JointFilter {
   [[nodiscard]] int size() const { return static_cast<int>(x_.size()); }
   /// Parameters and their covariance as saved; the motion has to begin anew. False when they are not usable.
   bool restore(const ParameterVector& mean, const ParameterMatrix& covariance);
-  [[nodiscard]] bool finite() const { return x_.allFinite() && P_.diagonal().allFinite(); }
+  /// Finite, variances not negative, inertias that move anything positive and not beyond all bounds.
+  [[nodiscard]] bool sane() const;
 
  private:
   using Transition = Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, kMostStates>;
   void move(double dt, const Eigen::Matrix3d& R_from, const Eigen::Matrix3d& R_middle, const Eigen::Matrix3d& R_to,
             const Vector6d& tau, Transition& F);
   void diffuse(double dt);
-  bool take(const JointRow& row, double innovation, double gate, JointVector& moved);
+  bool take(JointRow& row, double innovation, double gate, JointVector& moved);
   [[nodiscard]] bool still(int parameter) const;
   void count_still();
 

@@ -153,6 +153,9 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
     at_once_[static_cast<std::size_t>(i)].variance = square(navigator_.rate_noise);
   }
   correct(3, "joint estimate: AHRS refused");
+  for (int i = 0; i < 3; ++i) {
+    if (filter_.model().moves(3 + i)) look_at(3 + i, at_once_[static_cast<std::size_t>(i)].score);
+  }
   Eigen::Vector3d w_dot = Eigen::Vector3d::Zero();
   if (attitudes_ >= static_cast<int>(lately_.size())) {
     const Event& old = lately_[static_cast<std::size_t>(attitudes_) % lately_.size()];
@@ -172,6 +175,10 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
     at_once_[i++].shared[axis] = lacks;
   }
   correct(count, "joint estimate: AHRS refused");
+  i = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (filter_.model().moves(axis)) look_at(axis, at_once_[i++].score);
+  }
 }
 
 void JointEstimate::hear(const TagPose& sample) {

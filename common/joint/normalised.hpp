@@ -41,6 +41,8 @@ class Normalised {
   /// Number of the inertia of an axis; -1: none.
   [[nodiscard]] int inertia_of(int axis) const { return mass_[static_cast<std::size_t>(axis)]; }
 
+  /// An inertia beyond `heaviest`, which is then taken in its place.
+  [[nodiscard]] bool clamped(const ParameterVector& phi, int k) const;
   /// In SI.
   [[nodiscard]] ParameterVector physical(const ParameterVector& phi) const;
   /// d physical / d phi.
@@ -54,7 +56,6 @@ class Normalised {
 
  private:
   [[nodiscard]] double inertia(const ParameterVector& phi, int k) const;
-  [[nodiscard]] bool clamped(const ParameterVector& phi, int k) const;
 
   std::vector<model::BaseParameter> parameters_;
   std::vector<int> divisor_;
