@@ -124,6 +124,9 @@ bool JointFilter::restore(const ParameterVector& mean, const ParameterMatrix& co
   P_.bottomRows(n).setZero();
   x_.tail(n) = mean;
   P_.bottomRightCorner(n, n) = 0.5 * (covariance + covariance.transpose());
+  for (int axis = 0; axis < 6; ++axis) model_.move(axis);
+  rest_taught_ = true;
+  count_still();
   return true;
 }
 

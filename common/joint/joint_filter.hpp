@@ -72,6 +72,8 @@ class JointFilter {
   /// A held parameter keeps value and variance, and its doubt still widens that of the others (Schmidt 1966).
   void hold(int parameter, bool held);
 
+  /// Moves the estimate by hand.
+  void shift(const JointVector& by) { x_ += by; }
   [[nodiscard]] const JointVector& state() const { return x_; }
   [[nodiscard]] const JointMatrix& covariance() const { return P_; }
   [[nodiscard]] Vector6d nu() const { return x_.segment<6>(part::kNu); }
