@@ -39,8 +39,7 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
   const ParameterMatrix nominal = estimator_.covariance();
   const auto n = static_cast<Eigen::Index>(parameters_.size());
   const ParameterMatrix honest = report.covariance.topLeftCorner(n, n);
-  estimate.modes =
-      mode_metrics(parameters_, nominal.diagonal().head(n), report.estimate.head(n), report.sigma.head(n));
+  estimate.modes = mode_metrics(parameters_, nominal.diagonal().head(n), report.estimate.head(n), report.sigma.head(n));
   estimate.covariance.assign(honest.data(), honest.data() + n * n);
   estimate.frozen = frozen_;
   for (std::size_t axis = 0; axis < 6; ++axis) {

@@ -13,15 +13,15 @@
 namespace fathom::joint {
 namespace {
 
-constexpr std::size_t kHistory = 512;     // states: 5 s at 100 Hz
-constexpr double kUnknownMass = 3.0;      // of 1/m's prior: its standard deviation, unknown to a factor of four
-constexpr double kLightest = 20.0;        // times lighter than expected than which nothing is taken to be
+constexpr std::size_t kHistory = 512;    // states: 5 s at 100 Hz
+constexpr double kUnknownMass = 3.0;     // of 1/m's prior: its standard deviation, unknown to a factor of four
+constexpr double kLightest = 20.0;       // times lighter than expected than which nothing is taken to be
 constexpr double kWellKnown = 0.15;      // share of an inertia: so well it must be known for an axis to begin
-constexpr int kScoresOfASecond = 100;     // attitudes
-constexpr int kSecondsSeen = 40;          // that the innovations' colour looks back...
-constexpr int kSecondsBefore = 20;        // ...beside so many that were as they should be
-constexpr double kStartSpeed = 0.02;      // m/s added to what STATE says of itself: it has seen the same samples
-constexpr double kStartPosition = 0.01;   // m likewise
+constexpr int kScoresOfASecond = 100;    // attitudes
+constexpr int kSecondsSeen = 40;         // that the innovations' colour looks back...
+constexpr int kSecondsBefore = 20;       // ...beside so many that were as they should be
+constexpr double kStartSpeed = 0.02;     // m/s added to what STATE says of itself: it has seen the same samples
+constexpr double kStartPosition = 0.01;  // m likewise
 
 std::vector<model::BaseParameter> columns_of(const model::Vehicle& vehicle) {
   std::vector<model::BaseParameter> columns;
@@ -100,8 +100,8 @@ JointSettings JointSettings::from(const Config& config) {
 }
 
 JointEstimate::JointEstimate(const JointSettings& settings, const identification::IdentifierSettings& identifier,
-                             const estimation::NavigatorSettings& navigator,
-                             const estimation::NavigatorPlaces& places, const model::Vehicle& vehicle)
+                             const estimation::NavigatorSettings& navigator, const estimation::NavigatorPlaces& places,
+                             const model::Vehicle& vehicle)
     : settings_{settings},
       navigator_{navigator},
       places_{places},
@@ -169,8 +169,7 @@ void JointEstimate::hear(Utime utime, std::vector<int> held) {
 void JointEstimate::obey(Utime utime) {
   while (!wishes_.empty() && seconds_between(wishes_.front().utime, utime) >= freeze_delay_) {
     held_ = wishes_.front().held;
-    for (int k = 0; k < filter_.model().size(); ++k)
-      filter_.hold(k, std::ranges::find(held_, k) != held_.end());
+    for (int k = 0; k < filter_.model().size(); ++k) filter_.hold(k, std::ranges::find(held_, k) != held_.end());
     wishes_.erase(wishes_.begin());
   }
 }
@@ -197,7 +196,8 @@ std::optional<Utime> JointEstimate::next() {
     std::size_t i = done_;
     while (i < attitude) {
       std::size_t end = i + 1;
-      while (end < attitude && waiting_[end].utime == waiting_[i].utime && waiting_[end].kind == waiting_[i].kind) ++end;
+      while (end < attitude && waiting_[end].utime == waiting_[i].utime && waiting_[end].kind == waiting_[i].kind)
+        ++end;
       if (waiting_[i].kind == Kind::kInput) {
         if (running_ && good) go_to(waiting_[i].utime);
         tau_ = waiting_[end - 1].tau;
@@ -310,8 +310,8 @@ void JointEstimate::look_at(int axis, double score) {
 }
 
 // What no residual shows. Accelerations and rates that are all off by the same share s explain every force as well with
-// inertias divided by 1 + s, and rates with linear drag by that and quadratic drag by its square. An attitude that is off
-// turns the restoring moment.
+// inertias divided by 1 + s, and rates with linear drag by that and quadratic drag by its square. An attitude that is
+// off turns the restoring moment.
 void JointEstimate::add_systematic(ParameterMatrix& covariance) const {
   using enum model::BaseParameter;
   const auto& parameters = filter_.model().parameters();

@@ -21,10 +21,10 @@ namespace fathom::joint {
 
 /// What the joint estimate needs beside the settings of estimator and identifier.
 struct JointSettings {
-  double acceleration{3e-3};      ///< m/s^2, mean over a second of what the model lacks along X Y Z
-  double turning{1e-2};           ///< rad/s^2, likewise about K M N
-  double attitude_memory{30.0};   ///< s for which an attitude's error goes on
-  double inertial_scale{0.0};     ///< share by which accelerometers and gyros may be off in proportion
+  double acceleration{3e-3};     ///< m/s^2, mean over a second of what the model lacks along X Y Z
+  double turning{1e-2};          ///< rad/s^2, likewise about K M N
+  double attitude_memory{30.0};  ///< s for which an attitude's error goes on
+  double inertial_scale{0.0};    ///< share by which accelerometers and gyros may be off in proportion
   /// Keys: unmodelled_acceleration, unmodelled_turning, attitude_memory, inertial_scale.
   [[nodiscard]] static JointSettings from(const Config& config);
 };
@@ -54,8 +54,8 @@ class JointEstimate {
   /// Goes on to the next attitude that nothing can come before any more; its time, or nothing when there is none.
   [[nodiscard]] std::optional<Utime> next();
 
-  /// What somebody else knows of the parameters, in SI, at the time that next() has reached. Taken on for every axis whose
-  /// inertia it knows well enough and that has not begun: from there on this axis is learnt here.
+  /// What somebody else knows of the parameters, in SI, at the time that next() has reached. Taken on for every axis
+  /// whose inertia it knows well enough and that has not begun: from there on this axis is learnt here.
   void offer(const ParameterVector& mean, const ParameterMatrix& covariance);
   /// Every axis is learnt here.
   [[nodiscard]] bool started() const { return started_; }
@@ -131,7 +131,7 @@ class JointEstimate {
   std::vector<StateEstimate> states_;  // a ring
   std::size_t newest_state_{};
   std::vector<Wish> wishes_;
-  std::optional<Utime> newest_, now_;  // newest attitude heard; where the filter is
+  std::optional<Utime> newest_, now_;    // newest attitude heard; where the filter is
   std::optional<Event> before_, ahead_;  // attitudes around now_
   std::array<Event, 4> lately_{};        // last attitudes, for the derivative of rates that no model moves
   int attitudes_{};

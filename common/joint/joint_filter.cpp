@@ -43,9 +43,7 @@ void JointFilter::start(const Eigen::Vector3d& p_WB, const Vector6d& nu, const V
   P_.diagonal().segment<3>(part::kBias).setConstant(noise_.bias_prior * noise_.bias_prior);
 }
 
-ParameterMatrix JointFilter::parameter_covariance() const {
-  return P_.bottomRightCorner(model_.size(), model_.size());
-}
+ParameterMatrix JointFilter::parameter_covariance() const { return P_.bottomRightCorner(model_.size(), model_.size()); }
 
 void JointFilter::hold(int parameter, bool held) {
   held_[static_cast<std::size_t>(parameter)] = held;

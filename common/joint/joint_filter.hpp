@@ -28,14 +28,14 @@ using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 
 /// What drives the state, and how unsure it begins. Densities: standard deviation of the mean over one second.
 struct JointNoise {
-  double acceleration{3e-3};      ///< m/s^2, of what the model lacks along X Y Z
-  double turning{1e-2};           ///< rad/s^2, likewise about K M N
-  double bias_walk{2e-3};         ///< m/s^2 in one second
-  double bias_prior{0.05};        ///< m/s^2
-  double attitude{3.5e-3};        ///< rad, standard deviation of the told attitude...
-  double attitude_memory{30.0};   ///< s, ...which goes on for about so long
-  double scale{0.0};              ///< prior of kScale
-  double height{0.0};             ///< m, prior of kHeight
+  double acceleration{3e-3};                        ///< m/s^2, of what the model lacks along X Y Z
+  double turning{1e-2};                             ///< rad/s^2, likewise about K M N
+  double bias_walk{2e-3};                           ///< m/s^2 in one second
+  double bias_prior{0.05};                          ///< m/s^2
+  double attitude{3.5e-3};                          ///< rad, standard deviation of the told attitude...
+  double attitude_memory{30.0};                     ///< s, ...which goes on for about so long
+  double scale{0.0};                                ///< prior of kScale
+  double height{0.0};                               ///< m, prior of kHeight
   Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  ///< m/s, prior of kOffset
 };
 

@@ -12,8 +12,8 @@ constexpr double kTagsCommonError = 4.0;  // tags in one picture share errors: t
 constexpr int kRepeats = 4;               // bit by bit the same: no noisy sensor does that while moving
 constexpr double kNearWall = 0.1;         // m
 constexpr int kPatience = 60;             // rows refused in a row before the motion is taken to be the wrong one
-constexpr double kLasts = 1.0;             // s that heights and places are off by the same: until other tags are in view
-constexpr double kShortest = 5e-3;         // s between two pictures
+constexpr double kLasts = 1.0;            // s that heights and places are off by the same: until other tags are in view
+constexpr double kShortest = 5e-3;        // s between two pictures
 constexpr double kNearest = 0.05;         // m along the optical axis: nearer nothing is seen
 
 double square(double value) { return value * value; }
@@ -163,8 +163,7 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
   }
   const Eigen::Matrix3d here = event.q_WB.toRotationMatrix();
   const Felt felt{.told = here, .tau = tau_, .w_dot = w_dot, .p_BI = places_.p_BI};
-  const std::size_t count =
-      feel_force(filter_.model(), filter_.state(), felt, event.b, std::span{at_once_}.first<3>());
+  const std::size_t count = feel_force(filter_.model(), filter_.state(), felt, event.b, std::span{at_once_}.first<3>());
   const double own = navigator_.vertical_acceleration_noise > 0.0 ? navigator_.vertical_acceleration_noise
                                                                   : navigator_.acceleration_noise;
   const double lacks = square(settings_.acceleration), turns = square(settings_.turning) * places_.p_BI.squaredNorm();

@@ -104,8 +104,8 @@ std::size_t feel_force(const Normalised& model, const JointVector& x, const Felt
     if (!model.moves(3 + i)) nu_dot[3 + i] = felt.w_dot[i];
   }
   const Eigen::Vector3d w_dot = nu_dot.tail<3>(), turned = w.cross(r);
-  const Eigen::Vector3d foretold = nu_dot.head<3>() + w.cross(v) + w_dot.cross(r) + w.cross(turned) - kGravity * down +
-                                   x.segment<3>(part::kBias);
+  const Eigen::Vector3d foretold =
+      nu_dot.head<3>() + w.cross(v) + w_dot.cross(r) + w.cross(turned) - kGravity * down + x.segment<3>(part::kBias);
   const Eigen::Matrix3d skew_r = skew(r);
   Eigen::Matrix<double, 3, 9> by_motion = slope.by_motion.topRows<3>() - skew_r * slope.by_motion.bottomRows<3>();
   by_motion.leftCols<3>() -= kGravity * skew(down);

@@ -30,9 +30,9 @@ void see_state(const JointVector& x, int which, double value, JointRow& row);
 /// What the accelerometer feels beside the state.
 struct Felt {
   const Eigen::Matrix3d& told;
-  const Vector6d& tau;               ///< N, N m
-  const Eigen::Vector3d& w_dot;      ///< rad/s^2, of the axes that no model moves
-  const Eigen::Vector3d& p_BI;       ///< m, where it sits
+  const Vector6d& tau;           ///< N, N m
+  const Eigen::Vector3d& w_dot;  ///< rad/s^2, of the axes that no model moves
+  const Eigen::Vector3d& p_BI;   ///< m, where it sits
 };
 /// Specific force f [m/s^2] at the instrument, which the model foretells:
 ///   v_dot + w x v + w_dot x r + w x (w x r) - g down + bias

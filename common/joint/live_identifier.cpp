@@ -91,8 +91,8 @@ const LiveIdentifier::Output& LiveIdentifier::finish() {
   return output_;
 }
 
-// Linear in its parameters, the recursive estimate converges from anywhere; a Kalman filter on unknown inertias need not.
-// What the joint estimate takes over is of samples before, and what it learns of samples after: none counts twice.
+// Linear in its parameters, the recursive estimate converges from anywhere; a Kalman filter on unknown inertias need
+// not. What the joint estimate takes over is of samples before, and what it learns of samples after: none counts twice.
 void LiveIdentifier::teach(const ModelEstimate& model) {
   if (joint_->started() || !model.effects.empty()) return;
   const auto n = static_cast<Eigen::Index>(model.parameters.size());

@@ -1,6 +1,6 @@
 // The identification of a trial: the recursive estimate alone, or the joint one beside it. Both hear everything; MODEL
-// then carries the joint estimate's numbers, while adopted effects, the residual's tests and what is frozen stay with the
-// recursive one. Where an effect was adopted, which the joint filter does not have, MODEL is the recursive one's.
+// then carries the joint estimate's numbers, while adopted effects, the residual's tests and what is frozen stay with
+// the recursive one. Where an effect was adopted, which the joint filter does not have, MODEL is the recursive one's.
 #pragma once
 
 #include <deque>

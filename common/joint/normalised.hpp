@@ -30,8 +30,8 @@ class Normalised {
 
   [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
   [[nodiscard]] const std::vector<model::BaseParameter>& parameters() const { return parameters_; }
-  /// Number of the inertia by which a parameter is divided; itself where it is an inertia; -1: by none, since its axis is
-  /// not simulated.
+  /// Number of the inertia by which a parameter is divided; itself where it is an inertia; -1: by none, since its axis
+  /// is not simulated.
   [[nodiscard]] int divisor(int k) const { return divisor_[static_cast<std::size_t>(k)]; }
   /// Whether the model moves this axis. At first it moves none: an axis whose inertia nobody knows is better followed.
   [[nodiscard]] bool moves(int axis) const { return moves_[static_cast<std::size_t>(axis)]; }

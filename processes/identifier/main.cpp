@@ -61,7 +61,8 @@ std::unique_ptr<joint::LiveIdentifier> make(const runtime::Process& process, con
   if (!joint) config.fail("estimate", "'estimate: joint' needs a section 'joint'; see docs/configuration.md");
   const Config estimator = Config::load(process.config_path("estimator")).section("estimator");
   if (!estimator.has("filter") || estimator.text("filter") != "complementary")
-    config.fail("estimate", "'estimate: joint' needs the estimator's 'filter: complementary', whose noise figures it uses");
+    config.fail("estimate",
+                "'estimate: joint' needs the estimator's 'filter: complementary', whose noise figures it uses");
   const model::Site site = model::Site::load(process.config_path("site"));
   return std::make_unique<joint::LiveIdentifier>(settings, vehicle, *joint,
                                                  estimation::NavigatorSettings::from(estimator),

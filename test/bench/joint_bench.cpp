@@ -1,6 +1,6 @@
 // What one step of the joint estimate costs: 13 parameters of the LBV150 and 20 numbers of the motion, one attitude
-// sample of a tank trial with all that comes with it (a prediction, rates, specific force; every third one flow, tags and
-// laser).
+// sample of a tank trial with all that comes with it (a prediction, rates, specific force; every third one flow, tags
+// and laser).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -48,10 +48,10 @@ void joint_step(benchmark::State& state) {
   int n = 0;
   for (auto _ : state) {
     Vector6d tau;
-    tau << (n / 100 % 2 == 0 ? 8.0 : -8.0), (n / 70 % 2 == 0 ? 6.0 : -6.0), 1.0, 0.0, 0.0, (n / 60 % 2 == 0 ? 0.5 : -0.5);
+    tau << (n / 100 % 2 == 0 ? 8.0 : -8.0), (n / 70 % 2 == 0 ? 6.0 : -6.0), 1.0, 0.0, 0.0,
+        (n / 60 % 2 == 0 ? 0.5 : -0.5);
     filter.predict(0.01, I, I, I, tau);
-    for (int i = 0; i < 3; ++i)
-      see_state(filter.state(), part::kNu + 3 + i, 0.1, rows[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i) see_state(filter.state(), part::kNu + 3 + i, 0.1, rows[static_cast<std::size_t>(i)]);
     use(3, 1e-5);
     const std::size_t felt =
         feel_force(filter.model(), filter.state(), {.told = I, .tau = tau, .w_dot = none, .p_BI = p_BI}, none, rows);

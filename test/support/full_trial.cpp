@@ -83,9 +83,8 @@ FullTrial run_trial(const FullTrialOptions& options) {
   const auto places = estimation::NavigatorPlaces::of(s.vehicle.mounts, site);
   const std::unique_ptr<joint::LiveIdentifier> mind =
       joint ? std::make_unique<joint::LiveIdentifier>(
-                  s.identifier, s.vehicle,
-                  joint::JointSettings::from(pipeline.section("identifier").section("joint")), navigator_settings,
-                  places)
+                  s.identifier, s.vehicle, joint::JointSettings::from(pipeline.section("identifier").section("joint")),
+                  navigator_settings, places)
             : std::make_unique<joint::LiveIdentifier>(s.identifier, s.vehicle);
   joint::LiveIdentifier& identifier = *mind;
   estimation::Navigator navigator{navigator_settings, places};

@@ -47,9 +47,9 @@ struct FullTrial {
 struct FullTrialOptions {
   unsigned seed{1};
   bool optimal{false};
-  bool joint{false};                 ///< state and parameters in one filter, beside the recursive estimate
-  std::vector<double> when{};        ///< s since arming, rising: FullTrial::progress
-  double limit{700.0};  ///< s
+  bool joint{false};           ///< state and parameters in one filter, beside the recursive estimate
+  std::vector<double> when{};  ///< s since arming, rising: FullTrial::progress
+  double limit{700.0};         ///< s
   std::string site{"tank"};
   std::vector<std::string> hide{};
   std::string vehicle{"seabotix_lbv150"};

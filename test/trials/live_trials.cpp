@@ -1,8 +1,10 @@
-// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--simulation OLD NEW] [--limit
-// S] [--text] Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every
-// parameter the error, in percent and in its own standard deviations. --pipeline replaces a text of
-// config/pipelines/SITE.yaml,
-// --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes which error of the model.
+// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW]
+// [--simulation OLD NEW] [--limit S] [--text]
+// Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
+// error, in percent and in its own standard deviations. --joint: with the joint estimate. --at: after so many seconds
+// since arming, how large errors are, and what the numbers foretell of the wrench. --pipeline replaces a text of
+// config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes
+// which error of the model.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -129,8 +131,8 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 5) {
     std::fputs(
-        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--simulation OLD NEW] "
-        "[--limit S] [--text]\n",
+        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW] "
+        "[--simulation OLD NEW] [--limit S] [--text]\n",
         stderr);
     return 1;
   }

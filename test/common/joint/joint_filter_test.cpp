@@ -131,8 +131,8 @@ TEST_CASE("joint filter: a measurement beyond the gate, or without a finite vari
 }
 
 TEST_CASE("joint filter: over seeds, the parameters' errors are as large as their covariance says") {
-  // The truth is moved by the same equations and by the noise that the filter is told of; velocities, rates and specific
-  // force are measured with white noise.
+  // The truth is moved by the same equations and by the noise that the filter is told of; velocities, rates and
+  // specific force are measured with white noise.
   const model::Vehicle vehicle = fathom::test::vehicle_from_repository("seabotix_lbv150");
   const Normalised model = example::moving(vehicle);
   const ParameterVector theta = example::numbers(vehicle), truth = example::normalised(model, theta);
@@ -154,12 +154,15 @@ TEST_CASE("joint filter: over seeds, the parameters' errors are as large as thei
     Vector6d nu = Vector6d::Zero(), tau = Vector6d::Zero();
     filter.start(Eigen::Vector3d::Zero(), nu, Vector6d::Constant(0.01), 0.01);
     const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d none = Eigen::Vector3d::Zero(), bias = 0.02 * Eigen::Vector3d{normal(engine), normal(engine), normal(engine)};
+    const Eigen::Vector3d none = Eigen::Vector3d::Zero(),
+                          bias = 0.02 * Eigen::Vector3d{normal(engine), normal(engine), normal(engine)};
     int steps = 0;
     for (double t = 0.0; t < kDuration; t += kDt) {
-      if (steps++ % 50 == 0) tau << 10.0 * normal(engine), 10.0 * normal(engine), 8.0 * normal(engine), 0.0, 0.0, normal(engine);
+      if (steps++ % 50 == 0)
+        tau << 10.0 * normal(engine), 10.0 * normal(engine), 8.0 * normal(engine), 0.0, 0.0, normal(engine);
       Vector6d pushed = Vector6d::Zero();  // acceleration over the step that no model knows
-      for (const int i : {0, 1, 2, 5}) pushed[i] = (i < 3 ? noise.acceleration : noise.turning) / std::sqrt(kDt) * normal(engine);
+      for (const int i : {0, 1, 2, 5})
+        pushed[i] = (i < 3 ? noise.acceleration : noise.turning) / std::sqrt(kDt) * normal(engine);
       constexpr int kFine = 20;
       for (int k = 0; k < kFine; ++k) {
         const double h = kDt / kFine;
@@ -168,7 +171,8 @@ TEST_CASE("joint filter: over seeds, the parameters' errors are as large as thei
       }
       filter.predict(kDt, I, I, I, tau);
       std::array<JointRow, 3> rows;
-      see_velocity(filter.state(), nu.head<3>() + kVelocity * Eigen::Vector3d{normal(engine), normal(engine), normal(engine)}, rows);
+      see_velocity(filter.state(),
+                   nu.head<3>() + kVelocity * Eigen::Vector3d{normal(engine), normal(engine), normal(engine)}, rows);
       for (JointRow& row : rows) row.variance = kVelocity * kVelocity;
       filter.update(rows, 1e9);
       for (int i = 0; i < 3; ++i) {
@@ -195,8 +199,8 @@ TEST_CASE("joint filter: over seeds, the parameters' errors are as large as thei
     const ParameterVector stated = filter.parameter_covariance().diagonal().cwiseSqrt();
     for (Eigen::Index k = 0; k < off.size(); ++k) inside += std::abs(off(k)) < 1.96 * stated(k) ? 1 : 0;
   }
-  MESSAGE("NEES of 13 parameters, mean of ", kSeeds, " seeds: ", nees, ", largest ", largest, "; intervals that hold: ",
-          100.0 * inside / (13.0 * kSeeds), " %");
+  MESSAGE("NEES of 13 parameters, mean of ", kSeeds, " seeds: ", nees, ", largest ", largest,
+          "; intervals that hold: ", 100.0 * inside / (13.0 * kSeeds), " %");
   // chi-squared: 40 times 13 degrees of freedom, 99.9 % within 13 +- 2.7; noise that acts in the accelerations of a
   // step and its velocity alike is shared to the first order only.
   CHECK(nees > 13.0 - 3.0);

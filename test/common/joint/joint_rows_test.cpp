@@ -46,8 +46,7 @@ TEST_CASE("joint rows: derivatives of all instruments are those of differences")
   const JointFilter filter = example::filter(vehicle);
   const JointVector x = somewhere(filter);
   const Eigen::Vector3d arm{0.2, -0.1, 0.6};
-  const estimation::CameraMount camera{.p_BC = {0.1, 0.02, 0.12},
-                                       .R_BC = rotation_from_euler({0.1, -0.05, 1.5707963})};
+  const estimation::CameraMount camera{.p_BC = {0.1, 0.02, 0.12}, .R_BC = rotation_from_euler({0.1, -0.05, 1.5707963})};
   constexpr double kFloor = 1.5;
   for (std::size_t i = 0; i < 3; ++i) {
     CAPTURE(i);

@@ -1,5 +1,5 @@
-// The joint estimate among its messages, in the simulator's tank with all its noise: what comes late or in another order,
-// what is no number, what falls silent or jumps, what is frozen, saved and taken up again.
+// The joint estimate among its messages, in the simulator's tank with all its noise: what comes late or in another
+// order, what is no number, what falls silent or jumps, what is frozen, saved and taken up again.
 #include "common/joint/live_identifier.hpp"
 
 #include <doctest/doctest.h>
@@ -49,9 +49,10 @@ Scene scene(double duration) {
           .places = {},
           .samples = {}};
   s.places = estimation::NavigatorPlaces::of(s.vehicle.mounts, s.site);
-  simulation::Simulator simulator{
-      s.vehicle, s.site,
-      Config::load(root + "/config/simulation/seabotix_lbv150.yaml").section("simulator"), {.seed = 5}};
+  simulation::Simulator simulator{s.vehicle,
+                                  s.site,
+                                  Config::load(root + "/config/simulation/seabotix_lbv150.yaml").section("simulator"),
+                                  {.seed = 5}};
   while (seconds_between(kStart, simulator.now()) < duration) {
     for (const Sample& sample : simulator.step())
       s.samples.push_back({std::visit([](const auto& one) { return one.utime; }, sample), sample});
@@ -71,8 +72,8 @@ std::unique_ptr<LiveIdentifier> make(const Scene& s) {
 using Change = std::function<bool(Sample&, double t)>;  ///< false: never comes
 
 /// STATE by the estimator of the same samples, as the processes would.
-std::vector<ModelEstimate> feed(const Scene& s, LiveIdentifier& identifier, const Change& change = {}, double from = 0.0,
-                                double to = 1e9) {
+std::vector<ModelEstimate> feed(const Scene& s, LiveIdentifier& identifier, const Change& change = {},
+                                double from = 0.0, double to = 1e9) {
   std::vector<ModelEstimate> models;
   estimation::Navigator navigator{s.navigator, s.places};
   const auto take = [&](const LiveIdentifier::Output& output) {
