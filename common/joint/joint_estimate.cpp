@@ -309,36 +309,28 @@ void JointEstimate::look_at(int axis, double score) {
   colour.count = 0;
 }
 
-// What no residual shows. Accelerations and rates that are all off by the same share s explain every force as well with
-// inertias divided by 1 + s, and rates with linear drag by that and quadratic drag by its square. An attitude that is
-// off turns the restoring moment.
+// What no residual shows. An accelerometer's axis that is off by a share s explains every force as well with a mass
+// divided by 1 + s; a gyro's axis with inertia and linear drag divided by it, and quadratic drag by its square. An
+// attitude that is off turns the restoring moment.
 void JointEstimate::add_systematic(ParameterMatrix& covariance) const {
   using enum model::BaseParameter;
   const auto& parameters = filter_.model().parameters();
   const ParameterVector known = estimate();
-  const auto widen = [&](const ParameterVector& along) { covariance += along * along.transpose(); };
-  const ParameterVector none = ParameterVector::Zero(known.size());
-  ParameterVector felt = none, turned = none;
+  std::array<ParameterVector, 6> off;
+  off.fill(ParameterVector::Zero(known.size()));
   int righting = -1;
   for (int k = 0; k < filter_.model().size(); ++k) {
     const model::BaseParameter parameter = parameters[static_cast<std::size_t>(k)];
-    const double off = settings_.inertial_scale * known(k);
+    const int axis = model::axis(parameter);
     if (parameter == G_z) righting = k;
-    if (parameter >= W_B) continue;
-    if (model::axis(parameter) > 2) {
-      turned(k) = (parameter >= X_uu ? 2.0 : 1.0) * off;
-    } else if (parameter <= m_Z) {
-      felt(k) = off;
-    }
+    if (parameter >= W_B || (axis < 3 && parameter > m_Z)) continue;
+    off[static_cast<std::size_t>(axis)](k) = settings_.inertial_scale * (parameter >= X_uu ? 2.0 : 1.0) * known(k);
   }
-  widen(felt);
-  widen(turned);
+  for (const ParameterVector& along : off) covariance += along * along.transpose();
   for (int k = 0; righting >= 0 && k < filter_.model().size(); ++k) {
     const model::BaseParameter parameter = parameters[static_cast<std::size_t>(k)];
     if (parameter != G_x && parameter != G_y) continue;
-    ParameterVector tilted = none;
-    tilted(k) = attitude_offset_ * known(righting);
-    widen(tilted);
+    covariance(k, k) += std::pow(attitude_offset_ * known(righting), 2.0);
   }
 }
 

@@ -42,13 +42,13 @@ std::vector<Learnt> learnt_of(const ModelEstimate& model, const model::BaseTheta
 // What the learnt numbers foretell for the true motion up to `until`, beside what the true ones do.
 void foretell(const std::map<Utime, Truth>& truths, Utime from, Utime until, const model::BaseTheta& truth,
               const std::array<bool, 6>& dof, Progress& progress) {
-  model::BaseTheta wrong = model::BaseTheta::Zero(), acting = truth;
+  model::BaseTheta wrong = model::BaseTheta::Zero();
   for (const Learnt& p : progress.learnt) wrong[model::index(*model::parameter_from_name(p.name))] = p.value - p.truth;
   Vector6d error = Vector6d::Zero(), applied = Vector6d::Zero();
   for (auto it = truths.lower_bound(from); it != truths.end() && it->first <= until; ++it) {
     const auto Y = model::base_regressor(it->second.nu_dot, it->second.nu, it->second.q_WB.toRotationMatrix());
     error += (Y * wrong).cwiseAbs2();
-    applied += (Y * acting).cwiseAbs2();
+    applied += (Y * truth).cwiseAbs2();
   }
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!dof[static_cast<std::size_t>(i)]) error[i] = applied[i] = 0.0;
@@ -60,7 +60,7 @@ void foretell(const std::map<Utime, Truth>& truths, Utime from, Utime until, con
 }  // namespace
 
 FullTrial run_trial(const FullTrialOptions& options) {
-  const auto& [seed, optimal, joint, when, limit, site_name, hide, vehicle, changes, of_simulation] = options;
+  const auto& [seed, optimal, joint, times, limit, site_name, hide, vehicle, changes, of_simulation] = options;
   const std::string root = FATHOM_SOURCE_DIR;
   auto all_changes = changes;
   if (optimal) {
@@ -108,7 +108,8 @@ FullTrial run_trial(const FullTrialOptions& options) {
       armed = true;
       armed_at = state.utime;
     }
-    if (armed && told.size() < when.size() && seconds_between(armed_at, state.utime) >= when[told.size()])
+    if (armed && told.size() < options.when.size() &&
+        seconds_between(armed_at, state.utime) >= options.when[told.size()])
       told.emplace_back(state.utime, identifier.model());
   };
   std::map<Utime, StateEstimate> states;

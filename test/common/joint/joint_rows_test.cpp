@@ -91,7 +91,7 @@ TEST_CASE("joint rows: derivatives of all instruments are those of differences")
 TEST_CASE("joint rows: what the vehicle would tell of itself leaves no innovation") {
   const model::Vehicle vehicle = fathom::test::vehicle_from_repository("seabotix_lbv150");
   const JointFilter filter = example::filter(vehicle);
-  const JointVector x = filter.state();  // no errors of instruments
+  const JointVector& x = filter.state();  // no errors of instruments
   const Eigen::Vector3d p = x.head<3>(), v = x.segment<3>(part::kNu), w = x.segment<3>(part::kNu + 3);
   const estimation::CameraMount camera{.p_BC = {0.1, 0.0, 0.12}, .R_BC = rotation_from_euler({0.0, 0.0, 1.5707963})};
   std::array<JointRow, 3> rows;

@@ -226,8 +226,8 @@ TEST_CASE("live identifier: what is frozen stays put, and goes on when it is res
   REQUIRE(models.size() > 20);
   const auto& middle = models[models.size() / 2].parameters;
   const auto& last = models.back().parameters;
-  for (const std::size_t k : {0, 4, 8}) CHECK(last[k].value == doctest::Approx(middle[k].value).epsilon(1e-9));
-  for (const std::size_t k : {1, 5}) CHECK(last[k].value != middle[k].value);
+  for (const std::size_t k : {0U, 4U, 8U}) CHECK(last[k].value == doctest::Approx(middle[k].value).epsilon(1e-9));
+  for (const std::size_t k : {1U, 5U}) CHECK(last[k].value != middle[k].value);
   CHECK(models.back().frozen == wish.frozen);
 }
 
