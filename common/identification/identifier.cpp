@@ -89,8 +89,7 @@ Identifier::Identifier(const IdentifierSettings& settings, const model::Vehicle&
                 .max_skew = settings.max_skew}} {}
 
 const Identifier::Output& Identifier::step(const StateEstimate& state) {
-  output_.models.clear();
-  output_.residuals.clear();
+  output_.clear();
   if (!aligner_.push(state)) {
     reject("late");
     return output_;
@@ -120,30 +119,39 @@ void Identifier::obey(Utime utime) {
 // The first usable message decides whether single forces or the wrench are the input: an effect of one thruster needs
 // the former, and the two cannot be mixed.
 const Identifier::Output& Identifier::step(const Thrusters& thrusters) {
-  output_.models.clear();
-  output_.residuals.clear();
-  const auto actuators = static_cast<Eigen::Index>(thrusters.force.size());
-  const bool has_force = actuators > 0 && actuators == vehicle_->allocation.cols() && actuators <= model::kMaxActuators;
-  if (input_ == InputKind::kUnknown && (has_force || thrusters.has_tau)) {
-    input_ = has_force ? InputKind::kForce : InputKind::kWrench;
+  output_.clear();
+  if (input_ == InputKind::kUnknown) {
+    input_ = InputKind::kForce;
+    if (!input_of(thrusters)) input_ = thrusters.has_tau ? InputKind::kWrench : InputKind::kUnknown;
   }
-  model::ActuatorForces input;
-  if (input_ == InputKind::kForce && has_force) {
-    input = Eigen::Map<const Eigen::VectorXd>(thrusters.force.data(), actuators);
-  } else if (input_ == InputKind::kWrench && thrusters.has_tau) {
-    input = Eigen::Map<const Vector6d>(thrusters.tau.data());
-  } else {
+  const std::optional<model::ActuatorForces> input = input_of(thrusters);
+  if (!input) {
     reject("no force");
-    return output_;
-  }
-  if (!input.allFinite()) {
+  } else if (!input->allFinite()) {
     reject("not finite");
-  } else if (!aligner_.push_input(thrusters.utime, input)) {
+  } else if (!aligner_.push_input(thrusters.utime, *input)) {
     reject("late");
   } else {
     release();
   }
   return output_;
+}
+
+std::optional<model::ActuatorForces> Identifier::input_of(const Thrusters& thrusters) const {
+  const auto actuators = static_cast<Eigen::Index>(thrusters.force.size());
+  if (input_ == InputKind::kForce) {
+    if (actuators == 0 || actuators != vehicle_->allocation.cols() || actuators > model::kMaxActuators)
+      return std::nullopt;
+    return model::ActuatorForces{Eigen::Map<const Eigen::VectorXd>(thrusters.force.data(), actuators)};
+  }
+  if (input_ == InputKind::kUnknown || !thrusters.has_tau) return std::nullopt;
+  return model::ActuatorForces{Eigen::Map<const Vector6d>(thrusters.tau.data())};
+}
+
+std::optional<Vector6d> Identifier::wrench(const Thrusters& thrusters) const {
+  const std::optional<model::ActuatorForces> input = input_of(thrusters);
+  if (!input || !input->allFinite()) return std::nullopt;
+  return input_ == InputKind::kForce ? Vector6d{vehicle_->allocation * *input} : Vector6d{*input};
 }
 
 void Identifier::release() {
@@ -203,6 +211,7 @@ void Identifier::use(const EffectSample& sample) {
   model_utime_ = block->end;
   weigh(block->end);
   output_.residuals.push_back(residual);
+  output_.blocks.push_back(*block);
   output_.models.push_back(model());
 }
 

@@ -51,11 +51,12 @@ struct IdentifierSettings {
   int adopt_after{0};           ///< rankings in a row that must accept an effect before it is adopted; 0: none ever is
   double adopt_delay{2.0};      ///< s after its stamp that a ranking is judged: more than the diagnoser is late
   double keep{600.0};           ///< s of motion that are kept to learn anew from when an effect is adopted
+  bool joint{false};            ///< MODEL carries the numbers of the joint estimate (common/joint), where there is one
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
   /// velocity_offset, attitude_offset, noise_acceleration with noise_velocity, freeze_delay, adopt_after with
-  /// adopt_delay and keep.
+  /// adopt_delay and keep, estimate (recursive or joint).
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -65,7 +66,13 @@ class Identifier {
   struct Output {
     std::vector<ModelEstimate> models;
     std::vector<Residual> residuals;
+    std::vector<RowBlock> blocks;  ///< the rows that each update took in
     [[nodiscard]] bool empty() const { return models.empty(); }
+    void clear() {
+      models.clear();
+      residuals.clear();
+      blocks.clear();
+    }
   };
 
   /// InputError when the vehicle enables a parameter that nobody knows, none at all, or leaves a prior without sigma.
@@ -75,6 +82,8 @@ class Identifier {
   const Output& step(const StateEstimate& state);
   /// `force` times the vehicle's allocation, else `tau`; a sample with neither is rejected.
   const Output& step(const Thrusters& thrusters);
+  /// The wrench [N, N m] that such a sample applies, after step() has heard it; nothing when it was rejected.
+  [[nodiscard]] std::optional<Vector6d> wrench(const Thrusters& thrusters) const;
   /// Which parameters shall not be learnt from then on; unknown names are nobody's.
   void hear(const Excitation& excitation);
   /// What the diagnoser thinks is missing. An effect that it accepts again and again is adopted: all that is kept of
@@ -116,6 +125,7 @@ class Identifier {
     Utime utime{};
     std::vector<std::string> frozen;
   };
+  [[nodiscard]] std::optional<model::ActuatorForces> input_of(const Thrusters& thrusters) const;
   void reject(const char* reason) { ++rejected_[reason]; }
   void obey(Utime utime);
   void remember(const RowBlock& block);

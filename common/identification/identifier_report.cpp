@@ -9,11 +9,11 @@
 
 #include "common/base/error.hpp"
 #include "common/identification/identifier.hpp"
+#include "common/identification/mode_metrics.hpp"
 
 namespace fathom::identification {
 namespace {
 
-constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
@@ -39,25 +39,7 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
   const ParameterMatrix nominal = estimator_.covariance();
   const auto n = static_cast<Eigen::Index>(parameters_.size());
   const ParameterMatrix honest = report.covariance.topLeftCorner(n, n);
-  std::array<ModeMetric, 6> modes;
-  std::array<bool, 6> any{};
-  ModeMetric total{.mode = "total"};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto axis = static_cast<std::size_t>(model::axis(parameters_[static_cast<std::size_t>(i)]));
-    const double size = std::abs(report.estimate(i));
-    const double relative = size > 0.0 ? report.sigma(i) / size : 1e3;  // at zero nothing is known in proportion
-    for (ModeMetric* mode : {&modes[axis], &total}) {
-      mode->sum += nominal(i, i);
-      mode->scaled = std::max(mode->scaled, relative);
-    }
-    any[axis] = true;
-  }
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (!any[axis]) continue;
-    modes[axis].mode = kModes[axis];
-    estimate.modes.push_back(modes[axis]);
-  }
-  estimate.modes.push_back(total);
+  estimate.modes = mode_metrics(parameters_, nominal.diagonal().head(n), report.estimate.head(n), report.sigma.head(n));
   estimate.covariance.assign(honest.data(), honest.data() + n * n);
   estimate.frozen = frozen_;
   for (std::size_t axis = 0; axis < 6; ++axis) {

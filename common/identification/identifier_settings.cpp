@@ -34,6 +34,7 @@ IdentifierSettings IdentifierSettings::from(const Config& config) {
     if (config.has("adopt_delay")) s.adopt_delay = config.not_negative("adopt_delay", "s");
     if (config.has("keep")) s.keep = config.positive("keep", "s");
   }
+  if (config.has("estimate")) s.joint = config.either("estimate", "joint", "recursive");
   return s;
 }
 

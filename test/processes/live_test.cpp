@@ -179,6 +179,34 @@ TEST_CASE(
   CHECK(messages(scratch.path("model.lcmlog"), "MODEL") == messages(scratch.path("out/run.lcmlog"), "MODEL"));
 }
 
+TEST_CASE("live: with the joint estimate a trial settles sooner, and the log gives the same bits") {
+  if (!live_network()) return;
+  const Scratch scratch;
+  const auto ran =
+      shell("FATHOM_LIVE_ESTIMATE=joint " + live(scratch, "tank seabotix_lbv150 optimal lockstep 1011 100"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const auto result = result_of(scratch);
+  CHECK_MESSAGE(result["settled"] == true, ran.text);
+  CHECK(result["parameters"].size() == 13);
+  const auto again =
+      shell(program("identifier") + " --log-level warning --config '" + scratch.path("out/pipeline.yaml") +
+            "' --config " + file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
+            file("config/corrections/none.yaml") + " --config " + file("config/sites/tank.yaml") + " --in file://" +
+            scratch.path("out/run.lcmlog") + " --out file://" + scratch.path("model.lcmlog"));
+  REQUIRE_MESSAGE(again.code == 0, again.text);
+  CHECK(messages(scratch.path("out/run.lcmlog"), "MODEL").size() > 40);
+  CHECK(messages(scratch.path("model.lcmlog"), "MODEL") == messages(scratch.path("out/run.lcmlog"), "MODEL"));
+  CHECK(messages(scratch.path("model.lcmlog"), "RESIDUAL") == messages(scratch.path("out/run.lcmlog"), "RESIDUAL"));
+
+  // Without the site, or beside another filter, it is refused with one line.
+  const auto refused =
+      shell(program("identifier") + " --config '" + scratch.path("out/pipeline.yaml") + "' --config " +
+            file("config/vehicles/seabotix_lbv150.yaml") + " --config " + file("config/corrections/none.yaml") +
+            " --in file://" + scratch.path("out/run.lcmlog") + " --out file://" + scratch.path("refused.lcmlog"));
+  CHECK(refused.code == 1);
+  CHECK_MESSAGE(refused.says("site"), refused.text);
+}
+
 TEST_CASE("live: an identifier that falls silent is started again, goes on with what it knew, and the trial goes on") {
   if (!live_network()) return;
   const Scratch scratch;

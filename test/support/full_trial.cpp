@@ -1,5 +1,6 @@
 #include "test/support/full_trial.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -9,6 +10,8 @@
 
 #include "common/base/error.hpp"
 #include "common/estimation/navigator.hpp"
+#include "common/joint/live_identifier.hpp"
+#include "common/model/regressor.hpp"
 #include "test/common/excitation/tank_run.hpp"
 
 namespace fathom::test {
@@ -29,10 +32,35 @@ Config changed(const std::string& path, const std::vector<std::pair<std::string,
   return Config::parse(text, path);
 }
 
+std::vector<Learnt> learnt_of(const ModelEstimate& model, const model::BaseTheta& truth) {
+  std::vector<Learnt> learnt;
+  for (const auto& p : model.parameters)
+    learnt.push_back({p.name, p.value, p.std, truth[model::index(*model::parameter_from_name(p.name))]});
+  return learnt;
+}
+
+// What the learnt numbers foretell for the true motion up to `until`, beside what the true ones do.
+void foretell(const std::map<Utime, Truth>& truths, Utime from, Utime until, const model::BaseTheta& truth,
+              const std::array<bool, 6>& dof, Progress& progress) {
+  model::BaseTheta wrong = model::BaseTheta::Zero();
+  for (const Learnt& p : progress.learnt) wrong[model::index(*model::parameter_from_name(p.name))] = p.value - p.truth;
+  Vector6d error = Vector6d::Zero(), applied = Vector6d::Zero();
+  for (auto it = truths.lower_bound(from); it != truths.end() && it->first <= until; ++it) {
+    const auto Y = model::base_regressor(it->second.nu_dot, it->second.nu, it->second.q_WB.toRotationMatrix());
+    error += (Y * wrong).cwiseAbs2();
+    applied += (Y * truth).cwiseAbs2();
+  }
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (!dof[static_cast<std::size_t>(i)]) error[i] = applied[i] = 0.0;
+  }
+  progress.force = std::sqrt(error.head<3>().sum() / applied.head<3>().sum());
+  progress.moment = std::sqrt(error.tail<3>().sum() / applied.tail<3>().sum());
+}
+
 }  // namespace
 
 FullTrial run_trial(const FullTrialOptions& options) {
-  const auto& [seed, optimal, limit, site_name, hide, vehicle, changes, of_simulation] = options;
+  const auto& [seed, optimal, joint, times, limit, site_name, hide, vehicle, changes, of_simulation] = options;
   const std::string root = FATHOM_SOURCE_DIR;
   auto all_changes = changes;
   if (optimal) {
@@ -51,15 +79,23 @@ FullTrial run_trial(const FullTrialOptions& options) {
       site,
       changed(root + "/config/simulation/" + vehicle + ".yaml", of_simulation).section("simulator"),
       {.seed = seed, .hide = hide, .duration = limit}};
-  estimation::Navigator navigator{estimation::NavigatorSettings::from(pipeline.section("estimator")),
-                                  estimation::NavigatorPlaces::of(s.vehicle.mounts, site)};
-  identification::Identifier identifier{s.identifier, s.vehicle};
+  const auto navigator_settings = estimation::NavigatorSettings::from(pipeline.section("estimator"));
+  const auto places = estimation::NavigatorPlaces::of(s.vehicle.mounts, site);
+  const std::unique_ptr<joint::LiveIdentifier> mind =
+      joint ? std::make_unique<joint::LiveIdentifier>(
+                  s.identifier, s.vehicle, joint::JointSettings::from(pipeline.section("identifier").section("joint")),
+                  navigator_settings, places)
+            : std::make_unique<joint::LiveIdentifier>(s.identifier, s.vehicle);
+  joint::LiveIdentifier& identifier = *mind;
+  estimation::Navigator navigator{navigator_settings, places};
   excitation::Supervisor supervisor{s.supervisor, s.vehicle, "secret"};
   FullTrial trial;
   double n = 0.0;
   bool armed = false;
   StateEstimate last;
   std::map<Utime, Truth> truths;
+  Utime armed_at{};
+  std::vector<std::pair<Utime, ModelEstimate>> told;  // by the times of `when`
   const auto use = [&](const StateEstimate& state) {
     last = state;
     for (const auto& model : identifier.step(state).models) supervisor.hear(model);
@@ -70,7 +106,11 @@ FullTrial run_trial(const FullTrialOptions& options) {
     if (!armed && t > 1.0 && state.valid) {
       supervisor.hear(order_to_arm(state.utime));
       armed = true;
+      armed_at = state.utime;
     }
+    if (armed && told.size() < options.when.size() &&
+        seconds_between(armed_at, state.utime) >= options.when[told.size()])
+      told.emplace_back(state.utime, identifier.model());
   };
   std::map<Utime, StateEstimate> states;
   while (seconds_between(1'700'000'000'000'000, simulator.now()) < limit) {
@@ -79,6 +119,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
           [&](const auto& one) {
             using T = std::decay_t<decltype(one)>;
             if constexpr (requires { navigator.step(one); }) {
+              identifier.hear(one);
               for (const StateEstimate& state : navigator.step(one)) {
                 use(state);
                 states[state.utime] = state;
@@ -133,15 +174,28 @@ FullTrial run_trial(const FullTrialOptions& options) {
   text << "  ratio " << trial.model.residual_ratio.transpose() << " mean " << trial.model.residual_mean.transpose()
        << "\n";
   const model::BaseTheta truth = simulator.secrets().theta;
-  for (const auto& p : trial.model.parameters) {
-    const double value = truth[model::index(*model::parameter_from_name(p.name))];
+  for (const auto& [utime, model] : told) {
+    Progress progress{.seconds = seconds_between(armed_at, utime), .learnt = learnt_of(model, truth)};
+    const auto size = static_cast<Eigen::Index>(progress.learnt.size());
+    Eigen::VectorXd off(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Learnt& p = progress.learnt[static_cast<std::size_t>(i)];
+      off[i] = p.value - p.truth;
+    }
+    progress.nees = off.dot(Eigen::Map<const Eigen::MatrixXd>(model.covariance.data(), size, size).ldlt().solve(off));
+    foretell(truths, armed_at, utime, truth, s.vehicle.dof, progress);
+    trial.progress.push_back(std::move(progress));
+  }
+  trial.learnt = learnt_of(trial.model, truth);
+  for (const auto& p : trial.learnt) {
+    const double value = p.truth;
     const double z = (p.value - value) / p.std;
-    trial.learnt.push_back({p.name, p.value, p.std, value});
     trial.covered += std::abs(z) < 1.96 ? 1 : 0;
     trial.within += std::abs(p.value - value) < 0.05 * std::abs(value) ? 1 : 0;
     text << "  " << p.name << " " << p.value << " +- " << p.std << " truth " << value << " error "
          << 100.0 * (p.value / value - 1.0) << " %, z " << z << "\n";
   }
+  for (const auto& [reason, count] : identifier.rejected()) text << "  " << reason << " " << count << "\n";
   for (const auto& [reason, count] : navigator.rejected()) text << "  " << reason << " " << count << "\n";
   text << "  " << navigator.complaint() << "\n";
   trial.text = text.str();

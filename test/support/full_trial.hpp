@@ -19,6 +19,16 @@ struct Learnt {
   double value{}, std{}, truth{};  ///< SI
 };
 
+/// What MODEL says after so many seconds under way.
+struct Progress {
+  double seconds{};  ///< since arming
+  std::vector<Learnt> learnt;
+  /// RMS of the wrench that these numbers foretell for the true motion so far, less the one that acted, over the RMS of
+  /// the latter: forces together, moments together.
+  double force{}, moment{};
+  double nees{};  ///< of all parameters together, by MODEL's covariance
+};
+
 struct FullTrial {
   std::string text;
   excitation::Phase phase{};
@@ -31,12 +41,15 @@ struct FullTrial {
   double ended{};
   int within{}, covered{};  ///< parameters: within 5 % of the truth, inside the 95 % interval
   std::vector<Learnt> learnt;
+  std::vector<Progress> progress;
 };
 
 struct FullTrialOptions {
   unsigned seed{1};
   bool optimal{false};
-  double limit{700.0};  ///< s
+  bool joint{false};           ///< state and parameters in one filter, beside the recursive estimate
+  std::vector<double> when{};  ///< s since arming, rising: FullTrial::progress
+  double limit{700.0};         ///< s
   std::string site{"tank"};
   std::vector<std::string> hide{};
   std::string vehicle{"seabotix_lbv150"};

@@ -1,19 +1,23 @@
-// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--simulation OLD NEW] [--limit
-// S] [--text] Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every
-// parameter the error, in percent and in its own standard deviations. --pipeline replaces a text of
-// config/pipelines/SITE.yaml,
-// --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes which error of the model.
+// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW]
+// [--simulation OLD NEW] [--limit S] [--text]
+// Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
+// error, in percent and in its own standard deviations. --joint: with the joint estimate. --at: after so many seconds
+// since arming, how large errors are, and what the numbers foretell of the wrench. --pipeline replaces a text of
+// config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes
+// which error of the model.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <mutex>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "test/common/excitation/tank_run.hpp"
 #include "test/support/full_trial.hpp"
 
 namespace {
@@ -75,14 +79,60 @@ void print(const std::vector<FullTrial>& trials) {
   }
 }
 
+/// Over time: are the ten well revealed parameters within 5 %, what do the numbers foretell, do the intervals hold.
+void print_progress(const std::vector<FullTrial>& trials, const std::vector<double>& when) {
+  std::printf("%6s %7s %8s %8s %8s %8s %8s %8s %9s\n", "s", "trials", "worst %", "all<5 %", "force %", "largest",
+              "moment %", "largest", "intervals");
+  for (std::size_t k = 0; k < when.size(); ++k) {
+    double worst = 0.0, force = 0.0, moment = 0.0, most_force = 0.0, most_moment = 0.0, inside = 0.0, all = 0.0;
+    double n = 0.0, nees = 0.0;
+    int good = 0;
+    std::vector<double> squares;
+    for (const FullTrial& trial : trials) {
+      if (trial.progress.size() <= k) continue;
+      const auto& now = trial.progress[k];
+      double largest = 0.0;
+      squares.resize(now.learnt.size());
+      for (std::size_t i = 0; i < now.learnt.size(); ++i) {
+        const auto& p = now.learnt[i];
+        const double error = p.truth == 0.0 ? 0.0 : 100.0 * std::abs(p.value / p.truth - 1.0);
+        squares[i] += error * error;
+        inside += std::abs(p.value - p.truth) < 1.96 * p.std ? 1.0 : 0.0;
+        all += 1.0;
+        if (fathom::test::revealed(p.name)) largest = std::max(largest, error);
+      }
+      n += 1.0;
+      nees += now.nees;
+      worst = std::max(worst, largest);
+      good += largest < 5.0 ? 1 : 0;
+      force += now.force * now.force;
+      moment += now.moment * now.moment;
+      most_force = std::max(most_force, now.force);
+      most_moment = std::max(most_moment, now.moment);
+    }
+    std::printf("%6.0f %7.0f %8.2f %8d %8.3f %8.3f %8.3f %8.3f %8.1f%%  NEES %.1f  rms %%:", when[k], n, worst, good,
+                100.0 * std::sqrt(force / n), 100.0 * most_force, 100.0 * std::sqrt(moment / n), 100.0 * most_moment,
+                100.0 * inside / all, nees / n);
+    for (const double square : squares) std::printf(" %.2f", std::sqrt(square / n));
+    std::printf("\n");
+  }
+}
+
+std::vector<double> numbers(const std::string& text) {
+  std::vector<double> values;
+  std::istringstream stream{text};
+  for (std::string each; std::getline(stream, each, ',');) values.push_back(std::stod(each));
+  return values;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 5) {
     std::fputs(
-        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--pipeline OLD NEW] [--simulation OLD NEW] "
-        "[--limit S] [--text]\n",
+        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW] "
+        "[--simulation OLD NEW] [--limit S] [--text]\n",
         stderr);
     return 1;
   }
@@ -92,6 +142,8 @@ int main(int argc, char** argv) {
     bool text = false;
     for (std::size_t i = 5; i < words.size(); ++i) {
       if (words[i] == "--text") text = true;
+      if (words[i] == "--joint") options.joint = true;
+      if (words[i] == "--at" && i + 1 < words.size()) options.when = numbers(words[i + 1]);
       if (words[i] == "--limit" && i + 1 < words.size()) options.limit = std::stod(words[i + 1]);
       if (words[i] == "--pipeline" && i + 2 < words.size()) options.pipeline.emplace_back(words[i + 1], words[i + 2]);
       if (words[i] == "--simulation" && i + 2 < words.size())
@@ -122,6 +174,7 @@ int main(int argc, char** argv) {
       if (text) std::fputs((trial.text + "\n").c_str(), stdout);
     }
     print(trials);
+    if (!options.when.empty()) print_progress(trials, options.when);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fathom_live_trials: %s\n", error.what());
     return 1;
