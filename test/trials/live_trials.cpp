@@ -1,5 +1,5 @@
 // usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW]
-// [--simulation OLD NEW] [--limit S] [--text]
+// [--simulation OLD NEW] [--hide EFFECT] [--limit S] [--text]
 // Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
 // error, in percent and in its own standard deviations. --joint: with the joint estimate. --at: after so many seconds
 // since arming, how large errors are, and what the numbers foretell of the wrench. --pipeline replaces a text of
@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
   if (words.size() < 5) {
     std::fputs(
         "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW] "
-        "[--simulation OLD NEW] [--limit S] [--text]\n",
+        "[--simulation OLD NEW] [--hide EFFECT] [--limit S] [--text]\n",
         stderr);
     return 1;
   }
@@ -143,6 +143,7 @@ int main(int argc, char** argv) {
     for (std::size_t i = 5; i < words.size(); ++i) {
       if (words[i] == "--text") text = true;
       if (words[i] == "--joint") options.joint = true;
+      if (words[i] == "--hide" && i + 1 < words.size()) options.hide.push_back(words[i + 1]);
       if (words[i] == "--at" && i + 1 < words.size()) options.when = numbers(words[i + 1]);
       if (words[i] == "--limit" && i + 1 < words.size()) options.limit = std::stod(words[i + 1]);
       if (words[i] == "--pipeline" && i + 2 < words.size()) options.pipeline.emplace_back(words[i + 1], words[i + 2]);
