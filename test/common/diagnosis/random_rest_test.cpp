@@ -15,7 +15,7 @@ AxisWhiteness remembers() {
 bool random_along_y(const AxisWhiteness& row, const std::vector<Association>& left = {}, double length = 100.0) {
   const std::vector<AxisWhiteness> rows{{.axis = "X", .p_value = 0.5, .explained = 0.999}, row};
   const auto random = random_rest(rows, left, length);
-  for (const std::size_t other : {0, 2, 3, 4, 5}) CHECK_FALSE(random[other]);
+  for (const std::size_t other : {0U, 2U, 3U, 4U, 5U}) CHECK_FALSE(random[other]);
   return random[1];
 }
 
