@@ -82,6 +82,8 @@ class Identifier {
   const Output& step(const StateEstimate& state);
   /// `force` times the vehicle's allocation, else `tau`; a sample with neither is rejected.
   const Output& step(const Thrusters& thrusters);
+  /// What the numbers of model() keep to.
+  [[nodiscard]] const Signs& signs() const { return estimator_.signs(); }
   /// The wrench [N, N m] that such a sample applies, after step() has heard it; nothing when it was rejected.
   [[nodiscard]] std::optional<Vector6d> wrench(const Thrusters& thrusters) const;
   /// Which parameters shall not be learnt from then on; unknown names are nobody's.

@@ -3,13 +3,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <sstream>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/identification/identifier.hpp"
 #include "common/identification/mode_metrics.hpp"
+#include "common/identification/saved_number.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -19,16 +19,10 @@ constexpr double kFewest = 5.0;               // residuals before anything is sa
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
 constexpr char kHeader[] = "fathom identifier 6";
 
-void put(std::string& text, double value) {
-  std::array<char, 32> number{};
-  std::snprintf(number.data(), number.size(), "%a ", value);  // exact
-  text += number.data();
-}
-
 double take(std::istringstream& text) {
-  std::string word;
-  if (!(text >> word)) throw InputError("identifier: the saved state is cut off");
-  return std::strtod(word.c_str(), nullptr);
+  const std::optional<double> number = take_number(text);
+  if (!number) throw InputError("identifier: the saved state is cut off");
+  return *number;
 }
 
 }  // namespace
@@ -91,14 +85,14 @@ std::string Identifier::save_text() const {
     const model::ActiveEffect& effect = track_->effect();
     text += std::string{effect.effect->name()} + " " + std::to_string(effect.variant) + " " + std::to_string(origin_) +
             (input_ == InputKind::kWrench ? " wrench " : " force ");
-    for (const double value : effect.theta) put(text, value);
-    for (Eigen::Index i = 0; i < linearised_at_.size(); ++i) put(text, linearised_at_(i));
+    for (const double value : effect.theta) put_number(text, value);
+    for (Eigen::Index i = 0; i < linearised_at_.size(); ++i) put_number(text, linearised_at_(i));
   } else {
     text += "-";
   }
   text += "\n";
   const auto all = [&](const auto& values) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) put(text, values.data()[i]);
+    for (Eigen::Index i = 0; i < values.size(); ++i) put_number(text, values.data()[i]);
     text += "\n";
   };
   all(s.estimate);
@@ -112,14 +106,15 @@ std::string Identifier::save_text() const {
   all(s.fourth);
   all(s.last_scores);
   all(s.last_sums);
-  put(text, s.oldest);
-  put(text, s.steps);
-  put(text, s.steps_until_check);
+  put_number(text, s.oldest);
+  put_number(text, s.steps);
+  put_number(text, s.steps_until_check);
   for (const AxisStatistics& axis : s.axes) {
-    for (const double value : {axis.weight, axis.mean, axis.variance, axis.covariance, axis.last}) put(text, value);
+    for (const double value : {axis.weight, axis.mean, axis.variance, axis.covariance, axis.last})
+      put_number(text, value);
   }
   for (const Recent& r : recent_) {
-    for (const double value : {r.weight, r.mean, r.square, r.product, r.last}) put(text, value);
+    for (const double value : {r.weight, r.mean, r.square, r.product, r.last}) put_number(text, value);
   }
   text += "\n" + std::to_string(frozen_.size());
   for (const std::string& name : frozen_) text += " " + name;

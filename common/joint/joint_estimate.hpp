@@ -59,6 +59,8 @@ class JointEstimate {
   void offer(const ParameterVector& mean, const ParameterMatrix& covariance);
   /// Every axis is learnt here.
   [[nodiscard]] bool started() const { return started_; }
+  /// s by which it waits for the latest of its instruments.
+  [[nodiscard]] double lag() const { return lag_; }
   [[nodiscard]] std::int64_t rows() const { return rows_; }
   [[nodiscard]] const JointFilter& filter() const { return filter_; }
   /// In SI, unconstrained.

@@ -1,30 +1,21 @@
 #include "common/joint/live_identifier.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <sstream>
 #include <utility>
 
 #include "common/identification/mode_metrics.hpp"
 #include "common/identification/projection.hpp"
+#include "common/identification/saved_number.hpp"
 
 namespace fathom::joint {
 namespace {
 
 constexpr char kMark[] = "joint estimate 1";
 
-identification::Signs signs_of(const identification::IdentifierSettings& settings, const model::Vehicle& vehicle) {
-  identification::Signs signs{};
-  for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
-    const auto parameter = model::parameter_from_name(vehicle.parameters[i]).value();
-    signs[i] = static_cast<std::int8_t>(model::sign_constraint(parameter));
-    if (settings.buoyant && parameter == model::BaseParameter::W_B) signs[i] = -1;
-  }
-  return signs;
-}
+/// s beyond the joint estimate's own lag, for which MODEL waits for it.
+constexpr double kPatience = 1.0;
 
 }  // namespace
 
@@ -35,7 +26,6 @@ LiveIdentifier::LiveIdentifier(const identification::IdentifierSettings& setting
                                const JointSettings& joint, const estimation::NavigatorSettings& navigator,
                                const estimation::NavigatorPlaces& places)
     : LiveIdentifier{settings, vehicle} {
-  signs_ = signs_of(settings, vehicle);
   make_ = [this, joint, settings, navigator, places] {
     return std::make_unique<JointEstimate>(joint, settings, navigator, places, *vehicle_);
   };
@@ -57,9 +47,15 @@ const LiveIdentifier::Output& LiveIdentifier::step(const StateEstimate& state) {
   while (const auto reached = joint_->next()) {
     while (!pending_.empty() && pending_.front().model.utime <= *reached) {
       teach(pending_.front().model);
-      say(pending_.front());
+      say(pending_.front(), true);
       pending_.pop_front();
     }
+  }
+  // An attitude that this process does not hear, or by another clock: MODEL must not fall silent over it.
+  while (!pending_.empty() && seconds_between(pending_.front().model.utime, state.utime) > joint_->lag() + kPatience) {
+    say(pending_.front(), false);
+    pending_.pop_front();
+    ++unreached_;
   }
   return output_;
 }
@@ -86,7 +82,7 @@ void LiveIdentifier::hear(const Excitation& excitation) {
 
 const LiveIdentifier::Output& LiveIdentifier::finish() {
   output_.clear();
-  for (const Pending& pending : pending_) say(pending);
+  for (const Pending& pending : pending_) say(pending, true);
   pending_.clear();
   return output_;
 }
@@ -106,9 +102,9 @@ bool LiveIdentifier::speaks(const ModelEstimate& model) const {
 }
 
 // The residual is that of the model said before: nothing is explained by having been seen.
-void LiveIdentifier::say(const Pending& pending) {
+void LiveIdentifier::say(const Pending& pending, bool reached) {
   Residual residual = pending.residual;
-  const bool joint = speaks(pending.model);
+  const bool joint = reached && speaks(pending.model);
   if (joint && said_.size() > 0) {
     for (const identification::Row& row : pending.rows.view())
       residual.wrench(row.axis) = row.y - row.h.head(said_.size()).dot(said_);
@@ -122,7 +118,7 @@ void LiveIdentifier::say(const Pending& pending) {
 
 ModelEstimate LiveIdentifier::with_joint(ModelEstimate model) const {
   const ParameterMatrix covariance = joint_->covariance();
-  const ParameterVector estimate = identification::project_on_signs(joint_->estimate(), covariance, signs_);
+  const ParameterVector estimate = identification::project_on_signs(joint_->estimate(), covariance, recursive_.signs());
   const auto n = covariance.rows();
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -145,6 +141,7 @@ void LiveIdentifier::reset() {
   recursive_.reset();
   pending_.clear();
   said_.resize(0);
+  unreached_ = 0;
   offered_.clear();
   output_.clear();
   if (make_) joint_ = make_();
@@ -153,6 +150,7 @@ void LiveIdentifier::reset() {
 std::map<std::string, std::int64_t> LiveIdentifier::rejected() const {
   auto all = recursive_.rejected();
   if (joint_) all.merge(joint_->rejected());
+  if (unreached_ > 0) all["joint estimate: not reached, MODEL is the recursive one's"] = unreached_;
   return all;
 }
 
@@ -162,13 +160,8 @@ std::string LiveIdentifier::save_text() const {
   const ParameterVector mean = joint_->filter().parameters();
   const ParameterMatrix covariance = joint_->filter().parameter_covariance();
   text += std::string{kMark} + "\n";
-  const auto put = [&](double value) {
-    std::array<char, 32> number{};
-    std::snprintf(number.data(), number.size(), "%a ", value);  // exact
-    text += number.data();
-  };
-  for (Eigen::Index i = 0; i < mean.size(); ++i) put(mean(i));
-  for (Eigen::Index i = 0; i < covariance.size(); ++i) put(covariance.data()[i]);
+  for (Eigen::Index i = 0; i < mean.size(); ++i) identification::put_number(text, mean(i));
+  for (Eigen::Index i = 0; i < covariance.size(); ++i) identification::put_number(text, covariance.data()[i]);
   return text + "\nend\n";
 }
 
@@ -185,10 +178,10 @@ void LiveIdentifier::resume_joint() {
   const auto n = joint_->filter().model().size();
   ParameterVector mean(n);
   ParameterMatrix covariance(n, n);
+  const auto take = [&] { return identification::take_number(text).value_or(NAN); };
+  for (Eigen::Index i = 0; i < mean.size(); ++i) mean(i) = take();
+  for (Eigen::Index i = 0; i < covariance.size(); ++i) covariance.data()[i] = take();
   std::string word;
-  const auto take = [&](double& value) { value = text >> word ? std::strtod(word.c_str(), nullptr) : NAN; };
-  for (Eigen::Index i = 0; i < mean.size(); ++i) take(mean(i));
-  for (Eigen::Index i = 0; i < covariance.size(); ++i) take(covariance.data()[i]);
   if (text >> word && word == "end") joint_->restore(mean, covariance);
 }
 

@@ -61,7 +61,7 @@ class LiveIdentifier {
   };
   void stash(const Output& output);
   void teach(const ModelEstimate& model);
-  void say(const Pending& pending);
+  void say(const Pending& pending, bool reached);
   [[nodiscard]] ModelEstimate with_joint(ModelEstimate model) const;
   [[nodiscard]] bool speaks(const ModelEstimate& model) const;
   void resume_joint();
@@ -70,8 +70,8 @@ class LiveIdentifier {
   identification::Identifier recursive_;
   std::function<std::unique_ptr<JointEstimate>()> make_;
   std::unique_ptr<JointEstimate> joint_;
-  identification::Signs signs_{};
   std::deque<Pending> pending_;
+  std::int64_t unreached_{};
   ParameterVector said_;  // numbers of the last MODEL
   std::string offered_;   // the joint estimate's part of a saved state
   Output output_;

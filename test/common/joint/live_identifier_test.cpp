@@ -215,6 +215,43 @@ TEST_CASE("live identifier: samples that are no numbers, a silence and a jump in
   }
 }
 
+TEST_CASE(
+    "live identifier: without attitudes of its own MODEL is the recursive one's, and waits no longer than a while") {
+  const Scene s = scene(20.0);
+  const auto deaf = make(s);
+  const auto recursive = std::make_unique<LiveIdentifier>(s.settings, s.vehicle);
+  std::vector<ModelEstimate> said, expected;
+  estimation::Navigator navigator{s.navigator, s.places};
+  double longest = 0.0;
+  for (const Heard& heard : s.samples) {
+    std::visit(
+        [&](const auto& one) {
+          using T = std::decay_t<decltype(one)>;
+          if constexpr (requires { navigator.step(one); }) {
+            if constexpr (!std::is_same_v<T, Ahrs>) deaf->hear(one);
+            for (const StateEstimate& state : navigator.step(one)) {
+              for (const ModelEstimate& model : deaf->step(state).models) {
+                longest = std::max(longest, seconds_between(model.utime, state.utime));
+                said.push_back(model);
+              }
+              const auto& models = recursive->step(state).models;
+              expected.insert(expected.end(), models.begin(), models.end());
+            }
+          } else if constexpr (std::is_same_v<T, Thrusters>) {
+            (void)deaf->step(one);
+            const auto& models = recursive->step(one).models;
+            expected.insert(expected.end(), models.begin(), models.end());
+          }
+        },
+        heard.sample);
+  }
+  REQUIRE(said.size() > 40);
+  expected.resize(said.size());  // the last ones still wait
+  CHECK(same(said, expected));
+  CHECK(longest < 2.0);
+  CHECK(deaf->rejected().contains("joint estimate: not reached, MODEL is the recursive one's"));
+}
+
 TEST_CASE("live identifier: what is frozen stays put, and goes on when it is resumed") {
   const Scene s = scene(30.0);
   const auto identifier = make(s);
