@@ -30,10 +30,11 @@ struct Input {
 Input read_input(const Recording& recording, Utime origin, const ThrusterCorrection& correction,
                  const model::Vehicle& vehicle) {
   Input input;
+  const auto thrusters = static_cast<std::size_t>(vehicle.allocation.cols());
   for (const Thrusters& one : recording.thrusters) {
     Eigen::VectorXd x;
     bool wrench = false;
-    if (!one.force.empty()) {
+    if (one.force.size() == thrusters && thrusters > 0) {
       x = Eigen::Map<const Eigen::VectorXd>(one.force.data(), static_cast<Eigen::Index>(one.force.size()));
     } else if (correction.use_commands && one.pwm_us.size() == vehicle.thrusters.size()) {
       const double voltage =
@@ -43,6 +44,11 @@ Input read_input(const Recording& recording, Utime origin, const ThrusterCorrect
     } else if (one.has_tau) {
       x = Eigen::Map<const Eigen::VectorXd>(one.tau.data(), 6);
       wrench = true;
+    } else if (!one.force.empty()) {
+      throw InputError(recording.name + ": forces of " + std::to_string(one.force.size()) +
+                       " thrusters, and the vehicle file has " + std::to_string(thrusters) +
+                       ": give a column (f1, f2, ...) for each in the file's order, zeros for one that was off, or the "
+                       "wrench (X ... N)");
     } else {
       continue;
     }

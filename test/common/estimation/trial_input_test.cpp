@@ -26,8 +26,14 @@ Recording rows(double first, double step, int count) {
   return recording;
 }
 
+model::Vehicle with_thrusters(int count) {
+  model::Vehicle vehicle;
+  vehicle.allocation.setOnes(6, count);
+  return vehicle;
+}
+
 Trial on_grid(const Recording& recording, double dt, int count, const Averaging& averaging = {},
-              const model::Vehicle& vehicle = {}) {
+              const model::Vehicle& vehicle = with_thrusters(1)) {
   Trial trial{.name = recording.name, .dt = dt};
   for (int k = 0; k < count; ++k) trial.t.push_back(dt * k);
   add_input(recording, 0, {}, vehicle, averaging, trial);
@@ -74,7 +80,7 @@ TEST_CASE("trial input: rows faster than the grid are averaged, held and told ea
 }
 
 TEST_CASE("trial input: a quick vehicle gets the parts of a step, averaged as its velocities were") {
-  model::Vehicle quick;
+  model::Vehicle quick = with_thrusters(1);
   quick.dof[0] = true;
   quick.parameters = {"m_X", "X_u"};
   quick.priors = {{.mean = 1.0, .sigma = 1.0}, {.mean = -20.0, .sigma = 1.0}};  // settles in 50 ms
@@ -105,6 +111,20 @@ TEST_CASE("trial input: rows that go back in time or are no numbers have no part
   recording.thrusters.clear();
   Trial none{.name = "rows", .dt = 0.1, .t = {0.0}};
   CHECK_THROWS_AS(add_input(recording, 0, {}, {}, {}, none), InputError);
+}
+
+TEST_CASE("trial input: forces of another number of thrusters than the vehicle has are told, or the wrench is taken") {
+  Recording recording = rows(0.0, 0.1, 5);
+  CHECK_THROWS_WITH_AS(on_grid(recording, 0.1, 5, {}, with_thrusters(4)),
+                       doctest::Contains("forces of 1 thrusters, and the vehicle file has 4"), InputError);
+  CHECK_THROWS_AS(on_grid(recording, 0.1, 5, {}, with_thrusters(0)), InputError);
+  for (Thrusters& one : recording.thrusters) {
+    one.has_tau = true;
+    one.tau = {3.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  }
+  const Trial trial = on_grid(recording, 0.1, 5, {}, with_thrusters(4));
+  CHECK(trial.input_is_wrench);
+  CHECK(trial.input[1][0] == 3.0);
 }
 
 namespace {
@@ -141,7 +161,7 @@ TEST_CASE("trial input: what was not recorded is not known; a few lost rows are 
 }
 
 TEST_CASE("trial input: what a quick vehicle would feel of a lost row is not held over") {
-  model::Vehicle quick;
+  model::Vehicle quick = with_thrusters(1);
   quick.dof[0] = true;
   quick.parameters = {"m_X", "X_u"};
   quick.priors = {{.mean = 1.0, .sigma = 1.0}, {.mean = -20.0, .sigma = 1.0}};  // settles in 50 ms
