@@ -18,7 +18,6 @@ constexpr std::size_t kThinFrom = 120;     // windows; fewer are fitted at once
 constexpr std::size_t kFirstWindows = 20;  // for a first look; what then promises most is asked by all
 constexpr int kCareful = 2;                // forms of an effect that earn a look at every window
 constexpr double kWorthAStep = 0.2;        // of the cost, per error: a tenth of the smallest gain that counts
-constexpr double kQuickTolerance = 1e-3;   // relative decrease of the cost that ends a look from afar
 constexpr int kEnoughRefusals = 2;         // by full fits, in the company of different effects
 constexpr double kPromisesMore = 1.25;     // times the gain: then a refused form is asked again
 constexpr double kLeastTrust = 0.01;       // what broke its promise once is still asked last
@@ -137,25 +136,6 @@ const TrajectoryFit& Coarse::problem() {
 const FitResult& Coarse::reference() {
   (void)problem();
   return reference_;
-}
-
-void look_afar(Answers& answers, const TrajectoryFit& problem, std::span<const Trial> train, const Settings& settings,
-               const FitResult& fit, const model::Scene& scene, const Progress& progress, double done) {
-  Coarse coarse{problem, train, settings, fit, kFirstWindows};
-  for (std::size_t i = 0; i < answers.screened.size(); ++i) {
-    const Screened& candidate = answers.near[i];
-    for (const std::vector<double>& start : candidate.effect->far_starts(scene, candidate.variant)) {
-      progress("looking further at " + std::string(candidate.effect->name()), done);
-      model::Model model = fit.model;
-      model.add({candidate.effect, candidate.variant, candidate.variant_name, start});
-      const FitResult far = coarse.problem().fit(model, &coarse.reference(), kQuickTolerance);
-      const double share = reduction(coarse.reference().cost, far.cost);
-      if (share <= answers.share[i]) continue;
-      answers.share[i] = share;
-      answers.found[i] = far.model;
-      answers.fitted[i] = false;
-    }
-  }
 }
 
 double Promises::expected(const Answers& answers, std::size_t candidate) const {

@@ -1,5 +1,5 @@
 // "Could you be this?", asked of every form of every effect: a quick look on a spread of windows, a careful one at
-// those that promise something, and full fits from afar for effects that only show when they are large.
+// those that promise something.
 #pragma once
 
 #include <map>
@@ -77,12 +77,6 @@ class Coarse {
   std::optional<identification::TrajectoryFit> problem_;
   identification::FitResult like_, reference_;
 };
-
-/// Fits on few windows for effects whose small sizes tell nothing about their large ones. What is found waits for
-/// another full fit. `progress` hears of it at `share`.
-void look_afar(Answers& answers, const identification::TrajectoryFit& problem, std::span<const Trial> train,
-               const Settings& settings, const identification::FitResult& fit, const model::Scene& scene,
-               const Progress& progress, double share);
 
 /// How much of what the screening promised a full fit has kept, effect by effect. For some effects the linear picture
 /// flatters: large masses and onsets imitate what the base model can do by itself.

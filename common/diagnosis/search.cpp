@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "common/diagnosis/final_fit.hpp"
 #include "common/diagnosis/lack_of_form.hpp"
 #include "common/diagnosis/left_to_explain.hpp"
+#include "common/diagnosis/look_afar.hpp"
 #include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/pruning.hpp"
 #include "common/diagnosis/round.hpp"
@@ -80,7 +82,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       Judged accepted = answers.judged[winner->place];
       fits.name_rivals(*winner, near.reference, accepted);
       result.accepted.push_back(accepted);
-      result.after = problem.fit(winner->fit.model, &winner->fit);
+      result.after = problem.reweighted(std::move(winner->fit));
       result.after = at_best_moment(problem, std::move(result.after), *accepted.effect, accepted.variant);
       result.after = identification::with_input_hold(problem, std::move(result.after));
     }

@@ -1,5 +1,6 @@
 #include "common/identification/fit_from_priors.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace fathom::identification {
@@ -24,6 +25,16 @@ bool set_right(model::Model& model) {
   return any;
 }
 
+/// Of a stage that only has to come near.
+FitSettings stage_of(const FitSettings& settings, double share_of_window) {
+  FitSettings stage = settings;
+  stage.window = share_of_window * settings.window;
+  stage.iterations = 8;
+  stage.tolerance = 1e-3;
+  stage.most_windows = std::min(kCoarseWindows, settings.most_windows);
+  return stage;
+}
+
 }  // namespace
 
 FitResult with_plausible_masses(const TrajectoryFit& problem, FitResult fit) {
@@ -33,14 +44,21 @@ FitResult with_plausible_masses(const TrajectoryFit& problem, FitResult fit) {
   return again.cost < fit.cost ? problem.fit(again.model) : fit;
 }
 
+TrajectoryFit shortest_windows(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                               const FitSettings& settings) {
+  return {vehicle, trials, stage_of(settings, kShortest)};
+}
+
+FitResult fit_by_longer_windows(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                                const FitSettings& settings, const model::Model& start) {
+  const TrajectoryFit half{vehicle, trials, stage_of(settings, kHalf)};
+  const FitResult nearer = with_plausible_masses(half, half.fit(start));
+  const TrajectoryFit whole{vehicle, trials, settings};
+  return with_plausible_masses(whole, whole.fit(nearer.model));
+}
+
 FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials, const FitSettings& settings) {
-  // Short windows forgive wrong parameters (little time to diverge); each stage starts where the last one ended.
-  FitSettings stage = settings;
-  stage.window = kShortest * settings.window;
-  stage.iterations = 8;
-  stage.tolerance = 1e-3;
-  stage.most_windows = kCoarseWindows;
-  const TrajectoryFit shortest{vehicle, trials, stage};
+  const TrajectoryFit shortest = shortest_windows(vehicle, trials, settings);
   model::Model model = model::nominal_model(vehicle, trials[0].input_is_wrench);
   const FitResult straight = shortest.fit(model);
   FitResult best = straight;
@@ -50,11 +68,7 @@ FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> 
     FitResult held = shortest.fit(model, &straight);
     if (held.cost < best.cost) best = std::move(held);
   }
-  stage.window = kHalf * settings.window;
-  const TrajectoryFit half{vehicle, trials, stage};
-  const FitResult nearer = with_plausible_masses(half, half.fit(best.model));
-  const TrajectoryFit whole{vehicle, trials, settings};
-  return with_plausible_masses(whole, whole.fit(nearer.model));
+  return fit_by_longer_windows(vehicle, trials, settings, best.model);
 }
 
 }  // namespace fathom::identification

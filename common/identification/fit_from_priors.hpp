@@ -12,6 +12,14 @@ namespace fathom::identification {
 [[nodiscard]] FitResult fit_from_priors(const model::Vehicle& vehicle, std::span<const Trial> trials,
                                         const FitSettings& settings);
 
+/// The problem of the first stage: short windows forgive wrong parameters, since there is little time to diverge.
+[[nodiscard]] TrajectoryFit shortest_windows(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                                             const FitSettings& settings);
+
+/// The stages behind it, each from where the last one ended; the first of them from `start`.
+[[nodiscard]] FitResult fit_by_longer_windows(const model::Vehicle& vehicle, std::span<const Trial> trials,
+                                              const FitSettings& settings, const model::Model& start);
+
 /// A mass or an inertia that vanishes, or grows out of all proportion, may lie in a wrong valley: velocity follows
 /// thrust at once there, or not at all, and no step leads out. The fit once more from what the vehicle's file says of
 /// it, the other numbers as they are; the better of the two.

@@ -165,6 +165,15 @@ VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& setting
   return dive;
 }
 
+model::Vehicle without_parameters(model::Vehicle vehicle, const std::string& beginning) {
+  for (std::size_t i = vehicle.parameters.size(); i-- > 0;) {
+    if (!vehicle.parameters[i].starts_with(beginning)) continue;
+    vehicle.parameters.erase(vehicle.parameters.begin() + static_cast<std::ptrdiff_t>(i));
+    vehicle.priors.erase(vehicle.priors.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return vehicle;
+}
+
 model::Vehicle vehicle_from_repository(const std::string& name) {
   return model::Vehicle::load(std::string{FATHOM_SOURCE_DIR} + "/config/vehicles/" + name + ".yaml");
 }

@@ -35,6 +35,8 @@ struct VirtualDive {
 [[nodiscard]] VirtualDive make_dive(const model::Vehicle& vehicle, const DiveSettings& settings);
 /// config/vehicles/NAME.yaml
 [[nodiscard]] model::Vehicle vehicle_from_repository(const std::string& name);
+/// The vehicle whose file does not free the base parameters that begin so.
+[[nodiscard]] model::Vehicle without_parameters(model::Vehicle vehicle, const std::string& beginning);
 /// An effect with numbers, by name.
 [[nodiscard]] model::ActiveEffect active(const std::string& name, std::vector<double> theta, int variant = 0);
 

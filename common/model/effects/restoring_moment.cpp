@@ -16,8 +16,8 @@ namespace {
 // Components are sought together: what hangs askew is not even nearly described by one of them.
 constexpr std::array kParameters{EffectParameter{"G_x", "N m", 5.0}, EffectParameter{"G_y", "N m", 5.0},
                                  EffectParameter{"G_z", "N m", 5.0}};
-constexpr double kFarStart = 1.0 / 3.0;  // of the G_z that a prior allows: of a vehicle that rights itself
-constexpr double kSmallestTilt = 0.01;   // rad: less and yaw feels nothing
+constexpr std::array kFarStarts{1.0 / 3.0, 1.0};  // of the G_z that a prior allows: of a vehicle that rights itself
+constexpr double kSmallestTilt = 0.01;            // rad: less and yaw feels nothing
 
 class RestoringMoment final : public Effect {
  public:
@@ -49,7 +49,10 @@ class RestoringMoment final : public Effect {
   /// Beside a pendulum that it does not know, a base model takes the inertia away, and no small pendulum helps.
   std::vector<std::vector<double>> far_starts(const Scene& scene, int variant) const override {
     if (!in_set(variant, 2)) return {};
-    return {{0.0, 0.0, kFarStart * wide_prior(BaseParameter::G_z, *scene.vehicle).sigma}};
+    std::vector<std::vector<double>> starts;
+    for (const double share : kFarStarts)
+      starts.push_back({0.0, 0.0, share * wide_prior(BaseParameter::G_z, *scene.vehicle).sigma});
+    return starts;
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {

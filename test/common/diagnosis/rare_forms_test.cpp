@@ -1,5 +1,5 @@
 // Forms that few vehicles have are found as surely as the usual ones: a thruster that gives nothing at all, a hull
-// without any symmetry.
+// without any symmetry, one that rights itself strongly under a file that knows nothing of it.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -22,8 +22,9 @@ struct Said {
   std::size_t accepted{};
 };
 
-Said search_dive(const model::Vehicle& vehicle, const model::ActiveEffect& hidden, unsigned seed) {
-  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 240.0, .seed = seed, .effects = {hidden}});
+Said search_dive(const model::Vehicle& vehicle, const model::ActiveEffect& hidden, unsigned seed, bool wrench = false) {
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 240.0, .seed = seed, .wrench = wrench, .effects = {hidden}});
   const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
   if (found.accepted.empty()) return {};
   const Judged& first = found.accepted.front();
@@ -79,5 +80,20 @@ TEST_CASE("search: couplings of a hull without symmetry are named, whichever is 
     CHECK(said.accepted == 1);
     REQUIRE(said.theta.size() == 1);
     CHECK(said.theta[0] == doctest::Approx(size).epsilon(0.1));
+  }
+}
+
+TEST_CASE("search: a strong pendulum that the vehicle's file leaves out is named, though it bends inertia and drag") {
+  const model::Vehicle vehicle = test::without_parameters(test::vehicle_from_repository("beluga"), "G_");
+  std::mt19937 random{1125};
+  std::uniform_real_distribution<double> any{-1.0, 1.0};
+  for (unsigned seed = 42; seed <= 43; ++seed) {
+    const std::vector<double> G{6.0 * any(random), 6.0 * any(random), 30.0 + 10.0 * any(random)};
+    CAPTURE(seed);
+    const Said said = search_dive(vehicle, test::active("restoring_moment", G, 7), seed, true);
+    CHECK(said.name == "restoring_moment");
+    CHECK(said.accepted == 1);
+    REQUIRE(said.theta.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(said.theta[i] == doctest::Approx(G[i]).epsilon(0.02).scale(5.0));
   }
 }
