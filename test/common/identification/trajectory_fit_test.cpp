@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/base/error.hpp"
 #include "test/support/virtual_dive.hpp"
@@ -167,7 +168,10 @@ TEST_CASE("trajectory fit: weights of a model's own residual, once what made it 
   const FitResult fit = problem.reweighted(compared);
   CHECK(compared.sigma[0] > 3.0 * kNoise);
   for (const Eigen::Index axis : {0, 1}) CHECK(fit.sigma[axis] == doctest::Approx(kNoise).epsilon(0.1));
-  CHECK(fit.cost > 10.0 * compared.cost);  // half a unit per row again, so that what is small can be evident
+  double rows = 0.0;
+  for (const auto& window : fit.window_count) rows = std::accumulate(window.begin(), window.end(), rows);
+  CHECK(fit.cost == doctest::Approx(0.5 * rows).epsilon(0.1));  // so that what is small can be evident
+  CHECK(compared.cost < 0.8 * fit.cost);
   // With the noise's own weights the numbers are at least as good.
   const auto error = [&](const FitResult& one) {
     return std::hypot(one.model.effects[0].theta[0] - 0.3, one.model.effects[0].theta[1] + 0.2);
