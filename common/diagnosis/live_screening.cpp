@@ -40,8 +40,7 @@ LiveSample first_of(const SeenTrial& seen) {
 
 }  // namespace
 
-LiveScreening::LiveScreening(const LiveBasis& basis, const SeenTrial& seen,
-                             const std::optional<Vector6d>& sigma)
+LiveScreening::LiveScreening(const LiveBasis& basis, const SeenTrial& seen, const std::optional<Vector6d>& sigma)
     : basis_{basis}, origin_{first_of(seen).motion.utime}, regressor_{basis.integral} {
   const model::Model base = base_of(seen);
   if (sigma) sigma_ = *sigma;

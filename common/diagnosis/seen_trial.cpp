@@ -27,7 +27,8 @@ void SeenTrial::keep(const LiveSample& sample) {
                    .has_position = sample.has_position,
                    .grid_begins = sample.commands_from.has_value()});
   for (Eigen::Index k = 0; k < actuators; ++k) forces_.push_back(sample.motion.valid ? sample.force[k] : 0.0);
-  for (const Eigen::VectorXd& command : sample.commands) commands_.insert(commands_.end(), command.begin(), command.end());
+  for (const Eigen::VectorXd& command : sample.commands)
+    commands_.insert(commands_.end(), command.begin(), command.end());
 }
 
 void SeenTrial::get(std::size_t i, LiveSample& sample) const {
@@ -53,8 +54,7 @@ void SeenTrial::get(std::size_t i, LiveSample& sample) const {
 }
 
 void SeenTrial::turn(const Eigen::Matrix3d& velocities, const Eigen::Matrix3d& rates) {
-  for (Kept& kept : kept_)
-    kept.nu << (velocities * kept.nu.head<3>()).eval(), (rates * kept.nu.tail<3>()).eval();
+  for (Kept& kept : kept_) kept.nu << (velocities * kept.nu.head<3>()).eval(), (rates * kept.nu.tail<3>()).eval();
 }
 
 }  // namespace fathom::diagnosis

@@ -56,8 +56,8 @@ struct IdentifierSettings {
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
-  /// velocity_offset, attitude_offset, rate_offset, noise_acceleration with noise_velocity, freeze_delay, adopt_after with
-  /// adopt_delay and keep, estimate (recursive or joint).
+  /// velocity_offset, attitude_offset, rate_offset, noise_acceleration with noise_velocity, freeze_delay, adopt_after
+  /// with adopt_delay and keep, estimate (recursive or joint).
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 

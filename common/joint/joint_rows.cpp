@@ -54,7 +54,8 @@ double distance(const JointVector& x, const Eigen::Matrix3d& told, double floor,
   return estimation::distance_to_floor(floor, x.segment<3>(part::kPosition), camera, true_attitude(x, told));
 }
 
-// -flow d - c (v + w x p_BC) - d (z x c) (turned x w), c and z the camera's axes, with d = (floor - z - down p_BC) / (down axis); d(down)/de = skew(down).
+// -flow d - c (v + w x p_BC) - d (z x c) (turned x w), c and z the camera's axes, with d = (floor - z - down p_BC) /
+// (down axis); d(down)/de = skew(down).
 void see_flow(const JointVector& x, const Eigen::Matrix3d& told, double floor, const estimation::CameraMount& camera,
               const Eigen::Vector2d& flow, std::span<JointRow, 2> rows) {
   const Eigen::Vector3d down = true_attitude(x, told).row(2).transpose(), axis = camera.R_BC.col(2);

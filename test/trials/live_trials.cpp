@@ -2,9 +2,9 @@
 // [--simulation OLD NEW] [--hide EFFECT] [--limit S] [--text]
 // Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
 // error, in percent and in its own standard deviations. --joint: with the joint estimate. --at: after so many seconds
-// since arming, how large errors are, in percent and in standard deviations, and what the numbers foretell of the wrench. --pipeline replaces a text of
-// config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes
-// which error of the model.
+// since arming, how large errors are, in percent and in standard deviations, and what the numbers foretell of the
+// wrench. --pipeline replaces a text of config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml:
+// which error of an instrument makes which error of the model.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
