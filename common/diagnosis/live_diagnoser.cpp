@@ -18,7 +18,7 @@ constexpr double kTurn = 2e-3;                // rad: smaller corrections of a t
 constexpr Utime kLongestSilence = 2'000'000;  // us: after that the grid of commands begins anew
 constexpr double kWider = 2.0;                // times longer, and candidates are made for what was shown by then
 constexpr std::size_t kOldPerNew = 8;
-constexpr std::size_t kMostSeen = 60'000;  // samples: ten minutes at 100 Hz, some 40 MB; then what there is has to do
+constexpr std::size_t kMostSeen = 60'000;  // samples: ten minutes at 100 Hz, some 12 MB; then what there is has to do
 
 }  // namespace
 
@@ -81,6 +81,7 @@ std::optional<EffectRanking> LiveDiagnoser::step(const Thrusters& thrusters) {
   if (source_ == Source::kUnknown && (has_force || has_curve || thrusters.has_tau)) {
     source_ = has_force ? Source::kForce : has_curve ? Source::kCurve : Source::kWrench;
     nominal_ = model::nominal_model(*vehicle_, source_ == Source::kWrench);
+    seen_.begin(nominal_.allocation);
   }
   model::ActuatorForces input;
   if (source_ == Source::kForce && has_force) {
@@ -122,7 +123,7 @@ std::optional<EffectRanking> LiveDiagnoser::finish() {
   std::optional<EffectRanking> ranking = release(true);
   if (!screening_ && !seen_.empty()) {
     screening_ = screening();
-    for (const LiveSample& sample : seen_) (void)screening_->use(sample);
+    hear_all(*screening_);
   }
   sensors_.finish();
   turn_back(sensors_.turns());
@@ -146,17 +147,17 @@ std::optional<EffectRanking> LiveDiagnoser::release(bool all) {
     if (screening_) {
       if (sample.motion.valid) note_commands(sample);
       if (const auto until = screening_->use(sample)) ranking = rank(*until);
-      keep(std::move(sample));
+      keep(sample);
       continue;
     }
     if (!sample.motion.valid) continue;
-    if (!seen_.empty() && seconds_between(seen_.back().motion.utime, utime) > kWarmUpGap) forget_motion();
+    if (!seen_.empty() && seconds_between(seen_.last(), utime) > kWarmUpGap) forget_motion();
     note_commands(sample);
-    seen_.push_back(std::move(sample));
-    shown_ = seconds_between(seen_.front().motion.utime, utime);
+    seen_.keep(sample);
+    shown_ = seconds_between(seen_.first(), utime);
     if (shown_ < settings_.warm_up) continue;
     screening_ = screening();
-    for (const LiveSample& one : seen_) (void)screening_->use(one);
+    hear_all(*screening_);
     ranking = rank(utime);
   }
   return ranking;
@@ -175,7 +176,7 @@ LiveSample LiveDiagnoser::sample_of(const identification::StreamAligner::Aligned
   } else {
     sample.motion.valid = true;
     sample.motion.nu << turned_.dvl * state.nu.head<3>(), turned_.gyro * state.nu.tail<3>();
-    sample.motion.down_B = state.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
+    sample.motion.down_B = down_of(state.q_WB);
     sample.p_WB = state.p_WB;
     sample.q_WB = state.q_WB;
     sample.has_position = state.sigma.head<3>().maxCoeff() < kPositionKnown;
@@ -219,13 +220,21 @@ std::unique_ptr<LiveScreening> LiveDiagnoser::screening() const {
                                          seen_, screening_ ? std::optional{screening_->sigma()} : std::nullopt);
 }
 
+void LiveDiagnoser::hear_all(LiveScreening& screening) const {
+  LiveSample sample;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    seen_.get(i, sample);
+    (void)screening.use(sample);
+  }
+}
+
 // A pass over all that was seen takes seconds, which nobody has at once: with every new sample a few old ones are
 // heard.
-void LiveDiagnoser::keep(LiveSample sample) {
+void LiveDiagnoser::keep(const LiveSample& sample) {
   if (!all_seen_) return;
   const bool valid = sample.motion.valid;
-  const double shown = seconds_between(seen_.front().motion.utime, sample.motion.utime);
-  seen_.push_back(std::move(sample));
+  const double shown = seconds_between(seen_.first(), sample.motion.utime);
+  seen_.keep(sample);
   if (!wider_ && valid && shown >= kWider * shown_) {
     look_again();
     shown_ = shown;
@@ -233,7 +242,7 @@ void LiveDiagnoser::keep(LiveSample sample) {
   if (wider_) catch_up(kOldPerNew);
   if (!wider_ && seen_.size() > kMostSeen) {
     all_seen_ = false;
-    seen_ = {};
+    seen_.clear();
     malloc_trim(0);  // tens of megabytes in small pieces, which would stay with the process
   }
 }
@@ -250,16 +259,18 @@ void LiveDiagnoser::turn_back(const LiveSensorCheck::Turns& turns) {
   const auto matters = [](const Eigen::Matrix3d& R) { return !R.isIdentity(kTurn); };
   if (!matters(dvl) && !matters(gyro)) return;
   turned_ = turns;
-  for (LiveSample& sample : seen_) {
-    sample.motion.nu << (dvl * sample.motion.nu.head<3>()).eval(), (gyro * sample.motion.nu.tail<3>()).eval();
-  }
+  seen_.turn(dvl, gyro);
   if (!screening_ || !all_seen_) return;
   turning_ = true;
   look_again();
 }
 
 void LiveDiagnoser::catch_up(std::size_t samples) {
-  for (; samples > 0 && caught_up_ < seen_.size(); --samples) (void)wider_->use(seen_[caught_up_++], true);
+  LiveSample sample;
+  for (; samples > 0 && caught_up_ < seen_.size(); --samples) {
+    seen_.get(caught_up_++, sample);
+    (void)wider_->use(sample, true);
+  }
   if (caught_up_ < seen_.size()) return;
   screening_ = std::move(wider_);
   turning_ = false;

@@ -92,7 +92,8 @@ class LiveDiagnoser {
   void note_commands(LiveSample& sample);
   void forget_motion();
   [[nodiscard]] std::unique_ptr<LiveScreening> screening() const;
-  void keep(LiveSample sample);
+  void keep(const LiveSample& sample);
+  void hear_all(LiveScreening& screening) const;
   void look_again();
   void turn_back(const LiveSensorCheck::Turns& turns);
   void catch_up(std::size_t samples);
@@ -108,7 +109,7 @@ class LiveDiagnoser {
   identification::StreamAligner aligner_;
   model::Model nominal_;
   identification::ParameterVector prior_mean_;
-  std::deque<LiveSample> seen_;  // all of the trial, as long as another pass may be made; the warm-up at first
+  SeenTrial seen_;  // all of the trial, as long as another pass may be made; the warm-up at first
   bool all_seen_{true};
   std::unique_ptr<LiveScreening> screening_;
   double shown_{};                        // s of the trial that its candidates were made for

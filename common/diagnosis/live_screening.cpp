@@ -23,14 +23,24 @@ std::vector<LiveEvidence::Mass> masses_of(const LiveBasis& basis) {
   return masses;
 }
 
-const LiveSample& first_of(const std::deque<LiveSample>& seen) {
-  return *std::ranges::find_if(seen, [](const LiveSample& one) { return one.motion.valid; });
+template <class Use>
+void for_each_valid(const SeenTrial& seen, const Use& use) {
+  LiveSample sample;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    seen.get(i, sample);
+    if (sample.motion.valid) use(sample);
+  }
+}
+
+LiveSample first_of(const SeenTrial& seen) {
+  LiveSample sample;
+  for (std::size_t i = 0; !sample.motion.valid; ++i) seen.get(i, sample);
+  return sample;
 }
 
 }  // namespace
 
-LiveScreening::LiveScreening(const LiveBasis& basis, const std::deque<LiveSample>& seen,
-                             const std::optional<Vector6d>& sigma)
+LiveScreening::LiveScreening(const LiveBasis& basis, const SeenTrial& seen, const std::optional<Vector6d>& sigma)
     : basis_{basis}, origin_{first_of(seen).motion.utime}, regressor_{basis.integral} {
   const model::Model base = base_of(seen);
   if (sigma) sigma_ = *sigma;
@@ -125,19 +135,18 @@ void LiveScreening::add(const identification::RowBlock& block) {
   }
 }
 
-model::Scene LiveScreening::scene(const std::deque<LiveSample>& seen) const {
+model::Scene LiveScreening::scene(const SeenTrial& seen) const {
   model::Scene scene{.vehicle = &basis_.vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
   scene.input_is_wrench = basis_.input_is_wrench;
-  const LiveSample& first = first_of(seen);
-  scene.duration = seconds_between(first.motion.utime, seen.back().motion.utime);
+  const LiveSample first = first_of(seen);
+  scene.duration = seconds_between(first.motion.utime, seen.last());
   scene.t_high = scene.duration;
   scene.p_low = scene.p_high = first.p_WB;
   scene.force_rms = model::ActuatorForces::Zero(basis_.nominal.allocation.cols());
   double low = first.voltage, high = first.voltage;
-  const auto count =
-      static_cast<double>(std::ranges::count_if(seen, [](const LiveSample& one) { return one.motion.valid; }));
-  for (const LiveSample& sample : seen) {
-    if (!sample.motion.valid) continue;
+  double count = 0.0;
+  for_each_valid(seen, [&](const LiveSample&) { count += 1.0; });
+  for_each_valid(seen, [&](const LiveSample& sample) {
     scene.position = scene.position && sample.has_position;
     scene.p_low = scene.p_low.cwiseMin(sample.p_WB).eval();
     scene.p_high = scene.p_high.cwiseMax(sample.p_WB).eval();
@@ -147,7 +156,7 @@ model::Scene LiveScreening::scene(const std::deque<LiveSample>& seen) const {
     scene.mean_voltage += sample.voltage / count;
     low = std::min(low, sample.voltage);
     high = std::max(high, sample.voltage);
-  }
+  });
   scene.nu_rms = (scene.nu_rms / count).cwiseSqrt().eval();
   scene.tau_rms = (scene.tau_rms / count).cwiseSqrt().eval();
   scene.force_rms = (scene.force_rms / count).cwiseSqrt().eval();
@@ -158,10 +167,12 @@ model::Scene LiveScreening::scene(const std::deque<LiveSample>& seen) const {
 
 // A first fit of the base model: drag and masses for effects that alter what the hull feels, and the size of the
 // residual per axis, which weighs the axes against each other.
-model::Model LiveScreening::base_of(const std::deque<LiveSample>& seen) {
+model::Model LiveScreening::base_of(const SeenTrial& seen) {
   IntegralRegressor regressor{basis_.integral};
   std::vector<RowBlock> blocks;
-  for (const LiveSample& sample : seen) {
+  LiveSample sample;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    seen.get(i, sample);
     if (const auto block = regressor.step(sample.motion)) blocks.push_back(*block);
   }
   const Eigen::Index n = basis_.prior_mean.size();

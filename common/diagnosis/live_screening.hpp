@@ -2,30 +2,18 @@
 // long), and the evidence of the samples that went through them. Once the trial has shown more, another pass is made.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "common/diagnosis/live_evidence.hpp"
 #include "common/diagnosis/places.hpp"
+#include "common/diagnosis/seen_trial.hpp"
 #include "common/identification/integral_regressor.hpp"
 
 namespace fathom::diagnosis {
 
 constexpr Utime kCommandStep = 20'000;  // us between commands that are kept for delays
-
-/// One instant of the streams, ready to be asked.
-struct LiveSample {
-  identification::MotionSample motion;
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
-  Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
-  model::ActuatorForces force;
-  double voltage{};
-  bool has_position{};
-  std::optional<Utime> commands_from;     ///< the grid of commands begins anew here
-  std::vector<Eigen::VectorXd> commands;  ///< on that grid since the sample before
-};
 
 /// What a pass rests on.
 struct LiveBasis {
@@ -45,7 +33,7 @@ class LiveScreening {
   /// Candidates for the scene of the valid ones among `seen`, of which there is one at least. Everything in `basis`
   /// must outlive it. `sigma` weighs the axes as an earlier pass did: what a long stretch leaves tells of the cause
   /// that is looked for rather than of noise.
-  LiveScreening(const LiveBasis& basis, const std::deque<LiveSample>& seen, const std::optional<Vector6d>& sigma);
+  LiveScreening(const LiveBasis& basis, const SeenTrial& seen, const std::optional<Vector6d>& sigma);
 
   /// Takes the next sample. The first one of a new block hands out the instant up to which rows count; what came
   /// before may be judged then. `behind`: nobody will.
@@ -64,8 +52,8 @@ class LiveScreening {
     Utime utime{};
     model::ActuatorForces force;
   };
-  [[nodiscard]] model::Scene scene(const std::deque<LiveSample>& seen) const;
-  [[nodiscard]] model::Model base_of(const std::deque<LiveSample>& seen);
+  [[nodiscard]] model::Scene scene(const SeenTrial& seen) const;
+  [[nodiscard]] model::Model base_of(const SeenTrial& seen);
   void add(const identification::RowBlock& block);
 
   LiveBasis basis_;

@@ -47,6 +47,7 @@ struct IdentifierSettings {
   double velocity_scale{0.0};   ///< share by which u v w may be off in proportion: no residual shows it, intervals must
   double velocity_offset{0.0};  ///< m/s by which each of u v w may be off all the time: drag makes a steady force of it
   double attitude_offset{0.0};  ///< rad by which roll and pitch may be off all the time: it turns the restoring moment
+  double rate_offset{0.0};      ///< rad/s by which each of p q r may be off all the time: drag makes a moment of it
   double freeze_delay{0.5};     ///< s after its stamp that a wish to freeze is obeyed: more than any channel is late
   int adopt_after{0};           ///< rankings in a row that must accept an effect before it is adopted; 0: none ever is
   double adopt_delay{2.0};      ///< s after its stamp that a ranking is judged: more than the diagnoser is late
@@ -55,8 +56,8 @@ struct IdentifierSettings {
 
   /// Keys: window, stride, max_gap, memory, noise_force, noise_moment, input (linear or hold), max_input_gap, max_skew,
   /// buoyant; optional: prior (vehicle or zero) with prior_sigma, residual_memory, velocity_scale,
-  /// velocity_offset, attitude_offset, noise_acceleration with noise_velocity, freeze_delay, adopt_after with
-  /// adopt_delay and keep, estimate (recursive or joint).
+  /// velocity_offset, attitude_offset, rate_offset, noise_acceleration with noise_velocity, freeze_delay, adopt_after
+  /// with adopt_delay and keep, estimate (recursive or joint).
   [[nodiscard]] static IdentifierSettings from(const Config& config);
 };
 
@@ -122,6 +123,7 @@ class Identifier {
     double square{};
     double product{};  ///< of one with the next
     double last{};
+    double speed{};  ///< m/s or rad/s along this axis, magnitude; not divided; 0 without quadratic drag
   };
   struct Wish {
     Utime utime{};
@@ -134,7 +136,7 @@ class Identifier {
   void decide(Utime first);
   void take_effect(const model::Effect& effect, std::istringstream& text);
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
-  [[nodiscard]] double moment_of_leaning(const RecursiveReport& report) const;
+  [[nodiscard]] double moment_of_offsets(int axis, const RecursiveReport& report) const;
   void compensate(RecursiveReport& report) const;
   void add_systematic(RecursiveReport& report) const;
   void release();

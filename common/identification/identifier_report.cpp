@@ -17,7 +17,7 @@ namespace {
 constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
 constexpr double kFewest = 5.0;               // residuals before anything is said of them
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 6";
+constexpr char kHeader[] = "fathom identifier 7";
 
 double take(std::istringstream& text) {
   const std::optional<double> number = take_number(text);
@@ -44,17 +44,23 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
     const double variance = std::max(r.square - r.mean * r.mean, 1e-12);
     const double rho = std::clamp((r.product - r.mean * r.mean) / variance, 0.0, kLargestCorrelation);
     const double known = variance / r.weight * (1.0 + rho) / (1.0 - rho);
-    const double leaning = axis == 3 || axis == 4 ? moment_of_leaning(report) : 0.0;
-    estimate.residual_mean[k] = r.mean / std::sqrt(known + kOfNoAccount * kOfNoAccount + leaning * leaning);
+    const double offsets = moment_of_offsets(static_cast<int>(axis), report);
+    estimate.residual_mean[k] = r.mean / std::sqrt(known + kOfNoAccount * kOfNoAccount + offsets * offsets);
   }
 }
 
-// An attitude that wanders about its offset leaves a moment that no half minute averages out, and that is no fault of
-// the model's: in the noise's sigmas, what the restoring moment makes of `attitude_offset`.
-double Identifier::moment_of_leaning(const RecursiveReport& report) const {
-  const int righting = column(model::BaseParameter::G_z);
-  if (righting < 0 || !(settings_.noise_moment > 0.0)) return 0.0;
-  return settings_.attitude_offset * report.estimate(righting) / settings_.noise_moment;
+// An attitude that wanders about its offset leaves a moment that no half minute averages out, and so does a gyro's bias
+// through the drag that it is taken for; neither is a fault of the model's. In the noise's sigmas, what the restoring
+// moment makes of `attitude_offset`, and the drag's slope at the speeds of late of `rate_offset`.
+double Identifier::moment_of_offsets(int axis, const RecursiveReport& report) const {
+  if (axis < 3 || !(settings_.noise_moment > 0.0)) return 0.0;
+  const auto of = [&](int parameter) {
+    const int i = column(static_cast<model::BaseParameter>(parameter));
+    return i < 0 ? 0.0 : report.estimate(i);
+  };
+  const double righting = axis < 5 ? of(static_cast<int>(model::BaseParameter::G_z)) : 0.0;
+  const double slope = of(6 + axis) + 2.0 * of(12 + axis) * recent_[static_cast<std::size_t>(axis)].speed;
+  return std::hypot(settings_.attitude_offset * righting, settings_.rate_offset * slope) / settings_.noise_moment;
 }
 
 void Identifier::remember(const RowBlock& block) {
@@ -72,6 +78,8 @@ void Identifier::remember(const RowBlock& block) {
     r.square += share * (value * value - r.square);
     r.product += share * (product - r.product);
     r.last = value;
+    const int quadratic = column(static_cast<model::BaseParameter>(12 + row.axis));  // its column is -|nu| nu
+    if (quadratic >= 0) r.speed += share * (std::sqrt(std::abs(row.h(quadratic))) - r.speed);
   }
 }
 
@@ -114,7 +122,7 @@ std::string Identifier::save_text() const {
       put_number(text, value);
   }
   for (const Recent& r : recent_) {
-    for (const double value : {r.weight, r.mean, r.square, r.product, r.last}) put_number(text, value);
+    for (const double value : {r.weight, r.mean, r.square, r.product, r.last, r.speed}) put_number(text, value);
   }
   text += "\n" + std::to_string(frozen_.size());
   for (const std::string& name : frozen_) text += " " + name;
@@ -176,7 +184,7 @@ void Identifier::decide(Utime first) {
     }
     std::array<Recent, 6> recent{};
     for (Recent& r : recent) {
-      for (double* value : {&r.weight, &r.mean, &r.square, &r.product, &r.last}) *value = take(text);
+      for (double* value : {&r.weight, &r.mean, &r.square, &r.product, &r.last, &r.speed}) *value = take(text);
     }
     std::size_t frozen{};
     std::string word;

@@ -24,6 +24,7 @@ IdentifierSettings IdentifierSettings::from(const Config& config) {
   if (config.has("velocity_scale")) s.velocity_scale = config.not_negative("velocity_scale", "");
   if (config.has("velocity_offset")) s.velocity_offset = config.not_negative("velocity_offset", "m/s");
   if (config.has("attitude_offset")) s.attitude_offset = config.not_negative("attitude_offset", "rad");
+  if (config.has("rate_offset")) s.rate_offset = config.not_negative("rate_offset", "rad/s");
   if (config.has("noise_acceleration")) s.noise_acceleration = config.not_negative("noise_acceleration", "m/s^2");
   if (config.has("noise_velocity")) s.noise_velocity = config.not_negative("noise_velocity", "m/s");
   if (config.has("freeze_delay")) s.freeze_delay = config.not_negative("freeze_delay", "s");

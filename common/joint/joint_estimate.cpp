@@ -77,6 +77,7 @@ JointNoise noise_of(const JointSettings& settings, const identification::Identif
   noise.scale = identifier.velocity_scale;
   noise.height = navigator.laser.used ? std::hypot(navigator.tags.systematic, navigator.laser.systematic) : 0.0;
   noise.offset.setConstant(navigator.dvl.used ? identifier.velocity_offset : 0.0);
+  noise.turned = settings.mounting;
   return noise;
 }
 
@@ -96,6 +97,7 @@ JointSettings JointSettings::from(const Config& config) {
   s.turning = config.positive("unmodelled_turning", "rad/s^2");
   s.attitude_memory = config.positive("attitude_memory", "s");
   s.inertial_scale = config.not_negative("inertial_scale", "");
+  if (config.has("mounting")) s.mounting = config.not_negative("mounting", "rad");
   return s;
 }
 
@@ -290,7 +292,7 @@ ParameterMatrix JointEstimate::covariance() const {
   ParameterVector wider(all.rows());
   for (int k = 0; k < filter_.model().size(); ++k) {
     const int axis = model::axis(filter_.model().parameters()[static_cast<std::size_t>(k)]);
-    wider(k) = std::sqrt(std::max(1.0, colour_[static_cast<std::size_t>(axis)].ratio));
+    wider(k) = std::sqrt(colour_[static_cast<std::size_t>(axis)].ratio);
   }
   all = wider.asDiagonal() * all * wider.asDiagonal();
   add_systematic(all);

@@ -25,7 +25,8 @@ struct JointSettings {
   double turning{1e-2};          ///< rad/s^2, likewise about K M N
   double attitude_memory{30.0};  ///< s for which an attitude's error goes on
   double inertial_scale{0.0};    ///< share by which accelerometers and gyros may be off in proportion
-  /// Keys: unmodelled_acceleration, unmodelled_turning, attitude_memory, inertial_scale.
+  double mounting{0.0};          ///< rad by which their axes may be turned against the body's
+  /// Keys: unmodelled_acceleration, unmodelled_turning, attitude_memory, inertial_scale; mounting, if it is known.
   [[nodiscard]] static JointSettings from(const Config& config);
 };
 

@@ -27,6 +27,7 @@ JointFilter::JointFilter(const Normalised& model, const JointNoise& noise, const
   P_(part::kScale, part::kScale) = noise.scale * noise.scale;
   P_(part::kHeight, part::kHeight) = noise.height * noise.height;
   P_.diagonal().segment<3>(part::kOffset) = noise.offset.cwiseAbs2();
+  P_.diagonal().segment<3>(part::kTurned).setConstant(noise.turned * noise.turned);
 }
 
 void JointFilter::start(const Eigen::Vector3d& p_WB, const Vector6d& nu, const Vector6d& sigma_p_v,

@@ -19,7 +19,8 @@ constexpr int kBias = 12;        ///< m/s^2, of the accelerometer in B
 constexpr int kScale = 15;       ///< share by which heights or the velocity log read too large
 constexpr int kHeight = 16;      ///< m by which the laser tells the body deeper than tags do
 constexpr int kOffset = 17;      ///< m/s, of the velocity log in B
-constexpr int kParameters = 20;  ///< normalised
+constexpr int kTurned = 20;      ///< rad: gyros and accelerometers tell exp(skew(kTurned)) times what is in B
+constexpr int kParameters = 23;  ///< normalised
 }  // namespace part
 
 constexpr int kMostStates = part::kParameters + model::kBaseParameterCount;
@@ -37,6 +38,7 @@ struct JointNoise {
   double scale{0.0};                                ///< prior of kScale
   double height{0.0};                               ///< m, prior of kHeight
   Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  ///< m/s, prior of kOffset
+  double turned{0.0};                               ///< rad, prior of kTurned
 };
 
 /// One scalar measurement, linearised at the state as it stood before its instant's first row.

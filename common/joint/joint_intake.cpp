@@ -148,10 +148,8 @@ void JointEstimate::use_others(const Event& event) {
 // Rates as the gyro tells them; then the specific force. What the model lacks moves the vehicle and is felt as well, so
 // that process and measurement share noise.
 void JointEstimate::use_inertial(const Event& event, double dt) {
-  for (int i = 0; i < 3; ++i) {
-    see_state(filter_.state(), part::kNu + 3 + i, event.a[i], at_once_[static_cast<std::size_t>(i)]);
-    at_once_[static_cast<std::size_t>(i)].variance = square(navigator_.rate_noise);
-  }
+  see_rates(filter_.state(), event.a, std::span{at_once_}.first<3>());
+  for (std::size_t i = 0; i < 3; ++i) at_once_[i].variance = square(navigator_.rate_noise);
   correct(3, "joint estimate: AHRS refused");
   for (int i = 0; i < 3; ++i) {
     if (filter_.model().moves(3 + i)) look_at(3 + i, at_once_[static_cast<std::size_t>(i)].score);

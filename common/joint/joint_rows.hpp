@@ -19,11 +19,14 @@ void see_floor(const JointVector& x, const Eigen::Matrix3d& told, double floor, 
 /// Distance of a camera to the floor along its axis [m]; not positive when it looks away.
 [[nodiscard]] double distance(const JointVector& x, const Eigen::Matrix3d& told, double floor,
                               const estimation::CameraMount& camera);
-/// Flow of the floor [rad/s], as a velocity [m/s] along the camera's axes x and y; distance() must be positive.
+/// Flow of the floor [rad/s], as a velocity [m/s] along the camera's axes x and y; distance() must be positive. Its
+/// rotation was taken out with the gyros, whose turned axes therefore show in it.
 void see_flow(const JointVector& x, const Eigen::Matrix3d& told, double floor, const estimation::CameraMount& camera,
               const Eigen::Vector2d& flow, std::span<JointRow, 2> rows);
 /// A velocity log's velocity of the body [m/s].
 void see_velocity(const JointVector& x, const Eigen::Vector3d& v_B, std::span<JointRow, 3> rows);
+/// Rates as gyros tell them [rad/s], about axes that are turned a little.
+void see_rates(const JointVector& x, const Eigen::Vector3d& w, std::span<JointRow, 3> rows);
 /// One number of the state itself.
 void see_state(const JointVector& x, int which, double value, JointRow& row);
 
@@ -35,7 +38,7 @@ struct Felt {
   const Eigen::Vector3d& p_BI;   ///< m, where it sits
 };
 /// Specific force f [m/s^2] at the instrument, which the model foretells:
-///   v_dot + w x v + w_dot x r + w x (w x r) - g down + bias
+///   v_dot + w x v + w_dot x r + w x (w x r) - g down, turned like the gyros, + bias
 /// One row for each axis of X Y Z that the model moves; how many.
 std::size_t feel_force(const Normalised& model, const JointVector& x, const Felt& felt, const Eigen::Vector3d& f,
                        std::span<JointRow, 3> rows);

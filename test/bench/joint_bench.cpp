@@ -51,7 +51,7 @@ void joint_step(benchmark::State& state) {
     tau << (n / 100 % 2 == 0 ? 8.0 : -8.0), (n / 70 % 2 == 0 ? 6.0 : -6.0), 1.0, 0.0, 0.0,
         (n / 60 % 2 == 0 ? 0.5 : -0.5);
     filter.predict(0.01, I, I, I, tau);
-    for (int i = 0; i < 3; ++i) see_state(filter.state(), part::kNu + 3 + i, 0.1, rows[static_cast<std::size_t>(i)]);
+    see_rates(filter.state(), {0.1, 0.1, 0.1}, rows);
     use(3, 1e-5);
     const std::size_t felt =
         feel_force(filter.model(), filter.state(), {.told = I, .tau = tau, .w_dot = none, .p_BI = p_BI}, none, rows);

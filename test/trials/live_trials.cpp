@@ -2,9 +2,9 @@
 // [--simulation OLD NEW] [--hide EFFECT] [--limit S] [--text]
 // Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
 // error, in percent and in its own standard deviations. --joint: with the joint estimate. --at: after so many seconds
-// since arming, how large errors are, and what the numbers foretell of the wrench. --pipeline replaces a text of
-// config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml: which error of an instrument makes
-// which error of the model.
+// since arming, how large errors are, in percent and in standard deviations, and what the numbers foretell of the
+// wrench. --pipeline replaces a text of config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml:
+// which error of an instrument makes which error of the model.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -87,16 +87,19 @@ void print_progress(const std::vector<FullTrial>& trials, const std::vector<doub
     double worst = 0.0, force = 0.0, moment = 0.0, most_force = 0.0, most_moment = 0.0, inside = 0.0, all = 0.0;
     double n = 0.0, nees = 0.0;
     int good = 0;
-    std::vector<double> squares;
+    std::vector<double> squares, z, z_squares;  // of each parameter: relative errors, errors over stated deviations
     for (const FullTrial& trial : trials) {
       if (trial.progress.size() <= k) continue;
       const auto& now = trial.progress[k];
       double largest = 0.0;
-      squares.resize(now.learnt.size());
+      for (auto* each : {&squares, &z, &z_squares}) each->resize(now.learnt.size());
       for (std::size_t i = 0; i < now.learnt.size(); ++i) {
         const auto& p = now.learnt[i];
         const double error = p.truth == 0.0 ? 0.0 : 100.0 * std::abs(p.value / p.truth - 1.0);
         squares[i] += error * error;
+        const double over = (p.value - p.truth) / p.std;
+        z[i] += over;
+        z_squares[i] += over * over;
         inside += std::abs(p.value - p.truth) < 1.96 * p.std ? 1.0 : 0.0;
         all += 1.0;
         if (fathom::test::revealed(p.name)) largest = std::max(largest, error);
@@ -114,6 +117,8 @@ void print_progress(const std::vector<FullTrial>& trials, const std::vector<doub
                 100.0 * std::sqrt(force / n), 100.0 * most_force, 100.0 * std::sqrt(moment / n), 100.0 * most_moment,
                 100.0 * inside / all, nees / n);
     for (const double square : squares) std::printf(" %.2f", std::sqrt(square / n));
+    std::printf("\n%6s in standard deviations, mean (rms):", "");
+    for (std::size_t i = 0; i < z.size(); ++i) std::printf(" %.2f (%.2f)", z[i] / n, std::sqrt(z_squares[i] / n));
     std::printf("\n");
   }
 }

@@ -30,8 +30,9 @@ model::Vehicle roller() {
 }
 
 /// Mean of the residual on K, in its own deviations, after a roll that is driven; the sensor reads `off` too much in
-/// the last 40 s of 300, or somebody leans on the vehicle by `push`.
-ModelEstimate model_of_roll(double attitude_offset, double off, double push) {
+/// the last 40 s of 300, its gyro by `drift`, or somebody leans on the vehicle by `push`.
+ModelEstimate model_of_roll(double attitude_offset, double off, double push, double rate_offset = 0.0,
+                            double drift = 0.0) {
   IdentifierSettings settings;
   settings.window = 1.0;
   settings.stride = 0.25;
@@ -39,6 +40,7 @@ ModelEstimate model_of_roll(double attitude_offset, double off, double push) {
   settings.noise_force = 0.1;
   settings.residual_memory = 30.0;
   settings.attitude_offset = attitude_offset;
+  settings.rate_offset = rate_offset;
   const model::Vehicle vehicle = roller();
   Identifier identifier{settings, vehicle};
   std::mt19937 engine{3};
@@ -54,7 +56,7 @@ ModelEstimate model_of_roll(double attitude_offset, double off, double push) {
         .utime = utime,
         .q_WB = Eigen::Quaterniond{Eigen::AngleAxisd{roll + (late ? off : 0.0), Eigen::Vector3d::UnitX()}},
         .valid = true};
-    state.nu << 0.0, 0.0, 0.0, rate + 0.003 * normal(engine), 0.0, 0.0;
+    state.nu << 0.0, 0.0, 0.0, rate + (late ? drift : 0.0) + 0.003 * normal(engine), 0.0, 0.0;
     Thrusters thrusters{.utime = utime, .has_tau = true};
     thrusters.tau = {0.0, 0.0, 0.0, drive, 0.0, 0.0};
     (void)identifier.step(thrusters);
@@ -75,4 +77,12 @@ TEST_CASE("identifier: what a wandering level makes of the righting moment is no
   CHECK(std::abs(model_of_roll(kOff, wander, 0.0).residual_mean[3]) < 3.0);
   // What cannot be the level still stops a mode from being left, by its mean or, as here, by its power.
   CHECK(model_of_roll(kOff, 0.0, 12.0 * kRighting * kOff).residual_ratio[3] > 2.0);
+}
+
+TEST_CASE("identifier: what drag makes of a gyro's bias is not one-sided") {
+  constexpr double kBias = 0.02;  // rad/s: through this drag of 0.5 N m/(rad/s) half of the stated noise
+  CHECK(std::abs(model_of_roll(0.0, 0.0, 0.0, 0.0, 3.0 * kBias).residual_mean[3]) > 4.0);
+  CHECK(std::abs(model_of_roll(0.0, 0.0, 0.0, kBias, 3.0 * kBias).residual_mean[3]) < 3.0);
+  // A push that no such bias makes stops a mode from being left all the same, here by its power.
+  CHECK(model_of_roll(0.0, 0.0, 0.1, kBias, 0.0).residual_ratio[3] > 2.0);
 }

@@ -22,6 +22,7 @@ JointVector somewhere(const JointFilter& filter) {
   x(part::kScale) = 3e-3;
   x(part::kHeight) = 4e-3;
   x.segment<3>(part::kOffset) << 1e-3, -2e-3, 1e-3;
+  x.segment<3>(part::kTurned) << 4e-3, -3e-3, 5e-3;
   return x;
 }
 
@@ -53,6 +54,11 @@ TEST_CASE("joint rows: derivatives of all instruments are those of differences")
     check(x, [&](const JointVector& at) {
       std::array<JointRow, 3> rows;
       see_point(at, kTold, {0.5, 0.1, 1.5}, arm, rows);
+      return rows[i];
+    });
+    check(x, [&](const JointVector& at) {
+      std::array<JointRow, 3> rows;
+      see_rates(at, {0.1, 0.2, -0.3}, rows);
       return rows[i];
     });
     check(x, [&](const JointVector& at) {
@@ -105,6 +111,29 @@ TEST_CASE("joint rows: what the vehicle would tell of itself leaves no innovatio
   CHECK(std::abs(rows[0].innovation) < 1e-12);
   const Eigen::Vector3d v_C = estimation::velocity_of_camera(v, w, camera);
   see_flow(x, kTold, 1.5, camera, -v_C.head<2>() / d, std::span{rows}.first<2>());
+  CHECK(std::abs(rows[0].innovation) < 1e-12);
+  CHECK(std::abs(rows[1].innovation) < 1e-12);
+}
+
+// A scene that turns with w flows by (-w_y, w_x) in the middle of the picture; whoever takes that out with gyros takes
+// out what they tell.
+TEST_CASE("joint rows: gyros whose axes are turned tell of it, and so does the flow that they have corrected") {
+  const model::Vehicle vehicle = fathom::test::vehicle_from_repository("seabotix_lbv150");
+  const JointFilter filter = example::filter(vehicle);
+  JointVector x = filter.state();
+  x.segment<3>(part::kTurned) << 4e-3, -3e-3, 5e-3;
+  const Eigen::Vector3d v = x.segment<3>(part::kNu), w = x.segment<3>(part::kNu + 3);
+  const Eigen::Vector3d told = w + Eigen::Vector3d{x.segment<3>(part::kTurned)}.cross(w);
+  std::array<JointRow, 3> rows;
+  see_rates(x, told, rows);
+  for (const JointRow& row : rows) CHECK(std::abs(row.innovation) < 1e-12);
+  const estimation::CameraMount camera{.p_BC = {0.1, 0.0, 0.12}, .R_BC = rotation_from_euler({0.0, 0.0, 1.5707963})};
+  const double d = distance(x, kTold, 1.5, camera);
+  const Eigen::Vector3d v_C = estimation::velocity_of_camera(v, w, camera);
+  const Eigen::Vector3d w_C = camera.R_BC.transpose() * w, told_C = camera.R_BC.transpose() * told;
+  const auto of_turning = [](const Eigen::Vector3d& rate) { return Eigen::Vector2d{-rate.y(), rate.x()}; };
+  const Eigen::Vector2d flow = -v_C.head<2>() / d + of_turning(w_C) - of_turning(told_C);
+  see_flow(x, kTold, 1.5, camera, flow, std::span{rows}.first<2>());
   CHECK(std::abs(rows[0].innovation) < 1e-12);
   CHECK(std::abs(rows[1].innovation) < 1e-12);
 }
