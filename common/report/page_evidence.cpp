@@ -250,6 +250,9 @@ std::string certainty_section(const DiagnosisResult& result) {
             " s: a random force does (turbulence, a swinging tether), and so does something small that is still "
             "missing.</li>\n";
   }
+  for (const NotMeasured& group : result.not_measured) {
+    if (!group.means.empty()) open += "<li>" + escape(group.means) + "</li>\n";
+  }
   const bool judged = result.verdict != "unjudged";
   if (judged || !open.empty())
     html += open.empty() ? "<p>Nothing is left open on this data.</p>\n" : "<h3>Still open</h3><ul>" + open + "</ul>\n";
