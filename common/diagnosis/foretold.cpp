@@ -68,8 +68,7 @@ std::vector<std::string> not_followed(const DiagnosisResult& result, const std::
   std::erase_if(axes, [&](const std::string& name) {
     const auto& all = result.residual_after;
     const auto axis = std::ranges::find(all, name, &AxisWhiteness::axis);
-    return axis->explained + axis->noise > 0.0 &&
-           std::ranges::find(foretold, name, &Foretold::axis) == foretold.end();
+    return axis->explained + axis->noise > 0.0 && std::ranges::find(foretold, name, &Foretold::axis) == foretold.end();
   });
   return axes;
 }

@@ -45,12 +45,12 @@ Input read_input(const Recording& recording, Utime origin, const ThrusterCorrect
       x = Eigen::Map<const Eigen::VectorXd>(one.tau.data(), 6);
       wrench = true;
     } else if (!one.force.empty()) {
-      throw InputError(
-          recording.name + ": forces of " + std::to_string(one.force.size()) + " thrusters, and the vehicle file has " +
-          std::to_string(thrusters) +
-          (thrusters == 0 ? ": list them there ('thrusters', with position and axis), or give the wrench (X ... N)"
-                          : ": give a column (f1, f2, ...) for each in the file's order, zeros for one that was off, "
-                            "or the wrench (X ... N)"));
+      throw InputError(recording.name + ": forces of " + std::to_string(one.force.size()) +
+                       " thrusters, and the vehicle file has " + std::to_string(thrusters) +
+                       (thrusters == 0
+                            ? ": list them there ('thrusters', with position and axis), or give the wrench (X ... N)"
+                            : ": give a column (f1, f2, ...) for each in the file's order, zeros for one that was off, "
+                              "or the wrench (X ... N)"));
     } else {
       continue;
     }

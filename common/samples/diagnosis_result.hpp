@@ -50,7 +50,7 @@ struct AxisWhiteness {
   double autocorrelation_time_s{};
   double explained{};    ///< share of variance explained, of the applied wrench's axis; NaN where none is applied
   double applied_rms{};  ///< N or N m, of that wrench about its mean
-  double noise{};        ///< what the sensors' white noise alone leaves of a residual, over the applied wrench's variance
+  double noise{};  ///< what the sensors' white noise alone leaves of a residual, over the applied wrench's variance
 };
 
 /// Something that the residual of one axis goes with.

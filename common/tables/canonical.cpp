@@ -22,10 +22,17 @@ constexpr std::array kNames{"t",  "x",  "y",  "z", "phi", "theta", "psi", "u", "
 
 // What others call these.
 constexpr std::array<std::pair<const char*, const char*>, 22> kOtherwise{{
-    {"time", "t"},    {"north", "x"},   {"east", "y"}, {"down", "z"}, {"roll", "phi"}, {"pitch", "theta"},
-    {"yaw", "psi"},   {"heading", "psi"}, {"surge", "u"}, {"sway", "v"}, {"heave", "w"}, {"vx", "u"},
-    {"vy", "v"},      {"vz", "w"},      {"wx", "p"},   {"wy", "q"},   {"wz", "r"},     {"Fx", "X"},
-    {"Fy", "Y"},      {"Fz", "Z"},      {"Mz", "N"},   {"battery", "voltage"},
+    {"time", "t"},   {"north", "x"},
+    {"east", "y"},   {"down", "z"},
+    {"roll", "phi"}, {"pitch", "theta"},
+    {"yaw", "psi"},  {"heading", "psi"},
+    {"surge", "u"},  {"sway", "v"},
+    {"heave", "w"},  {"vx", "u"},
+    {"vy", "v"},     {"vz", "w"},
+    {"wx", "p"},     {"wy", "q"},
+    {"wz", "r"},     {"Fx", "X"},
+    {"Fy", "Y"},     {"Fz", "Z"},
+    {"Mz", "N"},     {"battery", "voltage"},
 }};
 
 // Takes groups of columns out of the table until only strangers are left.
@@ -165,7 +172,8 @@ ColumnMap canonical_map(const CsvTable& table) {
   shelf.check_strangers();
   if (table.names.size() == 1) throw InputError(table.path + ":1: there is no column besides time");
   if (!map.pose_capture && !map.ahrs && !map.dvl && !map.thrusters && !map.depth && !map.battery)
-    throw InputError(table.path + ":1: no column besides time is known; without a map (--map) these are: " + kCanonical);
+    throw InputError(table.path +
+                     ":1: no column besides time is known; without a map (--map) these are: " + kCanonical);
   return map;
 }
 

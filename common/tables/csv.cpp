@@ -48,10 +48,10 @@ std::string_view take_line(std::string_view& text) {
 }
 
 constexpr std::size_t kLongest = 64;  // characters of a number with a decimal comma
-constexpr double kFill = 1e30;  // and more is what loggers write for "no value": FLT_MAX, 1e38, DBL_MAX
+constexpr double kFill = 1e30;        // and more is what loggers write for "no value": FLT_MAX, 1e38, DBL_MAX
 
-// NaN for a missing or infinite number, and for a fill value; false when the cell is no number at all. Where columns are
-// parted by semicolons a decimal comma is a point.
+// NaN for a missing or infinite number, and for a fill value; false when the cell is no number at all. Where columns
+// are parted by semicolons a decimal comma is a point.
 bool read_number(std::string_view cell, char separator, double& value) {
   value = kMissing;
   if (cell.empty()) return true;
@@ -95,7 +95,9 @@ std::vector<std::string> read_names(std::string_view line, char separator, const
   std::vector<std::string> names;
   for (bool more = true; more;) {
     const std::string_view name = take_cell(line, separator, more);
-    if (name.empty()) throw InputError(where + ": column " + std::to_string(names.size() + 1) + " has no name; give it one, or take its separator away");
+    if (name.empty())
+      throw InputError(where + ": column " + std::to_string(names.size() + 1) +
+                       " has no name; give it one, or take its separator away");
     if (std::find(names.begin(), names.end(), name) != names.end()) {
       throw InputError(where + ": column '" + std::string(name) + "' stands here twice");
     }

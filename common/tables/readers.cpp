@@ -74,7 +74,8 @@ ColumnData Resolver::operator()(const Column& column) {
   }
   const auto finite = [](double value) { return std::isfinite(value); };
   if (used_.insert(column.name).second && std::none_of(data->begin(), data->end(), finite)) {
-    throw InputError(table_.path + ": column '" + column.name + "' holds no number at all; leave out of the table what was not measured");
+    throw InputError(table_.path + ": column '" + column.name +
+                     "' holds no number at all; leave out of the table what was not measured");
   }
   return data;
 }

@@ -36,7 +36,8 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
       for (std::string line; std::getline(lines, line);) notes.push_back(line);
       recordings.push_back(std::move(contents.recording));
     } else {
-      throw InputError(path + ": neither .lcmlog nor .csv; a table's name must end in .csv, whatever parts its columns");
+      throw InputError(path +
+                       ": neither .lcmlog nor .csv; a table's name must end in .csv, whatever parts its columns");
     }
     Recording& last = recordings.back();
     last.name = file.stem().string();

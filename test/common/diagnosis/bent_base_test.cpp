@@ -62,8 +62,7 @@ TEST_CASE("bent base numbers: noise that drowns the accelerations bends nothing"
     const test::VirtualDive loud = test::make_dive(vehicle, settings);
     std::vector<NamedValue> fitted;
     for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
-      const double value =
-          loud.truth.theta[model::index(*model::parameter_from_name(vehicle.parameters[i]))];
+      const double value = loud.truth.theta[model::index(*model::parameter_from_name(vehicle.parameters[i]))];
       fitted.push_back({vehicle.parameters[i], value, 0.05 * std::abs(value), ""});
     }
     const Vector6d exact = rms(wrench_residuals(loud.truth, loud.trial));

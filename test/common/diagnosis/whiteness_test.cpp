@@ -43,7 +43,8 @@ Trial quiet_trial(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("whiteness: an axis whose forces drown in the noise of accelerations is not astray, one that lacks force is") {
+TEST_CASE(
+    "whiteness: an axis whose forces drown in the noise of accelerations is not astray, one that lacks force is") {
   AxisWhiteness axis{.axis = "Y", .p_value = 0.005, .explained = -2.4, .applied_rms = 500.0, .noise = 3.3};
   CHECK(astray(std::vector{axis}).empty());
   axis.noise = 0.1;

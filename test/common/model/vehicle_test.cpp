@@ -84,7 +84,8 @@ TEST_CASE("vehicle: enabled motions decide the parameters, and silence gives wid
   for (const auto& prior : vehicle.priors) CHECK(prior.sigma > 0.0);
 }
 
-TEST_CASE("vehicle: what drifts unpowered is felt by what is driven: its mass, and the net weight of a vehicle that tilts") {
+TEST_CASE(
+    "vehicle: what drifts unpowered is felt by what is driven: its mass, and the net weight of a vehicle that tilts") {
   const auto has = [](const Vehicle& vehicle, const char* name) {
     return std::ranges::count(vehicle.parameters, name) == 1;
   };

@@ -57,7 +57,8 @@ TEST_CASE("What was not measured stands with the effects that could not be asked
   report.result.not_measured = {{"attitude", {"current"}, "It is not known."}, {"position", {}}};
   const json file = json::parse(to_json(report.result));
   REQUIRE(file["not_measured"].size() == 2);
-  CHECK(file["not_measured"][0] == json({{"group", "attitude"}, {"cannot_be_asked", {"current"}}, {"means", "It is not known."}}));
+  CHECK(file["not_measured"][0] ==
+        json({{"group", "attitude"}, {"cannot_be_asked", {"current"}}, {"means", "It is not known."}}));
   CHECK(file["not_measured"][1]["cannot_be_asked"].empty());
   CHECK(file["not_measured"][1]["means"] == "");
 }

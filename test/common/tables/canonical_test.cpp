@@ -93,10 +93,11 @@ TEST_CASE("canonical: columns that nobody knows are left alone and noted, words 
 TEST_CASE("canonical: a column that differs by capitals or a slip is told its name") {
   CHECK(complaint("t,Phi,theta,psi\n0,1,2,3\n").rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?);", 0) ==
         0);
-  CHECK(complaint("t,roll,pitch,Yaw\n0,1,2,3\n")
-            .rfind("run.csv:1: unknown columns 'roll' (did you mean 'phi'?), 'pitch' (did you mean 'theta'?), 'Yaw' (did "
-                   "you mean 'psi'?);",
-                   0) == 0);
+  CHECK(
+      complaint("t,roll,pitch,Yaw\n0,1,2,3\n")
+          .rfind("run.csv:1: unknown columns 'roll' (did you mean 'phi'?), 'pitch' (did you mean 'theta'?), 'Yaw' (did "
+                 "you mean 'psi'?);",
+                 0) == 0);
   CHECK(complaint("t,u,v,w,U,surge\n0,1,2,3,4,5\n") == "no complaint");  // there is a 'u'
   CHECK(complaint("T,u,v,w\n0,1,2,3\n").find("(is it 'T'?)") != std::string::npos);
 }
