@@ -62,7 +62,8 @@ TEST_CASE("whiteness: noise of the velocities makes the share of the residual th
   model.theta[model::index(model::BaseParameter::X_u)] = 0.0;
   model.theta[model::index(model::BaseParameter::X_uu)] = 0.0;
   for (auto& input : trial.input) input *= 1e-3;  // what is left is noise
-  const auto rows = whiteness(model, {&trial, 1}, std::vector{wrench_residuals(model, trial)});
+  const std::vector<std::vector<Vector6d>> residuals{wrench_residuals(model, trial)};
+  const auto rows = whiteness(model, {&trial, 1}, residuals);
   REQUIRE(rows.front().axis == "X");
   // 570 independent means: their variance is known to 6 %.
   CHECK(rows.front().noise == doctest::Approx(1.0 - rows.front().explained).epsilon(0.25));
