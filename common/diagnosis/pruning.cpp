@@ -8,6 +8,7 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/judgement.hpp"
+#include "common/identification/input_hold.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -104,6 +105,8 @@ std::optional<OtherForm> best_other_form(const SearchResult& result, std::size_t
       best = OtherForm{j, std::move(form), std::move(fit)};
     }
   }
+  // How commands are held was settled beside the effect that is in question, and may have suited it.
+  if (best) best->fit = identification::with_input_hold(problem, std::move(best->fit));
   return best;
 }
 
