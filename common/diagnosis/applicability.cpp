@@ -111,6 +111,9 @@ std::vector<NotMeasured> not_measured(const Scene& scene) {
       const std::vector<const Group*> needed = needed_groups(*effect, scene);
       if (std::ranges::find(needed, &group) != needed.end()) groups.back().cannot_be_asked.emplace_back(effect->name());
     }
+    std::string& means = groups.back().means;
+    means = not_measured_sentences({groups.back()}, *scene.vehicle);
+    if (means.ends_with(' ')) means.pop_back();
   }
   return groups;
 }

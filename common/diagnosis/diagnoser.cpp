@@ -72,8 +72,9 @@ std::vector<Association> left_in(std::span<const Trial> train, std::span<const T
   std::vector<Trial> fitted;
   for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
   const model::Model& model = found.after.model;
-  const LeftOver in_fitted{learnt, fitted, residuals_unbent(learnt, fitted)};
-  const LeftOver in_unseen{model, unseen, residuals_unbent(model, unseen)};
+  const std::vector<NamedValue> numbers = found.after.parameters();
+  const LeftOver in_fitted{learnt, fitted, residuals_unbent(learnt, fitted, numbers)};
+  const LeftOver in_unseen{model, unseen, residuals_unbent(model, unseen, numbers)};
   if (found.free_form && !found.free_form->in_place_of_effect) {
     const auto curves = free_curves(model::scene_of(vehicle, train));
     const auto same = std::ranges::find_if(curves, [&](const auto& curve) {

@@ -45,6 +45,12 @@ std::size_t residual_span(double dt) {
   return 2 * std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 * kSpan / dt))) + 1;
 }
 
+double slope_noise(double dt) {
+  double squares = 0.0;  // s^2, of the offsets
+  for (std::size_t i = 1; i <= residual_span(dt) / 2; ++i) squares += 2.0 * std::pow(static_cast<double>(i) * dt, 2);
+  return 1.0 / std::sqrt(squares);
+}
+
 std::vector<double> acceleration_weights(std::size_t half) {
   double squares = 0.0;
   for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * static_cast<double>(i * i);
@@ -60,8 +66,7 @@ std::vector<double> acceleration_weights(std::size_t half) {
 
 std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial) {
   const std::size_t half = residual_span(trial.dt) / 2;
-  double squares = 0.0;  // s^2, of the offsets
-  for (std::size_t i = 1; i <= half; ++i) squares += 2.0 * std::pow(static_cast<double>(i) * trial.dt, 2);
+  const double squares = std::pow(slope_noise(trial.dt), -2.0);  // s^2, of the offsets
   const std::vector<double> weight = acceleration_weights(half);
   std::vector<Vector6d> residuals(trial.size(), Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
   const model::VelocityTrace nu = model::true_velocities(model, trial, 0, trial.size());

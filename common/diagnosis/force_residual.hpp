@@ -12,6 +12,9 @@ namespace fathom::diagnosis {
 /// Samples, an odd number, over which a wrench residual is the mean: residuals that far apart share no measurement.
 [[nodiscard]] std::size_t residual_span(double dt);
 
+/// Standard deviation of the slope, per m/s (rad/s) of a velocity's white noise, 1/s.
+[[nodiscard]] double slope_noise(double dt);
+
 /// Weight of the samples up to `half` away from the middle in the mean acceleration that the slope of a straight line
 /// through 2 half + 1 velocities is: acceleration runs straight from sample to sample.
 [[nodiscard]] std::vector<double> acceleration_weights(std::size_t half);

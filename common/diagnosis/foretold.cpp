@@ -67,8 +67,8 @@ std::vector<std::string> not_followed(const DiagnosisResult& result, const std::
   std::vector<std::string> axes = astray(result.residual_after);
   std::erase_if(axes, [&](const std::string& name) {
     const auto& all = result.residual_after;
-    return std::ranges::find(all, name, &AxisWhiteness::axis)->explained > 0.0 &&
-           std::ranges::find(foretold, name, &Foretold::axis) == foretold.end();
+    const auto axis = std::ranges::find(all, name, &AxisWhiteness::axis);
+    return axis->explained + axis->noise > 0.0 && std::ranges::find(foretold, name, &Foretold::axis) == foretold.end();
   });
   return axes;
 }

@@ -8,6 +8,7 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/judgement.hpp"
+#include "common/identification/input_hold.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -104,6 +105,11 @@ std::optional<OtherForm> best_other_form(const SearchResult& result, std::size_t
       best = OtherForm{j, std::move(form), std::move(fit)};
     }
   }
+  // How commands are held was settled beside the effect that is in question, and may have suited it; but what is itself
+  // a time after the command must not be lost to a hold.
+  const bool itself_a_time = std::ranges::any_of(result.accepted[i].effect->parameters(),
+                                                 [](const auto& number) { return number.after_command; });
+  if (best && !itself_a_time) best->fit = identification::with_input_hold(problem, std::move(best->fit));
   return best;
 }
 

@@ -110,6 +110,24 @@ std::vector<EffectFound> sensor_faults(std::span<const ConsistencyFinding> findi
   return found;
 }
 
+bool thrust_as_late_as_gyro(const DiagnosisResult& result, std::span<const ConsistencyFinding> findings) {
+  const auto pooled = [&](const char* signal, const char* what) {
+    return std::ranges::find_if(findings, [&](const ConsistencyFinding& f) {
+      return f.run == "all" && f.signal == signal && f.finding == what;
+    });
+  };
+  const auto gyro = pooled("gyro", "delay"), clock = pooled("thrusters", "clock");
+  if (gyro == findings.end() || gyro->size <= 0.0 || clock == findings.end() || clock->reference != "gyro")
+    return false;
+  return std::ranges::any_of(result.effects, [&](const EffectFound& effect) {
+    return effect.accepted && effect.name == "thruster_delay" &&
+           std::ranges::any_of(effect.parameters, [&](const NamedValue& number) {
+             return number.name == "delay" &&
+                    std::abs(number.value - gyro->size) < kSame * std::hypot(number.std, gyro->std);
+           });
+  });
+}
+
 void adopt_sensor_faults(DiagnosisResult& result) {
   const std::vector<EffectFound> found = sensor_faults(result.consistency);
   if (found.empty()) return;

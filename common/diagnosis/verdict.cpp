@@ -133,6 +133,15 @@ std::string taken_back_sentence(const SearchResult& found) {
 /// better witness that there is none.
 constexpr double kByChance = 8.0;
 
+/// True where the axes only turn, and speeds that were not measured give moments (v x diag(m_X, m_Y, m_Z) v): what is
+/// left need not be the thrusters' fault.
+bool munk_moments_unknown(const model::Scene& scene, std::span<const std::string> axes) {
+  const auto& dof = scene.vehicle->dof;
+  const bool moves = static_cast<int>(dof[0]) + static_cast<int>(dof[1]) + static_cast<int>(dof[2]) >= 2;
+  return moves && !scene.velocity &&
+         std::ranges::all_of(axes, [](const std::string& axis) { return axis == "K" || axis == "M" || axis == "N"; });
+}
+
 /// As much of a whole cause as what stands beside a random force may be: nine to one.
 constexpr double kInNoise = 0.99;
 
@@ -224,9 +233,10 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   text += foretold_sentence(foretold);
   if (result.verdict == "adequate" && foretold.empty()) text += hardly_shown_sentence(result);
   if (!astray_axes.empty()) {
-    text += "Along " + joined(astray_axes) +
-            " less than half of the applied force is accounted for: are the thrusters' order, signs, places and units "
-            "those of the vehicle's file? ";
+    text += "Along " + joined(astray_axes) + " less than half of the applied force is accounted for: " +
+            (munk_moments_unknown(scene, astray_axes)
+                 ? "without velocities the moments of moving through the water are not known, which may be all of it. "
+                 : "are the thrusters' order, signs, places and units those of the vehicle's file? ");
   }
   if (idle) {
     text +=

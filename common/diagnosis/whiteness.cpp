@@ -79,11 +79,13 @@ double ljung_box_p(std::span<const double> rho, double count) {
 std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,
                                      std::span<const std::vector<Vector6d>> residuals) {
   std::vector<AxisWhiteness> rows;
+  const auto inertia = [&](Eigen::Index axis) { return model.theta[model::index(model::BaseParameter::m_X) + axis]; };
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     if (!model.vehicle->dof[a]) continue;
     AxisWhiteness row{.axis = model::kAxisNames[a]};
     double weight = 0.0, memory = 0.0, residual_square = 0.0, applied_square = 0.0, statistic_p = 1.0;
+    double noise_square = 0.0;
     for (std::size_t r = 0; r < trials.size(); ++r) {
       const std::size_t span = residual_span(trials[r].dt);
       const double step = static_cast<double>(span) * trials[r].dt;
@@ -99,6 +101,7 @@ std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const 
       memory += area * m.count;
       weight += m.count;
       residual_square += m.variance * m.count;
+      noise_square += std::pow(inertia(axis) * trials[r].nu_sigma[axis] * slope_noise(trials[r].dt), 2) * m.count;
       std::vector<double> applied;
       for (const auto& input : trials[r].input) applied.push_back((model.allocation * input)[axis]);
       applied_square += moments(applied).variance * m.count;
@@ -108,6 +111,7 @@ std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const 
     row.autocorrelation_time_s = memory / weight;
     row.explained =
         applied_square > 0.0 ? 1.0 - residual_square / applied_square : std::numeric_limits<double>::quiet_NaN();
+    if (applied_square > 0.0) row.noise = noise_square / applied_square;
     row.applied_rms = std::sqrt(applied_square / weight);
     rows.push_back(row);
   }
@@ -126,7 +130,8 @@ std::vector<std::string> astray(std::span<const AxisWhiteness> axes) {
       count += 1.0;
     }
     const bool driven = axis.applied_rms * axis.applied_rms >= kMuch * square / count && square > 0.0;
-    if (driven && axis.explained < kFollowed && axis.p_value < kNotRandom) names.push_back(axis.axis);
+    const double followed = axis.explained + axis.noise;  // a large ship's forces drown in the noise of accelerations
+    if (driven && followed < kFollowed && axis.p_value < kNotRandom) names.push_back(axis.axis);
   }
   return names;
 }

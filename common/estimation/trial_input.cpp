@@ -47,8 +47,10 @@ Input read_input(const Recording& recording, Utime origin, const ThrusterCorrect
     } else if (!one.force.empty()) {
       throw InputError(recording.name + ": forces of " + std::to_string(one.force.size()) +
                        " thrusters, and the vehicle file has " + std::to_string(thrusters) +
-                       ": give a column (f1, f2, ...) for each in the file's order, zeros for one that was off, or the "
-                       "wrench (X ... N)");
+                       (thrusters == 0
+                            ? ": list them there ('thrusters', with position and axis), or give the wrench (X ... N)"
+                            : ": give a column (f1, f2, ...) for each in the file's order, zeros for one that was off, "
+                              "or the wrench (X ... N)"));
     } else {
       continue;
     }

@@ -21,12 +21,20 @@ double plate_drag(bool turning, double density, double length) {
 std::vector<std::string> default_parameters(const std::array<bool, 6>& dof) {
   const bool roll = dof[3];
   const bool pitch = dof[4];
-  const bool tumbles = roll + pitch + dof[5] >= 2;
+  const bool yaw = dof[5];
+  const bool tumbles = roll + pitch + yaw >= 2;
   std::vector<std::string> names;
   for (const BaseParameter one : base_parameters()) {
     bool wanted = dof[static_cast<std::size_t>(axis(one))];
     // (I_Y - I_X) p q and its like: two free rotations feel the third inertia, be it only passive.
     if (one == BaseParameter::I_X || one == BaseParameter::I_Y || one == BaseParameter::I_Z) wanted = wanted || tumbles;
+    // m_Y r v, (m_Y - m_X) u v and their like: whoever moves ahead and turns feels how much water is moved by drifting
+    // sideways, which a torpedo does though nothing drives it there.
+    if (one == BaseParameter::m_X) wanted = wanted || (dof[1] && yaw) || (dof[2] && pitch);
+    if (one == BaseParameter::m_Y) wanted = wanted || (dof[0] && yaw) || (dof[2] && roll);
+    if (one == BaseParameter::m_Z) wanted = wanted || (dof[0] && pitch) || (dof[1] && roll);
+    // A tilted vehicle's net weight pulls along it, too.
+    if (one == BaseParameter::W_B) wanted = wanted || (dof[0] && pitch) || (dof[1] && roll);
     // Moment G x R_WB^T e_z: roll feels G_y and G_z, pitch feels G_x and G_z.
     if (one == BaseParameter::G_x) wanted = pitch;
     if (one == BaseParameter::G_y) wanted = roll;

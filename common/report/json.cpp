@@ -125,7 +125,8 @@ Json candidates(const std::vector<CandidateTried>& tried) {
 
 Json not_measured(const std::vector<NotMeasured>& groups) {
   Json array = Json::array();
-  for (const auto& g : groups) array.push_back({{"group", g.group}, {"cannot_be_asked", g.cannot_be_asked}});
+  for (const auto& g : groups)
+    array.push_back({{"group", g.group}, {"cannot_be_asked", g.cannot_be_asked}, {"means", g.means}});
   return array;
 }
 

@@ -84,7 +84,9 @@ std::string verdict_section(const DiagnosisReport& report) {
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" +
                      lines(result.paragraph) + "<div class=\"tiles\">";
-  if (std::isfinite(result.improvement.value)) {
+  if (std::isfinite(result.improvement.value) && std::ranges::none_of(result.effects, &EffectFound::accepted)) {
+    html += tile("0 %", "change of the prediction error: nothing was added to the model");
+  } else if (std::isfinite(result.improvement.value)) {
     html += tile(percent(-result.improvement.value),
                  "change of the prediction error 5 s ahead (95 %: " + percent(-result.improvement.high) + " to " +
                      percent(-result.improvement.low) + ")");

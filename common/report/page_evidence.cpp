@@ -210,7 +210,9 @@ std::string parameter_section(const DiagnosisResult& result) {
 std::string certainty_section(const DiagnosisResult& result) {
   std::string html = "<section><h2>How sure this is, and what would settle the rest</h2>\n";
   const Interval& gain = result.improvement;
-  if (std::isfinite(gain.value)) {
+  if (std::ranges::none_of(result.effects, &EffectFound::accepted)) {
+    html += "<p>Nothing was added to the model: it foretells what it foretold before.</p>\n";
+  } else if (std::isfinite(gain.value)) {
     const bool sure = gain.low > 0.0;
     const double low = std::fmin(0.0, gain.low);
     html += "<p>The normalised error 5 s ahead changed by <b>" + escape(percent(-gain.value)) +
@@ -249,6 +251,9 @@ std::string certainty_section(const DiagnosisResult& result) {
             "</b> remembers itself for about " + escape(number(axis.autocorrelation_time_s, 2)) +
             " s: a random force does (turbulence, a swinging tether), and so does something small that is still "
             "missing.</li>\n";
+  }
+  for (const NotMeasured& group : result.not_measured) {
+    if (!group.means.empty()) open += "<li>" + escape(group.means) + "</li>\n";
   }
   const bool judged = result.verdict != "unjudged";
   if (judged || !open.empty())

@@ -50,6 +50,7 @@ struct AxisWhiteness {
   double autocorrelation_time_s{};
   double explained{};    ///< share of variance explained, of the applied wrench's axis; NaN where none is applied
   double applied_rms{};  ///< N or N m, of that wrench about its mean
+  double noise{};  ///< what the sensors' white noise alone leaves of a residual, over the applied wrench's variance
 };
 
 /// Something that the residual of one axis goes with.
@@ -110,6 +111,7 @@ struct CandidateTried {
 struct NotMeasured {
   std::string group;
   std::vector<std::string> cannot_be_asked;  ///< effects that have no form without it
+  std::string means{};                       ///< a sentence: what is not known without it; empty where nothing is lost
 };
 
 /// Thrusters that seem to be others, or to push the other way, than the vehicle's file says.

@@ -1,8 +1,11 @@
 // The canonical columns: a table that needs no map. docs/configuration.md lists them.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
@@ -16,6 +19,21 @@ constexpr const char* kCanonical =
 
 constexpr std::array kNames{"t",  "x",  "y",  "z", "phi", "theta", "psi", "u", "v", "w",     "p",       "q",  "r",
                             "ax", "ay", "az", "X", "Y",   "Z",     "K",   "M", "N", "depth", "voltage", "f1", "pwm1"};
+
+// What others call these.
+constexpr std::array<std::pair<const char*, const char*>, 22> kOtherwise{{
+    {"time", "t"},   {"north", "x"},
+    {"east", "y"},   {"down", "z"},
+    {"roll", "phi"}, {"pitch", "theta"},
+    {"yaw", "psi"},  {"heading", "psi"},
+    {"surge", "u"},  {"sway", "v"},
+    {"heave", "w"},  {"vx", "u"},
+    {"vy", "v"},     {"vz", "w"},
+    {"wx", "p"},     {"wy", "q"},
+    {"wz", "r"},     {"Fx", "X"},
+    {"Fy", "Y"},     {"Fz", "Z"},
+    {"Mz", "N"},     {"battery", "voltage"},
+}};
 
 // Takes groups of columns out of the table until only strangers are left.
 class Shelf {
@@ -56,8 +74,14 @@ class Shelf {
     return group.columns.empty() ? std::nullopt : std::optional<ColumnGroup>(group);
   }
 
-  /// " (did you mean 'phi'?)" for "Phi", unless there is a "phi" too.
+  /// " (did you mean 'phi'?)" for "Phi" or "roll", unless there is a "phi" too.
   [[nodiscard]] std::string meant(const std::string& name) const {
+    const auto letter = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    const auto other = std::ranges::find_if(kOtherwise, [&](const auto& pair) {
+      return std::ranges::equal(name, std::string_view(pair.first), {}, letter, letter);
+    });
+    if (other != kOtherwise.end() && table_.find(other->second) == nullptr)
+      return std::string(" (did you mean '") + other->second + "'?)";
     for (const char* known : kNames) {
       if (table_.find(known) == nullptr && looks_like(name, known))
         return std::string(" (did you mean '") + known + "'?)";
@@ -65,35 +89,38 @@ class Shelf {
     return "";
   }
 
-  /// "f3" where "f4" and no "f3" is there; empty where the numbers go on from the first.
-  [[nodiscard]] std::string skipped(const std::string& name) const {
+  /// Whether the name is of a thruster, as "f3", and was not taken with those before it.
+  void check_numbered(const std::string& name) const {
     for (const std::string prefix : {"f", "pwm"}) {
-      if (!name.starts_with(prefix) || table_.find(prefix + "1") == nullptr) continue;
+      if (!name.starts_with(prefix)) continue;
       int number = 0;
       const char *begin = name.data() + prefix.size(), *end = name.data() + name.size();
       const auto [rest, error] = std::from_chars(begin, end, number);
-      if (error != std::errc{} || rest != end) continue;
-      for (int i = 2; i < number; ++i) {
-        std::string before = prefix + std::to_string(i);
-        if (table_.find(before) == nullptr) return before;
+      if (error != std::errc{} || rest != end || number < 0) continue;
+      if (number == 0)
+        throw InputError(table_.path + ":1: column '" + name + "': thrusters are counted from '" + prefix +
+                         "1', in the order of the vehicle file");
+      for (int i = 1; i < number; ++i) {
+        const std::string before = prefix + std::to_string(i);
+        if (table_.find(before) == nullptr)
+          throw InputError(table_.path + ":1: column '" + before + "' is missing, and '" + name +
+                           "' is there; a thruster that was not driven has a column of zeros");
       }
     }
-    return "";
   }
 
-  void must_be_empty() const {
+  /// Columns that nobody knows are left alone, and the import notes them. InputError where one is likely to be a known
+  /// one misspelt, or numbered with a gap: what it holds would be missed.
+  void check_strangers() const {
+    std::string misspelt;
     for (const std::string& name : table_.names) {
-      const std::string before = left_.contains(name) ? skipped(name) : "";
-      if (!before.empty())
-        throw InputError(table_.path + ":1: column '" + before + "' is missing, and '" + name +
-                         "' is there; a thruster that was not driven has a column of zeros");
+      if (!left_.contains(name)) continue;
+      check_numbered(name);
+      if (const std::string known = meant(name); !known.empty())
+        misspelt += (misspelt.empty() ? "'" : ", '") + name + "'" + known;
     }
-    std::string strangers;
-    for (const std::string& name : table_.names) {
-      if (left_.contains(name)) strangers += (strangers.empty() ? "'" : ", '") + name + "'" + meant(name);
-    }
-    if (strangers.empty()) return;
-    throw InputError(table_.path + ":1: unknown columns " + strangers +
+    if (misspelt.empty()) return;
+    throw InputError(table_.path + ":1: unknown columns " + misspelt +
                      "; without a map (--map) these are known: " + kCanonical);
   }
 
@@ -142,8 +169,11 @@ ColumnMap canonical_map(const CsvTable& table) {
   if (thrusters.pwm || thrusters.force || thrusters.wrench_force) map.thrusters = thrusters;
   if (const auto depth = shelf.take({"depth"})) map.depth = ScalarColumn{*depth, {}};
   if (const auto voltage = shelf.take({"voltage"})) map.battery = ScalarColumn{*voltage, {}};
-  shelf.must_be_empty();
+  shelf.check_strangers();
   if (table.names.size() == 1) throw InputError(table.path + ":1: there is no column besides time");
+  if (!map.pose_capture && !map.ahrs && !map.dvl && !map.thrusters && !map.depth && !map.battery)
+    throw InputError(table.path +
+                     ":1: no column besides time is known; without a map (--map) these are: " + kCanonical);
   return map;
 }
 

@@ -1,6 +1,7 @@
 #include "common/tables/csv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -23,6 +24,21 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+// One cell, `line` moves on behind it and `more` tells whether another follows. In quotes a separator is text.
+std::string_view take_cell(std::string_view& line, char separator, bool& more) {
+  const auto begin = std::min(line.find_first_not_of(" \t"), line.size());
+  std::size_t end = line.find(separator);
+  if (begin < end && begin < line.size() && line[begin] == '"') {
+    const auto closed = line.find('"', begin + 1);
+    if (closed != std::string_view::npos) end = line.find(separator, closed);
+  }
+  std::string_view cell = trim(line.substr(0, end));
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trim(cell.substr(1, cell.size() - 2));
+  more = end != std::string_view::npos;
+  if (more) line.remove_prefix(end + 1);
+  return cell;
+}
+
 // The next line without its end; `text` moves on.
 std::string_view take_line(std::string_view& text) {
   const auto end = text.find('\n');
@@ -31,17 +47,26 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-constexpr double kFill = 1e30;  // and more is what loggers write for "no value": FLT_MAX, 1e38, DBL_MAX
+constexpr std::size_t kLongest = 64;  // characters of a number with a decimal comma
+constexpr double kFill = 1e30;        // and more is what loggers write for "no value": FLT_MAX, 1e38, DBL_MAX
 
-// NaN for a missing or infinite number, and for a fill value; false when the cell is no number at all.
-bool read_number(std::string_view cell, double& value) {
+// NaN for a missing or infinite number, and for a fill value; false when the cell is no number at all. Where columns
+// are parted by semicolons a decimal comma is a point.
+bool read_number(std::string_view cell, char separator, double& value) {
   value = kMissing;
   if (cell.empty()) return true;
   if (cell.front() == '+') cell.remove_prefix(1);
+  std::array<char, kLongest> copy;
+  if (const auto comma = cell.find(','); separator == ';' && comma != std::string_view::npos) {
+    if (cell.size() > copy.size()) return false;
+    std::ranges::copy(cell, copy.begin());
+    copy[comma] = '.';
+    cell = {copy.data(), cell.size()};
+  }
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc{} || end != cell.data() + cell.size()) return false;
-  if (!(std::abs(value) < kFill)) value = kMissing;
-  return true;
+  const bool whole = error == std::errc{} && end == cell.data() + cell.size();
+  if (!whole || !(std::abs(value) < kFill)) value = kMissing;
+  return whole;
 }
 
 /// A picture, a log or an archive begins with bytes that no text has.
@@ -53,30 +78,30 @@ void check_text(std::string_view text, const std::string& path) {
     throw InputError(path + ": this is no text; give a table with commas between its columns");
 }
 
-/// A table whose columns are parted by something else is one column to us, and its first row no number.
-void check_separator(std::string_view line, const std::string& where) {
-  if (line.find(',') != std::string_view::npos) return;
-  const auto other = trim(line).find_first_of(";\t|");
-  if (other == std::string_view::npos) return;
-  const char separator = trim(line)[other];
-  throw InputError(where + ": separator " + (separator == '\t' ? "tab" : std::string("'") + separator + "'") +
-                   ": save the table with commas between its columns, and with points in its numbers");
+/// What parts the columns of a header: a comma, or where there is none a semicolon or a tab, as spreadsheets write.
+/// InputError for anything else, since such a table is one column to us.
+char separator_of(std::string_view line, const std::string& where) {
+  line = trim(line);
+  for (const char one : {',', ';', '\t'}) {
+    if (line.find(one) != std::string_view::npos) return one;
+  }
+  const auto other = line.find_first_of("| ");
+  if (other == std::string_view::npos || line.front() == '"') return ',';
+  throw InputError(where + ": separator " + (line[other] == ' ' ? "blank" : "'|'") +
+                   ": save the table with commas between its columns");
 }
 
-std::vector<std::string> read_names(std::string_view line, const std::string& where) {
-  check_separator(line, where);
+std::vector<std::string> read_names(std::string_view line, char separator, const std::string& where) {
   std::vector<std::string> names;
   for (bool more = true; more;) {
-    const auto comma = line.find(',');
-    std::string_view name = trim(line.substr(0, comma));
-    if (name.size() >= 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
-    if (name.empty()) throw InputError(where + ": column " + std::to_string(names.size() + 1) + " has no name");
+    const std::string_view name = take_cell(line, separator, more);
+    if (name.empty())
+      throw InputError(where + ": column " + std::to_string(names.size() + 1) +
+                       " has no name; give it one, or take its separator away");
     if (std::find(names.begin(), names.end(), name) != names.end()) {
       throw InputError(where + ": column '" + std::string(name) + "' stands here twice");
     }
     names.emplace_back(name);
-    more = comma != std::string_view::npos;
-    if (more) line.remove_prefix(comma + 1);
   }
   return names;
 }
@@ -99,31 +124,31 @@ CsvTable parse_csv(std::string_view text, const std::string& path) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   const auto expected_rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
   std::size_t number = 0;
+  char separator = ',';
   while (!text.empty()) {
     std::string_view line = take_line(text);
     ++number;
-    if (trim(line).empty() || line.front() == '#') continue;
+    if (trim(line).empty() || trim(line).front() == '#') continue;
     if (table.names.empty()) {
-      table.names = read_names(line, path + ":" + std::to_string(number));
+      separator = separator_of(line, path + ":" + std::to_string(number));
+      table.names = read_names(line, separator, path + ":" + std::to_string(number));
       table.columns.resize(table.names.size());
+      table.faults.resize(table.names.size());
       for (auto& column : table.columns) column.reserve(expected_rows);
       table.lines.reserve(expected_rows);
       continue;
     }
     std::size_t cells = 0;
     for (bool more = true; more; ++cells) {
-      const auto comma = line.find(',');
-      const std::string_view cell = trim(line.substr(0, comma));
-      if (cells < table.columns.size()) {
-        double value{};
-        if (!read_number(cell, value)) {
-          throw InputError(path + ":" + std::to_string(number) + ": column '" + table.names[cells] + "': '" +
-                           std::string(cell.substr(0, kShownCell)) + "' is not a number");
-        }
-        table.columns[cells].push_back(value);
+      const std::string_view cell = take_cell(line, separator, more);
+      if (cells >= table.columns.size()) continue;
+      double value{};
+      std::string& fault = table.faults[cells];
+      if (!read_number(cell, separator, value) && fault.empty()) {
+        fault = path + ":" + std::to_string(number) + ": column '" + table.names[cells] + "': '" +
+                std::string(cell.substr(0, kShownCell)) + "' is not a number";
       }
-      more = comma != std::string_view::npos;
-      if (more) line.remove_prefix(comma + 1);
+      table.columns[cells].push_back(value);
     }
     if (cells != table.names.size()) {
       throw InputError(path + ":" + std::to_string(number) + ": this row has " + std::to_string(cells) +

@@ -65,13 +65,17 @@ std::string joined(const std::vector<std::string>& words) {
 ColumnData Resolver::operator()(const Column& column) {
   if (column.absent) return nullptr;
   const ColumnData data = table_.find(column.name);
-  if (data == nullptr) {
+  if (data != nullptr) {
+    const std::string& fault = table_.faults[static_cast<std::size_t>(data - table_.columns.data())];
+    if (!fault.empty()) throw InputError(fault);
+  } else {
     throw InputError((column.where.empty() ? "" : column.where + ": ") + "column '" + column.name + "' is not in " +
                      table_.path + ", which has: " + joined(table_.names));
   }
   const auto finite = [](double value) { return std::isfinite(value); };
   if (used_.insert(column.name).second && std::none_of(data->begin(), data->end(), finite)) {
-    throw InputError(table_.path + ": column '" + column.name + "' holds no number at all");
+    throw InputError(table_.path + ": column '" + column.name +
+                     "' holds no number at all; leave out of the table what was not measured");
   }
   return data;
 }

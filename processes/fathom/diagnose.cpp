@@ -17,6 +17,7 @@
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/thruster_clock.hpp"
 #include "common/estimation/wording.hpp"
 #include "common/model/site.hpp"
 #include "common/report/report.hpp"
@@ -92,6 +93,14 @@ class Stretches {
   double whole_{}, kept_{};  // s
 };
 
+/// One reading of the recordings and what it came to.
+struct Explained {
+  std::optional<Stretches> fitting, judging;
+  std::vector<ConsistencyFinding> gaps;
+  identification::FitResult fitted;
+  DiagnosisReport report;
+};
+
 DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
@@ -116,43 +125,54 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
   }
 
-  std::vector<Trial> trials;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    progress.show("reconstructing " + recordings[i].name, kCheckShare);
-    trials.push_back(reconstruct(paths[i], recordings[i], consistency.corrections[i], vehicle));
-  }
-  if (estimation::share_clock(recordings, trials))
-    notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
-  std::vector<ConsistencyFinding> gaps = estimation::gap_findings(trials);
-  consistency.findings.insert(consistency.findings.end(), gaps.begin(), gaps.end());
-  std::vector<Trial> train, validate;
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (options.validate.empty()) {
-      auto [first, last] = estimation::split(trials[i], kHeldOut);
-      train.push_back(std::move(first));
-      validate.push_back(std::move(last));
-    } else {
-      (i < fitted_runs ? train : validate).push_back(std::move(trials[i]));
+  const auto trials_of_recordings = [&] {
+    std::vector<Trial> trials;
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      progress.show("reconstructing " + recordings[i].name, kCheckShare);
+      trials.push_back(reconstruct(paths[i], recordings[i], consistency.corrections[i], vehicle));
     }
-  }
-  if (options.validate.empty()) {
-    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
-  }
-
+    return trials;
+  };
   diagnosis::Settings settings;
   settings.threads = options.threads;
   if (options.validate.empty()) settings.held_out = kHeldOut;
-  const Stretches fitting{train, paths, settings.fit.window};
-  const Stretches judging{validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest};
-  identification::FitResult fitted;
-  DiagnosisReport report = diagnosis::diagnose(
-      vehicle, fitting.trials(), judging.trials(), settings,
-      [&](const std::string& what, double share) {
-        progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
-      },
-      &fitted);
-  if (room) separate(vehicle, *room, fitting.trials(), fitted, report.result);
+  const auto show = [&](const std::string& what, double share) {
+    progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
+  };
+  const auto explain = [&](std::vector<Trial> trials, Explained& out) {
+    const bool one_clock = estimation::share_clock(recordings, trials);
+    if (one_clock && !out.fitting)
+      notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
+    out.gaps = estimation::gap_findings(trials);
+    std::vector<Trial> train, validate;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      if (options.validate.empty()) {
+        auto [first, last] = estimation::split(trials[i], kHeldOut);
+        train.push_back(std::move(first));
+        validate.push_back(std::move(last));
+      } else {
+        (i < fitted_runs ? train : validate).push_back(std::move(trials[i]));
+      }
+    }
+    out.fitting.emplace(train, paths, settings.fit.window);
+    out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
+    out.report =
+        diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, show, &out.fitted);
+  };
+  if (options.validate.empty()) {
+    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
+  }
+  Explained explained;
+  explain(trials_of_recordings(), explained);
+  if (diagnosis::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
+    estimation::put_thrusters_on_pose_clock(consistency);
+    explain(trials_of_recordings(), explained);
+  }
+  DiagnosisReport& report = explained.report;
+  const Stretches &fitting = *explained.fitting, &judging = *explained.judging;
+  if (room) separate(vehicle, *room, fitting.trials(), explained.fitted, report.result);
   report.result.consistency = std::move(consistency.findings);
+  report.result.consistency.insert(report.result.consistency.end(), explained.gaps.begin(), explained.gaps.end());
   diagnosis::adopt_sensor_faults(report.result);
   if (auto finding = diagnosis::compare_inertia(vehicle, report.result.parameters_after))
     report.result.consistency.push_back(*std::move(finding));
@@ -161,7 +181,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     report.result.paragraph += estimation::text(
         " %.0f %% of the recordings was left out: what drove the vehicle was not recorded there.", 100.0 * left_out);
   }
-  return report;
+  return std::move(explained.report);
 }
 
 void run(const Options& options) {

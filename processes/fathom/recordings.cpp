@@ -1,6 +1,7 @@
 #include "processes/fathom/recordings.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -21,7 +22,10 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
   std::vector<Recording> recordings;
   std::set<std::string> names;
   for (const std::string& path : paths) {
-    const std::string extension = std::filesystem::path{path}.extension().string();
+    const std::filesystem::path file{path};
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),  // Windows' names
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".csv") {
       tables::Imported imported = tables::import_csv(path, map, simulated);
       for (const std::string& note : imported.notes) notes.push_back(path + ": " + note);
@@ -32,12 +36,19 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
       for (std::string line; std::getline(lines, line);) notes.push_back(line);
       recordings.push_back(std::move(contents.recording));
     } else {
-      throw InputError(path + ": neither .lcmlog nor .csv; import other tables with fathom import --map");
+      throw InputError(path +
+                       ": neither .lcmlog nor .csv; a table's name must end in .csv, whatever parts its columns");
     }
     Recording& last = recordings.back();
-    last.name = std::filesystem::path{path}.stem().string();
+    last.name = file.stem().string();
+    if (names.contains(last.name)) last.name = (file.parent_path().filename() / file.stem()).string();  // day2/run.csv
     if (!names.insert(last.name).second) {
       throw InputError(path + ": a second recording named " + last.name + "; give each run once, under its own name");
+    }
+    for (const std::string& other : paths) {
+      if (&other == &path) break;
+      std::error_code unknown;
+      if (std::filesystem::equivalent(other, path, unknown)) throw InputError(path + ": this is " + other + " again");
     }
   }
   return recordings;

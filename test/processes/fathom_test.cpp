@@ -82,6 +82,21 @@ TEST_CASE("fathom: a missing column, a word among numbers, a missing file") {
            1, "no.yaml");
 }
 
+TEST_CASE("fathom: runs of one name in two folders are two, one file twice is refused, a name may end in capitals") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  for (const char* day : {"day1", "day2"}) {
+    std::filesystem::create_directories(scratch.path(day));
+    test::write_bytes(scratch.path(std::string(day) + "/run.CSV"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N"));
+  }
+  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
+  const std::string first = scratch.path("day1/run.CSV"), second = scratch.path("day2/run.CSV");
+  const Ran both = shell(check + first + " " + second);
+  CAPTURE(both.text);
+  CHECK(both.code == 0);
+  one_line(shell(check + first + " " + second + " " + first), 1, "run.CSV: this is ");
+}
+
 TEST_CASE("fathom: a NaN cell costs its sample, and is counted") {
   const Scratch scratch;
   test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N", "nan"));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <vector>
 
 using namespace fathom;
 
@@ -42,6 +43,25 @@ TEST_CASE("sensor faults: delay, scale and lever arm become effects, in the term
   CHECK(result.verdict == "effect");
   CHECK(result.candidates.size() == 3);
   CHECK(result.effects[0].log_odds > 3.0);
+}
+
+TEST_CASE("sensor faults: thrust that is as late as the gyro is on another clock, not late") {
+  DiagnosisResult result;
+  result.effects = {{.name = "thruster_delay", .parameters = {{"delay", 0.43, 0.011, "s"}}}};
+  ConsistencyFinding clock = finding("thrusters", "clock", 0.439, 0.0);
+  clock.reference = "gyro";
+  std::vector<ConsistencyFinding> findings{finding("gyro", "delay", 0.439, 0.002), clock};
+  CHECK(diagnosis::thrust_as_late_as_gyro(result, findings));
+  result.effects[0].parameters[0].value = 0.39;  // four standard deviations: a delay of its own
+  CHECK_FALSE(diagnosis::thrust_as_late_as_gyro(result, findings));
+  result.effects[0].parameters[0].value = 0.43;
+  findings[1].reference = "pose_capture";  // thrusters are on that clock already
+  CHECK_FALSE(diagnosis::thrust_as_late_as_gyro(result, findings));
+  findings[1].reference = "gyro";
+  findings[0].size = -0.439;  // the pose is late
+  CHECK_FALSE(diagnosis::thrust_as_late_as_gyro(result, findings));
+  result.effects.clear();
+  CHECK_FALSE(diagnosis::thrust_as_late_as_gyro(result, findings));
 }
 
 TEST_CASE("sensor faults: eight standard deviations are worth less where few blocks of data tell of them") {

@@ -276,6 +276,24 @@ TEST_CASE("verdict: a model that does not follow its thrust is not adequate, and
   CHECK(concluded(-3.0, 1e-6, 1e-6, 1.0).verdict == "adequate");  // an axis that hardly anything drives
 }
 
+TEST_CASE("verdict: without velocities, moments of speeds are suspected before the vehicle's file") {
+  const MadeUp made;
+  const auto concluded = [&](const char* axis, bool velocity) {
+    DiagnosisResult result;
+    result.error_after.prediction = {{.horizon_s = 5.0, .r2 = {0.3, 0.3, 0.3, 0.3, 0.3, 0.3}}};
+    result.error_after.prediction[0].p_half.fill(1e-6);
+    result.residual_after = {{axis, 1e-6, 2.0, 0.3, 5.0}};
+    model::Scene scene = made.scene();
+    scene.velocity = velocity;
+    conclude(made.found, made.left, scene, result);
+    return result.paragraph;
+  };
+  CHECK(says(concluded("N", false), "without velocities the moments"));
+  CHECK_FALSE(says(concluded("N", false), "vehicle's file"));
+  CHECK(says(concluded("N", true), "vehicle's file"));
+  CHECK(says(concluded("X", false), "vehicle's file"));
+}
+
 TEST_CASE("verdict: thrusters that are not the file's come before all else") {
   const MadeUp made;
   DiagnosisResult result;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "common/diagnosis/force_residual.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -41,6 +42,32 @@ Trial quiet_trial(std::size_t count) {
 }
 
 }  // namespace
+
+TEST_CASE(
+    "whiteness: an axis whose forces drown in the noise of accelerations is not astray, one that lacks force is") {
+  AxisWhiteness axis{.axis = "Y", .p_value = 0.005, .explained = -2.4, .applied_rms = 500.0, .noise = 3.3};
+  CHECK(astray(std::vector{axis}).empty());
+  axis.noise = 0.1;
+  CHECK(astray(std::vector{axis}) == std::vector<std::string>{"Y"});
+}
+
+TEST_CASE("whiteness: noise of the velocities makes the share of the residual that theory gives") {
+  static const model::Vehicle kVehicle = test::vehicle_from_repository("bluerov2");
+  Trial trial = quiet_trial(4000);
+  std::mt19937 random{5};
+  std::normal_distribution<double> noise{0.0, 0.02};
+  for (auto& nu : trial.nu) nu[0] = noise(random);
+  trial.nu_sigma[0] = 0.02;
+  model::Model model = model::nominal_model(kVehicle, true);
+  model.theta[model::index(model::BaseParameter::X_u)] = 0.0;
+  model.theta[model::index(model::BaseParameter::X_uu)] = 0.0;
+  for (auto& input : trial.input) input *= 1e-3;  // what is left is noise
+  const std::vector<std::vector<Vector6d>> residuals{wrench_residuals(model, trial)};
+  const auto rows = whiteness(model, {&trial, 1}, residuals);
+  REQUIRE(rows.front().axis == "X");
+  // 570 independent means: their variance is known to 6 %.
+  CHECK(rows.front().noise == doctest::Approx(1.0 - rows.front().explained).epsilon(0.25));
+}
 
 TEST_CASE("whiteness: autocorrelation by hand, gaps left out") {
   const std::vector<double> series{1, -1, 1, -1};

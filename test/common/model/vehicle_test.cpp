@@ -84,6 +84,22 @@ TEST_CASE("vehicle: enabled motions decide the parameters, and silence gives wid
   for (const auto& prior : vehicle.priors) CHECK(prior.sigma > 0.0);
 }
 
+TEST_CASE(
+    "vehicle: what drifts unpowered is felt by what is driven: its mass, and the net weight of a vehicle that tilts") {
+  const auto has = [](const Vehicle& vehicle, const char* name) {
+    return std::ranges::count(vehicle.parameters, name) == 1;
+  };
+  const Vehicle torpedo = parse(kHead + "dof: [surge, pitch, yaw]\n");  // m_Y r v, (m_Z - m_X) u w, (W-B) sin theta
+  for (const char* felt : {"m_X", "m_Y", "m_Z", "W-B", "I_X"}) CHECK(has(torpedo, felt));
+  for (const char* own : {"Y_v", "Z_w", "K_p", "Y_v|v|"}) CHECK_FALSE(has(torpedo, own));
+  const Vehicle level = parse(kHead + "dof: [surge, heave, yaw]\n");
+  CHECK(has(level, "m_Y"));
+  const Vehicle planar = parse(kHead + "dof: [surge, sway, yaw]\n");
+  for (const char* still : {"m_Z", "W-B"}) CHECK_FALSE(has(planar, still));
+  const Vehicle bearing = parse(kHead + "dof: [roll, pitch, yaw]\n");
+  for (const char* still : {"m_X", "m_Y", "m_Z", "W-B"}) CHECK_FALSE(has(bearing, still));
+}
+
 TEST_CASE("vehicle: impossible things are refused with file and line") {
   const std::string dof = "dof: [surge, sway, yaw]\n";
   const auto begins = [](const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; };

@@ -54,11 +54,13 @@ TEST_CASE("result.json holds exactly the promised names") {
 
 TEST_CASE("What was not measured stands with the effects that could not be asked for it") {
   auto report = fathom::test::made_up_report({.samples = 0});
-  report.result.not_measured = {{"attitude", {"current"}}, {"position", {}}};
+  report.result.not_measured = {{"attitude", {"current"}, "It is not known."}, {"position", {}}};
   const json file = json::parse(to_json(report.result));
   REQUIRE(file["not_measured"].size() == 2);
-  CHECK(file["not_measured"][0] == json({{"group", "attitude"}, {"cannot_be_asked", {"current"}}}));
+  CHECK(file["not_measured"][0] ==
+        json({{"group", "attitude"}, {"cannot_be_asked", {"current"}}, {"means", "It is not known."}}));
   CHECK(file["not_measured"][1]["cannot_be_asked"].empty());
+  CHECK(file["not_measured"][1]["means"] == "");
 }
 
 TEST_CASE("Thrusters that are not the file's stand in the file where there is doubt, and nowhere else") {

@@ -120,6 +120,27 @@ TEST_CASE("A page without effects, candidates, findings or traces is whole") {
   CHECK(has(page, "</html>"));
 }
 
+TEST_CASE("Where nothing was added no change is weighed against luck") {
+  fathom::DiagnosisReport report = made_up_report({.samples = 0});
+  CHECK(has(to_html(report), "With 95 % confidence"));
+  report.result.effects.clear();
+  const std::string page = to_html(report);
+  CHECK_FALSE(has(page, "With 95 % confidence"));
+  CHECK_FALSE(has(page, "luck"));
+  CHECK(has(page, "nothing was added to the model"));
+}
+
+TEST_CASE("What could not be asked for want of measurements is said to be open") {
+  fathom::DiagnosisReport report;
+  report.result.verdict = "adequate";
+  report.result.not_measured = {{"position", {"tether_drag"}, "Position was not measured: the tether <is> not known."},
+                                {"velocity", {}}};
+  const std::string page = to_html(report);
+  CHECK(has(page, "<li>Position was not measured: the tether &lt;is&gt; not known.</li>"));
+  CHECK_FALSE(has(page, "Nothing is left open"));
+  CHECK_FALSE(has(page, "<li></li>"));
+}
+
 TEST_CASE("Too little data to judge on does not look like a model that is adequate") {
   fathom::DiagnosisReport report;
   report.result.verdict = "unjudged";

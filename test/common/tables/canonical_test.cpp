@@ -69,16 +69,36 @@ TEST_CASE("canonical: unknown and incomplete columns are named") {
   CHECK(complaint("time,u,v,w\n0,1,2,3\n") ==
         "run.csv:1: column 't' (time in seconds) is missing; describe other columns with a map (--map)");
   CHECK(complaint("t,u,v\n0,1,2\n") == "run.csv:1: columns 'u', 'v' stand without 'w'; they go together");
-  CHECK(complaint("t,u,v,w,foo,f2\n0,1,2,3,4,5\n").rfind("run.csv:1: unknown columns 'foo', 'f2'; without a map", 0) ==
-        0);
+  CHECK(complaint("t,u,v,w,foo,Phi,Theta\n0,1,2,3,4,5,6\n")
+            .rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?), 'Theta' (did you mean 'theta'?); without a "
+                   "map",
+                   0) == 0);
+  CHECK(complaint("t,foo,bar\n0,1,2\n").rfind("run.csv:1: no column besides time is known; without a map", 0) == 0);
+  CHECK(complaint("t,u,v,w,f2\n0,1,2,3,4\n").rfind("run.csv:1: column 'f1' is missing, and 'f2' is there;", 0) == 0);
+  CHECK(complaint("t,u,v,w,f0,f1\n0,1,2,3,4,5\n") ==
+        "run.csv:1: column 'f0': thrusters are counted from 'f1', in the order of the vehicle file");
   CHECK(complaint("t\n0\n") == "run.csv:1: there is no column besides time");
-  CHECK(complaint("t,u,v,w\n0,1,2,\n1,1,2,nan\n") == "run.csv: column 'w' holds no number at all");
+  CHECK(complaint("t,u,v,w\n0,1,2,\n1,1,2,nan\n") ==
+        "run.csv: column 'w' holds no number at all; leave out of the table what was not measured");
+  CHECK(complaint("t,u,v,w\n0,1,2,fast\n") == "run.csv:2: column 'w': 'fast' is not a number");
+}
+
+TEST_CASE("canonical: columns that nobody knows are left alone and noted, words in them too") {
+  const Imported imported = read("mode,t,u,v,w,ping\nsurge,0,1,2,3,7\nyaw,1,1,2,4,7\n");
+  REQUIRE(imported.recording.dvl.size() == 2);
+  CHECK(imported.recording.dvl[1].v_WB_B == Vector3d(1, 2, 4));
+  CHECK(std::ranges::count(imported.notes, "columns not used: mode, ping") == 1);
 }
 
 TEST_CASE("canonical: a column that differs by capitals or a slip is told its name") {
   CHECK(complaint("t,Phi,theta,psi\n0,1,2,3\n").rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?);", 0) ==
         0);
-  CHECK(complaint("t,u,v,w,U\n0,1,2,3,4\n").rfind("run.csv:1: unknown columns 'U';", 0) == 0);  // there is a 'u'
+  CHECK(
+      complaint("t,roll,pitch,Yaw\n0,1,2,3\n")
+          .rfind("run.csv:1: unknown columns 'roll' (did you mean 'phi'?), 'pitch' (did you mean 'theta'?), 'Yaw' (did "
+                 "you mean 'psi'?);",
+                 0) == 0);
+  CHECK(complaint("t,u,v,w,U,surge\n0,1,2,3,4,5\n") == "no complaint");  // there is a 'u'
   CHECK(complaint("T,u,v,w\n0,1,2,3\n").find("(is it 'T'?)") != std::string::npos);
 }
 

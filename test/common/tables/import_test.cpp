@@ -161,7 +161,7 @@ TEST_CASE("import: a map that does not fit is refused with its own line") {
   CHECK(complaint(csv, kAbout + "dvll: 3\n") == "map.yaml:4: unknown key 'dvll'; did you mean 'dvl'?");
   CHECK(complaint(csv, "source: a\ntime: {column: t, unit: s}\n") == "map.yaml:1: key 'licence' is missing");
   CHECK(complaint("t,u,v,w\n0,1,,3\n1,1,nan,3\n", dvl("{columns: [u, v, w], unit: m/s, frame: FLU}")) ==
-        "run.csv: column 'v' holds no number at all");
+        "run.csv: column 'v' holds no number at all; leave out of the table what was not measured");
   CHECK(complaint("t,u,v,w\n0,1,,3\n1,,2,3\n", dvl("{columns: [u, v, w], unit: m/s, frame: FLU}")) ==
         "run.csv: not one whole sample of dvl");
   CHECK(complaint(csv, kAbout + "thrusters: {invalid_where: [u]}\n") ==
