@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "common/base/error.hpp"
+#include "common/runtime/finite_options.hpp"
 
 namespace fathom::runtime {
 namespace {
@@ -35,6 +36,7 @@ std::optional<Arguments> Arguments::parse(const std::string& name, int argc, con
   app.add_flag("--lockstep", arguments.lockstep,
                "go on only when the simulator says so (it is started with --wait-for)");
   if (more) more(app);
+  expect_finite_numbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

@@ -5,11 +5,14 @@
 #include <cstdio>
 #include <string>
 
+#include "common/runtime/finite_options.hpp"
+
 namespace fathom::runtime {
 
 /// Runs the subcommand that was asked for; the return value of main().
 inline int run_command_line(CLI::App& app, int argc, char** argv) {
   app.require_subcommand(1);
+  expect_finite_numbers(app);
   try {
     const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty())

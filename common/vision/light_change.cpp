@@ -11,7 +11,7 @@ constexpr int kHalf = 7, kSide = 2 * kHalf + 1;  // of the window: Lucas-Kanade'
 constexpr int kUnknown = 6;
 constexpr int kRounds = 2;
 constexpr float kFarthest = 0.5F;  // px
-constexpr float kLeast = 50.0F;    // texture, square of brightness per px, over the window, beside light
+constexpr float kLeast = 5.0F;     // texture, square of brightness per px, over the window, beside light
 
 /// A square of brightness, a column per row of the picture.
 template <int Size>
@@ -67,8 +67,8 @@ Eigen::Matrix<float, kUnknown, kUnknown> products(const Columns& by) {
 
 }  // namespace
 
-std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv::Mat& now, const cv::Point2f& from,
-                                                const cv::Point2f& to) {
+std::optional<TrackEnd> end_in_changed_light(const cv::Mat& before, const cv::Mat& now, const cv::Point2f& from,
+                                             const cv::Point2f& to) {
   constexpr int kWide = kSide + 2;
   Window<kWide> wide;
   if (!cut<kWide>(before, from, wide)) return {};
@@ -93,7 +93,7 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
   cv::Point2f end = to;
   Window<kSide> seen;
   for (int round = 0; round < kRounds; ++round) {
-    if (!cut<kSide>(now, end, seen)) return {};
+    if (!cut<kSide>(now, end, seen)) return round == 0 ? std::nullopt : std::optional{TrackEnd{.at = end}};
     const Window<kSide> changed = seen - first;
     const Eigen::Map<const Eigen::Matrix<float, kPixels, 1>> change{changed.data()};
     const Eigen::Matrix<float, kUnknown, 1> step = solver.solve(by.transpose() * change);
@@ -101,8 +101,7 @@ std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv:
     end.y -= step[1];
   }
   const cv::Point2f moved = end - to;
-  if (!(std::hypot(moved.x, moved.y) < kFarthest)) return {};
-  return end;
+  return TrackEnd{.at = end, .near = std::hypot(moved.x, moved.y) < kFarthest};
 }
 
 }  // namespace fathom::vision

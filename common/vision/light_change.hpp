@@ -8,9 +8,14 @@
 
 namespace fathom::vision {
 
-/// `from`, `to`: px of `before` and `now` (float). Nothing when the window leaves a picture, has no texture beside
-/// what light could have made, or the end is further than half a pixel away: then `to` is as good as is known.
-[[nodiscard]] std::optional<cv::Point2f> end_in_changed_light(const cv::Mat& before, const cv::Mat& now,
-                                                              const cv::Point2f& from, const cv::Point2f& to);
+struct TrackEnd {
+  cv::Point2f at;
+  bool near{};  ///< within half a pixel of where it was looked for: farther ones are found by chance
+};
+
+/// `from`, `to`: px of `before` and `now` (float). Nothing when the window leaves a picture or has no texture beside
+/// what light could have made.
+[[nodiscard]] std::optional<TrackEnd> end_in_changed_light(const cv::Mat& before, const cv::Mat& now,
+                                                           const cv::Point2f& from, const cv::Point2f& to);
 
 }  // namespace fathom::vision

@@ -8,8 +8,10 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "common/base/spatial.hpp"
+#include "common/vision/fine_shift.hpp"
 #include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
+#include "common/vision/reduced_view.hpp"
 
 namespace fathom::vision {
 
@@ -29,6 +31,8 @@ const char* name(FlowState state) {
       return "tracks lost";
     case FlowState::kDisagree:
       return "tracks disagree";
+    case FlowState::kNoDetail:
+      return "no fine detail";
     case FlowState::kNoRotation:
       return "rotation unknown";
   }
@@ -37,33 +41,31 @@ const char* name(FlowState state) {
 
 struct FlowTracker::State {
   static constexpr int kLevels = 3;
-  Projection projection;
+  ReducedView view;
   FlowSettings settings;
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat small, mask;                     // mask: empty, or 0 where there are no features
-  cv::Mat blurred, smooth, smooth_before;  // the last two in float
+  cv::Mat small, mask;                               // mask: empty, or 0 where there are no features
+  cv::Mat blurred, smooth, wide, fine, fine_before;  // all but the first in float
+  FineShift fine_shift;
+  cv::Mat nodes, origin;
   std::vector<cv::Point2f> features, found, back;
   std::vector<unsigned char> ok, ok_back;
   std::vector<float> errors;
   std::vector<Track> tracks;
   std::vector<FlowRow> rows;
 
-  State(const model::Lens& lens, const FlowSettings& s) : projection{lens}, settings{s} {
-    if (projection.folds()) leave_out_folded();
+  State(const model::Lens& lens, const FlowSettings& s) : view{lens, s.reduction}, settings{s} {
+    if (view.projection().folds()) leave_out_folded();
   }
 
-  [[nodiscard]] cv::Size reduced_size() const {
-    const model::Lens& lens = projection.lens();
-    return {cvRound(lens.width / settings.reduction), cvRound(lens.height / settings.reduction)};  // as cv::resize
-  }
   // No features where the lens says no direction.
   void leave_out_folded() {
-    mask = cv::Mat(reduced_size(), CV_8UC1, cv::Scalar{255});
+    mask = cv::Mat(view.size(), CV_8UC1, cv::Scalar{255});
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {
         const cv::Point2f p{static_cast<float>(x), static_cast<float>(y)};
-        if (!projection.sees(whole(p))) mask.at<std::uint8_t>(y, x) = 0;
+        if (!view.projection().sees(view.whole(p))) mask.at<std::uint8_t>(y, x) = 0;
       }
     }
   }
@@ -71,16 +73,6 @@ struct FlowTracker::State {
   [[nodiscard]] cv::Size window() const {
     const int side = settings.reduction > 1.5 ? 15 : 21;
     return {side, side};
-  }
-
-  // Pixels of the reduced picture and of the whole one: pixels' middles are whole numbers in both.
-  [[nodiscard]] Eigen::Vector2d whole(const cv::Point2f& p) const {
-    const double r = settings.reduction;
-    return {(static_cast<double>(p.x) + 0.5) * r - 0.5, (static_cast<double>(p.y) + 0.5) * r - 0.5};
-  }
-  [[nodiscard]] cv::Point2f reduced(const Eigen::Vector2d& p) const {
-    const double r = settings.reduction;
-    return {static_cast<float>((p.x() + 0.5) / r - 0.5), static_cast<float>((p.y() + 0.5) / r - 0.5)};
   }
 
   void look(const cv::Mat& grey) {
@@ -92,11 +84,14 @@ struct FlowTracker::State {
     cv::buildOpticalFlowPyramid(small, pyramid, window(), kLevels);
     // Mean values of pixels still hold detail finer than the reduced ones can: interpolated, it draws each feature to
     // whole pixels, and motion of less than one, as a divergence is, was read too small. Tracks' ends are fitted in
-    // smoother pictures; not found in them, for moving light is smooth too.
-    constexpr double kSmooth = 1.0;  // px, reduced
-    std::swap(smooth, smooth_before);
+    // smoother pictures; not found in them, for moving light is smooth too: so what is coarser is taken out.
+    constexpr double kSmooth = 1.0, kWide = 2.0;  // px, reduced
     cv::GaussianBlur(small, blurred, {5, 5}, kSmooth);
     blurred.convertTo(smooth, CV_32F);
+    cv::GaussianBlur(smooth, wide, {13, 13}, kWide);
+    std::swap(fine, fine_before);
+    cv::subtract(smooth, wide, fine);
+    fine_shift.look(small);
   }
 
   void choose_features() {
@@ -115,15 +110,9 @@ struct FlowTracker::State {
   void track(const std::optional<Eigen::Matrix3d>& R_01) {
     found.clear();
     for (const cv::Point2f& each : features) {
-      if (!R_01) {
-        found.push_back(each);
-        continue;
-      }
-      const Eigen::Vector2d x = projection.normalized(whole(each));
-      const Eigen::Vector3d turned = R_01->transpose() * Eigen::Vector3d{x.x(), x.y(), 1.0};
-      found.push_back(turned.z() > 0.1 ? reduced(projection.pixel(turned)) : each);
+      found.push_back(R_01 ? view.pixel(R_01->transpose() * view.direction(each)).value_or(each) : each);
     }
-    const cv::TermCriteria stop{cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 15, 0.01};
+    const cv::TermCriteria stop{cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 8, 0.03};
     constexpr double kWeakest = 5e-4;
     cv::calcOpticalFlowPyrLK(pyramid_before, pyramid, features, found, ok, errors, window(), kLevels, stop,
                              cv::OPTFLOW_USE_INITIAL_FLOW, kWeakest);
@@ -138,21 +127,82 @@ struct FlowTracker::State {
       if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
       const cv::Point2f miss = back[i] - features[i];
       if (std::hypot(miss.x, miss.y) > limit) continue;
-      const cv::Point2f end = end_in_changed_light(smooth_before, smooth, features[i], found[i]).value_or(found[i]);
-      tracks.push_back({.from = whole(features[i]), .to = whole(end)});
+      tracks.push_back({.from = view.whole(features[i]), .to = view.whole(found[i])});
     }
   }
 
   // Each track with the rotation taken out, and its inverse depth against the axis's.
-  void make_rows(const Eigen::Matrix3d& R_01, const Eigen::Vector3d& normal_0) {
+  void make_rows(const PlaneMotion& motion) {
     rows.clear();
     for (const Track& each : tracks) {
-      const Eigen::Vector2d x = projection.normalized(each.from), x1 = projection.normalized(each.to);
-      const Eigen::Vector3d turned = R_01 * Eigen::Vector3d{x1.x(), x1.y(), 1.0};
+      const Eigen::Vector2d x = view.projection().normalized(each.from), x1 = view.projection().normalized(each.to);
+      const Eigen::Vector3d turned = motion.R_01 * Eigen::Vector3d{x1.x(), x1.y(), 1.0};
       const Eigen::Vector2d y = turned.head<2>() / turned.z();
-      const double s = normal_0.dot(Eigen::Vector3d{x.x(), x.y(), 1.0}) / normal_0.z();
-      rows.push_back({.d = y - x, .y = y, .s = s});
+      rows.push_back({.d = y - x, .y = y, .s = motion.n_0.dot(Eigen::Vector3d{x.x(), x.y(), 1.0})});
     }
+  }
+
+  // Corrects what the tracks have said by what the fine detail of the whole picture does; how strongly it said so, 0
+  // for not at all.
+  double correct(PlaneMotion& motion) {
+    constexpr double kSure = 7.0;   // of 50 000 places one in 10^7 pictures is so high by chance
+    constexpr double kOther = 1.0;  // px: tracks that followed something else, whose divergence is of no use either
+    constexpr int kRounds = 3;
+    constexpr double kNearer = 0.5;  // of the distance, between two pictures: more is no motion but tracks by chance
+    if (!(std::abs(motion.n_0.dot(motion.tau)) < kNearer)) motion.tau.setZero();
+    for (int round = 0; round < kRounds; ++round) {
+      view.map_origin(motion, nodes, origin);
+      const std::optional<FineMotion> detail = fine_shift.find(origin);
+      if (!detail || !(detail->strength > kSure)) return 0.0;
+      motion.tau.head<2>() -= detail->shift / view.focal();
+      if (detail->shift.norm() < kOther) return detail->strength;
+      motion.tau.z() = 0.0;
+    }
+    return 0.0;
+  }
+
+  // Two readings of one motion: the tracks', which light may pull, and that of all fine detail, which it pulls less but
+  // which is less precise by itself, by about one over its strength. Where they differ by more than that, it was light.
+  void settle(PlaneFlow& plane, const PlaneMotion& by_detail, double strength) const {
+    const double precision = 1.0 / (strength * view.focal());
+    const Eigen::Vector2d apart = (by_detail.tau - plane.tau).head<2>();
+    constexpr double kChance = 3.0;
+    const double chance = kChance * kChance * precision * precision / std::max(apart.squaredNorm(), 1e-30);
+    const double share = std::max(1.0 - chance, 0.0);
+    plane.tau.head<2>() += share * apart;
+    plane.covariance.topLeftCorner<2, 2>() += share * apart * apart.transpose();
+    plane.covariance(2, 2) += share * apart.squaredNorm();
+    plane.covariance.diagonal().array() += precision * precision;  // a pull so small would not be seen
+  }
+
+  // Tracks of all features anew, in the pictures' fine detail, from where the motion has them; how many were tried.
+  int refine(const PlaneMotion& motion) {
+    tracks.clear();
+    int tried = 0;
+    for (const cv::Point2f& each : features) {
+      const auto there = view.pixel(motion.forward(view.direction(each)));
+      if (!there) continue;
+      const auto end = end_in_changed_light(fine_before, fine, each, *there);
+      if (!end) continue;
+      ++tried;
+      if (end->near) tracks.push_back({.from = view.whole(each), .to = view.whole(end->at)});
+    }
+    return tried;
+  }
+  // Once more where the first round has moved far from where it began: ends are found near it alone.
+  PlaneFlow follow(PlaneMotion motion, int& tried) {
+    constexpr int kRounds = 2;
+    constexpr double kNear = 0.2;  // px
+    PlaneFlow plane;
+    for (int round = 0; round < kRounds; ++round) {
+      tried = refine(motion);
+      make_rows(motion);
+      plane = fit_plane_flow(rows);
+      const double moved = (plane.tau - motion.tau).norm() * view.focal();
+      if (plane.n_agreed < settings.least_tracks || moved < kNear) break;
+      motion.tau = plane.tau;
+    }
+    return plane;
   }
 };
 
@@ -166,9 +216,10 @@ const std::vector<Track>& FlowTracker::tracks() const { return state_->tracks; }
 
 void FlowTracker::leave_out(const std::vector<Eigen::Vector2d>& line, double reach) {
   const double r = state_->settings.reduction;
-  if (state_->mask.empty()) state_->mask = cv::Mat(state_->reduced_size(), CV_8UC1, cv::Scalar{255});
+  if (state_->mask.empty()) state_->mask = cv::Mat(state_->view.size(), CV_8UC1, cv::Scalar{255});
   for (const Eigen::Vector2d& each : line) {
-    cv::circle(state_->mask, state_->reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0}, cv::FILLED);
+    cv::circle(state_->mask, state_->view.reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0},
+               cv::FILLED);
   }
 }
 
@@ -206,16 +257,25 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
     } else if (!R_01) {
       flow.state = FlowState::kNoRotation;
     } else {
-      const Eigen::Vector3d normal_1 = normal_C.value_or(Eigen::Vector3d::UnitZ());
-      state.make_rows(*R_01, *R_01 * normal_1);
-      const PlaneFlow plane = fit_plane_flow(state.rows);
-      const double focal = state.projection.lens().focal();
-      for (std::size_t i = 0; i < state.tracks.size(); ++i) state.tracks[i].agrees = plane.agrees[i];
+      const Eigen::Vector3d normal_0 = *R_01 * normal_C.value_or(Eigen::Vector3d::UnitZ());
+      PlaneMotion motion{.R_01 = *R_01, .n_0 = normal_0 / normal_0.z()};
+      state.make_rows(motion);
+      motion.tau = fit_plane_flow(state.rows).tau;
+      const double strength = state.correct(motion);
+      const bool detailed = strength > 0.0;
+      PlaneFlow plane;
+      if (detailed) {
+        plane = state.follow(motion, flow.n_tracks);
+        state.settle(plane, motion, strength);
+      } else {
+        state.rows.clear();  // of the first tracks, which nothing confirms
+      }
+      const double focal = state.view.projection().lens().focal();
+      for (std::size_t i = 0; i < plane.agrees.size(); ++i) state.tracks[i].agrees = plane.agrees[i];
       flow.n_agreed = plane.n_agreed;
       flow.residual = plane.spread * focal;
-      const Eigen::RowVector3d n_0 = (*R_01 * normal_1 / (*R_01 * normal_1).z()).transpose();
-      flow.floor_10 = R_01->transpose() * (Eigen::Matrix3d::Identity() - plane.tau * n_0);
-      flow.nearing = 1.0 - n_0.dot(plane.tau);
+      flow.floor_10 = R_01->transpose() * (Eigen::Matrix3d::Identity() - plane.tau * motion.n_0.transpose());
+      flow.nearing = 1.0 - motion.n_0.dot(plane.tau);
       // From the first camera's distance and axes to those in the middle.
       const Eigen::Vector3d half = 0.5 * rotation_vector_from_quaternion(Eigen::Quaterniond{*R_01});
       const Eigen::Matrix3d to_middle = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();
@@ -226,7 +286,9 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       flow.covariance = (plane.covariance + by_turn * turn * by_turn.transpose()) / (flow.interval * flow.interval);
       const bool enough =
           flow.n_agreed >= state.settings.least_tracks && flow.n_agreed >= state.settings.least_share * flow.n_tracks;
-      flow.state = enough && flow.covariance.allFinite() ? FlowState::kValid : FlowState::kDisagree;
+      flow.state = !detailed                               ? FlowState::kNoDetail
+                   : enough && flow.covariance.allFinite() ? FlowState::kValid
+                                                           : FlowState::kDisagree;
     }
   }
   state.choose_features();

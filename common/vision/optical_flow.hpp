@@ -24,7 +24,7 @@ struct FlowSettings {
   double rotation_sigma{2e-3};   ///< rad/s, error of a sensor's rotation, which is taken out
 };
 
-enum class FlowState { kNone, kValid, kFirst, kPause, kNoTexture, kLost, kDisagree, kNoRotation };
+enum class FlowState { kNone, kValid, kFirst, kPause, kNoTexture, kLost, kDisagree, kNoDetail, kNoRotation };
 [[nodiscard]] const char* name(FlowState state);
 
 /// A feature in two pictures [px].

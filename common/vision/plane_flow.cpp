@@ -63,7 +63,8 @@ PlaneFlow fit_plane_flow(const std::vector<FlowRow>& rows) {
   PlaneFlow result;
   const std::size_t n = rows.size();
   result.agrees.assign(n, false);
-  if (n < 3) return result;
+  const auto odd = [](const FlowRow& row) { return !row.d.allFinite() || !row.y.allFinite() || !std::isfinite(row.s); };
+  if (n < 3 || std::ranges::any_of(rows, odd)) return result;
   // A start that half of the tracks cannot spoil: the median shift.
   std::vector<double> values(n);
   for (Eigen::Index axis = 0; axis < 2; ++axis) {

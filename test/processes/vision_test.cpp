@@ -174,6 +174,17 @@ TEST_CASE("fathom track: without map or lens there are detections; nonsense is o
   }
   CHECK(shell(program("fathom") + " track").code == 2);
   CHECK(shell(program("fathom") + " track --help").says("--csv"));
+  for (const char* rate : {"nan", "-nan", "inf", "0", "-5", "1e999", "fast"}) {
+    CAPTURE(rate);
+    const auto ran = shell(program("fathom") + " track " + scratch.path("pictures") + to + " --rate " + rate);
+    CHECK(ran.code == 2);
+    CHECK(ran.says("fathom: --rate"));
+  }
+  const auto lens = shell(program("fathom") + " calibrate " + scratch.path("pictures") + " --out " +
+                          scratch.path("lens.yaml") + " --focal nan");
+  CHECK(lens.code == 2);
+  CHECK(lens.says("nan is not a finite number"));
+  CHECK(shell(program("vision") + " --debug-every nan").says("nan is not a finite number"));
 }
 
 TEST_CASE("vision: in a simulated tank the estimator flies by rendered pictures as well as it says") {

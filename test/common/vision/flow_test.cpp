@@ -149,9 +149,10 @@ TEST_CASE("flow: light that changes over a feature does not move it") {
   const cv::Point2f from{19.3F, 20.6F}, true_end{20.6F, 19.9F};
   const auto end = end_in_changed_light(before, now, from, true_end + cv::Point2f{kStart, -0.6F * kStart});
   REQUIRE(end);
-  CHECK(std::hypot(end->x - true_end.x, end->y - true_end.y) < kGood);
-  CHECK_FALSE(end_in_changed_light(before, now, {3.0F, 20.0F}, true_end));                   // at the border
-  CHECK_FALSE(end_in_changed_light(before, now, from, true_end + cv::Point2f{1.5F, 1.0F}));  // far off
+  CHECK(end->near);
+  CHECK(std::hypot(end->at.x - true_end.x, end->at.y - true_end.y) < kGood);
+  CHECK_FALSE(end_in_changed_light(before, now, {3.0F, 20.0F}, true_end));                         // at the border
+  CHECK_FALSE(end_in_changed_light(before, now, from, true_end + cv::Point2f{1.5F, 1.0F})->near);  // far off
   CHECK_FALSE(end_in_changed_light(cv::Mat(40, 40, CV_32FC1, cv::Scalar{80}), now, from, true_end));
 }
 

@@ -1,0 +1,38 @@
+// How a picture's fine detail has moved as a whole. Light that waves focus on the floor is smooth: the sun is 7 mrad
+// wide under water, four pixels and more of a camera with 540 px of focal length. What is finer is the floor's. So
+// phases alone are correlated (Kuglin and Hines 1975), each frequency of a band with the same weight, however bright
+// what moves over it.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
+#include <optional>
+
+namespace fathom::vision {
+
+struct FineMotion {
+  Eigen::Vector2d shift{Eigen::Vector2d::Zero()};  ///< px, of this picture against where it was expected
+  double strength{};                               ///< height of the peak over the spread of all others
+};
+
+class FineShift {
+ public:
+  /// The next picture, 8 bits, grey; the last one becomes the one before.
+  void look(const cv::Mat& grey);
+  /// `origin` (CV_32FC2): for each pixel, where in the picture before the same point is expected. Nothing when there is
+  /// no picture before.
+  [[nodiscard]] std::optional<FineMotion> find(const cv::Mat& origin);
+
+ private:
+  void prepare(cv::Size size);
+
+  void transform(const cv::Mat& from, cv::Mat& to);
+
+  cv::Size size_;
+  cv::Rect part_;
+  cv::Mat now_, before_, window_, band_;
+  cv::Mat blurred_, expected_, tapered_, spectrum_now_, spectrum_before_, product_, peaks_;
+};
+
+}  // namespace fathom::vision
