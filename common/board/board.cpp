@@ -119,7 +119,8 @@ Json model(const ModelEstimate& said) {
   Entanglement entangled;
   if (said.covariance.size() <= kMostCovariance) entangled = entanglement(said.covariance);
   std::size_t at = 0;
-  return {{"updates", said.updates},
+  return {{"joint", said.joint},
+          {"updates", said.updates},
           {"parameters", list(said.parameters,
                               [&](const NamedValue& each) {
                                 Json one = named(each);

@@ -126,6 +126,7 @@ ModelEstimate LiveIdentifier::with_joint(ModelEstimate model) const {
     model.parameters[i].std = std::sqrt(covariance(k, k));
   }
   model.covariance.assign(covariance.data(), covariance.data() + n * n);
+  model.joint = true;
   model.updates = joint_->rows();
   model.modes = identification::mode_metrics(joint_->filter().model().parameters(), covariance.diagonal(), estimate,
                                              covariance.diagonal().cwiseSqrt());

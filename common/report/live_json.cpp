@@ -59,6 +59,8 @@ std::string to_json(const LiveTrialResult& result) {
   json["flights"] = Json::array();
   for (const FlownSegment& flight : result.flights)
     json["flights"].push_back({{"segment", flight.segment}, {"begun_s", flight.begun}, {"ended_s", flight.ended}});
+  json["estimate"] = result.joint ? "joint" : "recursive";
+  json["joint_from_s"] = result.joint_from ? Json(*result.joint_from) : Json(nullptr);
   json["parameters"] = Json::object();
   const std::vector<double>& inflation = result.entangled.inflation;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {

@@ -38,7 +38,7 @@ std::string modes(const LiveTrialResult& result) {
 }
 
 std::string parameters(const LiveTrialResult& result) {
-  std::string text = rule("Identified (± 95 %)");
+  std::string text = rule("Identified (± 95 %)") + "  " + estimate_words(result) + "\n";
   text += pad_right("", 10) + pad_left("identified", 24) + "  " + pad_right("unit", 16);
   if (result.truth) text += pad_left("truth", 10) + pad_left("error", 10) + "  interval";
   text += "\n";

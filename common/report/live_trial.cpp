@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/error.hpp"
+#include "common/report/text.hpp"
 
 namespace fathom::report {
 namespace {
@@ -59,6 +60,13 @@ std::vector<FlownSegment> flights_of(const std::vector<Excitation>& said, Utime 
 
 Utime trial_origin(const Recording& recording) { return recording.state.empty() ? 0 : recording.state.front().utime; }
 
+std::string estimate_words(const LiveTrialResult& result) {
+  if (!result.joint_from) return "recursive estimate, from STATE";
+  const std::string from = number(*result.joint_from, 3) + " s";
+  if (result.joint) return "joint estimate, of state and parameters in one filter; until " + from + " the recursive one";
+  return "recursive estimate, from STATE, with what was adopted; from " + from + " until then the joint one";
+}
+
 LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehicle, const model::Site& site) {
   const auto need = [&](bool there, const char* channel, const char* who) {
     if (!there) {
@@ -86,6 +94,9 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
   }
   const ModelEstimate& model = recording.model.back();
   result.parameters = model.parameters;
+  result.joint = model.joint;
+  const auto first_joint = std::ranges::find_if(recording.model, &ModelEstimate::joint);
+  if (first_joint != recording.model.end()) result.joint_from = seconds_between(origin, first_joint->utime);
   result.entangled = entanglement(model.covariance);
   result.adopted = model.effects;
   result.effect_numbers = model.effect_numbers;

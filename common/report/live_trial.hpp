@@ -22,6 +22,8 @@ namespace fathom::report {
                                         const model::Site& site);
 /// From the simulator's truth.json and the log's TRUTH; InputError when the file cannot be read.
 [[nodiscard]] TruthComparison compare_truth(const std::string& path, const Recording& recording);
+/// Whose numbers the parameters are: the recursive estimate's or the joint one's, and since when.
+[[nodiscard]] std::string estimate_words(const LiveTrialResult& result);
 /// First time stamp of the states: zero of every time axis.
 [[nodiscard]] Utime trial_origin(const Recording& recording);
 

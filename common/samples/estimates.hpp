@@ -77,6 +77,7 @@ struct ModelEstimate {
   Vector6d residual_ratio{Vector6d::Zero()};  ///< recent mean square over the expected one; 0: unknown
   Vector6d residual_mean{Vector6d::Zero()};   ///< recent mean in standard deviations of that mean
   std::vector<std::string> frozen;            ///< parameters that are not learnt at present
+  bool joint{false};                          ///< numbers of the joint estimate; else the recursive one's
 };
 
 /// What the model leaves unexplained: tau_applied - tau_explained.

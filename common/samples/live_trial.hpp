@@ -51,6 +51,8 @@ struct LiveTrialResult {
   std::vector<FlownSegment> flights;
   std::vector<ModeVisit> visits;
   std::vector<NamedValue> parameters;             ///< identified, the std honest
+  bool joint{false};                              ///< of the joint estimate; else of the recursive one
+  std::optional<double> joint_from;               ///< s, when the joint estimate spoke first
   Entanglement entangled;                         ///< theirs, at the end
   std::vector<NamedValue> expected;               ///< of the vehicle file: what was known before, for reference
   std::vector<std::string> adopted;               ///< effects in the identifier's model

@@ -107,6 +107,7 @@ std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
   sample.residual_ratio = vector(message.residual_ratio);
   sample.residual_mean = vector(message.residual_mean);
   sample.frozen = message.frozen;
+  sample.joint = message.joint != 0;
   return sample;
 }
 
@@ -133,6 +134,7 @@ fathom_lcm::model_t encode(const ModelEstimate& sample) {
   put(sample.residual_mean, message.residual_mean);
   message.n_frozen = count(sample.frozen);
   message.frozen = sample.frozen;
+  message.joint = sample.joint;
   return message;
 }
 

@@ -92,6 +92,7 @@ inline void fill(Fill& f, ModelEstimate& s) {
   s.residual_ratio = f.matrix<Vector6d>();
   s.residual_mean = f.matrix<Vector6d>();
   s.frozen = {f.word(), f.word()};
+  s.joint = true;
 }
 inline void fill(Fill& f, Residual& s) { s = {f.utime(), f.matrix<Vector6d>()}; }
 inline void fill(Fill& f, EffectRanking& s) {

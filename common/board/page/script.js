@@ -140,7 +140,8 @@ const sections = {
     if (!m) return "no MODEL: the identifier has not spoken";
     const line = (p) => row(p.frozen ? "soft" : "", cell("k", p.name), cell("n", short(p.value)), cell("", p.unit),
       cell("n", `${short(p.low)} … ${short(p.high)}`), cell("n soft", is(p.entangled) ? short(p.entangled) : ""), cell("soft", p.frozen ? "not learnt now" : ""));
-    return [table(["parameter", ">value", "", ">95 %", ">entangled", ""], m.parameters.map(line)),
+    return [el("p", {}, el("b", {}, m.joint ? "joint" : "recursive"), el("span", { class: "soft" }, m.joint ? " estimate, of state and parameters in one filter" : " estimate, from STATE")),
+      table(["parameter", ">value", "", ">95 %", ">entangled", ""], m.parameters.map(line)),
       is(m.condition) ? el("p", { class: "soft" }, `entangled: times the variance were all others known; condition of the correlations ${short(m.condition)}`) : null,
       el("p", {}, el("b", {}, "adopted: "), m.effects.length ? m.effects.join(", ") : "no effect"),
       m.effect_numbers.length ? table(null, m.effect_numbers.map(line)) : null];

@@ -89,7 +89,8 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
                                          {.name = "X_u", .value = -8.0, .std = 2.0, .unit = "N/(m/s)"}},
                           .effects = {"tether_tension"},
                           .covariance = {1.0, 1.2, 1.2, 4.0},
-                          .frozen = {"m_X"}},
+                          .frozen = {"m_X"},
+                          .joint = true},
             0.0);
   some.hear(EffectRanking{.verdict = "ambiguous",
                           .candidates = {{.name = "current", .log_odds = 3.5, .error_reduction = 0.4}},
@@ -110,6 +111,7 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
   CHECK(all["model"]["parameters"][0]["frozen"] == true);
   CHECK(all["model"]["parameters"][1]["entangled"] == doctest::Approx(1.0 / (1.0 - 0.36)));  // correlated by 0.6
   CHECK(all["model"]["condition"] == doctest::Approx(4.0));
+  CHECK(all["model"]["joint"] == true);
   CHECK(all["model"]["effects"][0] == "tether_tension");
   CHECK(all["effects"]["against"] == "tether_tension");
   CHECK(all["effects"]["candidates"][0]["log_odds"] == doctest::Approx(3.5));

@@ -135,6 +135,9 @@ TEST_CASE("live identifier: the joint estimate finds the truth, and MODEL is as 
   CHECK(a.modes.size() == b.modes.size());
   CHECK(a.covariance.size() == 169);
   CHECK(a.residual_ratio == b.residual_ratio);
+  CHECK(a.joint);
+  CHECK_FALSE(models.front().joint);  // nobody has taught it yet
+  CHECK(std::ranges::none_of(recursive, &ModelEstimate::joint));
   int inside = 0;
   for (std::size_t k = 0; k < 13; ++k) {
     CHECK(a.parameters[k].name == b.parameters[k].name);

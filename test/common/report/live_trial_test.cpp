@@ -131,6 +131,22 @@ TEST_CASE("live trial: a run that was cut keeps as settled what had been left be
   CHECK(page.find("Trace of the covariance of surge") == std::string::npos);
 }
 
+TEST_CASE("live trial: page, table and JSON say whose numbers the parameters are") {
+  Recording recording = trial();
+  const auto told = [&] {
+    const LiveTrialResult result = summarise(recording, vehicle(), site());
+    const std::string words = estimate_words(result);
+    CHECK(to_table(result).find(words) != std::string::npos);
+    CHECK(to_html(result, recording, vehicle(), site()).find(words) != std::string::npos);
+    return words + "|" + nlohmann::json::parse(to_json(result)).at("estimate").get<std::string>();
+  };
+  CHECK(told() == "recursive estimate, from STATE|recursive");
+  for (std::size_t k = 230; k < recording.model.size(); ++k) recording.model[k].joint = true;
+  CHECK(told() == "joint estimate, of state and parameters in one filter; until 23 s the recursive one|joint");
+  for (std::size_t k = 400; k < recording.model.size(); ++k) recording.model[k].joint = false;
+  CHECK(told().starts_with("recursive estimate, from STATE, with what was adopted; from 23 s until then the joint"));
+}
+
 TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
   for (const int lacking : {0, 1, 2}) {
     Recording recording = trial();

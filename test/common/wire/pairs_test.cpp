@@ -46,6 +46,9 @@ auto members(const T& s) {
   } else if constexpr (N == 10) {
     const auto& [a, b, c, d, e, f, g, h, i, j] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j);
+  } else if constexpr (N == 11) {
+    const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k);
   } else {
     const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
@@ -158,7 +161,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
   check_pair<SmoothedState, 6>();
-  check_pair<ModelEstimate, 10>();
+  check_pair<ModelEstimate, 11>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 6>();
   check_pair<Truth, 7>();
