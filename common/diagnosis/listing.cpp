@@ -46,21 +46,21 @@ std::vector<Alternative> alternatives_of(const Judged& judged, const SearchResul
 }
 
 /// With the numbers that the effect has in the end.
-model::Unlisted unlisted_for(const Judged& judged, const SearchResult& found) {
+model::Unlisted unlisted_for(const Judged& judged, const SearchResult& found, const model::Scene& scene) {
   for (const model::ActiveEffect& active : found.after.model.effects) {
     if (active.effect == judged.effect && active.variant == judged.variant)
-      return active.effect->looks_like(active.theta, active.variant);
+      return active.effect->looks_like(active.theta, active.variant, scene);
   }
   return {};
 }
 
 }  // namespace
 
-void list_effects(const SearchResult& found, double share, DiagnosisResult& result) {
+void list_effects(const SearchResult& found, double share, const model::Scene& scene, DiagnosisResult& result) {
   for (const Judged& judged : found.accepted) {
     const std::string name{judged.effect->name()};
     const std::vector<Alternative> alternatives = alternatives_of(judged, found);
-    const model::Unlisted unlisted = unlisted_for(judged, found);
+    const model::Unlisted unlisted = unlisted_for(judged, found, scene);
     double log_odds = at_most_for(share, log_odds_among(judged.log_odds, alternatives));
     if (!unlisted.what.empty()) log_odds = std::min(log_odds, kEven);
     const auto forms = std::count_if(found.accepted.begin(), found.accepted.end(),

@@ -10,7 +10,7 @@ namespace fathom::diagnosis {
 
 /// Fills `result.effects` with what was accepted, which stands for `share` of what was lacking; several forms of one
 /// effect are one entry.
-void list_effects(const SearchResult& found, double share, DiagnosisResult& result);
+void list_effects(const SearchResult& found, double share, const model::Scene& scene, DiagnosisResult& result);
 
 /// Fills `result.candidates`, of each effect the best form, those that could not be asked last. How many were asked.
 std::size_t list_candidates(const SearchResult& found, const model::Scene& scene, DiagnosisResult& result);

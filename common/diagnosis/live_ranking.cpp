@@ -86,7 +86,7 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
     for (const LiveSuspicion& form : suspicions_) {
       if (effect_of(form) != effect_of(winner) || !convinces(form) || !ranking.against.empty()) continue;
       const int variant = forms()[static_cast<std::size_t>(form.form)].variant;
-      ranking.against = effect_of(form)->looks_like(form.theta, variant).what;
+      ranking.against = effect_of(form)->looks_like(form.theta, variant, screening_->scene()).what;
     }
     ranking.verdict = ranking.against.empty() ? "effect" : "ambiguous";
     return ranking;

@@ -48,7 +48,8 @@ LiveScreening::LiveScreening(const LiveBasis& basis, const SeenTrial& seen, cons
   for (Eigen::Index i = 0; i < information.size(); ++i) {
     information[i] = std::pow(basis_.vehicle.priors[static_cast<std::size_t>(i)].sigma, -2);
   }
-  columns_ = std::make_unique<LiveCandidates>(base, scene(seen));
+  scene_ = scene_of(seen);
+  columns_ = std::make_unique<LiveCandidates>(base, scene_);
   evidence_ = std::make_unique<LiveEvidence>(*columns_, information, masses_of(basis_), basis_.most_blocks);
   const auto inertial = static_cast<Eigen::Index>(columns_->inertial().size());
   wrench_.assign(regressor_.capacity(), WrenchColumns::Zero(6, columns_->columns()));
@@ -135,7 +136,7 @@ void LiveScreening::add(const identification::RowBlock& block) {
   }
 }
 
-model::Scene LiveScreening::scene(const SeenTrial& seen) const {
+model::Scene LiveScreening::scene_of(const SeenTrial& seen) const {
   model::Scene scene{.vehicle = &basis_.vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
   scene.input_is_wrench = basis_.input_is_wrench;
   const LiveSample first = first_of(seen);

@@ -44,6 +44,8 @@ class LiveScreening {
   [[nodiscard]] LiveEvidence& evidence() { return *evidence_; }
   [[nodiscard]] const std::vector<LiveForm>& forms() const { return columns_->forms(); }
   [[nodiscard]] const Places& places() const { return places_; }
+  /// For which the candidates were made.
+  [[nodiscard]] const model::Scene& scene() const { return scene_; }
   /// Size of the rows' residual per axis, N and N m.
   [[nodiscard]] const Vector6d& sigma() const { return sigma_; }
 
@@ -52,11 +54,12 @@ class LiveScreening {
     Utime utime{};
     model::ActuatorForces force;
   };
-  [[nodiscard]] model::Scene scene(const SeenTrial& seen) const;
+  [[nodiscard]] model::Scene scene_of(const SeenTrial& seen) const;
   [[nodiscard]] model::Model base_of(const SeenTrial& seen);
   void add(const identification::RowBlock& block);
 
   LiveBasis basis_;
+  model::Scene scene_;
   Utime origin_;
   Vector6d sigma_{Vector6d::Ones()};
   identification::IntegralRegressor regressor_;

@@ -175,7 +175,7 @@ void conclude(const SearchResult& found, std::span<const Association> left, cons
   const bool structure = !left.empty() || found.free_form || found.taken_back.value_or(0.0) > kByChance || blind ||
                          !astray_axes.empty() || promising != nullptr || result.wiring;
   const bool in_noise = !structure && found.explained < kWholeCause && stand_in_noise(found);
-  list_effects(found, in_noise ? kInNoise : found.explained, result);
+  list_effects(found, in_noise ? kInNoise : found.explained, scene, result);
   const std::size_t asked = list_candidates(found, scene, result);
   result.not_measured = not_measured(scene);
   std::vector<std::string> names, open;

@@ -100,8 +100,8 @@ class Effect {
   /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
   /// fitted anew (its small sizes may even look harmful). Tried by full fits; none by default.
   [[nodiscard]] virtual std::vector<std::vector<double>> far_starts(const Scene&, int /*variant*/) const { return {}; }
-  /// What is known to look the same as that form with these numbers, however good the data.
-  [[nodiscard]] virtual Unlisted looks_like(EffectTheta, int /*variant*/) const { return {}; }
+  /// What is known to look the same as that form with these numbers, however good the data of this scene.
+  [[nodiscard]] virtual Unlisted looks_like(EffectTheta, int /*variant*/, const Scene&) const { return {}; }
   /// False where the vehicle cannot have been, were these numbers true: inside a wall, say; everywhere for numbers that
   /// nothing can have.
   [[nodiscard]] virtual bool possible(const Eigen::Vector3d& /*p_WB*/, EffectTheta, int /*variant*/) const {

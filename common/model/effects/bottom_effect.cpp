@@ -51,7 +51,7 @@ class BottomEffect final : public Effect {
   /// One floor.
   bool rules_out(int variant, int other) const override { return multiplies(variant) == multiplies(other); }
   /// The upper edge of a layer of denser water lifts exponentially too, until the vehicle has gone through it.
-  Unlisted looks_like(EffectTheta theta, int variant) const override {
+  Unlisted looks_like(EffectTheta theta, int variant, const Scene&) const override {
     if (variant != kExponentialForce || theta[0] <= 0.0) return {};
     return {"a layer of denser water below", "going deeper, or to the same depth where the bottom is deeper"};
   }

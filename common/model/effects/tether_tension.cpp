@@ -24,6 +24,7 @@ constexpr std::array kParameters{EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1
 constexpr std::size_t kAttached = 5;  // its first number
 
 constexpr double kStartStiffness = 0.5;  // N/m
+constexpr double kSteady = 10.0;         // times the reach of what was visited: direction and size change by a tenth
 
 class TetherTension final : public Effect {
  public:
@@ -40,6 +41,13 @@ class TetherTension final : public Effect {
   }
   bool takes_part(int variant, std::size_t number) const override {
     return number < kAttached || in_set(variant, number - kAttached);
+  }
+  /// Over so little of its length the pull neither turns nor grows.
+  Unlisted looks_like(EffectTheta theta, int, const Scene& scene) const override {
+    const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high);
+    const double stretch = (Eigen::Vector3d(theta[2], theta[3], theta[4]) - middle).norm() - theta[1];
+    if (stretch < kSteady * 0.5 * (scene.p_high - scene.p_low).norm()) return {};
+    return {"a steady force in one direction of the world", "going so far that a tether's pull would turn, or grow"};
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     // Anchors: the middle of the water worked in, and eight directions half way out and just outside it. Slack so that

@@ -73,9 +73,9 @@ TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is t
     const auto load = load_of("bottom_effect", {kStep, 0.0, 0.5 * kThickness, kDepth}, kExponentialForce, motion);
     CHECK(-load.wrench.z() == doctest::Approx(layer).epsilon(0.02));  // its tail: exp(-4) of it is missing
   }
-  CHECK_FALSE(bottom.looks_like(std::vector{kStep, 0.0, 0.15, kDepth}, kExponentialForce).what.empty());
-  CHECK(bottom.looks_like(std::vector{-kStep, 0.0, 0.15, kDepth}, kExponentialForce).what.empty());  // suction
-  CHECK(bottom.looks_like(std::vector{kStep, 5.0, 0.0, 0.0}, kForce).what.empty());
+  CHECK_FALSE(bottom.looks_like(std::vector{kStep, 0.0, 0.15, kDepth}, kExponentialForce, {}).what.empty());
+  CHECK(bottom.looks_like(std::vector{-kStep, 0.0, 0.15, kDepth}, kExponentialForce, {}).what.empty());  // suction
+  CHECK(bottom.looks_like(std::vector{kStep, 5.0, 0.0, 0.0}, kForce, {}).what.empty());
 }
 
 TEST_CASE("bottom and wall: a hull is drawn toward what it passes by, with the square of its speed along it alone") {
@@ -244,4 +244,24 @@ TEST_CASE("effects of place: starts surround the water worked in, and nothing is
   scene.p_high.z() = scene.p_low.z();  // constant depth
   CHECK(model::find_effect("compressibility")->variants(scene).empty());
   CHECK(model::find_effect("bottom_effect")->variants(scene).empty());
+}
+
+TEST_CASE("tether_tension: so far away that its pull neither turns nor grows, it is any steady force of the world") {
+  const model::Effect& tether = *model::find_effect("tether_tension");
+  model::Scene scene;
+  scene.p_low = {-2.0, -1.0, 0.0};
+  scene.p_high = {2.0, 1.0, 1.5};
+  const auto other = [&](double slack, double distance) {
+    return tether.looks_like(std::vector{0.5, slack, distance, 0.0, 0.7, 0.0, 0.0, 0.0}, 0, scene).what;
+  };
+  CHECK(other(0.0, 3e4) == "a steady force in one direction of the world");
+  CHECK(other(20.0, 60.0) == "a steady force in one direction of the world");
+  CHECK(other(3.0, 6.0).empty());    // it turns, and grows from nothing
+  CHECK(other(58.0, 60.0).empty());  // it grows
+  // In the outermost places its pull differs from a steady one by less than a tenth of itself.
+  model::Motion here, there;
+  there.p_WB = scene.p_high;
+  const std::vector<double> far{0.5, 20.0, 60.0, 0.0, 0.7, 0.0, 0.0, 0.0};
+  const Vector6d middle = load_of("tether_tension", far, 0, here).wrench;
+  CHECK((load_of("tether_tension", far, 0, there).wrench - middle).norm() < 0.1 * middle.norm());
 }
