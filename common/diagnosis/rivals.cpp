@@ -46,6 +46,29 @@ void add(std::vector<Alternative>& alternatives, Alternative one) {
   }
 }
 
+/// The longest time after a command among the numbers, s; 0 where none is one.
+double time_after_command(const model::Effect& effect, int variant, std::span<const double> theta) {
+  double longest = 0.0;
+  const auto numbers = effect.parameters();
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    if (numbers[i].after_command && effect.takes_part(variant, i)) longest = std::max(longest, std::abs(theta[i]));
+  }
+  return longest;
+}
+
+double time_after_command(const model::Model& model, const model::Effect* effect, int variant) {
+  for (const model::ActiveEffect& active : model.effects) {
+    if (active.effect == effect && active.variant == variant) return time_after_command(*effect, variant, active.theta);
+  }
+  return 0.0;
+}
+
+/// How thrust builds up within a step is not followed: of two times after a command that are both shorter, neither
+/// fit's cost says which it is.
+bool within_a_step(double one, double other, double step) {
+  return one > 0.0 && other > 0.0 && std::max(one, other) < step;
+}
+
 std::string falsified(const std::string& parameter, double share) {
   char text[32];
   std::snprintf(text, sizeof text, " by %+.0f %%", 100.0 * share);
@@ -88,7 +111,8 @@ double log_odds_among(double log_odds, std::span<const Alternative> alternatives
 }
 
 void find_aliases(Judged& winner, const Screened& best, const Answers& answers, const BaseNumbers& numbers,
-                  const model::Model& near, const Settings& settings) {
+                  const model::Model& near, double step, const Settings& settings) {
+  const double own_time = time_after_command(*best.effect, best.variant, best.theta);
   for (std::size_t i = 0; i < answers.near.size(); ++i) {
     const Screened& other = answers.near[i];
     const std::string name{other.effect->name()};
@@ -102,12 +126,12 @@ void find_aliases(Judged& winner, const Screened& best, const Answers& answers, 
     }
     if (other.signature.dot(best.signature) < settings.alias_correlation) continue;
     add_name(winner.aliased_with, name);
-    if (!answers.judged[i].reason.empty() || between >= kAlternativeLogOdds) continue;
+    const bool even = within_a_step(own_time, time_after_command(*other.effect, other.variant, other.theta), step);
+    if (!answers.judged[i].reason.empty() || (between >= kAlternativeLogOdds && !even)) continue;
     const Corruption moved = numbers.most_moved(near, other.base);
-    add(winner.alternatives, {name,
-                              log_odds_over(other.window_cost, other.effect->numbers(other.variant), best.window_cost,
-                                            best.effect->numbers(best.variant)),
-                              moved.parameter, moved.share});
+    const double odds = log_odds_over(other.window_cost, other.effect->numbers(other.variant), best.window_cost,
+                                      best.effect->numbers(best.variant));
+    add(winner.alternatives, {name, even ? 0.0 : odds, moved.parameter, moved.share});
   }
 }
 
@@ -120,6 +144,8 @@ void find_rivals(Judged& winner, const FitResult& fit, const std::map<std::size_
   winner.corruption = own_moved.share;
   const Eigen::VectorXd without = residuals(problem, reference);
   const Eigen::VectorXd own = residuals(problem, fit) - without;
+  const double step = problem.windows()[0].window().trial->dt;
+  const double own_time = time_after_command(fit.model, winner.effect, winner.variant);
   for (const auto& [place, other] : stands) {
     const Screened& screened = answers.near[place];
     if (screened.effect == winner.effect) continue;
@@ -127,12 +153,12 @@ void find_rivals(Judged& winner, const FitResult& fit, const std::map<std::size_
     if (change.dot(own) < settings.alias_correlation * change.norm() * own.norm()) continue;
     const std::string name{screened.effect->name()};
     add_name(winner.aliased_with, name);
-    if (robust_log_likelihood_ratio(other.window_cost, fit.window_cost) >= kAlternativeLogOdds) continue;
+    const bool even = within_a_step(own_time, time_after_command(other.model, screened.effect, screened.variant), step);
+    if (robust_log_likelihood_ratio(other.window_cost, fit.window_cost) >= kAlternativeLogOdds && !even) continue;
     const Corruption moved = numbers.most_moved(reference.model, other.model);
-    add(winner.alternatives, {name,
-                              log_odds_over(other.window_cost, screened.effect->numbers(screened.variant),
-                                            fit.window_cost, winner.effect->numbers(winner.variant)),
-                              moved.parameter, moved.share});
+    const double odds = log_odds_over(other.window_cost, screened.effect->numbers(screened.variant), fit.window_cost,
+                                      winner.effect->numbers(winner.variant));
+    add(winner.alternatives, {name, even ? 0.0 : odds, moved.parameter, moved.share});
   }
 }
 

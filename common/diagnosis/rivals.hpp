@@ -39,9 +39,9 @@ class BaseNumbers {
 [[nodiscard]] double log_odds_among(double log_odds, std::span<const Alternative> alternatives);
 
 /// What the first looks say: names look-alikes of the winner, and which of them nothing rules out. `near`: the model
-/// that was asked about, as fitted to short windows.
+/// that was asked about, as fitted to short windows. `step`: s, of the rollouts.
 void find_aliases(Judged& winner, const Screened& best, const Answers& answers, const BaseNumbers& numbers,
-                  const model::Model& near, const Settings& settings);
+                  const model::Model& near, double step, const Settings& settings);
 /// What full fits say, by place among the answers; where they speak, they count for more.
 void find_rivals(Judged& winner, const identification::FitResult& fit,
                  const std::map<std::size_t, identification::FitResult>& stands, const Answers& answers,

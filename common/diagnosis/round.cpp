@@ -221,7 +221,8 @@ std::optional<FitResult> Round::fit_in_full(std::size_t i, double best_share) {
 
 void Round::name_rivals(const Winner& winner, const FitResult& near, Judged& accepted) const {
   const BaseNumbers numbers{problem_, reference_};
-  find_aliases(accepted, answers_.near[winner.place], answers_, numbers, near.model, settings_);
+  find_aliases(accepted, answers_.near[winner.place], answers_, numbers, near.model,
+               problem_.windows()[0].window().trial->dt, settings_);
   find_rivals(accepted, winner.fit, stands_, answers_, numbers, problem_, settings_);
 }
 

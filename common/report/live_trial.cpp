@@ -63,7 +63,8 @@ Utime trial_origin(const Recording& recording) { return recording.state.empty() 
 std::string estimate_words(const LiveTrialResult& result) {
   if (!result.joint_from) return "recursive estimate, from STATE";
   const std::string from = number(*result.joint_from, 3) + " s";
-  if (result.joint) return "joint estimate, of state and parameters in one filter; until " + from + " the recursive one";
+  if (result.joint)
+    return "joint estimate, of state and parameters in one filter; until " + from + " the recursive one";
   return "recursive estimate, from STATE, with what was adopted; from " + from + " until then the joint one";
 }
 

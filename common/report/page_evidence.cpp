@@ -168,8 +168,9 @@ std::string candidate_section(const DiagnosisResult& result) {
     const std::string mark = !found                            ? "<span class=\"mark no\">refused</span>"
                              : result.verdict == "unexplained" ? "<span class=\"mark\">kept</span>"
                                                                : "<span class=\"mark\">accepted</span>";
-    const std::string score =
-        std::isnan(c->log_odds) ? "not scored" : escape(number(c->log_odds)) + " (" + odds_html(c->log_odds) + ")";
+    const std::string score = std::isnan(c->log_odds)
+                                  ? "not scored"
+                                  : escape(log_odds_text(c->log_odds)) + " (" + odds_html(c->log_odds) + ")";
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
             cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
             cell(bar(evidence, compressed(c->log_odds)) + "<div>" + score + "</div>", "bars") +

@@ -100,7 +100,7 @@ constexpr const char* kScoreTitles = "log odds  removes  ";
 
 // "removes": share of the error that goes with the effect.
 std::string scores(double log_odds, double error_reduction) {
-  return pad_left(number(log_odds), 8) + "  " + pad_left(percent(error_reduction), 7) + "  ";
+  return pad_left(log_odds_text(log_odds), 8) + "  " + pad_left(percent(error_reduction), 7) + "  ";
 }
 
 std::string score_head(const char* last) { return "  " + pad_right("", kNameWidth) + " " + kScoreTitles + last; }

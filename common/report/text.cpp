@@ -89,6 +89,8 @@ std::string odds(double log_odds) {
   return log_odds >= 0.0 ? factor + " : 1" : "1 : " + factor;
 }
 
+std::string log_odds_text(double log_odds) { return number(std::abs(log_odds) < 0.01 ? 0.0 : log_odds); }
+
 std::string strength(double log_odds) {
   if (std::isnan(log_odds)) return "not scored";
   if (log_odds > std::log(100.0)) return "decisive";

@@ -36,6 +36,8 @@ extern const std::array<Axis, 6> kAxes;
 [[nodiscard]] std::string percent(double share);
 /// "20 : 1" for ln 20; powers of ten beyond a million.
 [[nodiscard]] std::string odds(double log_odds);
+/// Three digits; what differs from even odds by less than a hundredth is 0.
+[[nodiscard]] std::string log_odds_text(double log_odds);
 /// "decisive", "strong", "weak", "none either way", "against".
 [[nodiscard]] std::string strength(double log_odds);
 /// "thruster_lag", "thruster 3" become "thruster lag (thruster 3)".

@@ -3,12 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/search.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -66,5 +68,28 @@ TEST_CASE("rivals: what a weak vertical thruster falsifies is heave's numbers, b
     CHECK((moved.parameter == "m_Z" || moved.parameter.starts_with("Z_w") || moved.parameter == "W-B"));
     // Forces that are a share g too small look like masses and drag that are 1/(1 + g) too large.
     CHECK(moved.share == doctest::Approx(1.0 / (1.0 + gain) - 1.0).epsilon(0.3));
+  }
+}
+
+TEST_CASE("rivals: of a lag shorter than the search's step it is not said that it is a delay") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  std::mt19937 random{1322};
+  for (unsigned seed = 61; seed <= 62; ++seed) {
+    const double lag = std::uniform_real_distribution<double>{0.018, 0.026}(random);  // s
+    CAPTURE(lag);
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0,
+                                                             .dt = 0.01,
+                                                             .step = 0.002,
+                                                             .seed = seed,
+                                                             .velocity_noise = 0.003,
+                                                             .rate_noise = 0.003,
+                                                             .effects = {test::active("thruster_lag", {lag})}});
+    const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
+    REQUIRE(found.accepted.size() == 1);
+    const Judged& judged = found.accepted.front();
+    const bool beside =
+        std::ranges::find(judged.alternatives, "thruster_lag", &Alternative::name) != judged.alternatives.end();
+    CHECK((judged.effect->name() == "thruster_lag" || beside));
+    CHECK(log_odds_among(judged.log_odds, judged.alternatives) < (beside ? 0.1 : 1e9));
   }
 }

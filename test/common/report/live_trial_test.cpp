@@ -142,9 +142,9 @@ TEST_CASE("live trial: page, table and JSON say whose numbers the parameters are
   };
   CHECK(told() == "recursive estimate, from STATE|recursive");
   for (std::size_t k = 230; k < recording.model.size(); ++k) recording.model[k].joint = true;
-  CHECK(told() == "joint estimate, of state and parameters in one filter; until 23 s the recursive one|joint");
+  CHECK(told() == "joint estimate, of state and parameters in one filter; until 23.0 s the recursive one|joint");
   for (std::size_t k = 400; k < recording.model.size(); ++k) recording.model[k].joint = false;
-  CHECK(told().starts_with("recursive estimate, from STATE, with what was adopted; from 23 s until then the joint"));
+  CHECK(told().starts_with("recursive estimate, from STATE, with what was adopted; from 23.0 s until then the joint"));
 }
 
 TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {

@@ -51,3 +51,9 @@ TEST_CASE("Findings of several runs are grouped with their range") {
   CHECK(size_text(groups[0]) == "0.100 to 0.300 s");
   CHECK(size_text(groups[1]) == "0.900");
 }
+
+TEST_CASE("text: log odds that are even but for rounding are 0") {
+  CHECK(log_odds_text(-7.6e-9) == number(0.0));
+  CHECK(log_odds_text(-0.011) == number(-0.011));
+  CHECK(log_odds_text(5.894) == "5.89");
+}
