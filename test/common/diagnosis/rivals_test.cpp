@@ -3,14 +3,14 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "common/diagnosis/evidence.hpp"
-#include "common/diagnosis/search.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -71,25 +71,35 @@ TEST_CASE("rivals: what a weak vertical thruster falsifies is heave's numbers, b
   }
 }
 
-TEST_CASE("rivals: of a lag shorter than the search's step it is not said that it is a delay") {
+TEST_CASE("rivals: of two times after a command that are shorter than a step neither cost rules the other out") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  constexpr double kStep = 0.04;  // s
   std::mt19937 random{1322};
-  for (unsigned seed = 61; seed <= 62; ++seed) {
-    const double lag = std::uniform_real_distribution<double>{0.018, 0.026}(random);  // s
-    CAPTURE(lag);
-    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 120.0,
-                                                             .dt = 0.01,
-                                                             .step = 0.002,
-                                                             .seed = seed,
-                                                             .velocity_noise = 0.003,
-                                                             .rate_noise = 0.003,
-                                                             .effects = {test::active("thruster_lag", {lag})}});
-    const SearchResult found = search(vehicle, {&dive.trial, 1}, {}, [](const std::string&, double) {});
-    REQUIRE(found.accepted.size() == 1);
-    const Judged& judged = found.accepted.front();
-    const bool beside =
-        std::ranges::find(judged.alternatives, "thruster_lag", &Alternative::name) != judged.alternatives.end();
-    CHECK((judged.effect->name() == "thruster_lag" || beside));
-    CHECK(log_odds_among(judged.log_odds, judged.alternatives) < (beside ? 0.1 : 1e9));
+  for (const auto& [low, high, beside] : {std::tuple{0.018, 0.026, true}, std::tuple{0.15, 0.2, false}}) {
+    const double time = std::uniform_real_distribution<double>{low, high}(random);  // s
+    CAPTURE(time);
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 80.0,
+                                                             .dt = kStep,
+                                                             .step = 0.004,
+                                                             .seed = 61,
+                                                             .effects = {test::active("thruster_delay", {time})}});
+    const identification::TrajectoryFit problem{vehicle, {&dive.trial, 1}, {.window = 5.0}};
+    const identification::FitResult without = problem.fit(model::nominal_model(vehicle, false));
+    const auto with = [&](const char* name) {
+      model::Model model = without.model;
+      model.add(test::active(name, {time}));
+      return problem.fit(model, &without);
+    };
+    const identification::FitResult delay = with("thruster_delay");
+    identification::FitResult lag = with("thruster_lag");
+    for (double& cost : lag.window_cost) cost += 5.0;  // far beyond what settles which it is
+    REQUIRE(robust_log_likelihood_ratio(lag.window_cost, delay.window_cost) > kAlternativeLogOdds);
+    Answers answers;
+    answers.near.push_back({.effect = model::find_effect("thruster_lag")});
+    Judged winner{.effect = model::find_effect("thruster_delay")};
+    find_rivals(winner, delay, {{0, lag}}, answers, BaseNumbers{problem, without}, problem, {});
+    REQUIRE(winner.aliased_with == std::vector<std::string>{"thruster_lag"});
+    REQUIRE(winner.alternatives.size() == (beside ? 1 : 0));
+    if (beside) CHECK(winner.alternatives[0].log_odds == 0.0);
   }
 }
