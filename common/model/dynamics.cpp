@@ -93,9 +93,11 @@ HullTerms::HullTerms(const Model& model, const Motion& motion) : drag{hull_drag(
   const Eigen::Vector3d w = motion.nu.tail<3>();
   const Eigen::Vector3d momentum = inertia.head<3>().cwiseProduct(v);
   const Eigen::Vector3d angular = inertia.tail<3>().cwiseProduct(w);
-  coriolis << w.cross(momentum), w.cross(angular) + v.cross(momentum);
+  coriolis.head<3>() = w.cross(momentum);
+  coriolis.tail<3>() = w.cross(angular) + v.cross(momentum);
   const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
-  restoring << theta[index(BaseParameter::W_B)] * down_B, theta.segment<3>(index(BaseParameter::G_x)).cross(down_B);
+  restoring.head<3>() = theta[index(BaseParameter::W_B)] * down_B;
+  restoring.tail<3>() = theta.segment<3>(index(BaseParameter::G_x)).cross(down_B);
 }
 
 Vector6d generalised_force(const Model& model, const Motion& motion, const HullTerms& hull, Load& load) {

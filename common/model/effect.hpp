@@ -117,7 +117,8 @@ class Effect {
   [[nodiscard]] virtual bool multiplies_drag(int /*variant*/) const { return false; }
   /// True when the wrench depends on where the vehicle is (not only on how it moves).
   [[nodiscard]] virtual bool feels_place() const { return false; }
-  /// True when the memory depends on how the vehicle has moved (not only on commands).
+  /// True when the memory depends on how the vehicle has moved (not only on commands). advance() and feel() must then
+  /// be linear in the relative velocity and the memory, and alter w_memory alone, so that derivatives go the same way.
   [[nodiscard]] virtual bool remembers_motion() const { return false; }
   /// Size of the memory z.
   [[nodiscard]] virtual int state_size(const Vehicle&, int /*actuators*/) const { return 0; }

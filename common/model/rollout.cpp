@@ -10,8 +10,6 @@ namespace fathom::model {
 namespace {
 
 constexpr double kLongestLatency = 2.0;  // s of samples that say what a late sensor meant
-constexpr double kShareMoved = 1e-4;     // of a parameter, or of what slows its axis by 1/s: for differences
-constexpr double kInitialMoved = 1e-5;   // m/s, rad/s
 
 /// One column of derivatives, seen as a trace.
 VelocityView as_trace(VelocityDerivatives& derivatives, Eigen::Index column) {
@@ -27,32 +25,6 @@ void as_measured(const Model& model, const Window& window, VelocityTrace& nu) {
   for (const ActiveEffect& active : model.effects) {
     if (active.effect->measures()) active.effect->measure(seen, window.trial->dt, active.theta, active.variant);
   }
-}
-
-/// The same by differences, for what remembers motion: the variational equation knows the vehicle's state only.
-bool rollout_with_differences(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
-                              VelocityDerivatives& derivatives) {
-  const bool finished = rollout(model, window, nu0, nu);
-  derivatives.setZero(nu.size(), VelocityDerivatives::ColsAtCompileTime);
-  thread_local VelocityTrace moved_nu;
-  const auto fill = [&](Eigen::Index column, const Model& moved, const Vector6d& moved_nu0, double step) {
-    if (rollout(moved, window, moved_nu0, moved_nu)) derivatives.col(column) = (moved_nu - nu).reshaped() / step;
-  };
-  Model moved = model;
-  for (const std::string& name : model.vehicle->parameters) {
-    const auto parameter = parameter_from_name(name);
-    if (!parameter) continue;
-    const Eigen::Index i = index(*parameter);
-    const double step = kShareMoved * std::max(std::abs(model.theta[i]), model.theta[i % 6]);
-    moved.theta[i] += step;
-    fill(i, moved, nu0, step);
-    moved.theta[i] = model.theta[i];
-  }
-  for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    if (model.vehicle->dof[static_cast<std::size_t>(axis)])
-      fill(kBaseParameterCount + axis, model, nu0 + kInitialMoved * Vector6d::Unit(axis), kInitialMoved);
-  }
-  return finished;
 }
 
 }  // namespace
@@ -72,8 +44,6 @@ bool rollout(const Model& model, const Window& window, const Vector6d& nu0, cons
 
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives) {
-  if (std::ranges::any_of(model.effects, [](const auto& active) { return active.effect->remembers_motion(); }))
-    return rollout_with_differences(model, window, nu0, nu, derivatives);
   Sensitivity sensitivity{derivatives};
   const bool finished = Rollout{model, *window.trial, &sensitivity}.run(window, nu0, nu);
   VelocityView seen{nu};

@@ -47,8 +47,7 @@ using VelocityDerivatives = Eigen::Matrix<double, Eigen::Dynamic, kBaseParameter
 
 /// A rollout together with its derivatives, by the variational equation along the trajectory (Jategaonkar 2015,
 /// sec. 4.6). Far cheaper than a rollout per parameter; within 1 % of differences of rollouts, see the
-/// test (a few per cent more where an axis settles within a few steps). Where an effect remembers motion they are
-/// differences. Effects' own numbers are not among the columns.
+/// test (a few per cent more where an axis settles within a few steps). Effects' own numbers are not among the columns.
 bool rollout_with_derivatives(const Model& model, const Window& window, const Vector6d& nu0, VelocityTrace& nu,
                               VelocityDerivatives& derivatives);
 

@@ -39,27 +39,56 @@ struct StepShares {
   Vector6d half_slope, whole_slope, growth_slope;  ///< only when asked for
 
   StepShares(const Vector6d& decays, bool with_slopes) {
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      const double z = decays[i], y = 0.5 * z;
-      if (z < 1e-2) {  // series; what is left out is below 1e-9
-        half[i] = 1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0));
-        whole[i] = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0));
-        growth[i] = 0.5 - z / 6.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0));
-        if (!with_slopes) continue;
-        half_slope[i] = -0.5 + y / 3.0 * (1.0 - 0.375 * y * (1.0 - y * 4.0 / 15.0));
-        whole_slope[i] = -0.5 + z / 3.0 * (1.0 - 0.375 * z * (1.0 - z * 4.0 / 15.0));
-        growth_slope[i] = -1.0 / 6.0 + z / 12.0 * (1.0 - 0.3 * z * (1.0 - z * 2.0 / 9.0));
-        continue;
-      }
-      const double e = std::expm1(-y), all = e * (2.0 + e);  // exp(-y) - 1, exp(-z) - 1
-      half[i] = -e / y;
-      whole[i] = -all / z;
-      growth[i] = (all + z) / (z * z);
-      if (!with_slopes) continue;
-      half_slope[i] = (e + y + e * y) / (y * y);
-      whole_slope[i] = (all + z + all * z) / (z * z);
-      growth_slope[i] = -(2.0 * z + all * (2.0 + z)) / (z * z * z);
+    // With y = z / 2 and g(y) = (exp(-y) - 1 + y) / y^2, of which a series tells all and nothing cancels.
+    const Vector6d y = 0.5 * decays;
+    const Vector6d g = horner(kGrowth, y);
+    half = Vector6d::Ones() - y.cwiseProduct(g);
+    const Vector6d rest = Vector6d::Ones() - 0.5 * y.cwiseProduct(half);
+    whole = half.cwiseProduct(rest);
+    growth = 0.5 * g + 0.25 * half.cwiseProduct(half);
+    if (with_slopes) {
+      const Vector6d g_slope = horner(kGrowthSlope, y);
+      half_slope = -g - y.cwiseProduct(g_slope);
+      whole_slope = 0.5 * half_slope.cwiseProduct(rest) - 0.25 * half.cwiseProduct(half + y.cwiseProduct(half_slope));
+      growth_slope = 0.25 * (g_slope + half.cwiseProduct(half_slope));
     }
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (y[i] > kLongestSeries) set_stiff(i, decays[i], with_slopes);
+    }
+  }
+
+ private:
+  static constexpr double kLongestSeries = 0.75;  // what is left out below it is under 1e-11
+  static constexpr std::size_t kTerms = 13;
+  using Series = std::array<double, kTerms>;
+  /// g(y) = sum (-y)^n / (n + 2)!
+  static constexpr Series kGrowth = [] {
+    Series series{};
+    double term = 0.5;
+    for (std::size_t n = 0; n < kTerms; ++n, term /= -static_cast<double>(n + 2)) series[n] = term;
+    return series;
+  }();
+  static constexpr Series kGrowthSlope = [] {
+    Series series{};
+    for (std::size_t n = 0; n + 1 < kTerms; ++n) series[n] = static_cast<double>(n + 1) * kGrowth[n + 1];
+    return series;
+  }();
+
+  static Vector6d horner(const Series& series, const Vector6d& y) {
+    Vector6d sum = Vector6d::Constant(series[kTerms - 1]);
+    for (std::size_t n = kTerms - 1; n-- > 0;) sum = (sum.cwiseProduct(y).array() + series[n]).matrix();
+    return sum;
+  }
+
+  void set_stiff(Eigen::Index i, double z, bool with_slopes) {
+    const double y = 0.5 * z, e = std::expm1(-y), all = e * (2.0 + e);  // exp(-y) - 1, exp(-z) - 1
+    half[i] = -e / y;
+    whole[i] = -all / z;
+    growth[i] = (all + z) / (z * z);
+    if (!with_slopes) return;
+    half_slope[i] = (e + y + e * y) / (y * y);
+    whole_slope[i] = (all + z + all * z) / (z * z);
+    growth_slope[i] = -(2.0 * z + all * (2.0 + z)) / (z * z * z);
   }
 };
 
@@ -71,13 +100,16 @@ inline Eigen::Vector2d bow(const Eigen::Quaterniond& q) {
 /// The tilt of one attitude with the heading of another.
 inline Eigen::Quaterniond with_heading(const Eigen::Quaterniond& tilt, const Eigen::Quaterniond& heading) {
   const Eigen::Vector2d from = bow(tilt), to = bow(heading);
-  const double size = from.norm() * to.norm();
+  const double size = std::sqrt(from.squaredNorm() * to.squaredNorm());
   if (size < 1e-12) return tilt;  // straight up or down: there is no heading
-  const double cosine = from.dot(to) / size, sine = (from.x() * to.y() - from.y() * to.x()) / size;
+  const double along = from.dot(to), across = from.x() * to.y() - from.y() * to.x();
   // Half of the turn between them; each formula where it is exact.
-  const double half_cosine = std::sqrt(0.5 * std::max(1.0 + cosine, 0.0));
-  const double half_sine =
-      cosine > 0.0 ? 0.5 * sine / half_cosine : std::copysign(std::sqrt(0.5 * (1.0 - cosine)), sine);
+  if (along > 0.0) {
+    const double scale = 1.0 / std::sqrt(2.0 * size * (size + along));
+    return Eigen::Quaterniond(scale * (size + along), 0.0, 0.0, scale * across) * tilt;
+  }
+  const double half_cosine = std::sqrt(0.5 * std::max(1.0 + along / size, 0.0));
+  const double half_sine = std::copysign(std::sqrt(0.5 * (1.0 - along / size)), across);
   return Eigen::Quaterniond(half_cosine, 0.0, 0.0, half_sine) * tilt;
 }
 

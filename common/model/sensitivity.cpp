@@ -43,13 +43,24 @@ Right divided_by_inertia(const Model& model, const Load& load, Right right) {
 
 void Sensitivity::begin(const Model& model, std::size_t samples) {
   place_matters_ = motion_felt_ = false;
+  remembered_.clear();
   for (const ActiveEffect& active : model.effects) {
     place_matters_ = place_matters_ || active.effect->feels_place();
     motion_felt_ = motion_felt_ || active.effect->feels_motion();
+    if (!active.effect->remembers_motion()) continue;
+    const auto size =
+        static_cast<std::size_t>(active.effect->state_size(*model.vehicle, static_cast<int>(model.allocation.cols())));
+    remembered_.push_back({&active, size, std::vector<double>(size * kColumns, 0.0)});
+  }
+  moving_.clear();
+  for (const std::string& name : model.vehicle->parameters) {
+    if (const auto parameter = parameter_from_name(name)) moving_.push_back(index(*parameter));
   }
   state_.setZero();
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    if (model.vehicle->dof[static_cast<std::size_t>(axis)]) state_(6 + axis, kBaseParameterCount + axis) = 1.0;
+    if (!model.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
+    state_(6 + axis, kBaseParameterCount + axis) = 1.0;
+    moving_.push_back(kBaseParameterCount + axis);
   }
   out_.resize(static_cast<Eigen::Index>(6 * samples), Eigen::NoChange);
   record(0);
@@ -150,6 +161,25 @@ Eigen::Matrix<double, 6, Sensitivity::kColumns> Sensitivity::decay_rows(const Mo
   return rows;
 }
 
+/// What is remembered goes on by dt, and `wrenches` is what it changes then. `state` holds at the end of that time.
+void Sensitivity::remember(const Motion& motion, const State& state, double dt, Wrenches& wrenches) {
+  Motion change;
+  change.vehicle = motion.vehicle;
+  for (const Eigen::Index column : moving_) {
+    change.nu = state.block<6, 1>(6, column);
+    // Water that moves in W turns in B the other way.
+    change.nu.head<3>() += state.block<3, 1>(3, column).cross(motion.v_WF_B);
+    change.w_memory.setZero();
+    for (Remembered& memory : remembered_) {
+      const ActiveEffect& active = *memory.active;
+      const std::span<double> z{memory.z.data() + static_cast<std::size_t>(column) * memory.size, memory.size};
+      active.effect->advance(change, active.theta, active.variant, dt, z);
+      active.effect->feel(change, active.theta, active.variant, z);
+    }
+    wrenches.col(column) = change.w_memory;
+  }
+}
+
 void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
   const Model& model = rollout.model();
   const Motion motion = rollout.motion();
@@ -171,11 +201,21 @@ void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
   const auto decay = decay_rows(model, at);
   State rate, middle;
   slope(A, B, state_, rate);
+  Wrenches wrenches;
+  if (!remembered_.empty()) {
+    wrenches.setZero();
+    remember(motion, state_, half, wrenches);
+    rate.bottomRows<6>() += divided_by_inertia(model, total_load(model, motion), wrenches);
+  }
   middle = half * rate;
   middle.bottomRows<6>() = at.shares.half.asDiagonal() * middle.bottomRows<6>();
   middle.bottomRows<6>() += (half * half * at.shares.half_slope).cwiseProduct(at.nu_dot_begin).asDiagonal() * decay;
   State rate_middle;
   slope(A, B, state_ + middle, rate_middle);
+  if (!remembered_.empty()) {
+    remember(motion, state_ + middle, half, wrenches);
+    rate_middle.bottomRows<6>() += divided_by_inertia(model, total_load(model, motion), wrenches);
+  }
   state_.topRows<6>() += h * rate_middle.topRows<6>();
   const Vector6d moved = at.nu - at.nu_begin;
   const Vector6d change = at.nu_dot + at.decay.cwiseProduct(moved) - at.nu_dot_begin;
@@ -188,7 +228,10 @@ void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
                                  (by_decay + growth.cwiseProduct(moved)).asDiagonal() * decay);
 
   // A trajectory that diverges has no useful derivative; the solver will turn back from it.
-  if (!(state_.squaredNorm() < kAbsurdDerivative * kAbsurdDerivative)) state_.setZero();
+  if (!(state_.squaredNorm() < kAbsurdDerivative * kAbsurdDerivative)) {
+    state_.setZero();
+    for (Remembered& memory : remembered_) std::ranges::fill(memory.z, 0.0);
+  }
 
   // Attitude that follows the measurement does not move with the parameters. A small rotation e in B turns the heading
   // (Euler's psi) by (down_y e_y + down_z e_z) / cos^2 theta; the rest of it is tilt.

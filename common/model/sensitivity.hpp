@@ -1,6 +1,8 @@
 // The variational equation of a rollout: how its state moves with the base parameters and with the initial velocity.
 #pragma once
 
+#include <vector>
+
 #include "common/model/rollout.hpp"
 
 namespace fathom::model {
@@ -24,7 +26,7 @@ struct StepMiddle {
 
 /// S = d(state)/d(columns), state error = [position 3 in W; rotation 3 in B; velocity 6], S_dot = A S + B.
 /// A is analytic for the base model; effects add theirs by differences. B comes from the regressor, since the model is
-/// linear in its base parameters.
+/// linear in its base parameters. What effects remember of motion moves with the columns too, by their own rule.
 class Sensitivity {
  public:
   explicit Sensitivity(VelocityDerivatives& out) : out_{out} {}
@@ -41,7 +43,16 @@ class Sensitivity {
   using Dynamics = Eigen::Matrix<double, 12, 12>;
   using Input = Eigen::Matrix<double, 6, kBaseParameterCount, Eigen::RowMajor>;
 
+  using Wrenches = Eigen::Matrix<double, 6, kColumns>;
+  /// Derivatives of what one effect remembers: `size` numbers for each column.
+  struct Remembered {
+    const ActiveEffect* active{};
+    std::size_t size{};
+    std::vector<double> z;
+  };
+
   [[nodiscard]] Input input(const Model& model, const Motion& motion, const Vector6d& nu_dot) const;
+  void remember(const Motion& motion, const State& state, double dt, Wrenches& wrenches);
   void velocity_rows_by_differences(Rollout& rollout, const StepMiddle& middle, Dynamics& A) const;
   void velocity_rows(const Model& model, const Motion& motion, const Vector6d& nu_dot, Dynamics& A) const;
   [[nodiscard]] Eigen::Matrix<double, 6, kColumns> decay_rows(const Model& model, const StepMiddle& middle) const;
@@ -51,6 +62,8 @@ class Sensitivity {
   State state_{State::Zero()};
   bool place_matters_{false};  ///< otherwise position's derivatives are not needed
   bool motion_felt_{false};    ///< some feel() depends on the motion
+  std::vector<Remembered> remembered_;
+  std::vector<Eigen::Index> moving_;  ///< columns of what the vehicle has
 };
 
 }  // namespace fathom::model

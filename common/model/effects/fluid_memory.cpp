@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "common/model/component_set.hpp"
+#include "common/model/decay_share.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {
@@ -80,7 +81,8 @@ class FluidMemory final : public Effect {
     std::ranges::copy(nu_r, z.begin() + kAxes);
   }
   void advance(const Motion& motion, EffectTheta theta, int, double dt, std::span<double> z) const override {
-    const double share = theta[kTime] > 0.0 ? -std::expm1(-dt / theta[kTime]) : 1.0;
+    thread_local DecayShare decay;
+    const double share = decay(dt, theta[kTime]);
     const Vector6d nu_r = motion.nu_r();
     for (std::size_t i = 0; i < kAxes; ++i) {
       // The motion is that of the step's end; with the one before, its middle: exact to second order.

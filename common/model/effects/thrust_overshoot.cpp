@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/model/decay_share.hpp"
 #include "common/model/thruster_kinds.hpp"
 
 namespace fathom::model::effects {
@@ -41,7 +42,8 @@ class ThrustOvershoot final : public Effect {
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = motion.force[static_cast<Eigen::Index>(i)];
   }
   void advance(const Motion& motion, EffectTheta theta, int, double dt, std::span<double> z) const override {
-    const double share = theta[1] > 0.0 ? -std::expm1(-dt / theta[1]) : 1.0;
+    thread_local DecayShare decay;
+    const double share = decay(dt, theta[1]);
     for (std::size_t i = 0; i < z.size(); ++i) z[i] += share * (motion.force[static_cast<Eigen::Index>(i)] - z[i]);
   }
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double> z) const override {

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/model/decay_share.hpp"
 #include "common/model/effect_size.hpp"
 #include "common/model/thruster_kinds.hpp"
 
@@ -27,9 +28,6 @@ constexpr double kInstant = 1e-6;          // s
 /// s. What two kinds differ by is zero in the other forms.
 double of_vertical(EffectTheta theta) { return time_of_vertical(theta[0], theta[1]); }
 bool of_shaft(int variant) { return variant == kShaft || variant == kTorque; }
-double share_in(double dt, double time_constant) {
-  return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
-}
 /// Shaft speed of a force, up to a factor that plays no part.
 double shaft(double force) { return std::copysign(std::sqrt(std::abs(force)), force); }
 
@@ -88,8 +86,9 @@ class ThrusterLag final : public Effect {
   }
   void advance(const Motion& motion, EffectTheta theta, int variant, double dt, std::span<double> z) const override {
     const std::size_t n = z.size() / 2;
-    const double share = share_in(dt, theta[0]);
-    const double of_others = variant == kTwoKinds ? share_in(dt, of_vertical(theta)) : share;
+    thread_local DecayShare decay, vertical_decay;
+    const double share = decay(dt, theta[0]);
+    const double of_others = variant == kTwoKinds ? vertical_decay(dt, of_vertical(theta)) : share;
     const double passed_on = theta[0] > 0.0 ? dt / theta[0] * (1.0 - share) : 0.0;
     const double dt_over_c = dt / (2.0 * std::sqrt(reference_thrust(*motion.vehicle)) * std::max(theta[0], kInstant));
     for (std::size_t i = 0; i < n; ++i) {
