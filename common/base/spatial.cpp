@@ -22,8 +22,8 @@ Eigen::Quaterniond quaternion_from_rotation_vector(const Eigen::Vector3d& phi) {
   const double x = 0.25 * phi.squaredNorm();  // half the angle, squared
   double cosine, scale;
   if (x < 0.01) {  // what turns in a step; the next terms are under 1e-16
-    cosine = 1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0)));
-    scale = 0.5 * (1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0))));
+    cosine = 1.0 - x * (1.0 / 2.0 - x * (1.0 / 24.0 - x * (1.0 / 720.0 - x * (1.0 / 40320.0))));
+    scale = 0.5 - x * (1.0 / 12.0 - x * (1.0 / 240.0 - x * (1.0 / 10080.0 - x * (1.0 / 725760.0))));
   } else {
     const double half = std::sqrt(x);
     cosine = std::cos(half);

@@ -1,6 +1,7 @@
 #include "common/diagnosis/linearisation.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "common/identification/outlier.hpp"
@@ -17,20 +18,41 @@ std::vector<std::size_t> all_places(std::size_t count) {
   return places;
 }
 
+/// At most `most` of them, evenly.
+std::vector<std::size_t> spread(std::span<const std::size_t> all, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, (all.size() + most - 1) / most);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < all.size(); i += stride) chosen.push_back(all[i]);
+  return chosen;
+}
+
 }  // namespace
 
 Linearisation::Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit)
     : Linearisation{problem, fit, problem.linearise(fit), all_places(problem.windows().size())} {}
 
-Linearisation Linearisation::thinned(std::size_t most) const {
-  const std::size_t stride = std::max<std::size_t>(1, (windows_.size() + most - 1) / most);
+Linearisation Linearisation::on(std::span<const std::size_t> chosen) const {
   std::vector<ProjectedWindow> windows;
   std::vector<std::size_t> places;
-  for (std::size_t w = 0; w < windows_.size(); w += stride) {
+  for (const std::size_t w : chosen) {
     windows.push_back(windows_[w]);
     places.push_back(places_[w]);
   }
   return {problem_, fit_, std::move(windows), std::move(places)};
+}
+
+Linearisation Linearisation::thinned(std::size_t most) const { return on(spread(all_places(windows_.size()), most)); }
+
+Linearisation Linearisation::telling(std::size_t most) const {
+  std::vector<std::size_t> order = all_places(windows_.size());
+  if (order.size() <= most) return on(order);
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return window_cost_[a] > window_cost_[b]; });
+  const auto half = order.begin() + static_cast<std::ptrdiff_t>(most / 2);
+  std::vector<std::size_t> chosen(order.begin(), half), others(half, order.end());
+  std::ranges::sort(others);
+  std::ranges::copy(spread(others, most - chosen.size()), std::back_inserter(chosen));
+  std::ranges::sort(chosen);
+  return on(chosen);
 }
 
 Linearisation::Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit,

@@ -16,6 +16,9 @@ class Linearisation {
   Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit);
   /// The same fit on at most `most` windows, evenly chosen.
   [[nodiscard]] Linearisation thinned(std::size_t most) const;
+  /// The same fit on at most `most` windows: half of them those that it explains worst, so that what acts in few is not
+  /// missed, the others evenly chosen.
+  [[nodiscard]] Linearisation telling(std::size_t most) const;
 
   [[nodiscard]] const identification::TrajectoryFit& problem() const { return problem_; }
   [[nodiscard]] const identification::FitResult& fit() const { return fit_; }
@@ -39,6 +42,8 @@ class Linearisation {
  private:
   Linearisation(const identification::TrajectoryFit& problem, const identification::FitResult& fit,
                 std::vector<identification::ProjectedWindow> windows, std::vector<std::size_t> places);
+  /// On those of these windows, in their order.
+  [[nodiscard]] Linearisation on(std::span<const std::size_t> chosen) const;
 
   const identification::TrajectoryFit& problem_;
   const identification::FitResult& fit_;

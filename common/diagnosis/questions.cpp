@@ -14,6 +14,7 @@ using identification::TrajectoryFit;
 
 constexpr double kNearWindow = 2.0;        // s: what a wrong model does in it is still nearly linear
 constexpr std::size_t kNearWindows = 100;  // by an even spread
+constexpr std::size_t kFirstNear = 34;     // of those, for a search from several starts
 constexpr std::size_t kThinFrom = 120;     // windows; fewer are fitted at once
 constexpr std::size_t kFirstWindows = 20;  // for a first look; what then promises most is asked by all
 constexpr int kCareful = 2;                // forms of an effect that earn a look at every window
@@ -28,13 +29,17 @@ bool rules_out(const model::Model& model, const Candidate& candidate) {
   });
 }
 
+bool worth_a_look(const Screened& rough, const Linearisation& base, const Settings& settings) {
+  const double cost = total(base.window_cost());
+  return reduction(cost, cost - rough.gain) >= kPromise * settings.smallest_reduction;
+}
+
 /// Places of the forms that promise most.
 std::vector<std::size_t> promising(const std::vector<Screened>& rough, const Linearisation& base,
                                    const Settings& settings) {
-  const double cost = total(base.window_cost());
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < rough.size(); ++i) {
-    if (reduction(cost, cost - rough[i].gain) >= kPromise * settings.smallest_reduction) order.push_back(i);
+    if (worth_a_look(rough[i], base, settings)) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return rough[a].gain > rough[b].gain; });
@@ -75,12 +80,20 @@ Answers ask_near(std::span<const Candidate> candidates, const NearView& near, co
     if (!rules_out(near.reference.model, candidate)) asked.push_back(candidate);
   }
   const Linearisation base{near.problem, near.reference};
+  const Linearisation first = base.telling(kFirstNear);
+  const double worth = kWorthAStep * settings.smallest_reduction;
   Answers answers;
   answers.near.resize(asked.size());
   for_each_index(asked.size(), settings.threads, [&](std::size_t i) {
     const Candidate& form = asked[i];
-    answers.near[i] = screen(base, *form.effect, form.variant, form.name, form.effect->starts(scene, form.variant),
-                             kWorthAStep * settings.smallest_reduction);
+    const auto starts = form.effect->starts(scene, form.variant);
+    Screened& screened = answers.near[i];
+    if (starts.size() == 1) {
+      screened = screen(base, *form.effect, form.variant, form.name, starts, worth);
+      return;
+    }
+    const Screened rough = screen(first, *form.effect, form.variant, form.name, starts, worth);
+    screened = worth_a_look(rough, first, settings) ? refine(base, rough) : seen_by(base, rough);
   });
   for (const Screened& screened : answers.near) {
     answers.judged.push_back(judge(screened, base, static_cast<int>(candidates.size())));

@@ -70,9 +70,11 @@ bool within_a_step(double one, double other, double step) {
 }
 
 std::string falsified(const std::string& parameter, double share) {
+  if (parameter.empty()) return "no base number";
+  if (share < -1.0) return parameter + ", even in its sign";
   char text[32];
   std::snprintf(text, sizeof text, " by %+.0f %%", 100.0 * share);
-  return parameter.empty() ? "no base number" : parameter + text;
+  return parameter + text;
 }
 
 }  // namespace

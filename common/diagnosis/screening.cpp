@@ -222,6 +222,36 @@ void descend(const Linearisation& base, CandidateModel& candidate, EffectParamet
   }
 }
 
+Point point_at(const Linearisation& base, CandidateModel& candidate, const std::vector<double>& theta) {
+  Point at{theta, candidate.residual(theta), 0.0};
+  base.remove_base(at.residual);
+  at.cost = total(base.window_costs(at.residual.col(0)));
+  return at;
+}
+
+/// Without the candidate.
+Point nothing_of(const Linearisation& base, std::size_t numbers) {
+  return {std::vector<double>(numbers, 0.0), base.unexplained(), total(base.window_cost())};
+}
+
+/// `step`: the base numbers take the step that goes with it.
+Screened told(const Linearisation& base, CandidateModel& candidate, const Point& nothing, const Point& best,
+              bool step) {
+  const model::ActiveEffect& active = candidate.active();
+  Screened screened{.effect = active.effect,
+                    .variant = active.variant,
+                    .variant_name = active.variant_name,
+                    .theta = best.theta,
+                    .base = base.fit().model,
+                    .gain = nothing.cost - best.cost,
+                    .window_cost = base.window_costs(best.residual.col(0)),
+                    .signature = best.residual.col(0) - nothing.residual.col(0)};
+  if (step && screened.gain > 0.0) base.step_base(candidate.residual(best.theta), screened.base);
+  const double norm = screened.signature.norm();
+  if (norm > 0.0) screened.signature /= norm;
+  return screened;
+}
+
 /// `refining`: the only start is a point found before, not merely the size of a first step away from nothing.
 Screened search_from(const Linearisation& base, const model::Effect& effect, int variant,
                      const std::string& variant_name, std::span<const std::vector<double>> starts, bool refining,
@@ -229,35 +259,18 @@ Screened search_from(const Linearisation& base, const model::Effect& effect, int
   CandidateModel candidate{base, effect, variant, variant_name};
   const std::vector<model::EffectParameter> parameters =
       model::parameters_of(effect, variant, *base.fit().model.vehicle);
-  const std::vector<double> none(parameters.size(), 0.0);
   // With a single start the effect is near enough to linear for the search to begin at nothing, whose residual is
   // known.
   const bool from_nothing = starts.size() == 1 && !refining;
-  const Point nothing{none, base.unexplained(), total(base.window_cost())};
+  const Point nothing = nothing_of(base, parameters.size());
   Point best = nothing;
   for (const Start& start : best_starts(base, candidate, parameters, starts)) {
-    Point at = nothing;
-    if (!from_nothing) {
-      at.theta = clamped(parameters, start.theta);
-      at.residual = candidate.residual(at.theta);
-      base.remove_base(at.residual);
-      at.cost = total(base.window_costs(at.residual.col(0)));
-    }
-    descend(base, candidate, parameters, from_nothing ? start.theta : none, {nothing.cost, worth, best.cost}, at);
+    Point at = from_nothing ? nothing : point_at(base, candidate, clamped(parameters, start.theta));
+    descend(base, candidate, parameters, from_nothing ? start.theta : nothing.theta, {nothing.cost, worth, best.cost},
+            at);
     if (at.cost < best.cost) best = std::move(at);
   }
-  Screened screened{.effect = &effect,
-                    .variant = variant,
-                    .variant_name = variant_name,
-                    .theta = best.theta,
-                    .base = base.fit().model,
-                    .gain = nothing.cost - best.cost,
-                    .window_cost = base.window_costs(best.residual.col(0)),
-                    .signature = best.residual.col(0) - nothing.residual.col(0)};
-  if (screened.gain > 0.0) base.step_base(candidate.residual(best.theta), screened.base);
-  const double norm = screened.signature.norm();
-  if (norm > 0.0) screened.signature /= norm;
-  return screened;
+  return told(base, candidate, nothing, best, nothing.cost - best.cost > worth * nothing.cost);
 }
 
 }  // namespace
@@ -270,6 +283,13 @@ Screened screen(const Linearisation& base, const model::Effect& effect, int vari
 Screened refine(const Linearisation& base, const Screened& rough) {
   const std::vector<std::vector<double>> start{rough.theta};
   return search_from(base, *rough.effect, rough.variant, rough.variant_name, start, true, 0.0);
+}
+
+Screened seen_by(const Linearisation& base, const Screened& rough) {
+  CandidateModel candidate{base, *rough.effect, rough.variant, rough.variant_name};
+  const Point nothing = nothing_of(base, rough.theta.size());
+  const Point at = point_at(base, candidate, rough.theta);
+  return told(base, candidate, nothing, at.cost < nothing.cost ? at : nothing, false);
 }
 
 }  // namespace fathom::diagnosis

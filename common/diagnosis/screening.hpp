@@ -31,5 +31,7 @@ struct Screened {
                               double worth = 0.0);
 /// Goes on from what a thinned linearisation found.
 [[nodiscard]] Screened refine(const Linearisation& base, const Screened& rough);
+/// What the numbers that a thinned linearisation found do there, without a further step.
+[[nodiscard]] Screened seen_by(const Linearisation& base, const Screened& rough);
 
 }  // namespace fathom::diagnosis

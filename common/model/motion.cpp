@@ -48,6 +48,11 @@ void InputSignal::mixture(double place, ActuatorForces& force) const {
   place = std::clamp(place, 0.0, last);
   const auto index = static_cast<std::size_t>(place);
   const double share = place - static_cast<double>(index);
+  if (share == 0.0) {  // what now() asks for
+    force = held_[index];
+    if (mixed_ && held_share_ != 1.0) force += (1.0 - held_share_) * (told_[index] - held_[index]);
+    return;
+  }
   const std::size_t next = std::min(index + 1, held_.size() - 1);
   if (mixed_) {
     force = held_share_ * ((1.0 - share) * held_[index] + share * held_[next]) +

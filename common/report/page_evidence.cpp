@@ -44,9 +44,11 @@ std::string odds_html(double log_odds) {
 std::string rivals(const EffectFound& effect) {
   std::string names, harm;
   const auto falsifies = [](const std::string& name, const std::string& parameter, double share) {
-    return parameter.empty() ? ""
-                             : " Unnoticed, " + effect_title(name, "") + " makes " + parameter + " " +
-                                   percent(std::abs(share)) + (share > 0.0 ? " too large" : " too small") + ".";
+    if (parameter.empty()) return std::string{};
+    const std::string unnoticed = " Unnoticed, " + effect_title(name, "");
+    if (share < -1.0) return unnoticed + " gives " + parameter + " the wrong sign.";
+    return unnoticed + " makes " + parameter + " " + percent(std::abs(share)) +
+           (share > 0.0 ? " too large" : " too small") + ".";
   };
   harm += falsifies(effect.name, effect.corrupts, effect.corruption);
   for (const Alternative& other : effect.alternatives) {
