@@ -4,7 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "test/support/virtual_dive.hpp"
 
@@ -128,4 +130,34 @@ TEST_CASE("screening: an amplitude may have either sign, wherever the search beg
     constexpr double kMoment = 1.0;  // s: the step itself lasts as long
     CHECK(std::abs(found.theta[2] - 52.0) < kMoment);
   }
+}
+
+TEST_CASE("screening: windows for a first look hold those that are explained worst, each once and in order") {
+  const Fitted fitted{{test::active("tether_tension", {1.5, 1.0, 1.5, 0.5, 0.0})}};
+  const std::size_t count = fitted.base.windows().size();
+  REQUIRE(count >= 6);
+  const std::size_t most = count / 2;
+  const Linearisation first = fitted.base.telling(most);
+  CHECK(first.windows().size() <= most);
+  CHECK(std::ranges::adjacent_find(first.places(), std::greater_equal<>{}) == first.places().end());
+  const auto cost = fitted.base.window_cost();
+  const auto worst = std::ranges::max_element(cost) - cost.begin();
+  CHECK(std::ranges::find(first.places(), static_cast<std::size_t>(worst)) != first.places().end());
+  CHECK(fitted.base.telling(count).windows().size() == count);
+}
+
+TEST_CASE("screening: what a first look found is seen by every window as the search itself would see it there") {
+  const Fitted fitted{{test::active("current", {0.1, -0.05})}};
+  const model::Effect& current = *model::find_effect("current");
+  const Linearisation first = fitted.base.thinned(fitted.base.windows().size() / 2);
+  const Screened rough = screen(first, current, 0, "", current.starts(fitted.scene, 0));
+  const Screened seen = seen_by(fitted.base, rough), refined = refine(fitted.base, rough);
+  CHECK(seen.theta == rough.theta);
+  CHECK(seen.signature.size() == refined.signature.size());
+  CHECK(seen.signature.norm() == doctest::Approx(1.0).epsilon(kUnit));
+  CHECK(seen.gain > 0.0);
+  CHECK(refined.gain >= seen.gain);
+  Screened absent = rough;
+  absent.theta.assign(absent.theta.size(), 0.0);
+  CHECK(seen_by(fitted.base, absent).gain == 0.0);
 }

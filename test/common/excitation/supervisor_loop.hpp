@@ -59,4 +59,15 @@ struct Loop {
   [[nodiscard]] bool thrust() const { return plant.applied().tau.norm() > 1e-9; }
 };
 
+/// A model with which the mode may be left at once.
+inline ModelEstimate finished(const model::Vehicle& vehicle, Utime utime) {
+  ModelEstimate model{.utime = utime};
+  for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
+    model.parameters.push_back({vehicle.parameters[i], vehicle.priors[i].mean, 0.01, ""});
+  }
+  for (const char* mode : {"yaw", "surge", "sway", "heave", "total"}) model.modes.push_back({mode, 0.01, 0.01});
+  model.residual_ratio.setOnes();
+  return model;
+}
+
 }  // namespace fathom::excitation
