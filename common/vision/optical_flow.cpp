@@ -8,6 +8,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "common/base/spatial.hpp"
+#include "common/vision/features.hpp"
 #include "common/vision/fine_shift.hpp"
 #include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
@@ -49,7 +50,8 @@ struct FlowTracker::State {
   cv::Mat blurred, smooth, wide, fine, fine_before;  // all but the first in float
   FineShift fine_shift;
   cv::Mat nodes, origin;
-  std::vector<cv::Point2f> features, found, back;
+  Features texture;
+  std::vector<cv::Point2f> features, some, found, back;
   std::vector<unsigned char> ok, ok_back;
   std::vector<float> errors;
   std::vector<Track> tracks;
@@ -97,37 +99,50 @@ struct FlowTracker::State {
   void choose_features() {
     constexpr double kQuality = 0.005, kLow = 5e-4;  // of the best: tags outshine a floor by far, lamps even more
     constexpr std::size_t kFew = 4;                  // times fewer than wanted
-    features.clear();
+    const auto most = static_cast<std::size_t>(settings.most_tracks);
     const double area = static_cast<double>(small.cols) * small.rows;
     const double apart = 0.6 * std::sqrt(area / settings.most_tracks);
+    texture.look(small, mask);
     for (const double quality : {kQuality, kLow}) {
-      cv::goodFeaturesToTrack(small, features, settings.most_tracks, quality, apart, mask, 3);
-      if (kFew * features.size() >= static_cast<std::size_t>(settings.most_tracks)) break;
+      texture.choose(quality, apart, most, features);
+      if (kFew * features.size() >= most) break;
     }
   }
 
-  // There with the rotation as a first guess, and back again.
+  // There with the rotation as a first guess, and back again. What is found is a first guess itself, of three numbers:
+  // every third feature is enough for it, unless few of them come back.
   void track(const std::optional<Eigen::Matrix3d>& R_01) {
+    constexpr std::size_t kPortions = 3;
+    tracks.clear();
+    for (std::size_t portion = 0; portion < kPortions; ++portion) {
+      some.clear();
+      for (std::size_t i = portion; i < features.size(); i += kPortions) some.push_back(features[i]);
+      if (!some.empty()) track_some(R_01);
+      if (2 * tracks.size() >= some.size() && tracks.size() >= 2 * static_cast<std::size_t>(settings.least_tracks))
+        break;
+    }
+  }
+
+  void track_some(const std::optional<Eigen::Matrix3d>& R_01) {
     found.clear();
-    for (const cv::Point2f& each : features) {
+    for (const cv::Point2f& each : some) {
       found.push_back(R_01 ? view.pixel(R_01->transpose() * view.direction(each)).value_or(each) : each);
     }
     const cv::TermCriteria stop{cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 8, 0.03};
     constexpr double kWeakest = 5e-4;
-    cv::calcOpticalFlowPyrLK(pyramid_before, pyramid, features, found, ok, errors, window(), kLevels, stop,
+    cv::calcOpticalFlowPyrLK(pyramid_before, pyramid, some, found, ok, errors, window(), kLevels, stop,
                              cv::OPTFLOW_USE_INITIAL_FLOW, kWeakest);
-    back = features;
+    back = some;
     cv::calcOpticalFlowPyrLK(pyramid, pyramid_before, found, back, ok_back, errors, window(), 0, stop,
                              cv::OPTFLOW_USE_INITIAL_FLOW, kWeakest);
-    tracks.clear();
     const auto limit = static_cast<float>(settings.there_and_back);
-    for (std::size_t i = 0; i < features.size(); ++i) {
+    for (std::size_t i = 0; i < some.size(); ++i) {
       const bool inside = found[i].x >= 0 && found[i].y >= 0 && found[i].x <= static_cast<float>(small.cols - 1) &&
                           found[i].y <= static_cast<float>(small.rows - 1);
       if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
-      const cv::Point2f miss = back[i] - features[i];
+      const cv::Point2f miss = back[i] - some[i];
       if (std::hypot(miss.x, miss.y) > limit) continue;
-      tracks.push_back({.from = view.whole(features[i]), .to = view.whole(found[i])});
+      tracks.push_back({.from = view.whole(some[i]), .to = view.whole(found[i])});
     }
   }
 
