@@ -204,17 +204,23 @@ struct FlowTracker::State {
     }
     return tried;
   }
-  // Once more where the first round has moved far from where it began: ends are found near it alone.
+  // Once more where a round has moved from where it began: ends are found near it alone, and so a round sees less than
+  // the whole of what is left, the less the wider they scatter. Where they lie as chance would have them it sees
+  // nothing.
   PlaneFlow follow(PlaneMotion motion, int& tried) {
-    constexpr int kRounds = 2;
-    constexpr double kNear = 0.2;  // px
+    constexpr int kRounds = 4;
+    constexpr double kNear = 0.1;   // px
+    constexpr double kLeast = 0.1;  // of what is left; the covariance is then a hundred times that of the spread
     PlaneFlow plane;
     for (int round = 0; round < kRounds; ++round) {
       tried = refine(motion);
       make_rows(motion);
       plane = fit_plane_flow(rows);
-      const double moved = (plane.tau - motion.tau).norm() * view.focal();
-      if (plane.n_agreed < settings.least_tracks || moved < kNear) break;
+      const double seen = std::max(share_seen_near(plane.spread * view.focal()), kLeast);
+      const Eigen::Vector3d moved = (plane.tau - motion.tau) / seen;
+      plane.tau = motion.tau + moved;
+      plane.covariance /= seen * seen;
+      if (plane.n_agreed < settings.least_tracks || moved.norm() * view.focal() < kNear) break;
       motion.tau = plane.tau;
     }
     return plane;

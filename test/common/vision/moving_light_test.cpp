@@ -4,8 +4,10 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <random>
 
 #include "common/vision/fine_shift.hpp"
+#include "common/vision/light_change.hpp"
 #include "test/common/vision/scene.hpp"
 
 namespace fathom::vision {
@@ -90,6 +92,33 @@ TEST_CASE("flow: smooth pictures that have nothing to do with each other have no
     cv::normalize(grey, grey, 0, 255, cv::NORM_MINMAX);
     const Flow flow = tracker.step(1'000'000 + 33'000 * i, grey, Eigen::Matrix3d::Identity(), std::nullopt);
     CHECK(flow.state != FlowState::kValid);
+  }
+}
+
+TEST_CASE("flow: of ends that are kept because they are near, the mean is brought to where it was without that") {
+  constexpr double kReach = 0.5;  // px, of end_in_changed_light
+  constexpr double kShare = 0.1;  // its approximation is within 0.03 of the share, which is down to 0.3 here
+  constexpr int kEnds = 200'000;
+  std::mt19937 generator{9};
+  std::normal_distribution<double> normal;
+  CHECK(share_seen_near(0.0) == 1.0);
+  CHECK(share_seen_near(0.5 * kReach) == doctest::Approx(0.0));  // an even disc's
+  for (const double sigma : {0.1, 0.2, 0.3, 0.4}) {
+    CAPTURE(sigma);
+    const Eigen::Vector2d mean{0.05, -0.02};
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double squares = 0.0;
+    int kept = 0;
+    for (int i = 0; i < kEnds; ++i) {
+      const Eigen::Vector2d end = mean + sigma * Eigen::Vector2d{normal(generator), normal(generator)};
+      if (end.norm() > kReach) continue;
+      sum += end;
+      squares += end.squaredNorm();
+      ++kept;
+    }
+    const Eigen::Vector2d seen = sum / kept;
+    const double spread = std::sqrt(0.5 * (squares / kept - seen.squaredNorm()));
+    CHECK((seen / share_seen_near(spread) - mean).norm() < kShare * mean.norm());
   }
 }
 
