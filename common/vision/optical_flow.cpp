@@ -81,9 +81,9 @@ struct FlowTracker::State {
   }
 
   // There with the rotation as a first guess, and back again. What is found is a first guess itself, of three numbers:
-  // every third feature is enough for it, unless few of them come back.
+  // every fourth feature is enough for it, unless few of them come back.
   void track(const std::optional<Eigen::Matrix3d>& R_01) {
-    constexpr std::size_t kPortions = 3;
+    constexpr std::size_t kPortions = 4;
     tracks.clear();
     for (std::size_t portion = 0; portion < kPortions; ++portion) {
       some.clear();
