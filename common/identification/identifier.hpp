@@ -15,6 +15,7 @@
 
 #include "common/identification/effect_track.hpp"
 #include "common/identification/integral_regressor.hpp"
+#include "common/identification/misfit.hpp"
 #include "common/identification/recursive.hpp"
 #include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
@@ -68,11 +69,14 @@ class Identifier {
     std::vector<ModelEstimate> models;
     std::vector<Residual> residuals;
     std::vector<RowBlock> blocks;  ///< the rows that each update took in
+    std::vector<ParameterMatrix>
+        bends;  ///< of each model, its share of the covariance that is for what the model lacks
     [[nodiscard]] bool empty() const { return models.empty(); }
     void clear() {
       models.clear();
       residuals.clear();
       blocks.clear();
+      bends.clear();
     }
   };
 
@@ -98,6 +102,8 @@ class Identifier {
 
   /// The model as it stands.
   [[nodiscard]] ModelEstimate model() const;
+  /// What the base parameters may be off by for what the model lacks: in the covariance of model().
+  [[nodiscard]] ParameterMatrix bend() const;
   /// False when this vehicle has no such parameter. A frozen one is neither learnt nor forgotten.
   bool freeze(std::string_view parameter);
   bool resume(std::string_view parameter);
@@ -170,6 +176,7 @@ class Identifier {
   StreamAligner aligner_;
   Utime model_utime_{};
   std::array<Recent, 6> recent_{};
+  Misfit misfit_;
   std::vector<Wish> wishes_;            // in the order of time, not yet obeyed
   std::deque<EffectRanking> rankings_;  // likewise, not yet judged
   EffectEvidence leader_;               // accepted in the last rankings

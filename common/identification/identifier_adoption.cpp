@@ -190,6 +190,7 @@ void Identifier::learn_anew(bool hold_effect) {
   estimator_ = RecursiveEstimator{std::move(settings)};
   regressor_.reset();
   recent_ = {};
+  misfit_ = Misfit{estimator_.size()};
   cost_ = 0.0;
   for (const EffectSample& sample : kept_) {
     const std::optional<RowBlock> block = rows_of(sample);
