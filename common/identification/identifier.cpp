@@ -220,6 +220,7 @@ void Identifier::use(const EffectSample& sample) {
 ModelEstimate Identifier::model() const {
   RecursiveReport report = estimator_.report();
   compensate(report);
+  doubt_unmoved(report);
   if (misfit_.any()) report.covariance += misfit_.bend(estimator_.covariance());
   add_systematic(report);
   ModelEstimate estimate;

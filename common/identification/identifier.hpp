@@ -144,6 +144,7 @@ class Identifier {
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
   [[nodiscard]] double moment_of_offsets(int axis, const RecursiveReport& report) const;
   void compensate(RecursiveReport& report) const;
+  void doubt_unmoved(RecursiveReport& report) const;
   void add_systematic(RecursiveReport& report) const;
   void release();
   void use(const EffectSample& sample);

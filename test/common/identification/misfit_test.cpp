@@ -116,3 +116,16 @@ TEST_CASE("misfit: what is saved says it too") {
   REQUIRE(second.resumed());
   CHECK(second.model().residual_excess == first.model().residual_excess);
 }
+
+TEST_CASE("identifier: an axis that nothing has moved is as unknown as it was, whatever its noise teaches") {
+  const auto ahead_only = [](int axis, double t) { return axis == 0 ? driven(axis, t) : 0.0; };
+  const ModelEstimate model = learnt(120.0, ahead_only, [](int, double told) { return told; }).model();
+  CHECK(std::abs(off(model, 0)) < 3.0);
+  CHECK(model.parameters[0].std < 0.02 * kMass);
+  CHECK(std::abs(model.parameters[2].value) < 0.5 * kMass);  // drawn to zero...
+  for (const std::size_t k : {2U, 3U}) {
+    CAPTURE(model.parameters[k].name);
+    CHECK(std::abs(off(model, k)) < 1.96);  // ...and no claim
+    CHECK(model.parameters[k].std > 7.0);
+  }
+}
