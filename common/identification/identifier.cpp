@@ -253,6 +253,7 @@ void Identifier::reset() {
   kept_.clear();
   leader_ = {};
   in_a_row_ = without_ = 0;
+  stands_for_ = -1;
   origin_ = 0;
   voltage_ = 0.0;
   input_ = InputKind::kUnknown;

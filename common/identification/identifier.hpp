@@ -152,6 +152,8 @@ class Identifier {
   void keep(const EffectSample& sample);
   void weigh(Utime utime);
   void adopt(const EffectEvidence& found);
+  bool try_on(model::ActiveEffect effect);
+  void prefer(int plain);
   [[nodiscard]] bool explains() const;
   [[nodiscard]] bool vanishes() const;
   void drop();
@@ -186,6 +188,7 @@ class Identifier {
   std::unique_ptr<EffectTrack> track_;
   ParameterVector linearised_at_;  // base parameters of the track
   std::vector<double> stuck_at_;   // numbers of the effect around which it fitted no better; empty: not so
+  int stands_for_{-1};             // variant that was named where the ordinary form was adopted
   double cost_{};                  // squared innovations over their variance since all was learnt anew
   Utime origin_{};                 // of the first motion used
   double voltage_{};

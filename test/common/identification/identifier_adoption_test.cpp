@@ -138,6 +138,27 @@ TEST_CASE("adoption: numbers that hardly show yet do not run away, however rough
   }
 }
 
+TEST_CASE("adoption: a form with more numbers gives way to the ordinary one that leaves as little") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto apart = [](double all, double longer) {
+    model::ActiveEffect effect = test::active("thruster_lag", {all, longer}, 1);
+    effect.variant_name = "vertical thrusters apart";
+    return effect;
+  };
+  const auto adopted = [&](const model::ActiveEffect& truth, const model::ActiveEffect& found) {
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 200.0, .seed = 31, .effects = {truth}});
+    Identifier identifier{settings(), vehicle};
+    feed(identifier, dive.trial, 0.0, 1e9, diagnoser(identifier, found));
+    return identifier.model();
+  };
+  const ModelEstimate same = adopted(test::active("thruster_lag", {0.2, 0.0}), apart(0.18, 0.15));
+  REQUIRE(same.effect_numbers.size() == 1);  // whatever is named from then on
+  CHECK(std::abs(same.effect_numbers[0].value - 0.2) < kSigmas * same.effect_numbers[0].std);
+  const ModelEstimate two = adopted(apart(0.15, 0.4), apart(0.13, 0.3));
+  REQUIRE(two.effect_numbers.size() == 2);
+  CHECK(std::abs(two.effect_numbers[1].value - 0.4) < kSigmas * two.effect_numbers[1].std);
+}
+
 TEST_CASE("adoption: it takes several rankings in a row, and nothing happens where it is not wished") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   const model::ActiveEffect gain = named(vehicle, "thruster_gain", {-0.4}, 1);
