@@ -239,12 +239,6 @@ ModelEstimate Identifier::model() const {
   return estimate;
 }
 
-ParameterMatrix Identifier::bend() const {
-  const auto n = static_cast<Eigen::Index>(parameters_.size());
-  return misfit_.any() ? ParameterMatrix{misfit_.bend(estimator_.covariance()).topLeftCorner(n, n)}
-                       : ParameterMatrix{ParameterMatrix::Zero(n, n)};
-}
-
 void Identifier::reset() {
   regressor_.reset();
   track_.reset();

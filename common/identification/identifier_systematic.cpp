@@ -44,6 +44,12 @@ void Identifier::compensate(RecursiveReport& report) const {
   report.covariance += kDoubtOfNoise * kDoubtOfNoise * correction * correction.transpose();
 }
 
+ParameterMatrix Identifier::bend() const {
+  const auto n = static_cast<Eigen::Index>(parameters_.size());
+  return misfit_.any() ? ParameterMatrix{misfit_.bend(estimator_.covariance()).topLeftCorner(n, n)}
+                       : ParameterMatrix{ParameterMatrix::Zero(n, n)};
+}
+
 // An axis that has hardly moved: where most of what a mass was learnt from is the noise of accelerations, as stated, it
 // and the axis's drag are drawn to zero, and no residual shows it. Of a regressor with the share s of noise 1 - s of
 // the parameter is left; nothing is left to know it by when all is noise, and then it is as unknown as it was.
