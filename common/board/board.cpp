@@ -119,7 +119,13 @@ Json model(const ModelEstimate& said) {
   Entanglement entangled;
   if (said.covariance.size() <= kMostCovariance) entangled = entanglement(said.covariance);
   std::size_t at = 0;
+  static constexpr std::array<const char*, 6> kAxes{"X", "Y", "Z", "K", "M", "N"};
+  Json failing = Json::array();
+  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+    if (said.residual_excess[static_cast<Eigen::Index>(axis)] > 0.0) failing.push_back(kAxes[axis]);
+  }
   return {{"joint", said.joint},
+          {"residual_fails_on", failing},
           {"updates", said.updates},
           {"parameters", list(said.parameters,
                               [&](const NamedValue& each) {

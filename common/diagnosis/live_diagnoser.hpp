@@ -100,6 +100,8 @@ class LiveDiagnoser {
   [[nodiscard]] EffectRanking rank(Utime utime);
   [[nodiscard]] EffectRanking by_forces(Utime utime);
   [[nodiscard]] bool leaves_much(Utime utime);
+  void doubt(EffectRanking& ranking);
+  void prefer_plain();
   [[nodiscard]] identification::IntegralSettings integral_settings() const;
 
   LiveSettings settings_;
@@ -125,8 +127,15 @@ class LiveDiagnoser {
   struct Left {
     Utime utime{};
     double ratio{};
+    std::vector<std::string> effects;  // adopted
+  };
+  struct Named {
+    std::string what;
+    double explains{};
+    int times{};
   };
   std::deque<Left> left_;  // of MODEL, newest last
+  Named named_;            // in the last rankings
   std::map<std::string, std::int64_t> rejected_;
 };
 

@@ -12,6 +12,8 @@ constexpr double kModelDelay = 2.0;       // s: more than the identifier is late
 constexpr std::size_t kMostModels = 100;  // of MODEL that are remembered
 // Too little of all axes for a name may be most of what one of them leaves: at twice the evidence of a name and half of
 // what it must explain, something is at work. Trials without an effect stay below half of both (docs/live.md).
+constexpr int kLongNamed = 5;           // rankings: the identifier has had them, and MODEL is back
+constexpr double kExplainsMore = 0.05;  // of the error
 constexpr double kMoreEvidence = 2.0, kLessExplained = 0.5;
 
 }  // namespace
@@ -21,7 +23,11 @@ EffectRanking LiveDiagnoser::rank(Utime utime) {
   EffectRanking ranking = by_forces(utime);
   std::vector<EffectEvidence> faults = sensors_.faults();
   std::erase_if(faults, [&](const EffectEvidence& fault) { return fault.log_odds < settings_.accept_log_odds; });
-  if (faults.empty() || (ranking.verdict == "collecting" && !turning_)) return ranking;
+  if (faults.empty() || (ranking.verdict == "collecting" && !turning_)) {
+    doubt(ranking);
+    return ranking;
+  }
+  named_ = {};
   ranking.verdict = "effect";
   ranking.against.clear();
   rivals_.reset();
@@ -49,6 +55,7 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   std::stable_sort(suspicions_.begin(), doubtful, [](const LiveSuspicion& a, const LiveSuspicion& b) {
     return a.error_reduction > b.error_reduction;
   });
+  if (doubtful != suspicions_.begin()) prefer_plain();
   const auto effect_of = [&](const LiveSuspicion& s) { return forms()[static_cast<std::size_t>(s.form)].effect; };
   std::vector<const LiveSuspicion*> best;  // of each effect, in order
   for (const LiveSuspicion& suspicion : suspicions_) {
@@ -103,9 +110,43 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   return ranking;
 }
 
+// The ordinary form of an effect, which has no name, stands for every other from which blocks do not tell it: two forms
+// of a lag change places with every block, and mean the same.
+void LiveDiagnoser::prefer_plain() {
+  const auto form_of = [&](const LiveSuspicion& s) { return forms()[static_cast<std::size_t>(s.form)]; };
+  const LiveForm best = form_of(suspicions_.front());
+  const auto plain = std::ranges::find_if(suspicions_, [&](const LiveSuspicion& s) {
+    const LiveForm form = form_of(s);
+    return form.effect == best.effect && form.variant_name.empty() &&
+           form.effect->numbers(form.variant) <= best.effect->numbers(best.variant);
+  });
+  if (plain == suspicions_.end() || plain->log_odds < settings_.accept_log_odds ||
+      plain->error_reduction < settings_.smallest_reduction)
+    return;
+  if (robust_log_likelihood_ratio(plain->block_cost, suspicions_.front().block_cost) < settings_.alternative_log_odds)
+    std::rotate(suspicions_.begin(), plain, plain + 1);
+}
+
+// What is named again and again is adopted, unless it leaves a residual: then the name explains something of it, and is
+// not what is missing. It is believed anew when it has come to explain more.
+void LiveDiagnoser::doubt(EffectRanking& ranking) {
+  if (ranking.verdict != "effect") return;
+  const EffectEvidence& best = ranking.candidates.front();
+  const std::string what = best.name + " " + best.variant;
+  if (what != named_.what || best.error_reduction > named_.explains + kExplainsMore)
+    named_ = {what, best.error_reduction, 0};
+  ++named_.times;
+  if (named_.times <= kLongNamed || !leaves_much(ranking.utime)) return;
+  const Left* model = nullptr;
+  for (const Left& left : left_) {
+    if (seconds_between(left.utime, ranking.utime) >= kModelDelay) model = &left;
+  }
+  if (std::ranges::find(model->effects, best.name) == model->effects.end()) ranking.verdict = "unexplained";
+}
+
 void LiveDiagnoser::hear(const ModelEstimate& model) {
   if (!left_.empty() && model.utime <= left_.back().utime) return;
-  left_.push_back({model.utime, model.residual_ratio.maxCoeff()});
+  left_.push_back({model.utime, model.residual_ratio.maxCoeff(), model.effects});
   if (left_.size() > kMostModels) left_.pop_front();
 }
 
@@ -126,6 +167,7 @@ void LiveDiagnoser::forget_motion() {
   screening_.reset();
   wider_.reset();
   turning_ = false;
+  named_ = {};
   commands_end_.reset();
 }
 

@@ -86,7 +86,8 @@ Identifier::Identifier(const IdentifierSettings& settings, const model::Vehicle&
       estimator_{recursive_settings(settings, vehicle)},
       aligner_{{.interpolate = settings.interpolate_input,
                 .max_input_gap = settings.max_input_gap,
-                .max_skew = settings.max_skew}} {}
+                .max_skew = settings.max_skew}},
+      misfit_{estimator_.size()} {}
 
 const Identifier::Output& Identifier::step(const StateEstimate& state) {
   output_.clear();
@@ -213,11 +214,14 @@ void Identifier::use(const EffectSample& sample) {
   output_.residuals.push_back(residual);
   output_.blocks.push_back(*block);
   output_.models.push_back(model());
+  output_.bends.push_back(bend());
 }
 
 ModelEstimate Identifier::model() const {
   RecursiveReport report = estimator_.report();
   compensate(report);
+  doubt_unmoved(report);
+  if (misfit_.any()) report.covariance += misfit_.bend(estimator_.covariance());
   add_systematic(report);
   ModelEstimate estimate;
   estimate.utime = model_utime_;
@@ -243,12 +247,14 @@ void Identifier::reset() {
   kept_.clear();
   leader_ = {};
   in_a_row_ = without_ = 0;
+  stands_for_ = -1;
   origin_ = 0;
   voltage_ = 0.0;
   input_ = InputKind::kUnknown;
   aligner_.reset();
   model_utime_ = 0;
   recent_ = {};
+  misfit_ = Misfit{estimator_.size()};
   wishes_.clear();
   frozen_.clear();
   output_ = Output{};

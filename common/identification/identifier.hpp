@@ -15,6 +15,7 @@
 
 #include "common/identification/effect_track.hpp"
 #include "common/identification/integral_regressor.hpp"
+#include "common/identification/misfit.hpp"
 #include "common/identification/recursive.hpp"
 #include "common/identification/stream_aligner.hpp"
 #include "common/model/vehicle.hpp"
@@ -68,11 +69,14 @@ class Identifier {
     std::vector<ModelEstimate> models;
     std::vector<Residual> residuals;
     std::vector<RowBlock> blocks;  ///< the rows that each update took in
+    std::vector<ParameterMatrix>
+        bends;  ///< of each model, its share of the covariance that is for what the model lacks
     [[nodiscard]] bool empty() const { return models.empty(); }
     void clear() {
       models.clear();
       residuals.clear();
       blocks.clear();
+      bends.clear();
     }
   };
 
@@ -98,6 +102,8 @@ class Identifier {
 
   /// The model as it stands.
   [[nodiscard]] ModelEstimate model() const;
+  /// What the base parameters may be off by for what the model lacks: in the covariance of model().
+  [[nodiscard]] ParameterMatrix bend() const;
   /// False when this vehicle has no such parameter. A frozen one is neither learnt nor forgotten.
   bool freeze(std::string_view parameter);
   bool resume(std::string_view parameter);
@@ -138,6 +144,7 @@ class Identifier {
   void add_metrics(ModelEstimate& estimate, const RecursiveReport& report) const;
   [[nodiscard]] double moment_of_offsets(int axis, const RecursiveReport& report) const;
   void compensate(RecursiveReport& report) const;
+  void doubt_unmoved(RecursiveReport& report) const;
   void add_systematic(RecursiveReport& report) const;
   void release();
   void use(const EffectSample& sample);
@@ -145,6 +152,8 @@ class Identifier {
   void keep(const EffectSample& sample);
   void weigh(Utime utime);
   void adopt(const EffectEvidence& found);
+  bool try_on(model::ActiveEffect effect);
+  void prefer(int plain);
   [[nodiscard]] bool explains() const;
   [[nodiscard]] bool vanishes() const;
   void drop();
@@ -170,6 +179,7 @@ class Identifier {
   StreamAligner aligner_;
   Utime model_utime_{};
   std::array<Recent, 6> recent_{};
+  Misfit misfit_;
   std::vector<Wish> wishes_;            // in the order of time, not yet obeyed
   std::deque<EffectRanking> rankings_;  // likewise, not yet judged
   EffectEvidence leader_;               // accepted in the last rankings
@@ -178,6 +188,7 @@ class Identifier {
   std::unique_ptr<EffectTrack> track_;
   ParameterVector linearised_at_;  // base parameters of the track
   std::vector<double> stuck_at_;   // numbers of the effect around which it fitted no better; empty: not so
+  int stands_for_{-1};             // variant that was named where the ordinary form was adopted
   double cost_{};                  // squared innovations over their variance since all was learnt anew
   Utime origin_{};                 // of the first motion used
   double voltage_{};

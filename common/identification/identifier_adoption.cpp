@@ -15,6 +15,7 @@ constexpr double kSmallestMass = 0.1;  // of the prior mean: keeps a poor first 
 constexpr double kFewest = 5.0;        // residuals before anything is said of them
 constexpr double kLargestRatio = 2.0;  // of the residual's power to that of the stated noise, as for leaving a mode
 constexpr double kPresent = 3.0;       // sigmas from zero: smaller, and the effect may as well be absent
+constexpr double kTold = 3.0;          // log likelihood ratio from which two forms are told apart
 constexpr double kMoved = 1.0;         // sigmas that a number may go from where the effect was linearised
 constexpr std::array kShares{1.0, 0.5, 0.25, 0.1};  // of the way to the new numbers
 constexpr double kHeld = 1e-6;                      // of a number's prior sigma, where it shall stay
@@ -91,19 +92,51 @@ void Identifier::adopt(const EffectEvidence& found) {
     return;
   }
   const auto number = static_cast<int>(variant - variants.begin());
-  if (track_ && track_->effect().effect == effect && track_->effect().variant == number) {
+  const bool known = track_ && track_->effect().effect == effect;
+  if (known && (track_->effect().variant == number || stands_for_ == number)) {
     if (moved() >= kMoved) (void)relearn();
     return;
   }
   model::ActiveEffect first{.effect = effect, .variant = number, .variant_name = found.variant, .theta = found.numbers};
-  keep_inside(first, *vehicle_);
-  follow(std::move(first), estimator_.projected().head(static_cast<Eigen::Index>(parameters_.size())));
-  learn_anew();
-  for (int round = 1; round < kRounds && relearn(); ++round) continue;
-  if (!explains()) {
+  stands_for_ = -1;
+  if (!try_on(std::move(first))) {
     ++rejected_["effect leaves a residual"];
     drop();
+    return;
   }
+  const auto plain = std::find(variants.begin(), variants.end(), "");
+  if (plain != variants.end() && plain != variant) prefer(static_cast<int>(plain - variants.begin()));
+}
+
+// Learnt anew with it in the model; whether it leaves no more than noise.
+bool Identifier::try_on(model::ActiveEffect effect) {
+  keep_inside(effect, *vehicle_);
+  follow(std::move(effect), estimator_.projected().head(static_cast<Eigen::Index>(parameters_.size())));
+  learn_anew();
+  for (int round = 1; round < kRounds && relearn(); ++round) continue;
+  return explains();
+}
+
+// The effect's ordinary form with no more numbers, where it leaves no more than noise either and the motion does not
+// tell them apart: a named form may have found another vehicle. Heave behind a lag T of mass m and drag D is heave
+// behind a lag m / D of mass T D. The ratio of their squares is judged with one independent row per window.
+void Identifier::prefer(int plain) {
+  const model::ActiveEffect named = track_->effect();
+  const ParameterVector base = linearised_at_;
+  const double cost = cost_;
+  if (named.effect->numbers(plain) > named.effect->numbers(named.variant)) return;
+  model::ActiveEffect ordinary{.effect = named.effect, .variant = plain, .variant_name = "", .theta = named.theta};
+  for (std::size_t i = 0; i < ordinary.theta.size(); ++i) {
+    if (!named.effect->takes_part(plain, i)) ordinary.theta[i] = 0.0;
+  }
+  const bool leaves_nothing = try_on(std::move(ordinary));
+  const double rows = static_cast<double>(estimator_.state().updates) * settings_.stride / settings_.window;
+  if (leaves_nothing && 0.5 * rows * std::log(cost_ / cost) < kTold) {
+    stands_for_ = named.variant;
+    return;
+  }
+  follow(named, base);
+  learn_anew();
 }
 
 // How far the numbers are, in sigmas, from where the effect was linearised, or from where that led to nothing.
@@ -179,6 +212,7 @@ bool Identifier::vanishes() const {
 void Identifier::drop() {
   if (resumed_) return;
   track_.reset();
+  stands_for_ = -1;
   in_a_row_ = 0;
   learn_anew();
 }
@@ -190,6 +224,7 @@ void Identifier::learn_anew(bool hold_effect) {
   estimator_ = RecursiveEstimator{std::move(settings)};
   regressor_.reset();
   recent_ = {};
+  misfit_ = Misfit{estimator_.size()};
   cost_ = 0.0;
   for (const EffectSample& sample : kept_) {
     const std::optional<RowBlock> block = rows_of(sample);

@@ -14,10 +14,12 @@
 namespace fathom::identification {
 namespace {
 
-constexpr double kOfNoAccount = 0.05;         // of the noise's sigma: so small a mean is inside the intervals
-constexpr double kFewest = 5.0;               // residuals before anything is said of them
+constexpr double kOfNoAccount = 0.05;  // of the noise's sigma: so small a mean is inside the intervals
+constexpr double kFewest = 5.0;        // residuals before anything is said of them
+constexpr double kEnough = 20.0;       // before the model is said to lack something
+constexpr double kLargestRatio = 2.0;  // of the residual's power to that of the stated noise, as for leaving a mode
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 7";
+constexpr char kHeader[] = "fathom identifier 8";
 
 double take(std::istringstream& text) {
   const std::optional<double> number = take_number(text);
@@ -45,6 +47,7 @@ void Identifier::add_metrics(ModelEstimate& estimate, const RecursiveReport& rep
     const double rho = std::clamp((r.product - r.mean * r.mean) / variance, 0.0, kLargestCorrelation);
     const double known = variance / r.weight * (1.0 + rho) / (1.0 - rho);
     const double offsets = moment_of_offsets(static_cast<int>(axis), report);
+    estimate.residual_excess[k] = misfit_.excess()[k];
     estimate.residual_mean[k] = r.mean / std::sqrt(known + kOfNoAccount * kOfNoAccount + offsets * offsets);
   }
 }
@@ -65,6 +68,7 @@ double Identifier::moment_of_offsets(int axis, const RecursiveReport& report) co
 
 void Identifier::remember(const RowBlock& block) {
   const double keep = std::exp(-settings_.stride / settings_.residual_memory);
+  if (settings_.memory > 0.0) misfit_.forget(std::exp(-settings_.stride / settings_.memory));
   for (const Row& row : block.view()) {
     const auto axis = static_cast<std::size_t>(row.axis);
     // Scaled by the estimator so that it has the row's variance when the model is right.
@@ -78,6 +82,7 @@ void Identifier::remember(const RowBlock& block) {
     r.square += share * (value * value - r.square);
     r.product += share * (product - r.product);
     r.last = value;
+    misfit_.take(row, value * value, r.weight >= kEnough && r.square > kLargestRatio);
     const int quadratic = column(static_cast<model::BaseParameter>(12 + row.axis));  // its column is -|nu| nu
     if (quadratic >= 0) r.speed += share * (std::sqrt(std::abs(row.h(quadratic))) - r.speed);
   }
@@ -124,6 +129,8 @@ std::string Identifier::save_text() const {
   for (const Recent& r : recent_) {
     for (const double value : {r.weight, r.mean, r.square, r.product, r.last, r.speed}) put_number(text, value);
   }
+  all(misfit_.excess());
+  for (const ParameterVector& information : misfit_.state().information) all(information);
   text += "\n" + std::to_string(frozen_.size());
   for (const std::string& name : frozen_) text += " " + name;
   return text + "\nend\n";
@@ -186,6 +193,9 @@ void Identifier::decide(Utime first) {
     for (Recent& r : recent) {
       for (double* value : {&r.weight, &r.mean, &r.square, &r.product, &r.last, &r.speed}) *value = take(text);
     }
+    Misfit misfit{estimator_.size()};
+    all(misfit.state().excess);
+    for (ParameterVector& information : misfit.state().information) all(information);
     std::size_t frozen{};
     std::string word;
     std::vector<std::string> names;
@@ -194,6 +204,7 @@ void Identifier::decide(Utime first) {
     if (!(text >> word) || word != "end") throw InputError("identifier: the saved state is cut off");
     estimator_.restore(s);
     recent_ = recent;
+    misfit_ = misfit;
     frozen_ = names;
     for (const std::string& name : frozen_) freeze(name);
     model_utime_ = utime;

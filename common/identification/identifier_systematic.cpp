@@ -9,6 +9,7 @@
 namespace fathom::identification {
 namespace {
 
+constexpr double kMostlyNoise = 0.5;   // share of what a mass was learnt from
 constexpr double kDoubtOfNoise = 0.5;  // share of the correction: how well the noise of an estimated speed is known
 
 }  // namespace
@@ -41,6 +42,35 @@ void Identifier::compensate(RecursiveReport& report) const {
     if (report.active[static_cast<std::size_t>(i)]) report.estimate(i) = 0.0;
   }
   report.covariance += kDoubtOfNoise * kDoubtOfNoise * correction * correction.transpose();
+}
+
+ParameterMatrix Identifier::bend() const {
+  const auto n = static_cast<Eigen::Index>(parameters_.size());
+  return misfit_.any() ? ParameterMatrix{misfit_.bend(estimator_.covariance()).topLeftCorner(n, n)}
+                       : ParameterMatrix{ParameterMatrix::Zero(n, n)};
+}
+
+// An axis that has hardly moved: where most of what a mass was learnt from is the noise of accelerations, as stated, it
+// and the axis's drag are drawn to zero, and no residual shows it. Of a regressor with the share s of noise 1 - s of
+// the parameter is left; nothing is left to know it by when all is noise, and then it is as unknown as it was.
+void Identifier::doubt_unmoved(RecursiveReport& report) const {
+  if (settings_.noise_acceleration <= 0.0) return;
+  const RecursiveEstimator::State& s = estimator_.state();
+  ParameterVector wider = ParameterVector::Ones(report.estimate.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    const int mass = column(static_cast<model::BaseParameter>(axis));
+    if (mass < 0 || !(s.information(mass) > 0.0)) continue;
+    const double noise = std::pow(settings_.noise_acceleration, 2.0) * s.derivatives(mass) / s.information(mass);
+    if (noise < kMostlyNoise) continue;
+    for (const int each : {axis, 6 + axis, 12 + axis}) {
+      const int i = column(static_cast<model::BaseParameter>(each));
+      if (i < 0) continue;
+      const double known = std::sqrt(report.covariance(i, i)), prior = estimator_.prior_sigma()(i);
+      const double most = std::max(1.0, prior / known);
+      wider(i) = noise < 1.0 ? std::min(most, (1.0 - kMostlyNoise) / (1.0 - noise)) : most;
+    }
+  }
+  report.covariance = (wider.asDiagonal() * report.covariance * wider.asDiagonal()).eval();
 }
 
 // Velocities that are all off by the same share s explain every force as well with masses and linear drag divided by

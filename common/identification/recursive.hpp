@@ -83,6 +83,7 @@ class RecursiveEstimator {
 
   [[nodiscard]] int size() const { return static_cast<int>(settings_.mean.size()); }
   [[nodiscard]] const Signs& signs() const { return settings_.signs; }
+  [[nodiscard]] const ParameterVector& prior_sigma() const { return settings_.sigma; }
   [[nodiscard]] ParameterVector unconstrained() const { return state_.estimate.head(size()); }
   [[nodiscard]] ParameterMatrix covariance() const;  ///< nominal: trusts the stated variances
   [[nodiscard]] const State& state() const { return state_; }

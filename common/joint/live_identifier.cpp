@@ -34,7 +34,7 @@ LiveIdentifier::LiveIdentifier(const identification::IdentifierSettings& setting
 
 void LiveIdentifier::stash(const Output& output) {
   for (std::size_t i = 0; i < output.models.size(); ++i)
-    pending_.push_back({output.models[i], output.residuals[i], output.blocks[i]});
+    pending_.push_back({output.models[i], output.residuals[i], output.blocks[i], output.bends[i]});
 }
 
 const LiveIdentifier::Output& LiveIdentifier::step(const StateEstimate& state) {
@@ -110,16 +110,23 @@ void LiveIdentifier::say(const Pending& pending, bool reached) {
       residual.wrench(row.axis) = row.y - row.h.head(said_.size()).dot(said_);
   }
   output_.residuals.push_back(residual);
-  output_.models.push_back(joint ? with_joint(pending.model) : pending.model);
+  output_.models.push_back(joint ? with_joint(pending.model, pending.bend) : pending.model);
   const auto& said = output_.models.back().parameters;
   said_.resize(static_cast<Eigen::Index>(said.size()));
   for (std::size_t i = 0; i < said.size(); ++i) said_(static_cast<Eigen::Index>(i)) = said[i].value;
 }
 
-ModelEstimate LiveIdentifier::with_joint(ModelEstimate model) const {
-  const ParameterMatrix covariance = joint_->covariance();
+// What the model lacks bends both, each in its way: where the residual's test has failed, what they differ by is doubt.
+ModelEstimate LiveIdentifier::with_joint(ModelEstimate model, const ParameterMatrix& bend) const {
+  ParameterMatrix covariance = joint_->covariance();
   const ParameterVector estimate = identification::project_on_signs(joint_->estimate(), covariance, recursive_.signs());
   const auto n = covariance.rows();
+  const ParameterVector nominal = covariance.diagonal();
+  if ((model.residual_excess.array() > 0.0).any()) {
+    ParameterVector apart(n);
+    for (Eigen::Index k = 0; k < n; ++k) apart(k) = estimate(k) - model.parameters[static_cast<std::size_t>(k)].value;
+    covariance += bend + apart * apart.transpose();
+  }
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     model.parameters[i].value = estimate(k);
@@ -128,14 +135,14 @@ ModelEstimate LiveIdentifier::with_joint(ModelEstimate model) const {
   model.covariance.assign(covariance.data(), covariance.data() + n * n);
   model.joint = true;
   model.updates = joint_->rows();
-  model.modes = identification::mode_metrics(joint_->filter().model().parameters(), covariance.diagonal(), estimate,
+  model.modes = identification::mode_metrics(joint_->filter().model().parameters(), nominal, estimate,
                                              covariance.diagonal().cwiseSqrt());
   return model;
 }
 
 ModelEstimate LiveIdentifier::model() const {
   ModelEstimate model = recursive_.model();
-  return speaks(model) ? with_joint(std::move(model)) : model;
+  return speaks(model) ? with_joint(std::move(model), recursive_.bend()) : model;
 }
 
 void LiveIdentifier::reset() {

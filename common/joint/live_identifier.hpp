@@ -58,11 +58,12 @@ class LiveIdentifier {
     ModelEstimate model;
     Residual residual;
     identification::RowBlock rows;
+    ParameterMatrix bend;
   };
   void stash(const Output& output);
   void teach(const ModelEstimate& model);
   void say(const Pending& pending, bool reached);
-  [[nodiscard]] ModelEstimate with_joint(ModelEstimate model) const;
+  [[nodiscard]] ModelEstimate with_joint(ModelEstimate model, const ParameterMatrix& bend) const;
   [[nodiscard]] bool speaks(const ModelEstimate& model) const;
   void resume_joint();
 

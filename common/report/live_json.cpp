@@ -61,6 +61,7 @@ std::string to_json(const LiveTrialResult& result) {
     json["flights"].push_back({{"segment", flight.segment}, {"begun_s", flight.begun}, {"ended_s", flight.ended}});
   json["estimate"] = result.joint ? "joint" : "recursive";
   json["joint_from_s"] = result.joint_from ? Json(*result.joint_from) : Json(nullptr);
+  json["residual_fails_on"] = result.failing;
   json["parameters"] = Json::object();
   const std::vector<double>& inflation = result.entangled.inflation;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {

@@ -71,7 +71,7 @@ std::string mode_table(const LiveTrialResult& result) {
 std::string table_1_1(const LiveTrialResult& result) {
   std::string html =
       "<section><h2>Table 1.1: the identified set</h2><p>Numbers of the <b>" + escape(estimate_words(result)) +
-      "</b>.</p><table>" +
+      "</b>. <b>" + escape(doubt_words(result)) + "</b></p><table>" +
       heading_cells({"Parameter", "Identified", "Std", "95 % interval", "Unit", "Vehicle file", "Entangled"},
                     {1, 2, 3, 5, 6});
   const std::vector<double>& inflation = result.entangled.inflation;

@@ -39,6 +39,7 @@ std::string modes(const LiveTrialResult& result) {
 
 std::string parameters(const LiveTrialResult& result) {
   std::string text = rule("Identified (± 95 %)") + "  " + estimate_words(result) + "\n";
+  for (const std::string& line : wrap(doubt_words(result), kColumns - 2)) text += "  " + line + "\n";
   text += pad_right("", 10) + pad_left("identified", 24) + "  " + pad_right("unit", 16);
   if (result.truth) text += pad_left("truth", 10) + pad_left("error", 10) + "  interval";
   text += "\n";

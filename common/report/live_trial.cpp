@@ -68,6 +68,12 @@ std::string estimate_words(const LiveTrialResult& result) {
   return "recursive estimate, from STATE, with what was adopted; from " + from + " until then the joint one";
 }
 
+std::string doubt_words(const LiveTrialResult& result) {
+  if (result.failing.empty()) return "";
+  return "This model lacks something: its residual failed the test on " + join(result.failing, ", ") +
+         ". The intervals are wider for it, and may still miss.";
+}
+
 LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehicle, const model::Site& site) {
   const auto need = [&](bool there, const char* channel, const char* who) {
     if (!there) {
@@ -98,6 +104,10 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
   result.joint = model.joint;
   const auto first_joint = std::ranges::find_if(recording.model, &ModelEstimate::joint);
   if (first_joint != recording.model.end()) result.joint_from = seconds_between(origin, first_joint->utime);
+  for (std::size_t axis = 0; axis < model::kAxisNames.size(); ++axis) {
+    if (model.residual_excess[static_cast<Eigen::Index>(axis)] > 0.0)
+      result.failing.emplace_back(model::kAxisNames[axis]);
+  }
   result.entangled = entanglement(model.covariance);
   result.adopted = model.effects;
   result.effect_numbers = model.effect_numbers;

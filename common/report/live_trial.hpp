@@ -24,6 +24,8 @@ namespace fathom::report {
 [[nodiscard]] TruthComparison compare_truth(const std::string& path, const Recording& recording);
 /// Whose numbers the parameters are: the recursive estimate's or the joint one's, and since when.
 [[nodiscard]] std::string estimate_words(const LiveTrialResult& result);
+/// That the model lacks something, where its residual has failed its test; else nothing.
+[[nodiscard]] std::string doubt_words(const LiveTrialResult& result);
 /// First time stamp of the states: zero of every time axis.
 [[nodiscard]] Utime trial_origin(const Recording& recording);
 

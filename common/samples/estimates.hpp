@@ -76,8 +76,11 @@ struct ModelEstimate {
   std::vector<double> covariance;             ///< of the parameters, row by row, as honest as std
   Vector6d residual_ratio{Vector6d::Zero()};  ///< recent mean square over the expected one; 0: unknown
   Vector6d residual_mean{Vector6d::Zero()};   ///< recent mean in standard deviations of that mean
-  std::vector<std::string> frozen;            ///< parameters that are not learnt at present
-  bool joint{false};                          ///< numbers of the joint estimate; else the recursive one's
+  /// Squares of the residual over the noise's, beyond their number, while its test failed: the model lacks something,
+  /// and deviations are widened for it. 0: the test never failed.
+  Vector6d residual_excess{Vector6d::Zero()};
+  std::vector<std::string> frozen;  ///< parameters that are not learnt at present
+  bool joint{false};                ///< numbers of the joint estimate; else the recursive one's
 };
 
 /// What the model leaves unexplained: tau_applied - tau_explained.

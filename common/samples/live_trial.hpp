@@ -50,14 +50,15 @@ struct LiveTrialResult {
   std::string reason;  ///< its last words
   std::vector<FlownSegment> flights;
   std::vector<ModeVisit> visits;
-  std::vector<NamedValue> parameters;             ///< identified, the std honest
-  bool joint{false};                              ///< of the joint estimate; else of the recursive one
-  std::optional<double> joint_from;               ///< s, when the joint estimate spoke first
-  Entanglement entangled;                         ///< theirs, at the end
-  std::vector<NamedValue> expected;               ///< of the vehicle file: what was known before, for reference
-  std::vector<std::string> adopted;               ///< effects in the identifier's model
-  std::vector<NamedValue> effect_numbers;         ///< theirs, "effect.parameter"
-  EffectRanking ranking;                          ///< the diagnoser's last
+  std::vector<NamedValue> parameters;      ///< identified, the std honest
+  bool joint{false};                       ///< of the joint estimate; else of the recursive one
+  std::optional<double> joint_from;        ///< s, when the joint estimate spoke first
+  std::vector<std::string> failing;        ///< axes whose residual has failed its test: the model lacks something
+  Entanglement entangled;                  ///< theirs, at the end
+  std::vector<NamedValue> expected;        ///< of the vehicle file: what was known before, for reference
+  std::vector<std::string> adopted;        ///< effects in the identifier's model
+  std::vector<NamedValue> effect_numbers;  ///< theirs, "effect.parameter"
+  EffectRanking ranking;                   ///< the diagnoser's last
   std::map<std::string, std::string> complaints;  ///< by process: what it called unhealthy
   std::optional<TruthComparison> truth;
   /// Every mode was left by its own tests.

@@ -95,7 +95,7 @@ std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
   if (!length(message.n_effect_numbers, message.effect_numbers.size())) return {};
   if (!length(message.n_modes, message.modes.size()) || !length(message.n_frozen, message.frozen.size())) return {};
   if (!length(message.n_covariance, message.covariance.size()) || !finite(message.covariance)) return {};
-  if (!finite(message.residual_ratio) || !finite(message.residual_mean)) return {};
+  if (!finite(message.residual_ratio) || !finite(message.residual_mean) || !finite(message.residual_excess)) return {};
   ModelEstimate sample{
       .utime = message.utime, .parameters = {}, .effects = message.effects, .updates = message.updates};
   if (!take(message.parameters, sample.parameters) || !take(message.effect_numbers, sample.effect_numbers)) return {};
@@ -106,6 +106,7 @@ std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message) {
   sample.covariance = message.covariance;
   sample.residual_ratio = vector(message.residual_ratio);
   sample.residual_mean = vector(message.residual_mean);
+  sample.residual_excess = vector(message.residual_excess);
   sample.frozen = message.frozen;
   sample.joint = message.joint != 0;
   return sample;
@@ -132,6 +133,7 @@ fathom_lcm::model_t encode(const ModelEstimate& sample) {
   message.covariance = sample.covariance;
   put(sample.residual_ratio, message.residual_ratio);
   put(sample.residual_mean, message.residual_mean);
+  put(sample.residual_excess, message.residual_excess);
   message.n_frozen = count(sample.frozen);
   message.frozen = sample.frozen;
   message.joint = sample.joint;

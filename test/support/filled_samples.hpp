@@ -91,6 +91,7 @@ inline void fill(Fill& f, ModelEstimate& s) {
   s.covariance = f.list();
   s.residual_ratio = f.matrix<Vector6d>();
   s.residual_mean = f.matrix<Vector6d>();
+  s.residual_excess = f.matrix<Vector6d>();
   s.frozen = {f.word(), f.word()};
   s.joint = true;
 }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "common/base/error.hpp"
+#include "common/diagnosis/live_diagnoser.hpp"
 #include "common/estimation/navigator.hpp"
 #include "common/joint/live_identifier.hpp"
 #include "common/model/regressor.hpp"
@@ -60,7 +61,8 @@ void foretell(const std::map<Utime, Truth>& truths, Utime from, Utime until, con
 }  // namespace
 
 FullTrial run_trial(const FullTrialOptions& options) {
-  const auto& [seed, optimal, joint, times, limit, site_name, hide, vehicle, changes, of_simulation] = options;
+  const auto& [seed, optimal, diagnose, joint, times, limit, site_name, hide, vehicle, changes, of_simulation] =
+      options;
   const std::string root = FATHOM_SOURCE_DIR;
   auto all_changes = changes;
   if (optimal) {
@@ -89,7 +91,20 @@ FullTrial run_trial(const FullTrialOptions& options) {
   joint::LiveIdentifier& identifier = *mind;
   estimation::Navigator navigator{navigator_settings, places};
   excitation::Supervisor supervisor{s.supervisor, s.vehicle, "secret"};
+  std::unique_ptr<diagnosis::LiveDiagnoser> diagnoser;
+  if (diagnose)
+    diagnoser = std::make_unique<diagnosis::LiveDiagnoser>(diagnosis::LiveSettings::from(pipeline.section("diagnoser")),
+                                                           s.vehicle, estimation::Corrections{}, &site);
   FullTrial trial;
+  const auto rank = [&](const std::optional<EffectRanking>& ranking) {
+    if (!ranking) return;
+    identifier.hear(*ranking);
+    trial.rankings.push_back(*ranking);
+  };
+  const auto learnt = [&](const ModelEstimate& model) {
+    supervisor.hear(model);
+    if (diagnoser) diagnoser->hear(model);
+  };
   double n = 0.0;
   bool armed = false;
   StateEstimate last;
@@ -98,7 +113,8 @@ FullTrial run_trial(const FullTrialOptions& options) {
   std::vector<std::pair<Utime, ModelEstimate>> told;  // by the times of `when`
   const auto use = [&](const StateEstimate& state) {
     last = state;
-    for (const auto& model : identifier.step(state).models) supervisor.hear(model);
+    for (const auto& model : identifier.step(state).models) learnt(model);
+    if (diagnoser) rank(diagnoser->step(state));
     const auto& output = supervisor.step(state);
     if (output.command) simulator.command(*output.command);
     if (output.excitation) identifier.hear(*output.excitation);
@@ -120,12 +136,16 @@ FullTrial run_trial(const FullTrialOptions& options) {
             using T = std::decay_t<decltype(one)>;
             if constexpr (requires { navigator.step(one); }) {
               identifier.hear(one);
+              if constexpr (requires { diagnoser->hear(one); }) {
+                if (diagnoser) diagnoser->hear(one);
+              }
               for (const StateEstimate& state : navigator.step(one)) {
                 use(state);
                 states[state.utime] = state;
               }
             } else if constexpr (std::is_same_v<T, Thrusters>) {
-              for (const auto& model : identifier.step(one).models) supervisor.hear(model);
+              for (const auto& model : identifier.step(one).models) learnt(model);
+              if (diagnoser) rank(diagnoser->step(one));
             } else if constexpr (std::is_same_v<T, Truth>) {
               truths[one.utime] = one;
             }
@@ -195,6 +215,19 @@ FullTrial run_trial(const FullTrialOptions& options) {
     text << "  " << p.name << " " << p.value << " +- " << p.std << " truth " << value << " error "
          << 100.0 * (p.value / value - 1.0) << " %, z " << z << "\n";
   }
+  for (const EffectRanking& ranking : trial.rankings) {
+    text << "  " << seconds_between(1'700'000'000'000'000, ranking.utime) << " s: " << ranking.verdict;
+    if (!ranking.against.empty()) text << " against " << ranking.against;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, ranking.candidates.size()); ++i) {
+      const EffectEvidence& one = ranking.candidates[i];
+      text << "; " << one.name << " " << one.variant << " " << one.log_odds << " " << one.error_reduction;
+      for (const double number : one.numbers) text << (i == 0 ? " " + std::to_string(number) : "");
+    }
+    text << "\n";
+  }
+  for (const std::string& effect : trial.model.effects) text << "  adopted " << effect << "\n";
+  for (const NamedValue& p : trial.model.effect_numbers)
+    text << "  " << p.name << " " << p.value << " +- " << p.std << "\n";
   for (const auto& [reason, count] : identifier.rejected()) text << "  " << reason << " " << count << "\n";
   for (const auto& [reason, count] : navigator.rejected()) text << "  " << reason << " " << count << "\n";
   text << "  " << navigator.complaint() << "\n";

@@ -42,11 +42,13 @@ struct FullTrial {
   int within{}, covered{};  ///< parameters: within 5 % of the truth, inside the 95 % interval
   std::vector<Learnt> learnt;
   std::vector<Progress> progress;
+  std::vector<EffectRanking> rankings;  ///< of the live diagnoser
 };
 
 struct FullTrialOptions {
   unsigned seed{1};
   bool optimal{false};
+  bool diagnose{false};        ///< with the live diagnoser, whose rankings the identifier hears
   bool joint{false};           ///< state and parameters in one filter, beside the recursive estimate
   std::vector<double> when{};  ///< s since arming, rising: FullTrial::progress
   double limit{700.0};         ///< s

@@ -1,7 +1,9 @@
-// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW]
+// usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--diagnose] [--at S,S,...] [--pipeline OLD
+// NEW]
 // [--simulation OLD NEW] [--hide EFFECT] [--limit S] [--text]
 // Live trials in one process, as docs/live.md states them: settled, intervals that hold, and for every parameter the
-// error, in percent and in its own standard deviations. --joint: with the joint estimate. --at: after so many seconds
+// error, in percent and in its own standard deviations. --joint: with the joint estimate. --diagnose: with the live
+// diagnoser, so that effects are adopted; --text tells its rankings. --at: after so many seconds
 // since arming, how large errors are, in percent and in standard deviations, and what the numbers foretell of the
 // wrench. --pipeline replaces a text of config/pipelines/SITE.yaml, --simulation one of config/simulation/VEHICLE.yaml:
 // which error of an instrument makes which error of the model.
@@ -136,7 +138,8 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 5) {
     std::fputs(
-        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--at S,S,...] [--pipeline OLD NEW] "
+        "usage: fathom_live_trials SITE VEHICLE paper|optimal FIRST LAST [--joint] [--diagnose] [--at S,S,...] "
+        "[--pipeline OLD NEW] "
         "[--simulation OLD NEW] [--hide EFFECT] [--limit S] [--text]\n",
         stderr);
     return 1;
@@ -148,6 +151,7 @@ int main(int argc, char** argv) {
     for (std::size_t i = 5; i < words.size(); ++i) {
       if (words[i] == "--text") text = true;
       if (words[i] == "--joint") options.joint = true;
+      if (words[i] == "--diagnose") options.diagnose = true;
       if (words[i] == "--hide" && i + 1 < words.size()) options.hide.push_back(words[i + 1]);
       if (words[i] == "--at" && i + 1 < words.size()) options.when = numbers(words[i + 1]);
       if (words[i] == "--limit" && i + 1 < words.size()) options.limit = std::stod(words[i + 1]);

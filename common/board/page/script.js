@@ -141,6 +141,7 @@ const sections = {
     const line = (p) => row(p.frozen ? "soft" : "", cell("k", p.name), cell("n", short(p.value)), cell("", p.unit),
       cell("n", `${short(p.low)} … ${short(p.high)}`), cell("n soft", is(p.entangled) ? short(p.entangled) : ""), cell("soft", p.frozen ? "not learnt now" : ""));
     return [el("p", {}, el("b", {}, m.joint ? "joint" : "recursive"), el("span", { class: "soft" }, m.joint ? " estimate, of state and parameters in one filter" : " estimate, from STATE")),
+      m.residual_fails_on.length ? el("p", {}, el("b", {}, "this model lacks something"), el("span", { class: "soft" }, `: its residual failed the test on ${m.residual_fails_on.join(", ")}; intervals are wider for it, and may still miss`)) : null,
       table(["parameter", ">value", "", ">95 %", ">entangled", ""], m.parameters.map(line)),
       is(m.condition) ? el("p", { class: "soft" }, `entangled: times the variance were all others known; condition of the correlations ${short(m.condition)}`) : null,
       el("p", {}, el("b", {}, "adopted: "), m.effects.length ? m.effects.join(", ") : "no effect"),

@@ -1,6 +1,6 @@
 // Attitude and heading reference: rates, specific force at its own place, attitude; all turned into body axes as the
-// driver does. Gyro and accelerometer: turn-on bias, white noise, and a random walk of the gyro's bias. Attitude: white
-// noise on an error that wanders (first-order Gauss-Markov), heading apart from roll and pitch.
+// driver does. Gyro and accelerometer: turn-on bias, a scale of each axis, white noise, and a random walk of the gyro's
+// bias. Attitude: white noise on an error that wanders (first-order Gauss-Markov), heading apart from roll and pitch.
 //   f_I = v_dot + w x v + w_dot x r + w x (w x r) - R_WB^T g e_z    (at rest, level: 0 0 -g)
 // Not modelled: the instrument's own filter, vibration, magnetic disturbance by the thrusters.
 #include <cmath>
@@ -30,6 +30,9 @@ class AhrsSensor final : public Sensor {
     gyro_bias_ = stream_.normal3(config.not_negative("gyro_bias", "rad/s"));
     force_bias_ = stream_.normal3(config.not_negative("force_bias", "m/s^2"));
     misalignment_ = quaternion_from_rotation_vector(stream_.normal3(config.not_negative("misalignment", "rad")));
+    RandomStream scales{around.seed, "ahrs.scale"};  // apart, so that all other errors are those of a run without them
+    gyro_scale_ = scales.normal3(config.not_negative("gyro_scale", ""));
+    force_scale_ = scales.normal3(config.not_negative("force_scale", ""));
     for (double& each : wander_) each = stream_.normal();
   }
 
@@ -47,22 +50,30 @@ class AhrsSensor final : public Sensor {
     const double heading = heading_wander_ * wander_[2] + heading_noise_ * stream_.normal() - declination_;
     // Errors of the instrument's axes appear in body axes through the mounting that the driver takes out.
     const Eigen::Matrix3d skewed = misalignment_.toRotationMatrix();
-    samples.emplace_back(
-        Ahrs{.utime = moment.utime,
-             .w_WB_B = skewed * moment.nu_seen.tail<3>() + mount_.R_BS * (gyro_bias_ + stream_.normal3(gyro_noise_)),
-             .f_B = skewed * f + mount_.R_BS * (force_bias_ + stream_.normal3(force_noise_)),
-             .q_WB = (Eigen::Quaterniond{Eigen::AngleAxisd{heading, Eigen::Vector3d::UnitZ()}} * moment.q_WB *
-                      quaternion_from_rotation_vector(tilt))
-                         .normalized(),
-             .has_rates = true,
-             .has_specific_force = true,
-             .has_attitude = true});
+    const auto told = [&](const Eigen::Vector3d& truth_B, const Eigen::Vector3d& scale, const Eigen::Vector3d& error) {
+      const Eigen::Vector3d own = mount_.R_BS.transpose() * skewed * truth_B;
+      return Eigen::Vector3d{skewed * truth_B + mount_.R_BS * (scale.cwiseProduct(own) + error)};
+    };
+    const Eigen::Vector3d gyro_error = gyro_bias_ + stream_.normal3(gyro_noise_);
+    const Eigen::Vector3d force_error = force_bias_ + stream_.normal3(force_noise_);
+    samples.emplace_back(Ahrs{.utime = moment.utime,
+                              .w_WB_B = told(moment.nu_seen.tail<3>(), gyro_scale_, gyro_error),
+                              .f_B = told(f, force_scale_, force_error),
+                              .q_WB = (Eigen::Quaterniond{Eigen::AngleAxisd{heading, Eigen::Vector3d::UnitZ()}} *
+                                       moment.q_WB * quaternion_from_rotation_vector(tilt))
+                                          .normalized(),
+                              .has_rates = true,
+                              .has_specific_force = true,
+                              .has_attitude = true});
   }
 
   [[nodiscard]] std::vector<std::pair<std::string, double>> drawn() const override {
     const Eigen::Vector3d gyro = mount_.R_BS * gyro_bias_, force = mount_.R_BS * force_bias_;
-    return {{"gyro_bias_p", gyro.x()},   {"gyro_bias_q", gyro.y()},   {"gyro_bias_r", gyro.z()},
-            {"force_bias_x", force.x()}, {"force_bias_y", force.y()}, {"force_bias_z", force.z()}};
+    return {
+        {"gyro_bias_p", gyro.x()},           {"gyro_bias_q", gyro.y()},           {"gyro_bias_r", gyro.z()},
+        {"force_bias_x", force.x()},         {"force_bias_y", force.y()},         {"force_bias_z", force.z()},
+        {"gyro_scale_x", gyro_scale_.x()},   {"gyro_scale_y", gyro_scale_.y()},   {"gyro_scale_z", gyro_scale_.z()},
+        {"force_scale_x", force_scale_.x()}, {"force_scale_y", force_scale_.y()}, {"force_scale_z", force_scale_.z()}};
   }
 
  private:
@@ -71,6 +82,7 @@ class AhrsSensor final : public Sensor {
   double tilt_noise_, tilt_wander_, heading_noise_, heading_wander_, wander_time_, declination_;
   RandomStream stream_;
   Eigen::Vector3d gyro_bias_, force_bias_;
+  Eigen::Vector3d gyro_scale_, force_scale_;  // shares, of the instrument's own axes
   Eigen::Quaterniond misalignment_;
   std::array<double, 3> wander_{};
 };

@@ -89,6 +89,7 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
                                          {.name = "X_u", .value = -8.0, .std = 2.0, .unit = "N/(m/s)"}},
                           .effects = {"tether_tension"},
                           .covariance = {1.0, 1.2, 1.2, 4.0},
+                          .residual_excess = (Vector6d{} << 0.0, 31.0, 0.0, 0.0, 0.0, 2.0).finished(),
                           .frozen = {"m_X"},
                           .joint = true},
             0.0);
@@ -112,6 +113,7 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
   CHECK(all["model"]["parameters"][1]["entangled"] == doctest::Approx(1.0 / (1.0 - 0.36)));  // correlated by 0.6
   CHECK(all["model"]["condition"] == doctest::Approx(4.0));
   CHECK(all["model"]["joint"] == true);
+  CHECK(all["model"]["residual_fails_on"] == nlohmann::json{"Y", "N"});
   CHECK(all["model"]["effects"][0] == "tether_tension");
   CHECK(all["effects"]["against"] == "tether_tension");
   CHECK(all["effects"]["candidates"][0]["log_odds"] == doctest::Approx(3.5));

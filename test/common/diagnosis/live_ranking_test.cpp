@@ -117,6 +117,47 @@ TEST_CASE("live ranking: each effect once, the convincing ones first and by what
   CHECK_FALSE(diagnoser.finish());
 }
 
+TEST_CASE("live ranking: a name that leaves a residual and is not adopted is taken back, the name stays in the list") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive =
+      test::make_dive(vehicle, {.duration = 140.0, .seed = 7, .effects = {test::active("thruster_lag", {0.5})}});
+  const auto heard = [&](double ratio, const std::vector<std::string>& effects) {
+    LiveSettings settings = short_settings();
+    settings.largest_ratio = 2.0;
+    LiveDiagnoser diagnoser{settings, vehicle};
+    for (double t = 20.0; t < 140.0; t += 5.0) {
+      ModelEstimate model{.utime = utime_after(kStart, t), .effects = effects};
+      model.residual_ratio[0] = ratio;
+      diagnoser.hear(model);
+    }
+    return listen(diagnoser, dive.trial);
+  };
+  const auto refused = heard(30.0, {});
+  const auto first = std::ranges::find(refused, "effect", &EffectRanking::verdict);
+  REQUIRE(first != refused.end());  // the identifier has to hear it first
+  CHECK(refused.back().verdict == "unexplained");
+  CHECK(refused.back().candidates.front().name == "thruster_lag");
+  CHECK(heard(30.0, {"thruster_lag"}).back().verdict == "effect");
+  CHECK(heard(1.0, {}).back().verdict == "effect");
+}
+
+TEST_CASE("live ranking: of two forms of an effect that are not told apart, the plain one") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  int named = 0;
+  for (const unsigned seed : {7U, 8U, 9U, 10U}) {
+    CAPTURE(seed);
+    const test::VirtualDive dive =
+        test::make_dive(vehicle, {.duration = 100.0, .seed = seed, .effects = {test::active("thruster_lag", {0.1})}});
+    LiveDiagnoser diagnoser{short_settings(), vehicle};
+    for (const EffectRanking& ranking : listen(diagnoser, dive.trial)) {
+      if (ranking.verdict != "effect" || ranking.candidates.front().name != "thruster_lag") continue;
+      CHECK(ranking.candidates.front().variant.empty());
+      ++named;
+    }
+  }
+  CHECK(named > 0);
+}
+
 TEST_CASE("live ranking: certain evidence of what explains too little for a name leaves no adequate model") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const test::VirtualDive dive =

@@ -64,14 +64,18 @@ model::ActiveEffect named(const model::Vehicle& vehicle, const std::string& name
   return effect;
 }
 
-double worst(const ModelEstimate& model, const model::Model& truth) {
+/// Largest error in the deviations that `stated` has.
+double worst(const ModelEstimate& model, const model::Model& truth, const ModelEstimate& stated) {
   double largest = 0.0;
-  for (const NamedValue& p : model.parameters) {
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const NamedValue& p = model.parameters[i];
     const double value = truth.theta[model::index(*model::parameter_from_name(p.name))];
-    largest = std::max(largest, std::abs(p.value - value) / p.std);
+    largest = std::max(largest, std::abs(p.value - value) / stated.parameters[i].std);
   }
   return largest;
 }
+
+double worst(const ModelEstimate& model, const model::Model& truth) { return worst(model, truth, model); }
 
 }  // namespace
 
@@ -103,7 +107,8 @@ TEST_CASE("adoption: an accepted effect is listed, its numbers are learnt, and t
       CHECK(std::abs(p.value - c.truth.theta[i]) < kSigmas * p.std);
     }
     CHECK(worst(model, dive.truth) < kSigmas);
-    CHECK(worst(without.model(), dive.truth) > kSigmas);
+    CHECK(worst(without.model(), dive.truth, model) > kSigmas);  // bent...
+    CHECK(worst(without.model(), dive.truth) < kSigmas);         // ...and known to be
     CHECK(model.updates == without.model().updates);
     CHECK(without.model().effects.empty());
   }
@@ -131,6 +136,27 @@ TEST_CASE("adoption: numbers that hardly show yet do not run away, however rough
     REQUIRE(identifier.model().effect_numbers.size() == 4);
     CHECK(farthest < kSigmas + 1.0);  // the largest of forty
   }
+}
+
+TEST_CASE("adoption: a form with more numbers gives way to the ordinary one that leaves as little") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto apart = [](double all, double longer) {
+    model::ActiveEffect effect = test::active("thruster_lag", {all, longer}, 1);
+    effect.variant_name = "vertical thrusters apart";
+    return effect;
+  };
+  const auto adopted = [&](const model::ActiveEffect& truth, const model::ActiveEffect& found) {
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 200.0, .seed = 31, .effects = {truth}});
+    Identifier identifier{settings(), vehicle};
+    feed(identifier, dive.trial, 0.0, 1e9, diagnoser(identifier, found));
+    return identifier.model();
+  };
+  const ModelEstimate same = adopted(test::active("thruster_lag", {0.2, 0.0}), apart(0.18, 0.15));
+  REQUIRE(same.effect_numbers.size() == 1);  // whatever is named from then on
+  CHECK(std::abs(same.effect_numbers[0].value - 0.2) < kSigmas * same.effect_numbers[0].std);
+  const ModelEstimate two = adopted(apart(0.15, 0.4), apart(0.13, 0.3));
+  REQUIRE(two.effect_numbers.size() == 2);
+  CHECK(std::abs(two.effect_numbers[1].value - 0.4) < kSigmas * two.effect_numbers[1].std);
 }
 
 TEST_CASE("adoption: it takes several rankings in a row, and nothing happens where it is not wished") {

@@ -147,6 +147,21 @@ TEST_CASE("live trial: page, table and JSON say whose numbers the parameters are
   CHECK(told().starts_with("recursive estimate, from STATE, with what was adopted; from 23.0 s until then the joint"));
 }
 
+TEST_CASE("live trial: page, table and JSON say when the model lacks something") {
+  Recording recording = trial();
+  const auto told = [&](const std::string& words) {
+    const LiveTrialResult result = summarise(recording, vehicle(), site());
+    CHECK((to_table(result).find(words) != std::string::npos) ==
+          (to_html(result, recording, vehicle(), site()).find(words) != std::string::npos));
+    CHECK(nlohmann::json::parse(to_json(result)).at("residual_fails_on") == nlohmann::json(result.failing));
+    return to_table(result).find(words) != std::string::npos;
+  };
+  CHECK_FALSE(told("lacks something"));
+  recording.model.back().residual_excess[0] = 12.0;
+  recording.model.back().residual_excess[5] = 3.0;
+  CHECK(told("This model lacks something: its residual failed the test on X, N."));
+}
+
 TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
   for (const int lacking : {0, 1, 2}) {
     Recording recording = trial();

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "test/support/sensor_bench.hpp"
 #include "test/support/timing.hpp"
@@ -20,8 +22,8 @@ namespace {
 
 const std::string kPerfectAhrs =
     "gyro_noise: 0 rad/s\ngyro_bias: 0 rad/s\ngyro_bias_walk: 0 rad/s\nforce_noise: 0 m/s^2\nforce_bias: 0 m/s^2\n"
-    "misalignment: 0 rad\ntilt_noise: 0 rad\ntilt_wander: 0 rad\nheading_noise: 0 rad\nheading_wander: 0 rad\n"
-    "wander_time: 1 s\nheading: true\n";
+    "gyro_scale: 0 %\nforce_scale: 0 %\nmisalignment: 0 rad\ntilt_noise: 0 rad\ntilt_wander: 0 rad\n"
+    "heading_noise: 0 rad\nheading_wander: 0 rad\nwander_time: 1 s\nheading: true\n";
 
 }  // namespace
 
@@ -63,8 +65,9 @@ TEST_CASE("ahrs: noise, bias and wander are as stated") {
   for (unsigned seed = 1; seed <= test::seeds(120); ++seed) {
     Bench bench{make_ahrs,
                 "gyro_noise: 0.01 rad/s\ngyro_bias: 0.1 rad/s\ngyro_bias_walk: 0 rad/s\nforce_noise: 0.02 m/s^2\n"
-                "force_bias: 0 m/s^2\nmisalignment: 0 rad\ntilt_noise: 0.003 rad\ntilt_wander: 0.004 rad\n"
-                "heading_noise: 0 rad\nheading_wander: 0 rad\nwander_time: 0.01 s\nheading: true\n",
+                "force_bias: 0 m/s^2\ngyro_scale: 0 %\nforce_scale: 0 %\nmisalignment: 0 rad\ntilt_noise: 0.003 rad\n"
+                "tilt_wander: 0.004 rad\nheading_noise: 0 rad\nheading_wander: 0 rad\nwander_time: 0.01 s\n"
+                "heading: true\n",
                 "tank", seed};
     const double drawn = bench.sensor->drawn().front().second;
     bias.add(drawn);
@@ -81,6 +84,35 @@ TEST_CASE("ahrs: noise, bias and wander are as stated") {
   check_sigma(bias, 0.1);
   // Wander of 4 mrad that forgets within a sample, and 3 mrad of noise: 5 mrad. Its samples hang together a little.
   CHECK(tilt.sigma() == doctest::Approx(0.005).epsilon(2.0 * four_sigma(tilt.n)));
+}
+
+TEST_CASE("ahrs: each axis of gyro and accelerometer has a scale of its own, along the instrument's axes") {
+  std::string text = kPerfectAhrs;
+  text.replace(text.find("gyro_scale: 0 %"), 15, "gyro_scale: 1 %");
+  text.replace(text.find("force_scale: 0 %"), 16, "force_scale: 2 %");
+  Moments gyro, force;
+  for (unsigned seed = 1; seed <= test::seeds(120); ++seed) {
+    // Mounted a quarter turn to starboard: its x axis is the body's y axis, its y axis the body's -x axis.
+    Bench bench{make_ahrs, text, "tank", seed, [](model::Vehicle& vehicle) {
+                  vehicle.mounts.ahrs->R_BS << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+                  vehicle.mounts.ahrs->p_BS.setZero();
+                }};
+    std::map<std::string, double> drawn;
+    for (const auto& [name, value] : bench.sensor->drawn()) drawn[name] = value;
+    Vector6d nu = Vector6d::Zero();
+    nu.tail<3>() << 0.1, 0.2, 0.3;
+    const auto sample = std::get<Ahrs>(bench.measure(moment_at({0, 0, 0.5}, {0.0, 0.0, 0.0}, nu)).front());
+    CHECK(std::abs(sample.w_WB_B.x() - 0.1 * (1.0 + drawn["gyro_scale_y"])) < kExact);
+    CHECK(std::abs(sample.w_WB_B.y() - 0.2 * (1.0 + drawn["gyro_scale_x"])) < kExact);
+    CHECK(std::abs(sample.w_WB_B.z() - 0.3 * (1.0 + drawn["gyro_scale_z"])) < kExact);
+    CHECK(std::abs(sample.f_B.z() + 9.81 * (1.0 + drawn["force_scale_z"])) < kExact);
+    for (const char* axis : {"x", "y", "z"}) {
+      gyro.add(drawn[std::string{"gyro_scale_"} + axis]);
+      force.add(drawn[std::string{"force_scale_"} + axis]);
+    }
+  }
+  check_sigma(gyro, 0.01);
+  check_sigma(force, 0.02);
 }
 
 TEST_CASE("depth: the port's depth less its lever arm, tilted or not; noise and offset as stated") {
@@ -224,11 +256,10 @@ TEST_CASE("drop-outs: their share of time is as stated") {
 }
 
 TEST_CASE("sensor faults: a hidden latency of the rates reaches the gyro") {
-  const test::Changes quiet{{"gyro_noise: 0.2", "gyro_noise: 0"},
-                            {"gyro_bias: 0.02", "gyro_bias: 0"},
-                            {"gyro_bias_walk: 0.001", "gyro_bias_walk: 0"},
-                            {"misalignment: 0.2", "misalignment: 0"},
-                            {"phase: 5 ms", "phase: 0 ms"}};  // at the times of TRUTH
+  const test::Changes quiet{
+      {"gyro_noise: 0.2", "gyro_noise: 0"},           {"gyro_bias: 0.02", "gyro_bias: 0"},
+      {"gyro_bias_walk: 0.001", "gyro_bias_walk: 0"}, {"gyro_scale: 0.1", "gyro_scale: 0"},
+      {"misalignment: 0.2", "misalignment: 0"},       {"phase: 5 ms", "phase: 0 ms"}};  // at the times of TRUTH
   auto simulator =
       test::make_simulator("seabotix_lbv150", "deep", {.hide = {"sensor_latency=variant:rates,latency:0.2"}}, quiet);
   std::vector<Ahrs> ahrs;

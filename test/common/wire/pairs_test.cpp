@@ -49,6 +49,9 @@ auto members(const T& s) {
   } else if constexpr (N == 11) {
     const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+  } else if constexpr (N == 12) {
+    const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = s;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
   } else {
     const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
     return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
@@ -161,7 +164,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
   check_pair<SmoothedState, 6>();
-  check_pair<ModelEstimate, 11>();
+  check_pair<ModelEstimate, 12>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 6>();
   check_pair<Truth, 7>();
