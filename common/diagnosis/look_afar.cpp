@@ -1,7 +1,6 @@
 #include "common/diagnosis/look_afar.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -18,7 +17,14 @@ using identification::TrajectoryFit;
 
 constexpr std::size_t kFewWindows = 20;   // enough to tell whether a start leads anywhere
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost
-constexpr double kSamePlace = 1e-2;       // of the cost: two fits that end so alike have found the same
+constexpr double kSamePlace = 0.02;       // of a number's scale, where the number is no larger than that
+
+/// Whether two fits have ended at the same numbers, as well as quick ones can.
+bool alike(const model::Model& one, const model::Model& other) {
+  const identification::ParameterMap map{one};
+  const Eigen::ArrayXd a = map.pack(one).array(), b = map.pack(other).array();
+  return ((a - b).abs() < kSamePlace * a.abs().max(1.0)).all();
+}
 
 /// First fits with a candidate, on windows so short that they cost little and that no beginning is too far from them.
 /// What is large shows there too; what gains nothing there is let go.
@@ -36,14 +42,11 @@ class FirstFits {
   [[nodiscard]] std::vector<model::Model> worthy(model::Model start, double least) const {
     std::vector<model::Model> found;
     const model::BaseTheta fitted = start.theta;
-    double cost = without_.cost;
     for (const model::BaseTheta& theta : {fitted, nominal_}) {
       start.theta = theta;
       FitResult with = shortest_.fit(start, &without_, kQuickTolerance);
-      const bool there_before = !found.empty() && std::abs(with.cost - cost) < kSamePlace * cost;
-      if (there_before || reduction(without_.cost, with.cost) < least) continue;
-      cost = with.cost;
-      found.push_back(std::move(with.model));
+      const bool there_before = !found.empty() && alike(found.front(), with.model);
+      if (!there_before && reduction(without_.cost, with.cost) >= least) found.push_back(std::move(with.model));
     }
     return found;
   }

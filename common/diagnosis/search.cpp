@@ -66,7 +66,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     Answers answers = ask_near(candidates, near, scene, settings);
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
-    std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kRefits);
+    std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kMostRefits);
     // The least that counts, as a share of the cost, which is the error's square.
     const bool something = winner || left_to_explain(problem, result.after) > 2.0 * settings.smallest_reduction;
     if (!winner && something) {
