@@ -36,11 +36,12 @@ std::string outcome(const LiveTrialResult& result) {
   if (result.phase == "done") words = settled ? "All modes are settled" : "Finished, but not everything is settled";
   if (result.phase == "aborted") words = "The trial was aborted";
   if (result.phase == "lost") words = "The state was lost";
+  if (!result.failing.empty()) words += "; the model lacks something on " + join(result.failing, ", ");
   const auto left = std::ranges::count_if(result.visits, [](const ModeVisit& visit) { return visit.left; });
   std::string html = "<header><h1>Live trial of " + escape(result.vehicle) +
                      "</h1>\n<p class=\"soft\">Site: " + escape(result.site) + "</p>\n<div class=\"badge " +
-                     (settled ? "adequate" : "ambiguous") + "\">" + escape(words) + "</div>\n<p class=\"lead\">" +
-                     escape(result.reason) + "</p>\n<div class=\"tiles\">";
+                     (settled && result.failing.empty() ? "adequate" : "ambiguous") + "\">" + escape(words) +
+                     "</div>\n<p class=\"lead\">" + escape(result.reason) + "</p>\n<div class=\"tiles\">";
   html += tile(number(result.seconds, 4) + " s", "from the first state to the last");
   html += tile(std::to_string(left) + " of " + std::to_string(result.visits.size()), "modes settled");
   html += tile(std::to_string(result.parameters.size()), "parameters identified on line");

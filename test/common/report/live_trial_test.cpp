@@ -160,6 +160,9 @@ TEST_CASE("live trial: page, table and JSON say when the model lacks something")
   recording.model.back().residual_excess[0] = 12.0;
   recording.model.back().residual_excess[5] = 3.0;
   CHECK(told("This model lacks something: its residual failed the test on X, N."));
+  const std::string page = to_html(summarise(recording, vehicle(), site()), recording, vehicle(), site());
+  CHECK(page.find("; the model lacks something on X, N</div>") != std::string::npos);
+  CHECK(page.find("badge adequate") == std::string::npos);
 }
 
 TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
