@@ -49,28 +49,21 @@ void FineShift::prepare(cv::Size size) {
 
 void FineShift::look(const cv::Mat& grey) {
   std::swap(now_, before_);
-  std::swap(detail_, detail_before_);
   if (size_ != grey.size()) {
     size_ = grey.size();
     prepare(size_);
     before_.release();
   }
-  cv::LUT(grey, logarithms(), detail_);
-  constexpr int kWide = 9;  // px
-  cv::blur(detail_, surroundings_, {kWide, kWide});
-  const double brightness = std::exp(cv::mean(surroundings_)[0]);
-  cv::addWeighted(detail_, brightness, surroundings_, -brightness, 0.0, detail_);
-  // Contrast of regions of 28 px, at a quarter of the resolution, for it is smooth.
-  constexpr int kCoarser = 4, kRegion = 7;
-  cv::multiply(detail_, detail_, surroundings_);
-  const cv::Size coarse{(grey.cols + kCoarser - 1) / kCoarser, (grey.rows + kCoarser - 1) / kCoarser};
-  cv::resize(surroundings_, squares_, coarse, 0.0, 0.0, cv::INTER_AREA);
-  cv::blur(squares_, contrast_, {kRegion, kRegion});
-  const double nothing = 0.01 * brightness;
-  cv::add(contrast_, nothing * nothing, contrast_);
-  cv::sqrt(contrast_, contrast_);
-  cv::resize(contrast_, surroundings_, grey.size(), 0.0, 0.0, cv::INTER_LINEAR);
-  cv::divide(detail_, surroundings_, now_);
+  cv::LUT(grey, logarithms(), now_);
+  constexpr int kWide = 9, kRegion = 25;  // px
+  cv::blur(now_, blurred_, {kWide, kWide});
+  cv::subtract(now_, blurred_, now_);
+  cv::multiply(now_, now_, blurred_);
+  cv::blur(blurred_, blurred_, {kRegion, kRegion});
+  constexpr double kNothing = 1e-4;  // square of a contrast of 1 %
+  cv::add(blurred_, kNothing, blurred_);
+  cv::sqrt(blurred_, blurred_);
+  cv::divide(now_, blurred_, now_);
 }
 
 void FineShift::transform(const cv::Mat& from, cv::Mat& to) {

@@ -20,25 +20,19 @@ class FineShift {
  public:
   /// The next picture, 8 bits, grey; the last one becomes the one before.
   void look(const cv::Mat& grey);
-  /// What brightness differs by from its surroundings, in this picture and in the one before: of its logarithm, times
-  /// the picture's mean brightness. CV_32FC1.
-  [[nodiscard]] const cv::Mat& detail() const { return detail_; }
-  [[nodiscard]] const cv::Mat& detail_before() const { return detail_before_; }
-  /// What of a picture is looked at: its middle. Nothing before the first.
-  [[nodiscard]] const cv::Rect& part() const { return part_; }
-  /// `origin` (CV_32FC2): for each pixel of that part, in a map of the whole, where in the picture before the same
-  /// point is expected. Nothing when there is no picture before.
+  /// `origin` (CV_32FC2): for each pixel, where in the picture before the same point is expected. Nothing when there is
+  /// no picture before.
   [[nodiscard]] std::optional<FineMotion> find(const cv::Mat& origin);
 
  private:
   void prepare(cv::Size size);
+
   void transform(const cv::Mat& from, cv::Mat& to);
 
   cv::Size size_;
   cv::Rect part_;
-  cv::Mat detail_, detail_before_, now_, before_;  // the last two with the same contrast in every region
-  cv::Mat window_, band_;
-  cv::Mat surroundings_, squares_, contrast_, expected_, tapered_, spectrum_now_, spectrum_before_, product_, peaks_;
+  cv::Mat now_, before_, window_, band_;
+  cv::Mat blurred_, expected_, tapered_, spectrum_now_, spectrum_before_, product_, peaks_;
 };
 
 }  // namespace fathom::vision
