@@ -99,7 +99,18 @@ class LiveDiagnoser {
   void catch_up(std::size_t samples);
   [[nodiscard]] EffectRanking rank(Utime utime);
   [[nodiscard]] EffectRanking by_forces(Utime utime);
-  [[nodiscard]] bool leaves_much(Utime utime);
+  struct Left {
+    Utime utime{};
+    double ratio{};
+    std::vector<std::string> effects;  // adopted
+  };
+  struct Named {
+    std::string what;
+    double explains{};
+    int times{};
+  };
+  [[nodiscard]] const Left* model_before(Utime utime) const;
+  [[nodiscard]] bool leaves_much(Utime utime) const;
   void doubt(EffectRanking& ranking);
   void prefer_plain();
   [[nodiscard]] identification::IntegralSettings integral_settings() const;
@@ -124,18 +135,8 @@ class LiveDiagnoser {
   LiveSensorCheck sensors_;
   LiveSensorCheck::Turns turned_;  // back, in all of seen_
   bool turning_{false};            // the candidates at hand still rest on sensors that are turned
-  struct Left {
-    Utime utime{};
-    double ratio{};
-    std::vector<std::string> effects;  // adopted
-  };
-  struct Named {
-    std::string what;
-    double explains{};
-    int times{};
-  };
-  std::deque<Left> left_;  // of MODEL, newest last
-  Named named_;            // in the last rankings
+  std::deque<Left> left_;          // of MODEL, newest last
+  Named named_;                    // in the last rankings
   std::map<std::string, std::int64_t> rejected_;
 };
 

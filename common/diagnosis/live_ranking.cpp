@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kModelDelay = 2.0;       // s: more than the identifier is late
 constexpr std::size_t kMostModels = 100;  // of MODEL that are remembered
+constexpr int kLongNamed = 5;             // rankings: the identifier has had them, and MODEL is back
+constexpr double kExplainsMore = 0.05;    // of the error
 // Too little of all axes for a name may be most of what one of them leaves: at twice the evidence of a name and half of
 // what it must explain, something is at work. Trials without an effect stay below half of both (docs/live.md).
-constexpr int kLongNamed = 5;           // rankings: the identifier has had them, and MODEL is back
-constexpr double kExplainsMore = 0.05;  // of the error
 constexpr double kMoreEvidence = 2.0, kLessExplained = 0.5;
 
 }  // namespace
@@ -137,11 +137,8 @@ void LiveDiagnoser::doubt(EffectRanking& ranking) {
     named_ = {what, best.error_reduction, 0};
   ++named_.times;
   if (named_.times <= kLongNamed || !leaves_much(ranking.utime)) return;
-  const Left* model = nullptr;
-  for (const Left& left : left_) {
-    if (seconds_between(left.utime, ranking.utime) >= kModelDelay) model = &left;
-  }
-  if (std::ranges::find(model->effects, best.name) == model->effects.end()) ranking.verdict = "unexplained";
+  const std::vector<std::string>& adopted = model_before(ranking.utime)->effects;
+  if (std::ranges::find(adopted, best.name) == adopted.end()) ranking.verdict = "unexplained";
 }
 
 void LiveDiagnoser::hear(const ModelEstimate& model) {
@@ -150,15 +147,17 @@ void LiveDiagnoser::hear(const ModelEstimate& model) {
   if (left_.size() > kMostModels) left_.pop_front();
 }
 
-// A residual that forgets within a second shows no memory here, but its power gives it away. Models count by their time
-// stamps, kModelDelay after them, so that it does not matter when they arrived.
-bool LiveDiagnoser::leaves_much(Utime utime) {
-  if (settings_.largest_ratio <= 0.0) return false;
-  double ratio = 0.0;
-  for (const Left& left : left_) {
-    if (seconds_between(left.utime, utime) >= kModelDelay) ratio = left.ratio;
-  }
-  return ratio > settings_.largest_ratio;
+// Models count by their time stamps, kModelDelay after them, so that it does not matter when they arrived.
+const LiveDiagnoser::Left* LiveDiagnoser::model_before(Utime utime) const {
+  const auto last = std::find_if(left_.rbegin(), left_.rend(),
+                                 [&](const Left& left) { return seconds_between(left.utime, utime) >= kModelDelay; });
+  return last == left_.rend() ? nullptr : &*last;
+}
+
+// A residual that forgets within a second shows no memory here, but its power gives it away.
+bool LiveDiagnoser::leaves_much(Utime utime) const {
+  const Left* model = model_before(utime);
+  return settings_.largest_ratio > 0.0 && model != nullptr && model->ratio > settings_.largest_ratio;
 }
 
 void LiveDiagnoser::forget_motion() {

@@ -52,15 +52,18 @@ void Sensitivity::begin(const Model& model, std::size_t samples) {
         static_cast<std::size_t>(active.effect->state_size(*model.vehicle, static_cast<int>(model.allocation.cols())));
     remembered_.push_back({&active, size, std::vector<double>(size * kColumns, 0.0)});
   }
-  moving_.clear();
-  for (const std::string& name : model.vehicle->parameters) {
-    if (const auto parameter = parameter_from_name(name)) moving_.push_back(index(*parameter));
-  }
   state_.setZero();
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    if (!model.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
-    state_(6 + axis, kBaseParameterCount + axis) = 1.0;
-    moving_.push_back(kBaseParameterCount + axis);
+    if (model.vehicle->dof[static_cast<std::size_t>(axis)]) state_(6 + axis, kBaseParameterCount + axis) = 1.0;
+  }
+  if (!remembered_.empty()) {
+    moving_.clear();
+    for (const std::string& name : model.vehicle->parameters) {
+      if (const auto parameter = parameter_from_name(name)) moving_.push_back(index(*parameter));
+    }
+    for (Eigen::Index axis = 0; axis < 6; ++axis) {
+      if (model.vehicle->dof[static_cast<std::size_t>(axis)]) moving_.push_back(kBaseParameterCount + axis);
+    }
   }
   out_.resize(static_cast<Eigen::Index>(6 * samples), Eigen::NoChange);
   record(0);

@@ -63,7 +63,7 @@ class Sensitivity {
   bool place_matters_{false};  ///< otherwise position's derivatives are not needed
   bool motion_felt_{false};    ///< some feel() depends on the motion
   std::vector<Remembered> remembered_;
-  std::vector<Eigen::Index> moving_;  ///< columns of what the vehicle has
+  std::vector<Eigen::Index> moving_;  ///< columns of what the vehicle has, for what is remembered
 };
 
 }  // namespace fathom::model

@@ -1,7 +1,6 @@
 // How a verdict names what was found: forms, look-alikes, what was taken back and what could not be asked.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "test/common/diagnosis/made_up_search.hpp"

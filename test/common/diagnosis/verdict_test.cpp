@@ -1,7 +1,6 @@
 // The four verdicts, each from a made-up search: no fits here, only what is concluded from them.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "test/common/diagnosis/made_up_search.hpp"

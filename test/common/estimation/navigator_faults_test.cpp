@@ -16,7 +16,6 @@ namespace {
 
 using estimation::Navigator;
 using estimation::NavigatorSettings;
-using test::SurveyOptions;
 
 }  // namespace
 

@@ -3,22 +3,13 @@
 
 #include <doctest/doctest.h>
 
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-
-#include "common/base/config.hpp"
-#include "common/base/error.hpp"
 #include "test/common/estimation/survey_runs.hpp"
-#include "test/support/scratch.hpp"
 
 namespace fathom {
 namespace {
 
 using estimation::Navigator;
 using estimation::NavigatorSettings;
-using test::SurveyOptions;
 
 }  // namespace
 

@@ -1,12 +1,8 @@
 // The order in which the supervisor does things: schedule, retry, hold, and where it keeps the vehicle.
 #include <doctest/doctest.h>
 
-#include <limits>
-
-#include "common/base/error.hpp"
 #include "common/excitation/supervisor.hpp"
 #include "test/common/excitation/supervisor_loop.hpp"
-#include "test/support/scratch.hpp"
 
 namespace fathom::excitation {
 
