@@ -18,20 +18,29 @@ struct FineMotion {
 
 class FineShift {
  public:
-  /// The next picture, 8 bits, grey; the last one becomes the one before.
-  void look(const cv::Mat& grey);
+  /// The next picture, 8 bits, grey; the last one becomes the one before. `mask`: empty, or 0 where nothing is looked
+  /// at.
+  void look(const cv::Mat& grey, const cv::Mat& mask = {});
   /// `origin` (CV_32FC2): for each pixel, where in the picture before the same point is expected. Nothing when there is
-  /// no picture before.
-  [[nodiscard]] std::optional<FineMotion> find(const cv::Mat& origin);
+  /// no picture before, or nothing that has moved as one. What moves with the camera (dirt on its window, a dot, a
+  /// coder's blocks) may be stronger than the floor: where the floor is expected elsewhere, a peak there is enough, and
+  /// one that is half as strong anywhere. Without either the floor rests, if what is steady in pictures is known.
+  [[nodiscard]] std::optional<FineMotion> find(const cv::Mat& origin, bool steady_known = false);
 
  private:
   void prepare(cv::Size size);
-
+  void correlate(const cv::Mat& origin);
+  [[nodiscard]] float value(cv::Point at) const;
+  [[nodiscard]] FineMotion peak(cv::Point at) const;
+  [[nodiscard]] FineMotion highest() const;
+  [[nodiscard]] FineMotion highest_near(cv::Point place, int reach) const;
+  void take_out_near(cv::Point place, int reach);
   void transform(const cv::Mat& from, cv::Mat& to);
 
   cv::Size size_;
   cv::Rect part_;
   cv::Mat now_, before_, window_, band_;
+  double chance_{};  ///< spread of the peaks were all phases chance
   cv::Mat blurred_, expected_, tapered_, spectrum_now_, spectrum_before_, product_, peaks_;
 };
 

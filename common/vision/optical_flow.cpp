@@ -12,6 +12,7 @@
 #include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
 #include "common/vision/reduced_view.hpp"
+#include "common/vision/steady_pattern.hpp"
 
 namespace fathom::vision {
 
@@ -45,8 +46,9 @@ struct FlowTracker::State {
   FlowSettings settings;
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat small, mask;                               // mask: empty, or 0 where there are no features
+  cv::Mat seen, small, mask;  // seen: as it is; mask: empty, or 0 where there are no features
   cv::Mat blurred, smooth, wide, fine, fine_before;  // all but the first in float
+  SteadyPattern steady;
   FineShift fine_shift;
   cv::Mat nodes, origin;
   std::vector<cv::Point2f> features, found, back;
@@ -77,10 +79,11 @@ struct FlowTracker::State {
 
   void look(const cv::Mat& grey) {
     if (settings.reduction > 1.0) {
-      cv::resize(grey, small, {}, 1.0 / settings.reduction, 1.0 / settings.reduction, cv::INTER_AREA);
+      cv::resize(grey, seen, {}, 1.0 / settings.reduction, 1.0 / settings.reduction, cv::INTER_AREA);
     } else {
-      grey.copyTo(small);
+      grey.copyTo(seen);
     }
+    steady.take_out(seen, small);
     cv::buildOpticalFlowPyramid(small, pyramid, window(), kLevels);
     // Mean values of pixels still hold detail finer than the reduced ones can: interpolated, it draws each feature to
     // whole pixels, and motion of less than one, as a divergence is, was read too small. Tracks' ends are fitted in
@@ -91,7 +94,7 @@ struct FlowTracker::State {
     cv::GaussianBlur(smooth, wide, {13, 13}, kWide);
     std::swap(fine, fine_before);
     cv::subtract(smooth, wide, fine);
-    fine_shift.look(small);
+    fine_shift.look(small, mask);
   }
 
   void choose_features() {
@@ -145,20 +148,24 @@ struct FlowTracker::State {
   // Corrects what the tracks have said by what the fine detail of the whole picture does; how strongly it said so, 0
   // for not at all.
   double correct(PlaneMotion& motion) {
-    constexpr double kSure = 7.0;   // of 50 000 places one in 10^7 pictures is so high by chance
     constexpr double kOther = 1.0;  // px: tracks that followed something else, whose divergence is of no use either
     constexpr int kRounds = 3;
     constexpr double kNearer = 0.5;  // of the distance, between two pictures: more is no motion but tracks by chance
     if (!(std::abs(motion.n_0.dot(motion.tau)) < kNearer)) motion.tau.setZero();
     for (int round = 0; round < kRounds; ++round) {
       view.map_origin(motion, nodes, origin);
-      const std::optional<FineMotion> detail = fine_shift.find(origin);
-      if (!detail || !(detail->strength > kSure)) return 0.0;
+      const std::optional<FineMotion> detail = fine_shift.find(origin, steady.known());
+      if (!detail) return 0.0;
       motion.tau.head<2>() -= detail->shift / view.focal();
       if (detail->shift.norm() < kOther) return detail->strength;
       motion.tau.z() = 0.0;
     }
     return 0.0;
+  }
+
+  void learn(const PlaneMotion& motion) {
+    const Eigen::Vector3d axis = motion.forward(Eigen::Vector3d::UnitZ());
+    steady.learn(seen, view.focal() * axis.head<2>() / axis.z());
   }
 
   // Two readings of one motion: the tracks', which light may pull, and that of all fine detail, which it pulls less but
@@ -267,6 +274,7 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       if (detailed) {
         plane = state.follow(motion, flow.n_tracks);
         state.settle(plane, motion, strength);
+        state.learn(motion);
       } else {
         state.rows.clear();  // of the first tracks, which nothing confirms
       }
