@@ -44,7 +44,7 @@ void FineShift::prepare(cv::Size size) {
   }
 }
 
-void FineShift::look(const cv::Mat& grey, const cv::Mat& mask) {
+void FineShift::look(const cv::Mat& grey, const cv::Mat& weight) {
   std::swap(now_, before_);
   if (size_ != grey.size()) {
     size_ = grey.size();
@@ -61,7 +61,7 @@ void FineShift::look(const cv::Mat& grey, const cv::Mat& mask) {
   cv::add(blurred_, kNothing, blurred_);
   cv::sqrt(blurred_, blurred_);
   cv::divide(now_, blurred_, now_);
-  if (!mask.empty()) now_.setTo(0.0, mask == 0);
+  if (!weight.empty()) cv::multiply(now_, weight, now_);
 }
 
 void FineShift::transform(const cv::Mat& from, cv::Mat& to) {

@@ -18,9 +18,9 @@ struct FineMotion {
 
 class FineShift {
  public:
-  /// The next picture, 8 bits, grey; the last one becomes the one before. `mask`: empty, or 0 where nothing is looked
-  /// at.
-  void look(const cv::Mat& grey, const cv::Mat& mask = {});
+  /// The next picture, 8 bits, grey; the last one becomes the one before. `weight`: of each pixel's detail, smooth,
+  /// CV_32FC1; empty: all alike.
+  void look(const cv::Mat& grey, const cv::Mat& weight = {});
   /// `origin` (CV_32FC2): for each pixel, where in the picture before the same point is expected. Nothing when there is
   /// no picture before, or nothing that has moved as one. What moves with the camera (dirt on its window, a dot, a
   /// coder's blocks) may be stronger than the floor: where the floor is expected elsewhere, a peak there is enough, and

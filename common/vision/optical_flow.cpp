@@ -46,7 +46,8 @@ struct FlowTracker::State {
   FlowSettings settings;
   std::optional<Utime> before;
   std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat seen, small, mask;  // seen: as it is; mask: empty, or 0 where there are no features
+  cv::Mat seen, small;   // as it is, and without what is steady
+  cv::Mat mask, weight;  // empty, or 0 where there are no features, and what detail counts
   cv::Mat blurred, smooth, wide, fine, fine_before;  // all but the first in float
   SteadyPattern steady;
   FineShift fine_shift;
@@ -94,7 +95,7 @@ struct FlowTracker::State {
     cv::GaussianBlur(smooth, wide, {13, 13}, kWide);
     std::swap(fine, fine_before);
     cv::subtract(smooth, wide, fine);
-    fine_shift.look(small, mask);
+    fine_shift.look(small, weight);
   }
 
   void choose_features() {
@@ -222,11 +223,26 @@ FlowTracker& FlowTracker::operator=(FlowTracker&&) noexcept = default;
 const std::vector<Track>& FlowTracker::tracks() const { return state_->tracks; }
 
 void FlowTracker::leave_out(const std::vector<Eigen::Vector2d>& line, double reach) {
-  const double r = state_->settings.reduction;
-  if (state_->mask.empty()) state_->mask = cv::Mat(state_->view.size(), CV_8UC1, cv::Scalar{255});
+  State& state = *state_;
+  const double r = state.settings.reduction;
+  const cv::Size size = state.view.size();
+  cv::Mat outside(size, CV_8UC1, cv::Scalar{255}), apart;
   for (const Eigen::Vector2d& each : line) {
-    cv::circle(state_->mask, state_->view.reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0},
-               cv::FILLED);
+    cv::circle(outside, state.view.reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0}, cv::FILLED);
+  }
+  cv::distanceTransform(outside, apart, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  // Windows that reach over the dot, as far as smoothing has spread it, see it rest.
+  constexpr float kSpread = 5.0F, kFade = 25.0F;  // px, reduced
+  const cv::Mat far = apart > kSpread + 0.5F * static_cast<float>(state.window().width);
+  if (state.mask.empty()) state.mask = cv::Mat(size, CV_8UC1, cv::Scalar{255});
+  cv::bitwise_and(state.mask, far, state.mask);
+  // Detail fades out: where it ended all at once, the end itself, which rests, would be detail.
+  if (state.weight.empty()) state.weight = cv::Mat(size, CV_32FC1, cv::Scalar{1.0});
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const float share = std::clamp((apart.at<float>(y, x) - kSpread) / kFade, 0.0F, 1.0F);
+      state.weight.at<float>(y, x) *= share * share * (3.0F - 2.0F * share);
+    }
   }
 }
 

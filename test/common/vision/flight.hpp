@@ -32,15 +32,20 @@ struct FlightTally {
   double squares{};                ///< sum of errors squared over covariance, 3 expected of each
   double errors{}, stated{};       ///< sums along the floor [m^2/s^2]
   double worst{};                  ///< m/s along the floor
+  double along{}, slow{};          ///< sums of error times truth and of truth's square where the floor moves slowly
 
   [[nodiscard]] double mean_square() const { return squares / std::max(valid, 1); }
   [[nodiscard]] double rms() const { return std::sqrt(errors / std::max(2 * valid, 1)); }  ///< m/s, per axis
   [[nodiscard]] double said() const { return std::sqrt(stated / std::max(2 * valid, 1)); }
+  /// Share of a slow motion that is not seen.
+  [[nodiscard]] double pull() const { return -along / std::max(slow, 1e-12); }
   void add(const FlightTally& other) {
     pairs += other.pairs;
     valid += other.valid;
     beyond += other.beyond;
     squares += other.squares;
+    along += other.along;
+    slow += other.slow;
     errors += other.errors;
     stated += other.stated;
     worst = std::max(worst, other.worst);
@@ -102,7 +107,7 @@ inline cv::Mat dirty_window(int spots, std::mt19937_64& random) {
 }
 
 inline FlightTally fly(const FlightSettings& settings) {
-  constexpr double kPeriod = 1.0 / 30.0, kBeyond = 30.0;
+  constexpr double kPeriod = 1.0 / 30.0, kBeyond = 30.0, kSlow = 0.3;  // 1/s
   std::mt19937_64 random{settings.seed};
   const Course course{random, settings.haste, settings.near};
   const RenderSettings look = settings.drawn_look ? drawn_look(random) : settings.look;
@@ -141,8 +146,13 @@ inline FlightTally fly(const FlightSettings& settings) {
                                  course.at(t - 0.5 * kPeriod - kStep, place.floor).p_WC) /
                                 (2.0 * kStep);
     const double z = (place.floor - middle.p_WC.z()) / middle.R_WC(2, 2);
-    const Eigen::Vector3d error = flow.rate - middle.R_WC.transpose() * v_W / z;
+    const Eigen::Vector3d truth = middle.R_WC.transpose() * v_W / z, error = flow.rate - truth;
     const double square = error.dot(flow.covariance.inverse() * error);
+    for (int axis = 0; axis < 2; ++axis) {
+      if (std::abs(truth[axis]) > kSlow) continue;
+      tally.along += error[axis] * truth[axis];
+      tally.slow += truth[axis] * truth[axis];
+    }
     tally.squares += square;
     tally.beyond += square > kBeyond ? 1 : 0;
     tally.errors += (z * error.head<2>()).squaredNorm();
