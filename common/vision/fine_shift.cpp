@@ -17,6 +17,7 @@ constexpr int kReach = 2;                          // px, half of a peak's width
 // in 10^5. A floor that rests while light moves over it is seen in nearly all phases.
 constexpr double kSure = 7.0, kAgreeing = 5.0, kRests = 20.0;
 constexpr double kAsStrong = 0.5;  // as what moves with the camera, and believed in its place
+constexpr double kLeft = 0.2;      // the same where the floor is expected and little that is steady can be left
 
 }  // namespace
 
@@ -46,21 +47,28 @@ void FineShift::prepare(cv::Size size) {
 
 void FineShift::look(const cv::Mat& grey, const cv::Mat& weight) {
   std::swap(now_, before_);
+  std::swap(detail_, detail_before_);
   if (size_ != grey.size()) {
     size_ = grey.size();
     prepare(size_);
     before_.release();
   }
-  cv::LUT(grey, logarithms(), now_);
-  constexpr int kWide = 9, kRegion = 25;  // px
-  cv::blur(now_, blurred_, {kWide, kWide});
-  cv::subtract(now_, blurred_, now_);
-  cv::multiply(now_, now_, blurred_);
-  cv::blur(blurred_, blurred_, {kRegion, kRegion});
-  constexpr double kNothing = 1e-4;  // square of a contrast of 1 %
-  cv::add(blurred_, kNothing, blurred_);
-  cv::sqrt(blurred_, blurred_);
-  cv::divide(now_, blurred_, now_);
+  cv::LUT(grey, logarithms(), detail_);
+  constexpr int kWide = 9;  // px
+  cv::blur(detail_, surroundings_, {kWide, kWide});
+  const double brightness = std::exp(cv::mean(surroundings_)[0]);
+  cv::addWeighted(detail_, brightness, surroundings_, -brightness, 0.0, detail_);
+  // Contrast of regions of 28 px, at a quarter of the resolution, for it is smooth.
+  constexpr int kCoarser = 4, kRegion = 7;
+  cv::multiply(detail_, detail_, surroundings_);
+  const cv::Size coarse{(grey.cols + kCoarser - 1) / kCoarser, (grey.rows + kCoarser - 1) / kCoarser};
+  cv::resize(surroundings_, squares_, coarse, 0.0, 0.0, cv::INTER_AREA);
+  cv::blur(squares_, contrast_, {kRegion, kRegion});
+  const double nothing = 0.01 * brightness;
+  cv::add(contrast_, nothing * nothing, contrast_);
+  cv::sqrt(contrast_, contrast_);
+  cv::resize(contrast_, surroundings_, grey.size(), 0.0, 0.0, cv::INTER_LINEAR);
+  cv::divide(detail_, surroundings_, now_);
   if (!weight.empty()) cv::multiply(now_, weight, now_);
 }
 
@@ -159,7 +167,7 @@ std::optional<FineMotion> FineShift::find(const cv::Mat& origin, bool steady_kno
   const bool expected = is_fixed(Eigen::Vector2d::Zero());
   if (!expected) {
     const FineMotion own = highest_near({0, 0}, 1);
-    if (own.strength > kAgreeing) return own;
+    if (own.strength > std::max(kAgreeing, steady_known ? kLeft * top.strength : 0.0)) return own;
   }
   take_out_near(fixed, kReach);
   take_out_near({cvRound(top.shift.x()), cvRound(top.shift.y())}, kReach);

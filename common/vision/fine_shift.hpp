@@ -21,10 +21,17 @@ class FineShift {
   /// The next picture, 8 bits, grey; the last one becomes the one before. `weight`: of each pixel's detail, smooth,
   /// CV_32FC1; empty: all alike.
   void look(const cv::Mat& grey, const cv::Mat& weight = {});
-  /// `origin` (CV_32FC2): for each pixel, where in the picture before the same point is expected. Nothing when there is
-  /// no picture before, or nothing that has moved as one. What moves with the camera (dirt on its window, a dot, a
-  /// coder's blocks) may be stronger than the floor: where the floor is expected elsewhere, a peak there is enough, and
-  /// one that is half as strong anywhere. Without either the floor rests, if what is steady in pictures is known.
+  /// What brightness differs by from its surroundings, in this picture and in the one before: of its logarithm, times
+  /// the picture's mean brightness. CV_32FC1.
+  [[nodiscard]] const cv::Mat& detail() const { return detail_; }
+  [[nodiscard]] const cv::Mat& detail_before() const { return detail_before_; }
+  /// What of a picture is looked at: its middle. Nothing before the first.
+  [[nodiscard]] const cv::Rect& part() const { return part_; }
+  /// `origin` (CV_32FC2): for each pixel of that part, in a map of the whole, where in the picture before the same
+  /// point is expected. Nothing when there is no picture before, or nothing that has moved as one. What moves with the
+  /// camera (dirt on its window, a dot, a coder's blocks) may be stronger than the floor: where the floor is expected
+  /// elsewhere, a peak there is enough, and one that is half as strong anywhere. Without either the floor rests, if what
+  /// is steady in pictures is known.
   [[nodiscard]] std::optional<FineMotion> find(const cv::Mat& origin, bool steady_known = false);
 
  private:
@@ -39,9 +46,10 @@ class FineShift {
 
   cv::Size size_;
   cv::Rect part_;
-  cv::Mat now_, before_, window_, band_;
+  cv::Mat detail_, detail_before_, now_, before_;  // the last two with the same contrast in every region
+  cv::Mat window_, band_;
   double chance_{};  ///< spread of the peaks were all phases chance
-  cv::Mat blurred_, expected_, tapered_, spectrum_now_, spectrum_before_, product_, peaks_;
+  cv::Mat surroundings_, squares_, contrast_, expected_, tapered_, spectrum_now_, spectrum_before_, product_, peaks_;
 };
 
 }  // namespace fathom::vision

@@ -18,4 +18,8 @@ struct TrackEnd {
 [[nodiscard]] std::optional<TrackEnd> end_in_changed_light(const cv::Mat& before, const cv::Mat& now,
                                                            const cv::Point2f& from, const cv::Point2f& to);
 
+/// Ends that are kept because they are near are drawn to where they were looked for: of its distance from their true
+/// mean this share is seen, 1 for `spread` [px, per axis] of 0, and 0 where they lie about as they would by chance.
+[[nodiscard]] double share_seen_near(double spread);
+
 }  // namespace fathom::vision

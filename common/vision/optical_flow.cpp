@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 
 #include "common/base/spatial.hpp"
-#include "common/vision/fine_shift.hpp"
+#include "common/vision/features.hpp"
+#include "common/vision/flow_pictures.hpp"
 #include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
 #include "common/vision/reduced_view.hpp"
@@ -41,24 +41,19 @@ const char* name(FlowState state) {
 }
 
 struct FlowTracker::State {
-  static constexpr int kLevels = 3;
   ReducedView view;
   FlowSettings settings;
+  FlowPictures pictures;
   std::optional<Utime> before;
-  std::vector<cv::Mat> pyramid_before, pyramid;
-  cv::Mat seen, small;   // as it is, and without what is steady
-  cv::Mat mask, weight;  // empty, or 0 where there are no features, and what detail counts
-  cv::Mat blurred, smooth, wide, fine, fine_before;  // all but the first in float
-  SteadyPattern steady;
-  FineShift fine_shift;
+  cv::Mat mask;  // empty, or 0 where there are no features
   cv::Mat nodes, origin;
-  std::vector<cv::Point2f> features, found, back;
-  std::vector<unsigned char> ok, ok_back;
-  std::vector<float> errors;
+  Features texture;
+  std::vector<cv::Point2f> features, some, found;
+  std::vector<unsigned char> ok;
   std::vector<Track> tracks;
   std::vector<FlowRow> rows;
 
-  State(const model::Lens& lens, const FlowSettings& s) : view{lens, s.reduction}, settings{s} {
+  State(const model::Lens& lens, const FlowSettings& s) : view{lens, s.reduction}, settings{s}, pictures{s.reduction} {
     if (view.projection().folds()) leave_out_folded();
   }
 
@@ -73,65 +68,41 @@ struct FlowTracker::State {
     }
   }
 
-  [[nodiscard]] cv::Size window() const {
-    const int side = settings.reduction > 1.5 ? 15 : 21;
-    return {side, side};
-  }
-
-  void look(const cv::Mat& grey) {
-    if (settings.reduction > 1.0) {
-      cv::resize(grey, seen, {}, 1.0 / settings.reduction, 1.0 / settings.reduction, cv::INTER_AREA);
-    } else {
-      grey.copyTo(seen);
-    }
-    steady.take_out(seen, small);
-    cv::buildOpticalFlowPyramid(small, pyramid, window(), kLevels);
-    // Mean values of pixels still hold detail finer than the reduced ones can: interpolated, it draws each feature to
-    // whole pixels, and motion of less than one, as a divergence is, was read too small. Tracks' ends are fitted in
-    // smoother pictures; not found in them, for moving light is smooth too: so what is coarser is taken out.
-    constexpr double kSmooth = 1.0, kWide = 2.0;  // px, reduced
-    cv::GaussianBlur(small, blurred, {5, 5}, kSmooth);
-    blurred.convertTo(smooth, CV_32F);
-    cv::GaussianBlur(smooth, wide, {13, 13}, kWide);
-    std::swap(fine, fine_before);
-    cv::subtract(smooth, wide, fine);
-    fine_shift.look(small, weight);
-  }
-
   void choose_features() {
     constexpr double kQuality = 0.005, kLow = 5e-4;  // of the best: tags outshine a floor by far, lamps even more
     constexpr std::size_t kFew = 4;                  // times fewer than wanted
-    features.clear();
-    const double area = static_cast<double>(small.cols) * small.rows;
+    const auto most = static_cast<std::size_t>(settings.most_tracks);
+    const double area = static_cast<double>(pictures.small().cols) * pictures.small().rows;
     const double apart = 0.6 * std::sqrt(area / settings.most_tracks);
+    texture.look(pictures.small(), mask);
     for (const double quality : {kQuality, kLow}) {
-      cv::goodFeaturesToTrack(small, features, settings.most_tracks, quality, apart, mask, 3);
-      if (kFew * features.size() >= static_cast<std::size_t>(settings.most_tracks)) break;
+      texture.choose(quality, apart, most, features);
+      if (kFew * features.size() >= most) break;
     }
   }
 
-  // There with the rotation as a first guess, and back again.
+  // There with the rotation as a first guess, and back again. What is found is a first guess itself, of three numbers:
+  // every fourth feature is enough for it, unless few of them come back.
   void track(const std::optional<Eigen::Matrix3d>& R_01) {
+    constexpr std::size_t kPortions = 4;
+    tracks.clear();
+    for (std::size_t portion = 0; portion < kPortions; ++portion) {
+      some.clear();
+      for (std::size_t i = portion; i < features.size(); i += kPortions) some.push_back(features[i]);
+      if (!some.empty()) track_some(R_01);
+      if (2 * tracks.size() >= some.size() && tracks.size() >= 2 * static_cast<std::size_t>(settings.least_tracks))
+        break;
+    }
+  }
+
+  void track_some(const std::optional<Eigen::Matrix3d>& R_01) {
     found.clear();
-    for (const cv::Point2f& each : features) {
+    for (const cv::Point2f& each : some) {
       found.push_back(R_01 ? view.pixel(R_01->transpose() * view.direction(each)).value_or(each) : each);
     }
-    const cv::TermCriteria stop{cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 8, 0.03};
-    constexpr double kWeakest = 5e-4;
-    cv::calcOpticalFlowPyrLK(pyramid_before, pyramid, features, found, ok, errors, window(), kLevels, stop,
-                             cv::OPTFLOW_USE_INITIAL_FLOW, kWeakest);
-    back = features;
-    cv::calcOpticalFlowPyrLK(pyramid, pyramid_before, found, back, ok_back, errors, window(), 0, stop,
-                             cv::OPTFLOW_USE_INITIAL_FLOW, kWeakest);
-    tracks.clear();
-    const auto limit = static_cast<float>(settings.there_and_back);
-    for (std::size_t i = 0; i < features.size(); ++i) {
-      const bool inside = found[i].x >= 0 && found[i].y >= 0 && found[i].x <= static_cast<float>(small.cols - 1) &&
-                          found[i].y <= static_cast<float>(small.rows - 1);
-      if (ok[i] == 0 || ok_back[i] == 0 || !inside) continue;
-      const cv::Point2f miss = back[i] - features[i];
-      if (std::hypot(miss.x, miss.y) > limit) continue;
-      tracks.push_back({.from = view.whole(features[i]), .to = view.whole(found[i])});
+    pictures.follow(some, settings.there_and_back, found, ok);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if (ok[i] != 0) tracks.push_back({.from = view.whole(some[i]), .to = view.whole(found[i])});
     }
   }
 
@@ -154,8 +125,8 @@ struct FlowTracker::State {
     constexpr double kNearer = 0.5;  // of the distance, between two pictures: more is no motion but tracks by chance
     if (!(std::abs(motion.n_0.dot(motion.tau)) < kNearer)) motion.tau.setZero();
     for (int round = 0; round < kRounds; ++round) {
-      view.map_origin(motion, nodes, origin);
-      const std::optional<FineMotion> detail = fine_shift.find(origin, steady.known());
+      view.map_origin(motion, pictures.part(), nodes, origin);
+      const std::optional<FineMotion> detail = pictures.find_shift(origin);
       if (!detail) return 0.0;
       motion.tau.head<2>() -= detail->shift / view.focal();
       if (detail->shift.norm() < kOther) return detail->strength;
@@ -166,7 +137,7 @@ struct FlowTracker::State {
 
   void learn(const PlaneMotion& motion) {
     const Eigen::Vector3d axis = motion.forward(Eigen::Vector3d::UnitZ());
-    steady.learn(seen, view.focal() * axis.head<2>() / axis.z());
+    pictures.learn_steady(view.focal() * axis.head<2>() / axis.z());
   }
 
   // Two readings of one motion: the tracks', which light may pull, and that of all fine detail, which it pulls less but
@@ -184,33 +155,43 @@ struct FlowTracker::State {
   }
 
   // Tracks of all features anew, in the pictures' fine detail, from where the motion has them; how many were tried.
-  int refine(const PlaneMotion& motion) {
+  int refine(const PlaneMotion& motion, const FlowPictures::Pair& detail) {
     tracks.clear();
     int tried = 0;
     for (const cv::Point2f& each : features) {
       const auto there = view.pixel(motion.forward(view.direction(each)));
       if (!there) continue;
-      const auto end = end_in_changed_light(fine_before, fine, each, *there);
+      const auto end = end_in_changed_light(detail.before, detail.now, each, *there);
       if (!end) continue;
       ++tried;
       if (end->near) tracks.push_back({.from = view.whole(each), .to = view.whole(end->at)});
     }
     return tried;
   }
-  // Once more where the first round has moved far from where it began: ends are found near it alone.
-  PlaneFlow follow(PlaneMotion motion, int& tried) {
-    constexpr int kRounds = 2;
-    constexpr double kNear = 0.2;  // px
+  // Once more where a round has moved from where it began: ends are found near it alone, and so a round sees less than
+  // the whole of what is left, the less the wider they scatter. Where they lie as chance would have them it sees
+  // nothing.
+  PlaneFlow follow(PlaneMotion motion, const FlowPictures::Pair& detail, int& tried) {
+    constexpr int kRounds = 4;
+    constexpr double kNear = 0.1;   // px
+    constexpr double kLeast = 0.1;  // of what is left; the covariance is then a hundred times that of the spread
     PlaneFlow plane;
     for (int round = 0; round < kRounds; ++round) {
-      tried = refine(motion);
+      tried = refine(motion, detail);
       make_rows(motion);
       plane = fit_plane_flow(rows);
-      const double moved = (plane.tau - motion.tau).norm() * view.focal();
-      if (plane.n_agreed < settings.least_tracks || moved < kNear) break;
+      const double seen = std::max(share_seen_near(plane.spread * view.focal()), kLeast);
+      const Eigen::Vector3d moved = (plane.tau - motion.tau) / seen;
+      plane.tau = motion.tau + moved;
+      plane.covariance /= seen * seen;
+      if (plane.n_agreed < settings.least_tracks || moved.norm() * view.focal() < kNear) break;
       motion.tau = plane.tau;
     }
     return plane;
+  }
+
+  [[nodiscard]] bool enough(const PlaneFlow& plane, int tried) const {
+    return plane.n_agreed >= settings.least_tracks && plane.n_agreed >= settings.least_share * tried;
   }
 };
 
@@ -225,25 +206,13 @@ const std::vector<Track>& FlowTracker::tracks() const { return state_->tracks; }
 void FlowTracker::leave_out(const std::vector<Eigen::Vector2d>& line, double reach) {
   State& state = *state_;
   const double r = state.settings.reduction;
-  const cv::Size size = state.view.size();
-  cv::Mat outside(size, CV_8UC1, cv::Scalar{255}), apart;
+  cv::Mat outside(state.view.size(), CV_8UC1, cv::Scalar{255}), apart;
   for (const Eigen::Vector2d& each : line) {
     cv::circle(outside, state.view.reduced(each), static_cast<int>(std::ceil(reach / r)), cv::Scalar{0}, cv::FILLED);
   }
   cv::distanceTransform(outside, apart, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  // Windows that reach over the dot, as far as smoothing has spread it, see it rest.
-  constexpr float kSpread = 5.0F, kFade = 25.0F;  // px, reduced
-  const cv::Mat far = apart > kSpread + 0.5F * static_cast<float>(state.window().width);
-  if (state.mask.empty()) state.mask = cv::Mat(size, CV_8UC1, cv::Scalar{255});
-  cv::bitwise_and(state.mask, far, state.mask);
-  // Detail fades out: where it ended all at once, the end itself, which rests, would be detail.
-  if (state.weight.empty()) state.weight = cv::Mat(size, CV_32FC1, cv::Scalar{1.0});
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const float share = std::clamp((apart.at<float>(y, x) - kSpread) / kFade, 0.0F, 1.0F);
-      state.weight.at<float>(y, x) *= share * share * (3.0F - 2.0F * share);
-    }
-  }
+  if (state.mask.empty()) state.mask = cv::Mat(state.view.size(), CV_8UC1, cv::Scalar{255});
+  cv::bitwise_and(state.mask, state.pictures.leave_out(apart), state.mask);
 }
 
 void FlowTracker::reset() {
@@ -256,8 +225,7 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
                        const std::optional<Eigen::Matrix3d>& rotation_covariance) {
   State& state = *state_;
   Flow flow{.utime = utime};
-  std::swap(state.pyramid, state.pyramid_before);
-  state.look(grey);
+  state.pictures.look(grey);
   state.tracks.clear();
   const std::optional<Utime> before = state.before;
   state.before = utime;
@@ -288,7 +256,10 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       const bool detailed = strength > 0.0;
       PlaneFlow plane;
       if (detailed) {
-        plane = state.follow(motion, flow.n_tracks);
+        plane = state.follow(motion, state.pictures.fine(), flow.n_tracks);
+        if (!state.enough(plane, flow.n_tracks)) {
+          plane = state.follow(motion, state.pictures.finer(), flow.n_tracks);
+        }
         state.settle(plane, motion, strength);
         state.learn(motion);
       } else {
@@ -308,11 +279,9 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       const Eigen::Matrix3d turn = rotation_covariance.value_or(turning * turning * Eigen::Matrix3d::Identity());
       const Eigen::Matrix3d by_turn = error_by_rotation(state.rows, plane);
       flow.covariance = (plane.covariance + by_turn * turn * by_turn.transpose()) / (flow.interval * flow.interval);
-      const bool enough =
-          flow.n_agreed >= state.settings.least_tracks && flow.n_agreed >= state.settings.least_share * flow.n_tracks;
-      flow.state = !detailed                               ? FlowState::kNoDetail
-                   : enough && flow.covariance.allFinite() ? FlowState::kValid
-                                                           : FlowState::kDisagree;
+      flow.state = !detailed                                                           ? FlowState::kNoDetail
+                   : state.enough(plane, flow.n_tracks) && flow.covariance.allFinite() ? FlowState::kValid
+                                                                                       : FlowState::kDisagree;
     }
   }
   state.choose_features();

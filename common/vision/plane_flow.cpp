@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kRounds = 10;
 constexpr double kTukey = 4.685;    // 95 % efficient on normal errors
+constexpr double kSettled = 1e-7;   // 5e-5 px at 500 px
 constexpr double kSmallest = 2e-5;  // spread below which nothing is measured: 0.01 px at 500 px
 
 Eigen::Matrix<double, 2, 3> jacobian(const FlowRow& row) {
@@ -92,7 +93,7 @@ PlaneFlow fit_plane_flow(const std::vector<FlowRow>& rows) {
     if (!tau.allFinite()) return {.agrees = std::vector<bool>(n, false)};
     const double moved = (tau - result.tau).norm();
     result.tau = tau;
-    if (moved < 1e-9) break;
+    if (moved < kSettled) break;
   }
   double squares = 0.0;
   for (std::size_t i = 0; i < n; ++i) {

@@ -33,27 +33,28 @@ std::optional<cv::Point2f> ReducedView::pixel(const Eigen::Vector3d& x) const {
   return reduced(projection_.pixel(x));
 }
 
-void ReducedView::map_origin(const PlaneMotion& motion, cv::Mat& nodes, cv::Mat& origin) const {
+void ReducedView::map_origin(const PlaneMotion& motion, const cv::Rect& part, cv::Mat& nodes, cv::Mat& origin) const {
   const cv::Size picture = size();
   nodes.create((picture.height - 1) / kApart + 2, (picture.width - 1) / kApart + 2, CV_32FC2);
-  for (int y = 0; y < nodes.rows; ++y) {
-    for (int x = 0; x < nodes.cols; ++x) {
+  const int left = part.x / kApart, right = (part.x + part.width - 1) / kApart;
+  for (int y = part.y / kApart; y <= (part.y + part.height - 1) / kApart + 1; ++y) {
+    for (int x = left; x <= right + 1; ++x) {
       const cv::Point2f here{static_cast<float>(kApart * x), static_cast<float>(kApart * y)};
       const cv::Point2f from = pixel(motion.backward(direction(here))).value_or(here);
       nodes.at<cv::Vec2f>(y, x) = {from.x, from.y};
     }
   }
   origin.create(picture, CV_32FC2);
-  for (int y = 0; y < picture.height; ++y) {
+  for (int y = part.y; y < part.y + part.height; ++y) {
     const auto *above = nodes.ptr<cv::Vec2f>(y / kApart), *below = nodes.ptr<cv::Vec2f>(y / kApart + 1);
     const float v = static_cast<float>(y % kApart) / static_cast<float>(kApart);
     auto* to = origin.ptr<cv::Vec2f>(y);
-    for (int i = 0; i + 1 < nodes.cols; ++i) {
-      const cv::Vec2f left = (1.0F - v) * above[i] + v * below[i];
+    for (int i = left; i <= right; ++i) {
+      const cv::Vec2f start = (1.0F - v) * above[i] + v * below[i];
       const cv::Vec2f step =
-          ((1.0F - v) * above[i + 1] + v * below[i + 1] - left) * (1.0F / static_cast<float>(kApart));
+          ((1.0F - v) * above[i + 1] + v * below[i + 1] - start) * (1.0F / static_cast<float>(kApart));
       for (int x = i * kApart; x < std::min((i + 1) * kApart, picture.width); ++x)
-        to[x] = left + static_cast<float>(x - i * kApart) * step;
+        to[x] = start + static_cast<float>(x - i * kApart) * step;
     }
   }
 }

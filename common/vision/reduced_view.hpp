@@ -40,9 +40,10 @@ class ReducedView {
   /// Nothing for what lies at the camera's side or behind it.
   [[nodiscard]] std::optional<cv::Point2f> pixel(const Eigen::Vector3d& x) const;
 
-  /// For each pixel of the later picture, where its point of the plane was in the earlier one: `origin`, CV_32FC2.
+  /// For each pixel of a part of the later picture, where its point of the plane was in the earlier one: `origin`,
+  /// CV_32FC2, of the whole picture's size.
   /// `nodes` is scratch: between its nodes, sixteen pixels apart, a lens is smooth.
-  void map_origin(const PlaneMotion& motion, cv::Mat& nodes, cv::Mat& origin) const;
+  void map_origin(const PlaneMotion& motion, const cv::Rect& part, cv::Mat& nodes, cv::Mat& origin) const;
 
  private:
   Projection projection_;
