@@ -57,6 +57,7 @@ LiveCandidates::LiveCandidates(const model::Model& base, const model::Scene& sce
       for (const auto& theta : effect->starts(scene, variant)) add(static_cast<int>(forms_.size()) - 1, theta);
     }
   }
+  for (Eigen::Index k = 0; k < kTurns; ++k) inertial_.push_back(columns_ + k);
 }
 
 void LiveCandidates::add(int form, const std::vector<double>& theta) {
@@ -132,7 +133,21 @@ void LiveCandidates::step(const model::Motion& motion, const model::ActuatorForc
     if (is_start) momentum_at_start = added;
     momentum.col(entry) = is_start ? added : Vector6d{(added - momentum_at_start) * probe.per_step};
   }
+  turn(motion, absent, wrench, momentum);
   settled_ = true;
+}
+
+void LiveCandidates::turn(const model::Motion& motion, const Vector6d& absent, Eigen::Ref<WrenchColumns> wrench,
+                          Eigen::Ref<WrenchColumns> momentum) const {
+  constexpr double kTurn = 1e-3;  // rad: curvature and rounding small
+  model::Load load;
+  model::Motion felt = motion;
+  for (Eigen::Index k = 0; k < kTurns; ++k) {
+    const Eigen::Vector3d error = Eigen::Vector3d::Unit(k).cross(motion.nu.tail<3>());
+    felt.nu.tail<3>() = motion.nu.tail<3>() - kTurn * error;
+    wrench.col(columns_ + k) = (model::generalised_force(base_, felt, load) - absent) / kTurn;
+    momentum.col(momentum.cols() - kTurns + k) = base_.theta.head<6>().cwiseProduct(felt.nu - motion.nu) / kTurn;
+  }
 }
 
 }  // namespace fathom::diagnosis

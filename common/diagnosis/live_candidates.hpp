@@ -39,13 +39,16 @@ class LiveCandidates {
   [[nodiscard]] const std::vector<LiveForm>& forms() const { return forms_; }
   [[nodiscard]] const std::vector<LiveStart>& starts() const { return starts_; }
   [[nodiscard]] Eigen::Index columns() const { return columns_; }
-  /// Columns that carry inertia as well.
+  /// Behind the candidates': what a gyro's axes that are turned by a radian about x, y, z of the body's would seem to
+  /// add. No effect of the water: it is taken out of all of them.
+  static constexpr Eigen::Index kTurns = 3;
+  /// Columns that carry inertia as well, the turns' among them.
   [[nodiscard]] const std::vector<Eigen::Index>& inertial() const { return inertial_; }
 
   /// Memory settles at the next sample.
   void reset() { settled_ = false; }
   /// `motion` as commanded; `middle` is the command halfway since the last sample, `dt` s ago. Fills one wrench per
-  /// column, and one momentum (added inertia times nu) per entry of inertial().
+  /// column and turn, and one momentum (added inertia times nu) per entry of inertial().
   void step(const model::Motion& motion, const model::ActuatorForces& middle, double dt,
             Eigen::Ref<WrenchColumns> wrench, Eigen::Ref<WrenchColumns> momentum);
 
@@ -59,6 +62,8 @@ class LiveCandidates {
     std::vector<double> memory;
   };
   void add(int form, const std::vector<double>& theta);
+  void turn(const model::Motion& motion, const Vector6d& absent, Eigen::Ref<WrenchColumns> wrench,
+            Eigen::Ref<WrenchColumns> momentum) const;
 
   model::Model base_;
   std::vector<LiveForm> forms_;

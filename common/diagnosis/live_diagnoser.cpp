@@ -216,6 +216,7 @@ std::unique_ptr<LiveScreening> LiveDiagnoser::screening() const {
                                                    .block = settings_.block,
                                                    .max_gap = settings_.max_gap,
                                                    .most_blocks = static_cast<std::size_t>(settings_.most_blocks),
+                                                   .mounting = settings_.mounting,
                                                    .integral = integral_settings()},
                                          seen_, screening_ ? std::optional{screening_->sigma()} : std::nullopt);
 }

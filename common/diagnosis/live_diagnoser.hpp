@@ -41,10 +41,11 @@ struct LiveSettings {
   bool interpolate_input{true};      ///< false: a command holds until the next
   double max_input_gap{0.5};         ///< s
   double max_skew{0.5};              ///< s by which one channel may lag the others without changing the result
+  double mounting{0.0};              ///< rad by which the attitude sensor's axes may be turned against the body's
   double largest_ratio{0.0};  ///< of the residual's power in MODEL to the noise's: beyond, nothing is adequate; 0: any
 
-  /// Keys: as the members above in their order, with input (linear or hold) for interpolate_input; largest_ratio is
-  /// optional.
+  /// Keys: as the members above in their order, with input (linear or hold) for interpolate_input; mounting and
+  /// largest_ratio are optional.
   [[nodiscard]] static LiveSettings from(const Config& config);
 };
 

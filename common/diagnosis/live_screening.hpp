@@ -25,6 +25,7 @@ struct LiveBasis {
   double block{};    ///< s
   double max_gap{};  ///< s
   std::size_t most_blocks{};
+  double mounting{};                          ///< rad
   identification::IntegralSettings integral;  ///< of the rows
 };
 

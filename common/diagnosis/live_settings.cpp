@@ -24,6 +24,7 @@ LiveSettings LiveSettings::from(const Config& config) {
   s.interpolate_input = config.either("input", "linear", "hold");
   s.max_input_gap = config.positive("max_input_gap", "s");
   s.max_skew = config.not_negative("max_skew", "s");
+  if (config.has("mounting")) s.mounting = config.not_negative("mounting", "rad");
   if (config.has("largest_ratio")) s.largest_ratio = config.positive("largest_ratio", "");
   return s;
 }

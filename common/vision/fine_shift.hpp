@@ -30,8 +30,8 @@ class FineShift {
   /// `origin` (CV_32FC2): for each pixel of that part, in a map of the whole, where in the picture before the same
   /// point is expected. Nothing when there is no picture before, or nothing that has moved as one. What moves with the
   /// camera (dirt on its window, a dot, a coder's blocks) may be stronger than the floor: where the floor is expected
-  /// elsewhere, a peak there is enough, and one that is half as strong anywhere. Without either the floor rests, if what
-  /// is steady in pictures is known.
+  /// elsewhere, a peak there is enough, and one that is half as strong anywhere. Without either the floor rests, if
+  /// what is steady in pictures is known.
   [[nodiscard]] std::optional<FineMotion> find(const cv::Mat& origin, bool steady_known = false);
 
  private:

@@ -33,7 +33,9 @@ class FlowPictures {
               std::vector<unsigned char>& ok);
   /// As FineShift's.
   [[nodiscard]] const cv::Rect& part() const { return shift_.part(); }
-  [[nodiscard]] std::optional<FineMotion> find_shift(const cv::Mat& origin) { return shift_.find(origin, steady_.known()); }
+  [[nodiscard]] std::optional<FineMotion> find_shift(const cv::Mat& origin) {
+    return shift_.find(origin, steady_.known());
+  }
   /// The floor has moved by so much [px] from the picture before to this one: what has not is known by and by.
   void learn_steady(const Eigen::Vector2d& moved) { steady_.learn(seen_, moved); }
   /// Detail between a pixel and some.

@@ -34,7 +34,7 @@ struct Instant {
   model::Model base = model::nominal_model(vehicle, false);
   LiveCandidates candidates{base, scene_of(vehicle)};
   model::Motion motion;
-  WrenchColumns wrench = WrenchColumns::Zero(6, candidates.columns());
+  WrenchColumns wrench = WrenchColumns::Zero(6, candidates.columns() + LiveCandidates::kTurns);
   WrenchColumns momentum = WrenchColumns::Zero(6, static_cast<Eigen::Index>(candidates.inertial().size()));
 
   Instant() {
@@ -161,6 +161,24 @@ TEST_CASE("live candidates: with a lever arm the hull moved otherwise, which is 
   CHECK((instant.momentum.col(entry + 1) - sigma * momentum).norm() < 1e-6);
 }
 
+TEST_CASE("live candidates: axes of a gyro that are turned show as the drag and the momentum of other rates") {
+  constexpr double kTurn = 1e-4;  // rad, a tenth of what differences are taken over
+  Instant instant;
+  instant.step();
+  model::Load load;
+  for (Eigen::Index k = 0; k < LiveCandidates::kTurns; ++k) {
+    model::Motion turned = instant.motion;
+    turned.nu.tail<3>() -= kTurn * Eigen::Vector3d::Unit(k).cross(instant.motion.nu.tail<3>());
+    const Vector6d drag = model::generalised_force(instant.base, turned, load) -
+                          model::generalised_force(instant.base, instant.motion, load);
+    const Vector6d column = instant.wrench.col(instant.candidates.columns() + k);
+    CHECK(column.norm() > 0.0);
+    CHECK((column - drag / kTurn).norm() < kCurvature * column.norm());
+    const Vector6d momentum = instant.base.theta.head<6>().cwiseProduct(turned.nu - instant.motion.nu) / kTurn;
+    CHECK((instant.momentum.rightCols(LiveCandidates::kTurns).col(k) - momentum).norm() < 1e-6);
+  }
+}
+
 TEST_CASE("live candidates: memory is at rest after a reset and follows the command afterwards") {
   Instant instant;
   const LiveStart& lag = instant.start("thruster_lag");
@@ -186,6 +204,7 @@ TEST_CASE("live candidates: inertia enters as momentum") {
   instant.step();
   for (std::size_t i = 0; i < instant.candidates.inertial().size(); ++i) {
     const Eigen::Index column = instant.candidates.inertial()[i];
+    if (column >= instant.candidates.columns()) continue;  // turns
     const auto& starts = instant.candidates.starts();
     const auto start = std::find_if(starts.begin(), starts.end(), [&](const LiveStart& one) {
       return column >= one.column && column < one.column + one.columns();

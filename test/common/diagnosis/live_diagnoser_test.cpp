@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/base/spatial.hpp"
 #include "test/support/timing.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -181,6 +182,32 @@ TEST_CASE("live diagnoser: a sensor that is turned accuses no water") {
   const auto again = std::ranges::find_if(compared.begin() + 6, compared.end(),
                                           [](const EffectRanking& one) { return one.verdict == "collecting"; });
   CHECK(again != compared.end());
+}
+
+TEST_CASE("live diagnoser: an attitude sensor whose axes are turned a little accuses no coupling of the water") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const double degree = M_PI / 180.0;
+  int accused = 0;
+  for (const Eigen::Vector3d& turn : {Eigen::Vector3d{0.8, 0.0, 0.0}, {0.0, -0.8, 0.0}, {0.6, 0.6, -0.6}}) {
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = kDuration, .seed = 41});
+    Trial trial = dive.trial;
+    const Eigen::Matrix3d R = quaternion_from_rotation_vector(degree * turn).toRotationMatrix();
+    for (Vector6d& nu : trial.nu) nu.tail<3>() = R * nu.tail<3>();
+    for (const double mounting : {0.0, 0.5 * degree}) {
+      LiveDiagnoser diagnoser{{.mounting = mounting}, vehicle};
+      const EffectRanking ranking = listen(diagnoser, trial).back();
+      CAPTURE(turn.transpose());
+      CAPTURE(mounting);
+      CAPTURE(told(ranking));
+      const bool coupling = ranking.verdict == "effect" && ranking.candidates.front().name == "cross_coupling";
+      if (mounting == 0.0) {
+        accused += coupling ? 1 : 0;
+      } else {
+        CHECK(ranking.verdict == "adequate");
+      }
+    }
+  }
+  CHECK(accused > 0);  // else nothing was asked
 }
 
 TEST_CASE("live diagnoser: nothing is adopted on clean data") {

@@ -17,12 +17,12 @@ namespace fathom::vision::test_scene {
 
 struct FlightSettings {
   bool tags{true}, dot{true};
-  int dirt{};  ///< dark spots on the window
+  int dirt{};              ///< dark spots on the window
   bool drawn_look{false};  ///< water, light and floor by the seed; else those of `look`
   RenderSettings look;
-  int quality{90};  ///< of JPEG; 0 for none
-  double haste{1.0};   ///< times faster
-  double near{0.75};   ///< m above the floor, in the mean
+  int quality{90};    ///< of JPEG; 0 for none
+  double haste{1.0};  ///< times faster
+  double near{0.75};  ///< m above the floor, in the mean
   double seconds{20.0};
   std::uint64_t seed{1};
 };
@@ -61,7 +61,9 @@ class Course {
     };
     constexpr std::array<double, 6> kReach{0.55, 0.55, 0.22, 0.06, 0.1, 0.5};  // m, rad
     for (std::size_t axis = 0; axis < kReach.size(); ++axis) {
-      for (Swing& each : swings_[axis]) each = {kReach[axis] * (axis == 2 ? near / 0.75 : 1.0) * draw(0.5, 1.0), haste * draw(0.3, 1.1), draw(0.0, 6.28)};
+      for (Swing& each : swings_[axis])
+        each = {kReach[axis] * (axis == 2 ? near / 0.75 : 1.0) * draw(0.5, 1.0), haste * draw(0.3, 1.1),
+                draw(0.0, 6.28)};
     }
     heading_ = draw(-3.1, 3.1);
   }

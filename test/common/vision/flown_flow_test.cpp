@@ -1,5 +1,5 @@
-// Flow on the way, as in a trial by pictures: over tags and bare floor, near and far, in compressed pictures, beside what
-// moves with the camera.
+// Flow on the way, as in a trial by pictures: over tags and bare floor, near and far, in compressed pictures, beside
+// what moves with the camera.
 #include <doctest/doctest.h>
 
 #include <cstdio>
@@ -88,8 +88,8 @@ TEST_CASE("flow: the table of flights" * doctest::skip()) {
   for (const int dirt : {0, 20, 60}) {
     for (const bool tags : {true, false}) {
       for (const bool drawn : {false, true}) {
-        const FlightTally t = fly_some({.tags = tags, .dirt = dirt, .drawn_look = drawn, .seconds = 8.0, .seed = 600},
-                                       kFlights);
+        const FlightTally t =
+            fly_some({.tags = tags, .dirt = dirt, .drawn_look = drawn, .seconds = 8.0, .seed = 600}, kFlights);
         std::printf("| %s, %s, %d spots | %d of %d | %.1f | %d | %.1f where %.1f are stated | %.0f |\n",
                     tags ? "tags" : "bare floor", drawn ? "water, light and floor drawn" : "the tank's", dirt, t.valid,
                     t.pairs, t.mean_square(), t.beyond, 1e3 * t.rms(), 1e3 * t.said(), 1e3 * t.worst);
