@@ -102,7 +102,7 @@ class LiveDiagnoser {
   [[nodiscard]] EffectRanking by_forces(Utime utime);
   struct Left {
     Utime utime{};
-    double ratio{};
+    double ratio{};                    // of the residual, for the last half minute or since an effect was adopted
     std::vector<std::string> effects;  // adopted
   };
   struct Named {
@@ -136,8 +136,12 @@ class LiveDiagnoser {
   LiveSensorCheck sensors_;
   LiveSensorCheck::Turns turned_;  // back, in all of seen_
   bool turning_{false};            // the candidates at hand still rest on sensors that are turned
-  std::deque<Left> left_;          // of MODEL, newest last
-  Named named_;                    // in the last rankings
+  struct {
+    Vector6d sum{Vector6d::Zero()};
+    int count{};
+  } ratio_;                // of MODEL's residuals, since an effect was adopted
+  std::deque<Left> left_;  // of MODEL, newest last
+  Named named_;            // in the last rankings
   std::map<std::string, std::int64_t> rejected_;
 };
 

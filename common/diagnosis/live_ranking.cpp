@@ -143,7 +143,11 @@ void LiveDiagnoser::doubt(EffectRanking& ranking) {
 
 void LiveDiagnoser::hear(const ModelEstimate& model) {
   if (!left_.empty() && model.utime <= left_.back().utime) return;
-  left_.push_back({model.utime, model.residual_ratio.maxCoeff(), model.effects});
+  if (left_.empty() || left_.back().effects != model.effects) ratio_ = {};
+  ratio_.sum += model.residual_ratio;
+  ++ratio_.count;
+  const double always = (ratio_.sum / ratio_.count).maxCoeff();
+  left_.push_back({model.utime, std::max(model.residual_ratio.maxCoeff(), always), model.effects});
   if (left_.size() > kMostModels) left_.pop_front();
 }
 
@@ -154,7 +158,8 @@ const LiveDiagnoser::Left* LiveDiagnoser::model_before(Utime utime) const {
   return last == left_.rend() ? nullptr : &*last;
 }
 
-// A residual that forgets within a second shows no memory here, but its power gives it away.
+// A residual that forgets within a second shows no memory here, but its power gives it away; and one that was too large
+// and is small for now has not got what it lacked, unless something was adopted.
 bool LiveDiagnoser::leaves_much(Utime utime) const {
   const Left* model = model_before(utime);
   return settings_.largest_ratio > 0.0 && model != nullptr && model->ratio > settings_.largest_ratio;
@@ -176,6 +181,7 @@ void LiveDiagnoser::reset() {
   source_ = Source::kUnknown;
   aligner_.reset();
   left_.clear();
+  ratio_ = {};
   sensors_.reset();
   turned_ = {};
   suspicions_.clear();

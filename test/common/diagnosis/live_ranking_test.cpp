@@ -84,6 +84,27 @@ TEST_CASE("live ranking: nothing is adequate while MODEL has more residual than 
   CHECK(verdict(2.0, 30.0, 79.5) == "adequate");  // it may still be on its way
 }
 
+TEST_CASE(
+    "live ranking: a residual that was far too large and is small for now is no adequate model's, unless adopted") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 80.0, .seed = 7});
+  const auto verdict = [&](double before, const std::vector<std::string>& adopted) {
+    LiveSettings settings = short_settings();
+    settings.largest_ratio = 2.0;
+    LiveDiagnoser diagnoser{settings, vehicle};
+    for (double t = 1.0; t < 78.0; t += 1.0) {
+      ModelEstimate model{.utime = utime_after(kStart, t)};
+      if (t > 40.0) model.effects = adopted;
+      model.residual_ratio[2] = t < 40.0 ? before : 0.5;
+      diagnoser.hear(model);
+    }
+    return listen(diagnoser, dive.trial).back().verdict;
+  };
+  CHECK(verdict(20.0, {}) == "unexplained");
+  CHECK(verdict(20.0, {"current"}) == "adequate");
+  CHECK(verdict(1.5, {}) == "adequate");
+}
+
 TEST_CASE("live ranking: each effect once, the convincing ones first and by what they explain") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const test::VirtualDive dive =
