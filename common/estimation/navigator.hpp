@@ -124,8 +124,8 @@ class Navigator {
     std::optional<Utime> last;
     int accepted{};
     int refused{};
-    int repeated{};
-    bool moving{};  // when the repetition began
+    int repeated{}, moved{};  // in a row; so many of them under way, all if the first was
+    [[nodiscard]] bool repeats() const { return repeated >= kRepeats && moved >= kRepeats; }
     bool walled{};  // the newest was of a wall
     Eigen::Vector3d a{Eigen::Vector3d::Zero()}, b{Eigen::Vector3d::Zero()};
     std::array<std::int64_t, kReasons> rejected{};

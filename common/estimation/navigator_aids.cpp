@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kPatience = 8;              // refused in a row before the estimate is taken to be the one that is wrong
 constexpr int kWitness = 3;               // accepted samples that make a source trusted
-constexpr double kMoving = 0.01;          // m/s
+constexpr double kMoving = 0.01;          // m/s and rad/s, together
+constexpr double kClearly = 0.05;         // the same beyond any noise: at rest what is quantised repeats itself
 constexpr double kLongestInterval = 1.0;  // s for gains: beyond, they are as good as one
 constexpr double kStartSigma = 0.5;       // m/s: what vehicles of this size do
 constexpr double kLargestTiltCosine =
@@ -27,14 +28,15 @@ std::size_t slot(Source source) { return static_cast<std::size_t>(source); }
 bool Navigator::frozen(Memory& memory, const Measurement& m, const Input& input) const {
   Track& track = memory.tracks[slot(m.source)];
   if (!track.last || m.a != track.a || m.b != track.b) {
-    track.repeated = 0;
+    track.repeated = track.moved = 0;
     track.a = m.a;
     track.b = m.b;
     return false;
   }
   const double speed = memory.filter.velocity().norm() + input.w_B.norm();
-  if (track.repeated == 0) track.moving = speed > kMoving;
-  return ++track.repeated >= kRepeats && track.moving;
+  if (track.repeated++ == 0) track.moved = speed > kMoving ? kRepeats : 0;
+  if (speed > kClearly) ++track.moved;
+  return track.repeats();
 }
 
 void Navigator::use(Memory& memory, std::size_t first, std::size_t last, const Input& input) const {

@@ -217,7 +217,7 @@ std::string Navigator::complaint() const {
     const Track& track = memory.tracks[slot(source)];
     const double age = track.last ? seconds_between(*track.last, utime) : HUGE_VAL;
     if (age <= s.max_age) continue;
-    if (track.repeated >= kRepeats && track.moving) return std::string{channel(source)} + " is frozen";
+    if (track.repeats()) return std::string{channel(source)} + " is frozen";
     if (clock_[slot(source)] == Clock::kBehind)
       return std::string{channel(source)} + " comes too late; is its clock right?";
     if (clock_[slot(source)] == Clock::kAhead)

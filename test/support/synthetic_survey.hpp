@@ -23,6 +23,7 @@ struct Arrival {
 struct SurveyOptions {
   unsigned seed{1};
   double duration{60.0};  // s
+  double rest{0.0};       // s before it begins to move, over two more
   bool shallow{true};
   bool noisy{true};
   double gap_from{1e9}, gap_to{1e9};                     // s without tags
@@ -73,9 +74,37 @@ inline estimation::NavigatorSettings survey_settings(bool shallow) {
   return s;
 }
 
+/// The same way, at rest until then: its time stands still at first.
+class RestingMotion {
+ public:
+  RestingMotion(const SyntheticMotion& motion, double rest) : motion_{motion}, rest_{rest} {}
+  [[nodiscard]] Eigen::Vector3d p_WB(double t) const { return motion_.p_WB(time(t)); }
+  [[nodiscard]] Eigen::Matrix3d R_WB(double t) const { return motion_.R_WB(time(t)); }
+  [[nodiscard]] Eigen::Vector3d v_B(double t) const { return pace(t) * motion_.v_B(time(t)); }
+  [[nodiscard]] Eigen::Vector3d w_B(double t) const { return pace(t) * motion_.w_B(time(t)); }
+  [[nodiscard]] Eigen::Vector3d f_B(double t) const {
+    const Eigen::Vector3d held = -kGravity * R_WB(t).transpose() * Eigen::Vector3d::UnitZ();
+    const double gain = since(t) > 0.0 && since(t) < kStart ? 1.0 / kStart : 0.0;
+    return held + pace(t) * pace(t) * (motion_.f_B(time(t)) - held) + gain * motion_.v_B(time(t));
+  }
+
+ private:
+  static constexpr double kStart = 2.0, kGravity = 9.81;
+  [[nodiscard]] double since(double t) const { return rest_ > 0.0 ? std::max(t - rest_, 0.0) : kStart; }
+  [[nodiscard]] double pace(double t) const { return std::min(since(t) / kStart, 1.0); }
+  [[nodiscard]] double time(double t) const {
+    if (rest_ == 0.0) return t;
+    const double s = since(t);
+    return s < kStart ? 0.5 * s * s / kStart : s - 0.5 * kStart;
+  }
+  const SyntheticMotion& motion_;
+  double rest_;
+};
+
 /// In the order of arrival.
 inline std::vector<Arrival> synthetic_survey(const SurveyOptions& o) {
-  const SyntheticMotion motion{o.seed};
+  const SyntheticMotion way{o.seed};
+  const RestingMotion motion{way, o.rest};
   const auto places = survey_places();
   const auto mount = survey_camera();
   std::mt19937 random{o.seed * 31u + 7u};

@@ -113,6 +113,28 @@ TEST_CASE("navigator: a sensor that is silent, frozen, jumping or sends no numbe
   }
 }
 
+TEST_CASE("navigator: a flow that freezes at rest is refused once the vehicle moves, and not before") {
+  constexpr double kRest = 15.0, kFrozen = 10.0;  // s
+  std::optional<OpticalFlow> held;
+  const auto spoil = [&](test::SurveySample& s, double t) {
+    if (auto* flow = std::get_if<OpticalFlow>(&s); flow != nullptr) {
+      if (t > kFrozen) flow->flow_C = held->flow_C;
+      held = *flow;
+    }
+    return true;
+  };
+  Navigator navigator{test::survey_settings(true), test::survey_places()};
+  const auto arrivals =
+      test::synthetic_survey({.duration = 30.0, .rest = kRest, .noisy = false, .force_bias = 0.0, .spoil = spoil});
+  const auto begins =
+      std::ranges::find_if(arrivals, [](const auto& one) { return one.at > utime_after(1'000'000'000, kRest + 0.1); });
+  test::feed(navigator, {arrivals.begin(), begins});
+  CHECK(navigator.rejected()["OPTICAL_FLOW frozen"] == 0);
+  test::feed(navigator, {begins, arrivals.end()});
+  CHECK(navigator.rejected()["OPTICAL_FLOW frozen"] > 300);
+  CHECK(navigator.complaint() == "OPTICAL_FLOW is frozen");
+}
+
 TEST_CASE("navigator: what looks at a wall tells nothing of the floor") {
   // A laser that points ahead, and a wall not far beyond the tour's farthest point: the dot climbs it and comes back.
   const test::SyntheticMotion motion{1};
