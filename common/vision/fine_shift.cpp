@@ -158,19 +158,19 @@ std::optional<FineMotion> FineShift::find(const cv::Mat& origin, bool steady_kno
   if (!(top.strength > kSure)) return {};
   const cv::Point middle{part_.x + part_.width / 2, part_.y + part_.height / 2};
   const auto from = origin.at<cv::Vec2f>(middle);
-  const cv::Point fixed{cvRound(from[0]) - middle.x, cvRound(from[1]) - middle.y};
+  const Eigen::Vector2d fixed{from[0] - static_cast<float>(middle.x), from[1] - static_cast<float>(middle.y)};
   const auto is_fixed = [&](const Eigen::Vector2d& shift) {
-    return std::max(std::abs(shift.x() - fixed.x), std::abs(shift.y() - fixed.y)) <= kReach;
+    return (shift - fixed).lpNorm<Eigen::Infinity>() <= kReach + 0.5;
   };
-  if (!is_fixed(top.shift)) return top;
+  if (!fixed.allFinite() || !is_fixed(top.shift)) return top;
   // The floor rests, or what moves with the camera is stronger than what is left of the floor.
   const bool expected = is_fixed(Eigen::Vector2d::Zero());
   if (!expected) {
     const FineMotion own = highest_near({0, 0}, 1);
     if (own.strength > std::max(kAgreeing, steady_known ? kLeft * top.strength : 0.0)) return own;
   }
-  take_out_near(fixed, kReach);
-  take_out_near({cvRound(top.shift.x()), cvRound(top.shift.y())}, kReach);
+  for (const Eigen::Vector2d& place : {fixed, top.shift})
+    take_out_near({cvRound(place.x()), cvRound(place.y())}, kReach);
   const FineMotion other = highest();
   if (other.strength > kAsStrong * top.strength) return other;
   if (expected || (steady_known && top.strength > kRests)) return top;
