@@ -157,7 +157,7 @@ std::optional<FineMotion> FineShift::find(const cv::Mat& origin, bool steady_kno
   const FineMotion top = highest();
   if (!(top.strength > kSure)) return {};
   const cv::Point middle{part_.x + part_.width / 2, part_.y + part_.height / 2};
-  const auto from = origin.at<cv::Vec2f>(middle);
+  const auto& from = origin.at<cv::Vec2f>(middle);
   const Eigen::Vector2d fixed{from[0] - static_cast<float>(middle.x), from[1] - static_cast<float>(middle.y)};
   const auto is_fixed = [&](const Eigen::Vector2d& shift) {
     return (shift - fixed).lpNorm<Eigen::Infinity>() <= kReach + 0.5;

@@ -134,9 +134,9 @@ inline FlightTally fly(const FlightSettings& settings) {
       const cv::Mat bgr = seen.bgr.clone();
       (void)decode_jpeg(encode_jpeg(bgr, settings.quality), false, seen.grey, seen.bgr);
     }
-    std::optional<Eigen::Matrix3d> R_01;
-    if (before) R_01 = before->R_WC.transpose() * now.R_WC;
-    const Flow flow = tracker.step(seen.utime, seen.grey, R_01, now.R_WC.row(2));
+    std::optional<Eigen::Matrix3d> R_AB;
+    if (before) R_AB = before->R_WC.transpose() * now.R_WC;
+    const Flow flow = tracker.step(seen.utime, seen.grey, R_AB, now.R_WC.row(2));
     before = now;
     if (i == 0) continue;
     ++tally.pairs;
