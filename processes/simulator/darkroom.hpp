@@ -20,12 +20,14 @@ class Darkroom {
   void open_line(const std::string& at) { line_.emplace(at); }
   [[nodiscard]] bool has_line() const { return line_.has_value(); }
   void begin_at(Utime origin) { origin_ = origin; }
+  /// Virtual time is the host's then. Every picture is as old when it goes: the camera's latency and 8 ms.
   void send(const simulation::Exposure& exposure);
   /// A spoilt exposure is a black picture.
   [[nodiscard]] Camera develop(const simulation::Exposure& exposure);
 
  private:
   Utime origin_;
+  double age_{};  // s, of pictures on the line
   std::optional<vision::Renderer> renderer_;
   std::optional<link::Server> line_;
 };
