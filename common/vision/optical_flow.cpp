@@ -12,7 +12,6 @@
 #include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
 #include "common/vision/reduced_view.hpp"
-#include "common/vision/steady_pattern.hpp"
 
 namespace fathom::vision {
 

@@ -9,13 +9,13 @@
 namespace fathom::vision {
 namespace {
 
-constexpr double kApart = 10.0;  // px: detail of one picture has nothing to do with that of the other
-constexpr int kSeldom = 3;       // pictures, for speed
-constexpr int kLeast = 10;       // pictures before anything is said
-constexpr int kMemory = 100;     // pictures: a window is wiped, a clock's digits change
-constexpr double kMost = 0.3;    // of a logarithm, by one picture: an edge of a tag has 2, and would be seen for long
-constexpr double kSure = 5.0;    // standard errors of a mean
-constexpr int kWide = 9;         // px: what is coarser is light
+constexpr double kApart = 10.0;       // px: detail of one picture has nothing to do with that of the other
+constexpr int kSeldom = 3;            // pictures, for speed
+constexpr int kLeast = 10;            // pictures before anything is said
+constexpr std::size_t kMemory = 100;  // pictures: a window is wiped, a clock's digits change
+constexpr double kMost = 0.3;  // of a logarithm, by one picture: an edge of a tag has 2, and would be seen for long
+constexpr double kSure = 5.0;  // standard errors of a mean
+constexpr int kWide = 9;       // px: what is coarser is light
 
 }  // namespace
 
@@ -30,17 +30,21 @@ void SteadyPattern::take_out(const cv::Mat& grey, cv::Mat& clean) {
 }
 
 void SteadyPattern::learn(const cv::Mat& grey, const Eigen::Vector2d& moved) {
-  moved_ += moved;
-  ++since_;
-  if (!(moved_.norm() > kApart) || since_ < kSeldom) return;
-  moved_.setZero();
+  at_ += moved;
+  if (++since_ < kSeldom) return;
+  // Who hovers sees a few pieces of floor again and again, and their mean is the floor.
+  const auto near = [this](const Eigen::Vector2d& place) { return (at_ - place).norm() < kApart; };
+  if (std::ranges::any_of(places_, near)) return;
+  places_.push_back(at_);
+  if (places_.size() > kMemory) places_.pop_front();
   since_ = 0;
   if (mean_.size() != grey.size()) {
     mean_ = cv::Mat::zeros(grey.size(), CV_32FC1);
+    places_.assign(1, at_);
     n_ = 0;
     any_ = false;
   }
-  n_ = std::min(n_ + 1, kMemory);
+  n_ = std::min(n_ + 1, static_cast<int>(kMemory));
   cv::LUT(grey, logarithms(), detail_);
   cv::blur(detail_, blurred_, {kWide, kWide});
   cv::subtract(detail_, blurred_, detail_);

@@ -4,7 +4,6 @@
 
 #include <cstdio>
 
-#include "common/vision/steady_pattern.hpp"
 #include "test/common/vision/flight.hpp"
 
 namespace fathom::vision {
@@ -43,42 +42,6 @@ TEST_CASE("flow: dirt on the window, which moves with the camera, is no floor at
     CHECK(t.rms() < kSpeed);
     CHECK(t.worst < kWorst);
     CHECK(t.mean_square() < kStated);
-  }
-}
-
-TEST_CASE("steady pattern: letters are taken out once the floor has moved behind them, and nothing else ever is") {
-  constexpr int kPictures = 60;
-  const cv::Size size{320, 240};
-  cv::RNG random{7};
-  cv::Mat floor(size.height, size.width + 12 * kPictures, CV_8UC1);
-  random.fill(floor, cv::RNG::NORMAL, 100.0, 12.0);
-  cv::GaussianBlur(floor, floor, {}, 1.0);
-  const auto write = [](cv::Mat& on) { cv::putText(on, "12.4 m", {30, 60}, cv::FONT_HERSHEY_SIMPLEX, 0.6, 230.0, 1); };
-  cv::Mat letters = cv::Mat::zeros(size, CV_8UC1), clean;
-  write(letters);
-  for (const bool written : {true, false}) {
-    for (const bool moves : {true, false}) {
-      CAPTURE(written);
-      CAPTURE(moves);
-      SteadyPattern pattern;
-      cv::Mat seen;
-      for (int i = 0; i < kPictures; ++i) {
-        floor(cv::Rect{cv::Point{moves ? 12 * i : 0, 0}, size}).copyTo(seen);
-        if (written) write(seen);
-        pattern.learn(seen, {moves ? -12.0 : 0.0, 0.0});
-      }
-      pattern.take_out(seen, clean);
-      CHECK(pattern.known() == moves);
-      cv::Mat change;
-      cv::absdiff(seen, clean, change);
-      if (!moves || !written) {
-        CHECK(cv::countNonZero(change) < seen.rows * seen.cols / 1000);
-      } else {
-        CHECK(cv::mean(clean, letters)[0] < 0.5 * (100.0 + cv::mean(seen, letters)[0]));
-        change.setTo(0, letters);
-        CHECK(cv::mean(change)[0] < 0.5);
-      }
-    }
   }
 }
 
