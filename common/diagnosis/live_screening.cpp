@@ -44,9 +44,8 @@ LiveScreening::LiveScreening(const LiveBasis& basis, const SeenTrial& seen, cons
     : basis_{basis}, origin_{first_of(seen).motion.utime}, regressor_{basis.integral} {
   const model::Model base = base_of(seen);
   if (sigma) sigma_ = *sigma;
-  const Eigen::Index turns = basis_.mounting > 0.0 ? LiveCandidates::kTurns : 0;
-  Eigen::VectorXd information(basis_.prior_mean.size() + turns);
-  information.tail(turns).setConstant(std::pow(basis_.mounting, -2));
+  Eigen::VectorXd information(basis_.prior_mean.size() + turns());
+  information.tail(turns()).setConstant(std::pow(basis_.mounting, -2));
   for (Eigen::Index i = 0; i < basis_.prior_mean.size(); ++i) {
     information[i] = std::pow(basis_.vehicle.priors[static_cast<std::size_t>(i)].sigma, -2);
   }
@@ -117,7 +116,7 @@ void LiveScreening::add(const identification::RowBlock& block) {
   const auto derivative = regressor_.derivative();
   const std::size_t count = average.size();
   if (count > filled_) return;
-  const Eigen::Index base = basis_.prior_mean.size(), turns = row_.size() - base - 1 - columns_->columns();
+  const Eigen::Index base = basis_.prior_mean.size();
   filtered_.setZero();
   rate_.setZero();
   for (std::size_t i = 0; i < count; ++i) {
@@ -131,8 +130,8 @@ void LiveScreening::add(const identification::RowBlock& block) {
   evidence_->next_instant();
   for (const identification::Row& row : block.view()) {
     row_.head(base) = row.h;
-    row_.segment(base, turns) = filtered_.row(row.axis).segment(columns_->columns(), turns).transpose();
-    row_[base + turns] = row.y - row.h.dot(basis_.prior_mean);
+    row_.segment(base, turns()) = filtered_.row(row.axis).segment(columns_->columns(), turns()).transpose();
+    row_[base + turns()] = row.y - row.h.dot(basis_.prior_mean);
     row_.tail(columns_->columns()) = filtered_.row(row.axis).head(columns_->columns()).transpose();
     row_ /= sigma_[row.axis];
     evidence_->add(row.axis, row_, row.y / sigma_[row.axis]);

@@ -25,7 +25,7 @@ struct LiveBasis {
   double block{};    ///< s
   double max_gap{};  ///< s
   std::size_t most_blocks{};
-  double mounting{};                          ///< rad
+  double mounting{};                          ///< rad, as in LiveSettings; 0: turns are not asked for
   identification::IntegralSettings integral;  ///< of the rows
 };
 
@@ -58,6 +58,7 @@ class LiveScreening {
   [[nodiscard]] model::Scene scene_of(const SeenTrial& seen) const;
   [[nodiscard]] model::Model base_of(const SeenTrial& seen);
   void add(const identification::RowBlock& block);
+  [[nodiscard]] Eigen::Index turns() const { return basis_.mounting > 0.0 ? LiveCandidates::kTurns : 0; }
 
   LiveBasis basis_;
   model::Scene scene_;
