@@ -137,9 +137,10 @@ class LiveDiagnoser {
   LiveSensorCheck::Turns turned_;  // back, in all of seen_
   bool turning_{false};            // the candidates at hand still rest on sensors that are turned
   struct {
+    Utime begin{};
     Vector6d sum{Vector6d::Zero()};
     int count{};
-  } ratio_;                // of MODEL's residuals, since an effect was adopted
+  } ratio_;                // of MODEL's residuals since an effect was adopted, but for the warm-up
   std::deque<Left> left_;  // of MODEL, newest last
   Named named_;            // in the last rankings
   std::map<std::string, std::int64_t> rejected_;

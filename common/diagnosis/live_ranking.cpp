@@ -143,10 +143,13 @@ void LiveDiagnoser::doubt(EffectRanking& ranking) {
 
 void LiveDiagnoser::hear(const ModelEstimate& model) {
   if (!left_.empty() && model.utime <= left_.back().utime) return;
-  if (left_.empty() || left_.back().effects != model.effects) ratio_ = {};
-  ratio_.sum += model.residual_ratio;
-  ++ratio_.count;
-  const double always = (ratio_.sum / ratio_.count).maxCoeff();
+  if (left_.empty() || left_.back().effects != model.effects) ratio_ = {.begin = model.utime};
+  // While numbers are still found, a residual is too large in any trial.
+  if (seconds_between(ratio_.begin, model.utime) >= settings_.warm_up) {
+    ratio_.sum += model.residual_ratio;
+    ++ratio_.count;
+  }
+  const double always = (ratio_.sum / std::max(ratio_.count, 1)).maxCoeff();
   left_.push_back({model.utime, std::max(model.residual_ratio.maxCoeff(), always), model.effects});
   if (left_.size() > kMostModels) left_.pop_front();
 }
