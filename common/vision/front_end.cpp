@@ -232,8 +232,7 @@ const Sight& FrontEnd::step(const Picture& picture, const std::optional<Eigen::M
   find_range(down_C);
   const bool fresh = range_utime_ && seconds_between(*range_utime_, picture.utime) <= settings_.range_memory;
   if (sight_.flow.state == FlowState::kValid && fresh) {
-    // To the middle between the pictures.
-    const double z = last_range_ * (1.0 + 0.5 * sight_.flow.rate.z() * sight_.flow.interval);
+    const double z = last_range_ * sight_.flow.middle_distance;
     sight_.v_C = z * sight_.flow.rate;
     sight_.v_covariance = z * z * sight_.flow.covariance +
                           last_range_sigma_ * last_range_sigma_ * sight_.flow.rate * sight_.flow.rate.transpose();

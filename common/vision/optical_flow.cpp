@@ -6,7 +6,6 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "common/base/spatial.hpp"
 #include "common/vision/features.hpp"
 #include "common/vision/flow_pictures.hpp"
 #include "common/vision/light_change.hpp"
@@ -271,9 +270,9 @@ Flow FlowTracker::step(Utime utime, const cv::Mat& grey, const std::optional<Eig
       flow.floor_10 = R_01->transpose() * (Eigen::Matrix3d::Identity() - plane.tau * motion.n_0.transpose());
       flow.nearing = 1.0 - motion.n_0.dot(plane.tau);
       // From the first camera's distance and axes to those in the middle.
-      const Eigen::Vector3d half = 0.5 * rotation_vector_from_quaternion(Eigen::Quaterniond{*R_01});
-      const Eigen::Matrix3d to_middle = quaternion_from_rotation_vector(half).toRotationMatrix().transpose();
-      flow.rate = to_middle * plane.tau / (flow.interval * (1.0 - 0.5 * plane.tau.z()));
+      motion.tau = plane.tau;
+      flow.rate = motion.turned(0.5).transpose() * plane.tau / (flow.interval * motion.distance(0.5));
+      flow.middle_distance = motion.distance(0.5) / motion.distance(1.0);
       const double turning = state.settings.rotation_sigma * flow.interval;
       const Eigen::Matrix3d turn = rotation_covariance.value_or(turning * turning * Eigen::Matrix3d::Identity());
       const Eigen::Matrix3d by_turn = error_by_rotation(state.rows, plane);

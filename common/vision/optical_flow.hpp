@@ -47,6 +47,7 @@ struct Flow {
   /// the distance to it along its normal, over that of the picture before. Of a valid flow.
   Eigen::Matrix3d floor_10{Eigen::Matrix3d::Identity()};
   double nearing{1.0};
+  double middle_distance{1.0};  ///< z_C in the middle over z_C at this picture; of a valid flow
 };
 
 class FlowTracker {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/base/spatial.hpp"
+
 namespace fathom::vision {
 namespace {
 
@@ -9,6 +11,15 @@ constexpr int kApart = 16;      // px between two nodes
 constexpr double kAhead = 0.1;  // of a direction's length, along the axis
 
 }  // namespace
+
+Eigen::Matrix3d PlaneMotion::turned(double share) const {
+  const Eigen::Vector3d turn = rotation_vector_from_quaternion(Eigen::Quaterniond{R_01});
+  return quaternion_from_rotation_vector(share * turn).toRotationMatrix();
+}
+
+double PlaneMotion::distance(double share) const {
+  return (1.0 - share * n_0.dot(tau)) / n_0.dot(turned(share).col(2));
+}
 
 cv::Size ReducedView::size() const {
   const model::Lens& lens = projection_.lens();

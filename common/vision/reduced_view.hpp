@@ -23,6 +23,11 @@ struct PlaneMotion {
     const Eigen::Vector3d turned = R_01 * x_1;
     return turned + tau * (n_0.dot(turned) / (1.0 - n_0.dot(tau)));
   }
+  /// Axes of the camera after a share of the turn, in those of the earlier one.
+  [[nodiscard]] Eigen::Matrix3d turned(double share) const;
+  /// The distance to the plane along the camera's axis after a share of the motion, over that before: along an aslant
+  /// axis it changes with a shift along the plane, and with a turn.
+  [[nodiscard]] double distance(double share) const;
 };
 
 class ReducedView {

@@ -8,6 +8,7 @@
 #include "common/vision/jpeg.hpp"
 #include "common/vision/light_change.hpp"
 #include "common/vision/plane_flow.hpp"
+#include "common/vision/reduced_view.hpp"
 #include "test/common/vision/scene.hpp"
 
 namespace fathom::vision {
@@ -131,6 +132,55 @@ TEST_CASE("flow: a divergence that moves features by less than a pixel is read i
   }
   CHECK(std::abs(seen / wanted - 1.0) < kShare);
   CHECK(squares / (kDives * (kPictures - 1)) < kStated);
+}
+
+TEST_CASE("flow: the distance along an aslant axis changes with a shift along the floor and with a turn") {
+  std::mt19937_64 random{3};
+  std::uniform_real_distribution<double> draw{-1.0, 1.0};
+  constexpr double kFloor = 1.5;
+  const auto distance = [](const Pose& at) { return (kFloor - at.p_WC.z()) / at.R_WC(2, 2); };
+  for (int i = 0; i < 20; ++i) {
+    const Pose start =
+        pose({draw(random), draw(random), 0.7}, 0.3 * draw(random), 0.3 * draw(random), 3.0 * draw(random));
+    const Way way{{draw(random), draw(random), draw(random)}, {draw(random), draw(random), draw(random)}};
+    const Pose end = along(start, way, kPeriod);
+    const Eigen::Vector3d normal = start.R_WC.row(2), shift = start.R_WC.transpose() * (end.p_WC - start.p_WC);
+    const PlaneMotion motion{
+        .R_01 = start.R_WC.transpose() * end.R_WC, .n_0 = normal / normal.z(), .tau = shift / distance(start)};
+    for (const double share : {0.5, 1.0}) {
+      const Pose there = along(start, way, share * kPeriod);
+      CHECK(motion.distance(share) == doctest::Approx(distance(there) / distance(start)).epsilon(1e-12));
+      CHECK((motion.turned(share) - start.R_WC.transpose() * there.R_WC).norm() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("flow: aslant over the floor, there and back are equally fast") {
+  // A roll of 0.25 rad and 2.2 cm of way at 0.5 m: half of both's product is 0.55 % of the speed, to either side.
+  constexpr double kRoll = 0.25, kSpeed = 0.65, kShare = 0.003;
+  constexpr int kPictures = 8;
+  const model::Site place = site();
+  for (const double speed : {kSpeed, -kSpeed}) {
+    Renderer renderer{place, lens(), std::nullopt, {.caustics = 0.0}, 21};
+    FlowTracker tracker{lens(), {}};
+    const Pose start = pose({0.1, speed < 0.0 ? 0.1 : -0.1, place.floor - 0.5}, kRoll, 0.0, 0.0);
+    const Way way{{0.0, speed, 0.0}, Eigen::Vector3d::Zero()};
+    double seen = 0.0, wanted = 0.0;
+    for (int i = 0; i < kPictures; ++i) {
+      const Pose now = along(start, way, i * kPeriod);
+      const Picture shown = picture(renderer, i * kPeriod, now);
+      const Flow flow = tracker.step(shown.utime, shown.grey, Eigen::Matrix3d::Identity(), now.R_WC.row(2));
+      if (i == 0) continue;
+      REQUIRE(flow.state == FlowState::kValid);
+      const Pose middle = along(start, way, (i - 0.5) * kPeriod);
+      const Eigen::Vector2d truth =
+          (middle.R_WC.transpose() * way.v_W).head<2>() * middle.R_WC(2, 2) / (place.floor - middle.p_WC.z());
+      seen += flow.rate.head<2>().dot(truth);
+      wanted += truth.squaredNorm();
+    }
+    CAPTURE(speed);
+    CHECK(std::abs(seen / wanted - 1.0) < kShare);
+  }
 }
 
 TEST_CASE("flow: light that changes over a feature does not move it") {
