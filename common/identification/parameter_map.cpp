@@ -48,7 +48,7 @@ ParameterMap::ParameterMap(const model::Model& model) {
       free.scale = std::max(std::abs(active.theta[c]), kScaleFloorShare * parameter.sigma);
       free.low = parameter.low;
       free.high = parameter.high;
-      free.form_sigma = parameter.form_sigma;
+      free.form_sigma = std::hypot(parameter.form_sigma, active.effect->left_open(active.theta, active.variant, c));
       free.after_command = parameter.after_command;
       free.sought = active.effect->takes_part(active.variant, c);
       if (!free.sought) free.prior_mean = active.theta[c];

@@ -84,6 +84,9 @@ class Effect {
   [[nodiscard]] bool is_told(int variant, std::size_t number) const {
     return takes_part(variant, number) || is_given(variant, number);
   }
+  /// Standard deviation of the number that the form as it is computed leaves open, however good the data: within the
+  /// width over which it rounds off an edge, say.
+  [[nodiscard]] virtual double left_open(EffectTheta, int /*variant*/, std::size_t /*number*/) const { return 0.0; }
   /// How many numbers a fit seeks in that form.
   [[nodiscard]] int numbers(int variant) const;
   /// True when several forms can act at once, so that results must say which one a number belongs to.

@@ -62,6 +62,14 @@ void InputSignal::mixture(double place, ActuatorForces& force) const {
   }
 }
 
+void InputSignal::change(double t, ActuatorForces& difference) const {
+  ActuatorForces before;
+  at(t - 0.5 * dt_, before);
+  at(t + 0.5 * dt_, difference);
+  difference -= before;
+  if (!mixed_) difference *= 1.0 - held_share_;
+}
+
 void InputSignal::now(double t, ActuatorForces& force) const { ago(t, 0.0, force); }
 
 void InputSignal::ago(double t, double later, ActuatorForces& force) const {

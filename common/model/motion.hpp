@@ -46,6 +46,8 @@ class InputSignal {
   /// The same as it was `later` seconds before: the mean over the time that now() has one force for, so that no jump is
   /// lost between the instants that are asked for.
   void ago(double t, double later, ActuatorForces& force) const;
+  /// By how much the force changes over a step of the grid about t, jumps apart [N].
+  void change(double t, ActuatorForces& difference) const;
 
  private:
   void line(double t, ActuatorForces& force) const;

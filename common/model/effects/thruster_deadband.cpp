@@ -17,6 +17,13 @@ constexpr std::array kParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50
 enum Form { kOffset, kStep, kRounded };
 constexpr double kFirstStep = 0.04, kLastStep = 1.0;  // of the typical command
 constexpr double kNextStep = 1.15;                    // times the one before: constant commands are often close to it
+constexpr double kFlank = 0.01;                       // of the width, at least: keeps the step differentiable
+
+/// The mean of a step at `edge` over forces from `force` - `across` / 2 to `force` + `across` / 2.
+double mean_over_step(double force, double edge, double across) {
+  const double size = std::abs(force), share = std::clamp((size - edge) / across + 0.5, 0.0, 1.0);
+  return std::copysign(share * (size + 0.5 * (1.0 - share) * across), force);
+}
 
 class ThrusterDeadband final : public Effect {
  public:
@@ -35,19 +42,25 @@ class ThrusterDeadband final : public Effect {
     return starts;
   }
 
+  double left_open(EffectTheta theta, int variant, std::size_t) const override {
+    return variant == kStep ? kFlank * theta[0] / std::sqrt(12.0) : 0.0;
+  }
+
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {
     const double half = theta[0];
     if (half <= 0.0) return;
-    for (double& force : motion.force) {
+    ActuatorForces across = ActuatorForces::Zero(motion.force.size());
+    if (variant == kStep && motion.input != nullptr) motion.input->change(motion.t, across);
+    for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
+      double& force = motion.force[i];
       if (variant == kOffset) {
         force = std::copysign(std::max(std::abs(force) - half, 0.0), force);
       } else if (variant == kRounded) {
         const double share = std::min(std::abs(force) / half, 1.0);
         force *= share * share * (3.0 - 2.0 * share);
       } else {
-        // A flank of a tenth of the width keeps the step differentiable.
-        const double share = std::clamp((std::abs(force) - 0.95 * half) / (0.1 * half), 0.0, 1.0);
-        force *= share;
+        // A command that passes the step's edge between two samples is on either side for its share of the time.
+        force = mean_over_step(force, half, std::max(std::abs(across[i]), kFlank * half));
       }
     }
   }

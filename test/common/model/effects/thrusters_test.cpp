@@ -303,3 +303,29 @@ TEST_CASE("thruster_deadband: a search for the step begins close to wherever its
     CHECK(std::ranges::any_of(starts, [&](const auto& start) { return start[0] > edge && start[0] < 1.2 * edge; }));
   }
 }
+
+TEST_CASE(
+    "thruster_deadband: what a command that passes the step's edge pushes between two samples is the sharp step's") {
+  constexpr int kStep = 1;
+  constexpr double kEdge = 1.3, kDt = 0.01, kShare = 0.01;  // of the push of one sample: what the flank rounds off
+  Fixture fixture;
+  for (const double slope : {3.0, 40.0, -25.0}) {  // N/s
+    std::vector<Eigen::VectorXd> commands;
+    for (int k = 0; k < 200; ++k) commands.emplace_back(Eigen::VectorXd::Constant(4, slope * (k * kDt - 0.977)));
+    const model::InputSignal input{0.0, kDt, commands};
+    fixture.motion.input = &input;
+    double pushed = 0.0, sharp = 0.0;
+    constexpr int kFine = 200;
+    for (int k = 0; k + 1 < 200; ++k) {
+      fixture.motion.t = (k + 0.5) * kDt;
+      input.now(fixture.motion.t, fixture.motion.force);
+      pushed += kDt * std::abs(fixture.felt("thruster_deadband", {kEdge}, kStep)[0]);
+      for (int i = 0; i < kFine; ++i) {
+        const double command = slope * ((k + (i + 0.5) / kFine) * kDt - 0.977);
+        sharp += std::abs(command) > kEdge ? kDt / kFine * std::abs(command) : 0.0;
+      }
+    }
+    CAPTURE(slope);
+    CHECK(std::abs(pushed - sharp) < kShare * kEdge * kDt);
+  }
+}
