@@ -10,6 +10,7 @@
 #include "common/diagnosis/look_afar.hpp"
 #include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/pruning.hpp"
+#include "common/diagnosis/reconsidered.hpp"
 #include "common/diagnosis/round.hpp"
 #include "common/identification/fit_from_priors.hpp"
 #include "common/identification/input_hold.hpp"
@@ -85,6 +86,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       result.after = problem.reweighted(std::move(winner->fit));
       result.after = at_best_moment(problem, std::move(result.after), *accepted.effect, accepted.variant);
       result.after = identification::with_input_hold(problem, std::move(result.after));
+      reconsider_forms(result, problem, scene, progress, done);
     }
     name_unfitted(answers);
     result.refused = best_of_each_effect(answers.judged, result.accepted);
