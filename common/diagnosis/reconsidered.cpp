@@ -1,6 +1,7 @@
 #include "common/diagnosis/reconsidered.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,17 +19,27 @@ using identification::TrajectoryFit;
 
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost
 
-/// The fit with that form in the effect's place, from the numbers of the one that is there.
+/// The fit with that form in the effect's place, from the numbers of the one that is there or from where a search
+/// begins, whichever costs less: beside the others little may be left of what is there.
 FitResult fit_in_its_place(const SearchResult& result, const Judged& there, const Judged& form,
-                           const TrajectoryFit& problem) {
-  model::Model model = result.after.model;
-  for (model::ActiveEffect& active : model.effects) {
-    if (active.effect != there.effect || active.variant != there.variant) continue;
-    active.variant = form.variant;
-    active.variant_name = form.variant_name;
+                           const TrajectoryFit& problem, const model::Scene& scene) {
+  const model::Model rest = without(result.after.model, there);
+  std::vector<std::vector<double>> starts = form.effect->starts(scene, form.variant);
+  for (const model::ActiveEffect& active : result.after.model.effects) {
+    if (active.effect == there.effect && active.variant == there.variant) starts.push_back(active.theta);
   }
-  FitResult fit = problem.fit(model, &result.after, kQuickTolerance);
-  return at_best_moment(problem, std::move(fit), *form.effect, form.variant);
+  model::Model best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& theta : starts) {
+    model::Model model = rest;
+    model.add({form.effect, form.variant, form.variant_name, theta});
+    const double cost = problem.cost(model, result.after);
+    if (cost >= least) continue;
+    least = cost;
+    best = std::move(model);
+  }
+  if (!(least < std::numeric_limits<double>::infinity())) return result.after;
+  return at_best_moment(problem, problem.fit(best, &result.after, kQuickTolerance), *form.effect, form.variant);
 }
 
 bool can_take_its_place(const SearchResult& result, const Judged& form) {
@@ -52,7 +63,7 @@ void reconsider(SearchResult& result, std::size_t place, const TrajectoryFit& pr
     form.variant = static_cast<int>(std::ranges::find(names, name) - names.begin());
     form.variant_name = name;
     if (form.variant == static_cast<int>(names.size()) || !can_take_its_place(result, form)) continue;
-    FitResult fit = fit_in_its_place(result, there, form, problem);
+    FitResult fit = fit_in_its_place(result, there, form, problem, scene);
     const bool costs_less = fit.cost < result.after.cost && at_limit(form, fit.model).empty();
     const bool clear = costs_less ? settled(result.after, fit) : settled(fit, result.after);
     const bool dearer = form.effect->numbers(form.variant) > there.effect->numbers(there.variant);
