@@ -27,6 +27,7 @@ constexpr std::size_t kRefits = 6;           // candidates per round that earn a
 constexpr std::size_t kWholeRefits = 2;      // whatever it promises by whole windows
 constexpr std::size_t kMostRefits = 8;       // while no winner is found and the screening still speaks for some
 constexpr std::size_t kSearchWindows = 160;  // half an hour; more only makes the search longer
+constexpr double kLeftByFar = 0.1;           // of the cost, at least: by what reshapes the whole model
 constexpr double kSearchStep = 0.04;         // s: coarser than most recordings, finer than any vehicle moves
 
 /// The final model without the effects that are no longer accepted.
@@ -68,14 +69,15 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
     std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kMostRefits);
+    const double left = winner ? 1.0 : left_to_explain(problem, result.after);
     // The least that counts, as a share of the cost, which is the error's square.
-    const bool something = winner || left_to_explain(problem, result.after) > 2.0 * settings.smallest_reduction;
+    const bool something = left > 2.0 * settings.smallest_reduction;
     if (!winner && something) {
       progress("round " + std::to_string(round + 1) + ": looking at whole windows", done);
       ask_whole(answers, problem, result.after, scene, tried, settings);
       winner = fits.fit_best(Which::kAll, kWholeRefits, kMostRefits);
     }
-    if (!winner && something) {
+    if (!winner && left > kLeftByFar) {
       look_afar(answers, problem, trials, settings, result.after, scene, progress, done);
       winner = fits.fit_best(Which::kFromAfar, kRefits, kRefits);
     }
