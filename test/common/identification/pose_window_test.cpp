@@ -26,7 +26,8 @@ struct Fixture {
   [[nodiscard]] std::vector<PoseWindow> windows() const { return pose_windows(vehicle, {&dive.trial, 1}, kLength); }
   [[nodiscard]] std::set<int> signals() const {
     std::set<int> found;
-    for (const AxisRows& rows : windows().front().signals()) found.insert(windows().front().row(rows.first).signal);
+    const std::vector<PoseWindow> all = windows();
+    for (const AxisRows& rows : all.front().signals()) found.insert(all.front().row(rows.first).signal);
     return found;
   }
   model::Vehicle vehicle;
