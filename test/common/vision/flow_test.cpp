@@ -31,6 +31,22 @@ Pose along(const Pose& start, const Way& way, double t) {
           .R_WC = start.R_WC * quaternion_from_rotation_vector(t * way.w_C).toRotationMatrix()};
 }
 
+/// What flow says of each pair of pictures on a way, all of them valid, beside the truth v_C / z_C in the middle.
+template <typename Use>
+void look_along(Renderer& renderer, FlowTracker& tracker, const Pose& start, const Way& way, double floor, int pictures,
+                Use use) {
+  for (int i = 0; i < pictures; ++i) {
+    const Pose now = along(start, way, i * kPeriod), before = along(start, way, (i - 1) * kPeriod);
+    const Picture seen = picture(renderer, i * kPeriod, now);
+    const Flow flow = tracker.step(seen.utime, seen.grey, before.R_WC.transpose() * now.R_WC, now.R_WC.row(2));
+    REQUIRE(flow.state == (i == 0 ? FlowState::kFirst : FlowState::kValid));
+    if (i == 0) continue;
+    const Pose middle = along(start, way, (i - 0.5) * kPeriod);
+    const double z = (floor - middle.p_WC.z()) / middle.R_WC(2, 2);
+    use(flow, Eigen::Vector3d{middle.R_WC.transpose() * way.v_W / z});
+  }
+}
+
 }  // namespace
 
 TEST_CASE("flow: velocity over distance in all three directions while the camera turns and looks aslant") {
@@ -48,27 +64,14 @@ TEST_CASE("flow: velocity over distance in all three directions while the camera
       Renderer renderer{place, lens(), std::nullopt, look, 8};
       FlowTracker tracker{lens(), {.reduction = reduction}};
       const Pose start = pose({0.1, 0.0, 0.4}, 0.15, -0.1, 0.5);
-      int valid = 0;
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero(), wanted = Eigen::Vector3d::Zero();
       constexpr int kPictures = 8;
-      for (int i = 0; i < kPictures; ++i) {
-        const Pose now = along(start, way, i * kPeriod), before = along(start, way, (i - 1) * kPeriod);
-        const Eigen::Vector3d n_C = now.R_WC.row(2);
-        const Eigen::Matrix3d R_AB = before.R_WC.transpose() * now.R_WC;
-        const Picture seen = picture(renderer, i * kPeriod, now);
-        const Flow flow = tracker.step(seen.utime, seen.grey, R_AB, n_C);
-        if (i == 0) {
-          CHECK(flow.state == FlowState::kFirst);
-          continue;
-        }
-        REQUIRE(flow.state == FlowState::kValid);
-        const Pose middle = along(start, way, (i - 0.5) * kPeriod);
-        const double z = (place.floor - middle.p_WC.z()) / middle.R_WC(2, 2);
-        sum += flow.rate;
-        wanted += middle.R_WC.transpose() * way.v_W / z;
-        ++valid;
-      }
-      const Eigen::Vector3d error = (sum - wanted) / valid;
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero(), wanted = Eigen::Vector3d::Zero();
+      look_along(renderer, tracker, start, way, place.floor, kPictures,
+                 [&](const Flow& flow, const Eigen::Vector3d& truth) {
+                   sum += flow.rate;
+                   wanted += truth;
+                 });
+      const Eigen::Vector3d error = (sum - wanted) / (kPictures - 1);
       CHECK(error.head<2>().norm() < kRate);
       CHECK(std::abs(error.z()) < kDivergence);
     }
@@ -116,19 +119,12 @@ TEST_CASE("flow: a divergence that moves features by less than a pixel is read i
     FlowTracker tracker{lens(), {}};
     const Pose start = pose({0.07 * dive, -0.1, 0.2 + 0.05 * dive}, 0.02, -0.03, 0.9 * dive);
     const Way way{{0.02, 0.03, dive % 2 == 0 ? 0.09 : -0.09}, Eigen::Vector3d::Zero()};
-    for (int i = 0; i < kPictures; ++i) {
-      const Pose now = along(start, way, i * kPeriod);
-      const Picture shown = picture(renderer, i * kPeriod, now);
-      const Flow flow = tracker.step(shown.utime, shown.grey, Eigen::Matrix3d::Identity(), now.R_WC.row(2));
-      if (i == 0) continue;
-      REQUIRE(flow.state == FlowState::kValid);
-      const Pose middle = along(start, way, (i - 0.5) * kPeriod);
-      const double z = (place.floor - middle.p_WC.z()) / middle.R_WC(2, 2);
-      const double truth = (middle.R_WC.transpose() * way.v_W).z() / z;
-      seen += flow.rate.z() * truth;
-      wanted += truth * truth;
-      squares += (flow.rate.z() - truth) * (flow.rate.z() - truth) / flow.covariance(2, 2);
-    }
+    look_along(renderer, tracker, start, way, place.floor, kPictures,
+               [&](const Flow& flow, const Eigen::Vector3d& truth) {
+                 seen += flow.rate.z() * truth.z();
+                 wanted += truth.z() * truth.z();
+                 squares += (flow.rate.z() - truth.z()) * (flow.rate.z() - truth.z()) / flow.covariance(2, 2);
+               });
   }
   CHECK(std::abs(seen / wanted - 1.0) < kShare);
   CHECK(squares / (kDives * (kPictures - 1)) < kStated);
@@ -166,18 +162,11 @@ TEST_CASE("flow: aslant over the floor, there and back are equally fast") {
     const Pose start = pose({0.1, speed < 0.0 ? 0.1 : -0.1, place.floor - 0.5}, kRoll, 0.0, 0.0);
     const Way way{{0.0, speed, 0.0}, Eigen::Vector3d::Zero()};
     double seen = 0.0, wanted = 0.0;
-    for (int i = 0; i < kPictures; ++i) {
-      const Pose now = along(start, way, i * kPeriod);
-      const Picture shown = picture(renderer, i * kPeriod, now);
-      const Flow flow = tracker.step(shown.utime, shown.grey, Eigen::Matrix3d::Identity(), now.R_WC.row(2));
-      if (i == 0) continue;
-      REQUIRE(flow.state == FlowState::kValid);
-      const Pose middle = along(start, way, (i - 0.5) * kPeriod);
-      const Eigen::Vector2d truth =
-          (middle.R_WC.transpose() * way.v_W).head<2>() * middle.R_WC(2, 2) / (place.floor - middle.p_WC.z());
-      seen += flow.rate.head<2>().dot(truth);
-      wanted += truth.squaredNorm();
-    }
+    look_along(renderer, tracker, start, way, place.floor, kPictures,
+               [&](const Flow& flow, const Eigen::Vector3d& truth) {
+                 seen += flow.rate.head<2>().dot(truth.head<2>());
+                 wanted += truth.head<2>().squaredNorm();
+               });
     CAPTURE(speed);
     CHECK(std::abs(seen / wanted - 1.0) < kShare);
   }
