@@ -2,8 +2,8 @@
 // max(|f_c| - d, 0); `step`, nothing below d and the full force above it; `rounded`, a propeller that creeps at first,
 // f = f_c s^2 (3 - 2 s) with s = min(|f_c| / d, 1), the smoothest cubic from nothing to all. Source: makers' thrust
 // curves about neutral, and Coulomb's friction; the rounded law is an assumption. Ignores: a band of its own per
-// thruster. Revealed by small commands around zero. Confused with lower thruster gain when all commands are alike in
-// size.
+// thruster; beside a delay, the way of a command within a sample. Revealed by small commands around zero. Confused with
+// lower thruster gain when all commands are alike in size.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,10 +19,11 @@ constexpr double kFirstStep = 0.04, kLastStep = 1.0;  // of the typical command
 constexpr double kNextStep = 1.15;                    // times the one before: constant commands are often close to it
 constexpr double kFlank = 0.01;                       // of the width, at least: keeps the step differentiable
 
-/// The mean of a step at `edge` over forces from `force` - `across` / 2 to `force` + `across` / 2.
+/// The mean of a step at `edge` over forces from `force` - `across` / 2 to `force` + `across` / 2, which may lie on
+/// both sides of zero.
 double mean_over_step(double force, double edge, double across) {
-  const double size = std::abs(force), share = std::clamp((size - edge) / across + 0.5, 0.0, 1.0);
-  return std::copysign(share * (size + 0.5 * (1.0 - share) * across), force);
+  const auto integral = [edge](double to) { return 0.5 * std::max(to * to - edge * edge, 0.0); };
+  return (integral(force + 0.5 * across) - integral(force - 0.5 * across)) / across;
 }
 
 class ThrusterDeadband final : public Effect {
@@ -49,8 +50,12 @@ class ThrusterDeadband final : public Effect {
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double>) const override {
     const double half = theta[0];
     if (half <= 0.0) return;
-    ActuatorForces across = ActuatorForces::Zero(motion.force.size());
-    if (variant == kStep && motion.input != nullptr) motion.input->change(motion.t, across);
+    ActuatorForces told, across;
+    const bool knows_way = variant == kStep && motion.input != nullptr;
+    if (knows_way) {
+      motion.input->now(motion.t, told);
+      motion.input->change(motion.t, across);
+    }
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
       double& force = motion.force[i];
       if (variant == kOffset) {
@@ -59,8 +64,10 @@ class ThrusterDeadband final : public Effect {
         const double share = std::min(std::abs(force) / half, 1.0);
         force *= share * share * (3.0 - 2.0 * share);
       } else {
-        // A command that passes the step's edge between two samples is on either side for its share of the time.
-        force = mean_over_step(force, half, std::max(std::abs(across[i]), kFlank * half));
+        // A command that passes the step's edge between two samples is on either side for its share of the time. One
+        // that was delayed has been on its way at another time.
+        const double way = knows_way && force == told[i] ? std::abs(across[i]) : 0.0;
+        force = mean_over_step(force, half, std::max(way, kFlank * half));
       }
     }
   }

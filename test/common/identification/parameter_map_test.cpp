@@ -124,3 +124,20 @@ TEST_CASE("parameter map: two forms of one effect keep their numbers apart by na
   CHECK(map[map.size() - 2].name == "thruster_gain.T0.gain_change");
   CHECK(map[map.size() - 1].name == "thruster_gain.T2.gain_change");
 }
+
+TEST_CASE("parameter map: what a form leaves open as it is computed counts, of that form alone") {
+  constexpr int kOffset = 0, kStep = 1;
+  for (const int form : {kOffset, kStep}) {
+    Fixture fixture;
+    fixture.model.add(test::active("thruster_deadband", {2.0}, form));
+    const ParameterMap map{fixture.model};
+    int found = 0;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      if (map[i].name != "thruster_deadband.half_width") continue;
+      // A flank of a hundredth of the width, anywhere within which the edge may lie.
+      CHECK(map[i].form_sigma == doctest::Approx(form == kStep ? 0.02 / std::sqrt(12.0) : 0.0));
+      ++found;
+    }
+    CHECK(found == 1);
+  }
+}
