@@ -162,7 +162,8 @@ void Conductor::hear(const fathom_lcm::lockstep_ack_t& ack) {
   if (ack.tick < 0) {
     if (phase_.tick >= 0) {
       // Hellos overlap with the first intervals; a process that answered once and says hello again has restarted.
-      if (said_.contains(ack.process)) {
+      const auto recorder = recorded_.find(ack.process);
+      if (said_.contains(ack.process) || (recorder != recorded_.end() && recorder->second >= 0)) {
         throw InputError("lockstep: " + ack.process +
                          " was started anew in the middle of the run; begin the run again");
       }
@@ -232,7 +233,9 @@ std::optional<fathom_lcm::lockstep_t> Conductor::next() {
   clear();
   std::vector<std::string> speakers = names_;
   if (phase_.phase < 0) speakers.push_back(ending_);
-  for (const std::string& name : speakers) enclose(std::move(said_[name]));
+  for (const std::string& name : speakers) {
+    if (const auto said = said_.find(name); said != said_.end()) enclose(std::move(said->second));
+  }
   ++phase_.phase;
   call();
   if (waiting_for_.empty() && (recorded_.empty() || phase_.channel.empty())) return {};

@@ -233,6 +233,24 @@ TEST_CASE("conductor: strangers, doubles and restarts are named") {
         std::string::npos);
 }
 
+TEST_CASE("conductor: a hello under way while others answer is no restart, one after an answer is") {
+  Conductor conductor{{"estimator", "identifier", "recorder"}};
+  conductor.hear(hello("estimator", {"AHRS"}));
+  conductor.hear(hello("identifier", {"STATE"}));
+  conductor.hear(hello("recorder", {kEveryChannel}));
+  const auto phase = conductor.begin(0, alone({"AHRS"}));
+  conductor.hear(answer("estimator", phase, {"AHRS_HEALTH"}));
+  CHECK(conductor.next());                             // what the estimator said is heard by the recorder alone
+  conductor.hear(hello("identifier", {"STATE"}));      // has not been asked yet
+  conductor.hear(hello("recorder", {kEveryChannel}));  // is not waited for
+  fathom_lcm::lockstep_ack_t ack{};
+  ack.process = "recorder";
+  ack.tick = phase.tick;
+  conductor.hear(ack);
+  const auto restart = [&] { conductor.hear(hello("recorder", {kEveryChannel})); };
+  CHECK(test::complaint_of<InputError>(restart).find("recorder was started anew") != std::string::npos);
+}
+
 TEST_CASE("conductor: a recorder may be behind, but not by more than the bus can hold") {
   Conductor conductor{{"recorder"}};
   conductor.hear(hello("recorder", {kEveryChannel}));
