@@ -22,6 +22,7 @@ constexpr double kFlank = 0.01;                       // of the width, at least:
 /// The mean of a step at `edge` over forces from `force` - `across` / 2 to `force` + `across` / 2, which may lie on
 /// both sides of zero.
 double mean_over_step(double force, double edge, double across) {
+  if (std::abs(force) - 0.5 * across >= edge) return force;  // exactly: the difference below rounds
   const auto integral = [edge](double to) { return 0.5 * std::max(to * to - edge * edge, 0.0); };
   return (integral(force + 0.5 * across) - integral(force - 0.5 * across)) / across;
 }
