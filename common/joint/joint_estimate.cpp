@@ -17,9 +17,6 @@ constexpr std::size_t kHistory = 512;    // states: 5 s at 100 Hz
 constexpr double kUnknownMass = 3.0;     // of 1/m's prior: its standard deviation, unknown to a factor of four
 constexpr double kLightest = 20.0;       // times lighter than expected than which nothing is taken to be
 constexpr double kWellKnown = 0.15;      // share of an inertia: so well it must be known for an axis to begin
-constexpr int kScoresOfASecond = 100;    // attitudes
-constexpr int kSecondsSeen = 40;         // that the innovations' colour looks back...
-constexpr int kSecondsBefore = 20;       // ...beside so many that were as they should be
 constexpr double kStartSpeed = 0.02;     // m/s added to what STATE says of itself: it has seen the same samples
 constexpr double kStartPosition = 0.01;  // m likewise
 
@@ -292,23 +289,11 @@ ParameterMatrix JointEstimate::covariance() const {
   ParameterVector wider(all.rows());
   for (int k = 0; k < filter_.model().size(); ++k) {
     const int axis = model::axis(filter_.model().parameters()[static_cast<std::size_t>(k)]);
-    wider(k) = std::sqrt(colour_[static_cast<std::size_t>(axis)].ratio);
+    wider(k) = std::sqrt(colour_[static_cast<std::size_t>(axis)].ratio());
   }
   all = wider.asDiagonal() * all * wider.asDiagonal();
   add_systematic(all);
   return all;
-}
-
-// Innovations of a right model are white: over a second their sum's square is their number on average. What the model
-// lacks goes on for longer and shows there first; by so much the intervals are too narrow.
-void JointEstimate::look_at(int axis, double score) {
-  Colour& colour = colour_[static_cast<std::size_t>(axis)];
-  colour.sum += score;
-  if (++colour.count < kScoresOfASecond) return;
-  colour.seconds = std::min(colour.seconds + 1, kSecondsSeen);
-  colour.ratio += (colour.sum * colour.sum / colour.count - colour.ratio) / (kSecondsBefore + colour.seconds);
-  colour.sum = 0.0;
-  colour.count = 0;
 }
 
 // What no residual shows. An accelerometer's axis that is off by a share s explains every force as well with a mass

@@ -11,6 +11,7 @@
 
 #include "common/estimation/navigator.hpp"
 #include "common/identification/identifier.hpp"
+#include "common/joint/innovation_colour.hpp"
 #include "common/joint/joint_filter.hpp"
 
 namespace fathom {
@@ -88,13 +89,6 @@ class JointEstimate {
     int repeated{};
     Utime utime{};
   };
-  /// Whether what is left of accelerations and rates is as white as it should be.
-  struct Colour {
-    double sum{};  ///< of scores within the present second
-    int count{};
-    double ratio{1.0};  ///< of the squared sums of a second to their number, over the last ones
-    int seconds{};
-  };
   struct Wish {
     Utime utime{};
     std::vector<int> held;
@@ -119,7 +113,6 @@ class JointEstimate {
   void use_inertial(const Event& event, double dt);
   [[nodiscard]] bool of_floor(const Eigen::Vector3d& p_B, const Eigen::Matrix3d& R_WB) const;
   void add_systematic(ParameterMatrix& covariance) const;
-  void look_at(int axis, double score);
   void begin_anew(const char* why);
   void correct(std::size_t count, const char* refused);
 
@@ -141,7 +134,7 @@ class JointEstimate {
   std::optional<Utime> input_at_;
   Vector6d tau_{Vector6d::Zero()};
   std::array<Seen, 8> seen_{};
-  std::array<Colour, 6> colour_{};
+  std::array<InnovationColour, 6> colour_{};  ///< of accelerations and rates
   std::vector<int> held_;
   std::array<JointRow, 3> at_once_;
   bool running_{false}, started_{false};

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/spatial.hpp"
 #include "common/joint/joint_estimate.hpp"
 #include "common/joint/joint_rows.hpp"
 
@@ -152,7 +153,8 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
   for (std::size_t i = 0; i < 3; ++i) at_once_[i].variance = square(navigator_.rate_noise);
   correct(3, "joint estimate: AHRS refused");
   for (int i = 0; i < 3; ++i) {
-    if (filter_.model().moves(3 + i)) look_at(3 + i, at_once_[static_cast<std::size_t>(i)].score);
+    const auto rate = static_cast<std::size_t>(i);
+    if (filter_.model().moves(3 + i)) colour_[3 + rate].hear(at_once_[rate].score);
   }
   Eigen::Vector3d w_dot = Eigen::Vector3d::Zero();
   if (attitudes_ >= static_cast<int>(lately_.size())) {
@@ -160,7 +162,9 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
     w_dot = (event.a - old.a) / seconds_between(old.utime, event.utime);
   }
   const Eigen::Matrix3d here = event.q_WB.toRotationMatrix();
-  const Felt felt{.told = here, .tau = tau_, .w_dot = w_dot, .p_BI = places_.p_BI};
+  const Eigen::Matrix3d carried = before_->q_WB.toRotationMatrix() *
+                                  quaternion_from_rotation_vector(0.5 * dt * (before_->a + event.a)).toRotationMatrix();
+  const Felt felt{.told = here, .carried = carried, .tau = tau_, .w_dot = w_dot, .p_BI = places_.p_BI};
   const std::size_t count = feel_force(filter_.model(), filter_.state(), felt, event.b, std::span{at_once_}.first<3>());
   const double own = navigator_.vertical_acceleration_noise > 0.0 ? navigator_.vertical_acceleration_noise
                                                                   : navigator_.acceleration_noise;
@@ -174,7 +178,7 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
   correct(count, "joint estimate: AHRS refused");
   i = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (filter_.model().moves(axis)) look_at(axis, at_once_[i++].score);
+    if (filter_.model().moves(axis)) colour_[static_cast<std::size_t>(axis)].hear(at_once_[i++].score);
   }
 }
 

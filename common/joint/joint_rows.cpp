@@ -116,7 +116,7 @@ std::size_t feel_force(const Normalised& model, const JointVector& x, const Felt
   const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
   AccelerationSlope slope;
   const ParameterVector phi = x.tail(model.size());
-  Vector6d nu_dot = model.acceleration(phi, nu, R, felt.tau, &slope);
+  Vector6d nu_dot = model.acceleration(phi, nu, true_attitude(x, felt.carried), felt.tau, &slope);
   for (int i = 0; i < 3; ++i) {
     if (!model.moves(3 + i)) nu_dot[3 + i] = felt.w_dot[i];
   }

@@ -33,6 +33,9 @@ void see_state(const JointVector& x, int which, double value, JointRow& row);
 /// What the accelerometer feels beside the state.
 struct Felt {
   const Eigen::Matrix3d& told;
+  /// R_WB from the sample before, turned on by the gyro. The model takes its tilt from it: a column of W-B, G_x, G_y
+  /// that had the noise of the gravity it is compared with would be learnt from that noise (errors in variables).
+  const Eigen::Matrix3d& carried;
   const Vector6d& tau;           ///< N, N m
   const Eigen::Vector3d& w_dot;  ///< rad/s^2, of the axes that no model moves
   const Eigen::Vector3d& p_BI;   ///< m, where it sits

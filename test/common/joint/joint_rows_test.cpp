@@ -13,7 +13,8 @@ using namespace fathom::joint;
 
 namespace {
 
-const Eigen::Matrix3d kTold = rotation_from_euler({0.15, -0.1, 0.7});
+const Eigen::Matrix3d kTold = rotation_from_euler({0.15, -0.1, 0.7}),
+                      kCarried = rotation_from_euler({0.16, -0.08, 0.7});
 
 JointVector somewhere(const JointFilter& filter) {
   JointVector x = filter.state();
@@ -70,7 +71,7 @@ TEST_CASE("joint rows: derivatives of all instruments are those of differences")
       std::array<JointRow, 3> rows;
       const Vector6d tau = (Vector6d{} << 8.0, -5.0, 3.0, 0.2, 0.1, 0.7).finished();
       const Eigen::Vector3d w_dot{0.1, 0.2, 0.0}, p_BI{0.03, 0.01, -0.02};
-      const Felt felt{.told = kTold, .tau = tau, .w_dot = w_dot, .p_BI = p_BI};
+      const Felt felt{.told = kTold, .carried = kCarried, .tau = tau, .w_dot = w_dot, .p_BI = p_BI};
       CHECK(feel_force(filter.model(), at, felt, {0.1, 0.2, -9.7}, rows) == 3);
       return rows[i];
     });
@@ -136,4 +137,25 @@ TEST_CASE("joint rows: gyros whose axes are turned tell of it, and so does the f
   see_flow(x, kTold, 1.5, camera, flow, std::span{rows}.first<2>());
   CHECK(std::abs(rows[0].innovation) < 1e-12);
   CHECK(std::abs(rows[1].innovation) < 1e-12);
+}
+
+TEST_CASE("joint rows: the noise of a tilt is in the gravity it turns, and in no column of a parameter") {
+  const model::Vehicle vehicle = fathom::test::vehicle_from_repository("bluerov2");
+  const JointFilter filter = example::filter(vehicle);
+  const JointVector x = somewhere(filter);
+  const Vector6d tau = (Vector6d{} << 8.0, -5.0, 3.0, 0.2, 0.1, 0.7).finished();
+  const Eigen::Vector3d w_dot{0.1, 0.2, 0.0}, p_BI{0.03, 0.01, -0.02};
+  const auto rows_of = [&](const Eigen::Matrix3d& told) {
+    std::array<JointRow, 3> rows;
+    feel_force(filter.model(), x, {.told = told, .carried = kCarried, .tau = tau, .w_dot = w_dot, .p_BI = p_BI},
+               {0.1, 0.2, -9.7}, rows);
+    return rows;
+  };
+  constexpr double kTilt = 2e-3;
+  const auto one = rows_of(kTold), other = rows_of(kTold * rotation_from_euler({0.0, kTilt, 0.0}));
+  CHECK(std::abs(one[0].innovation - other[0].innovation) == doctest::Approx(9.81 * kTilt).epsilon(0.03));
+  const Eigen::Index n = filter.model().size();
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK((one[i].h.tail(n) - other[i].h.tail(n)).cwiseAbs().maxCoeff() < 1e-12);
+  }
 }

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <variant>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/spatial.hpp"
 #include "common/simulation/simulator.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -37,8 +39,9 @@ struct Scene {
   std::vector<Heard> samples;  ///< in the order of their arrival
 };
 
-/// Thrust in steps of some seconds on all four axes, back and forth so that no wall is met.
-Scene scene(double duration) {
+/// Thrust in steps of some seconds on all four axes, back and forth so that no wall is met; up and down only from a
+/// time on, the weight being held before.
+Scene scene(double duration, std::uint64_t seed = 5, double heave_from = 0.0) {
   const std::string root = FATHOM_SOURCE_DIR;
   const Config pipeline = Config::load(root + "/config/pipelines/tank.yaml");
   Scene s{.vehicle = vehicle_from_repository("seabotix_lbv150"),
@@ -52,14 +55,15 @@ Scene scene(double duration) {
   simulation::Simulator simulator{s.vehicle,
                                   s.site,
                                   Config::load(root + "/config/simulation/seabotix_lbv150.yaml").section("simulator"),
-                                  {.seed = 5}};
+                                  {.seed = seed}};
   while (seconds_between(kStart, simulator.now()) < duration) {
     for (const Sample& sample : simulator.step())
       s.samples.push_back({std::visit([](const auto& one) { return one.utime; }, sample), sample});
     const double t = seconds_between(kStart, simulator.now());
     const auto sign = [&](double period) { return std::sin(2.0 * M_PI * t / period) > 0.0 ? 1.0 : -1.0; };
     WrenchCommand command{.utime = simulator.now(), .life = 0.3};
-    command.tau << 8.0 * sign(4.0), 7.0 * sign(3.1), 1.2 + 5.0 * sign(2.3), 0.0, 0.0, 0.8 * sign(2.7);
+    const double heave = t < heave_from ? 0.0 : 5.0 * sign(2.3);
+    command.tau << 8.0 * sign(4.0), 7.0 * sign(3.1), 1.2 + heave, 0.0, 0.0, 0.8 * sign(2.7);
     simulator.command(command);
   }
   return s;
@@ -138,15 +142,58 @@ TEST_CASE("live identifier: the joint estimate finds the truth, and MODEL is as 
   CHECK(a.joint);
   CHECK_FALSE(models.front().joint);  // nobody has taught it yet
   CHECK(std::ranges::none_of(recursive, &ModelEstimate::joint));
-  int inside = 0;
   for (std::size_t k = 0; k < 13; ++k) {
     CHECK(a.parameters[k].name == b.parameters[k].name);
     CHECK(a.parameters[k].unit == b.parameters[k].unit);
     CHECK(std::sqrt(a.covariance[14 * k]) == doctest::Approx(a.parameters[k].std));
-    inside += std::abs(a.parameters[k].value - s.vehicle.priors[k].mean) < 1.96 * a.parameters[k].std ? 1 : 0;
   }
-  CHECK(inside >= 11);
   CHECK(a.modes.back().sum < b.modes.back().sum);
+}
+
+TEST_CASE("live identifier: over seeds, the joint estimate's intervals hold as often as they say") {
+  constexpr int kSeeds = 10;
+  int inside = 0;
+  for (int seed = 11; seed < 11 + kSeeds; ++seed) {
+    const Scene s = scene(40.0, static_cast<std::uint64_t>(seed));
+    const auto both = make(s);
+    const ModelEstimate model = feed(s, *both).back();
+    for (std::size_t k = 0; k < 13; ++k) {
+      const double off = model.parameters[k].value - s.vehicle.priors[k].mean;
+      inside += std::abs(off) < 1.96 * model.parameters[k].std ? 1 : 0;
+    }
+  }
+  MESSAGE("intervals that hold: ", 100.0 * inside / (13.0 * kSeeds), " %");
+  // 95 % of 130, of which a third are independent: +- 3.3 %, and three times that.
+  CHECK(inside > 0.85 * 13 * kSeeds);
+}
+
+TEST_CASE("live identifier: the noise of tilts does not drive numbers apart while the weight is not known") {
+  const Scene s = scene(90.0, 5, 70.0);
+  const auto learnt = [&](double tilt) {  // rad, of every sample
+    std::mt19937 random{3};
+    std::normal_distribution<double> normal;
+    const auto identifier = make(s);
+    return feed(s, *identifier,
+                [&](Sample& sample, double) {
+                  if (auto* ahrs = std::get_if<Ahrs>(&sample)) {
+                    const double about_x = tilt * normal(random), about_y = tilt * normal(random);
+                    ahrs->q_WB = ahrs->q_WB * quaternion_from_rotation_vector({about_x, about_y, 0.0});
+                  }
+                  return true;
+                })
+        .back();
+  };
+  // 0.2 deg is as much force as the accelerometer's noise and the model's together, on which the filter counts. What it
+  // moves is to be well within the deviations stated; it was .6 to 1.1 of them as long as columns had the same noise.
+  const ModelEstimate quiet = learnt(0.0), noisy = learnt(3.5e-3);
+  for (std::size_t k = 0; k < noisy.parameters.size(); ++k) {
+    const NamedValue& p = noisy.parameters[k];
+    if (p.name[0] != 'X' && p.name[0] != 'Y') continue;
+    CAPTURE(p.name);
+    CAPTURE(p.value);
+    CAPTURE(quiet.parameters[k].value);
+    CHECK(std::abs(p.value - quiet.parameters[k].value) < 0.5 * p.std);
+  }
 }
 
 TEST_CASE("live identifier: neither the order of arrival between channels nor a run before changes a bit") {
