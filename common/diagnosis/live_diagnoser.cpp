@@ -11,7 +11,7 @@
 namespace fathom::diagnosis {
 namespace {
 
-constexpr double kMaxRate = 100.0;            // 1/s: twenty times the bandwidth of a 2 s window
+constexpr double kMaxRate = 50.0;             // 1/s: fifty times the bandwidth of a 1 s window
 constexpr double kPositionKnown = 5.0;        // m, std: worse than that says nothing about a tether
 constexpr double kWarmUpGap = 5.0;            // s without motion after which a warm-up starts over
 constexpr double kTurn = 2e-3;                // rad: smaller corrections of a turned sensor are not worth another pass
@@ -229,8 +229,8 @@ void LiveDiagnoser::hear_all(LiveScreening& screening) const {
   }
 }
 
-// A pass over all that was seen takes seconds, which nobody has at once: with every new sample a few old ones are
-// heard.
+// A pass over all that was seen takes seconds, which nobody has at once: with every new sample it is told a few old
+// ones, and hears them beside the trial.
 void LiveDiagnoser::keep(const LiveSample& sample) {
   if (!all_seen_) return;
   const bool valid = sample.motion.valid;
@@ -249,7 +249,7 @@ void LiveDiagnoser::keep(const LiveSample& sample) {
 }
 
 void LiveDiagnoser::look_again() {
-  wider_ = screening();
+  wider_ = std::make_unique<BackgroundPass>(screening());
   caught_up_ = 0;
 }
 
@@ -270,10 +270,11 @@ void LiveDiagnoser::catch_up(std::size_t samples) {
   LiveSample sample;
   for (; samples > 0 && caught_up_ < seen_.size(); --samples) {
     seen_.get(caught_up_++, sample);
-    (void)wider_->use(sample, true);
+    wider_->hear(sample);
   }
   if (caught_up_ < seen_.size()) return;
-  screening_ = std::move(wider_);
+  screening_ = wider_->finish();
+  wider_.reset();
   turning_ = false;
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/diagnosis/background_pass.hpp"
 #include "common/diagnosis/live_screening.hpp"
 #include "common/diagnosis/live_sensor_check.hpp"
 #include "common/identification/stream_aligner.hpp"
@@ -126,11 +127,11 @@ class LiveDiagnoser {
   SeenTrial seen_;  // all of the trial, as long as another pass may be made; the warm-up at first
   bool all_seen_{true};
   std::unique_ptr<LiveScreening> screening_;
-  double shown_{};                        // s of the trial that its candidates were made for
-  std::unique_ptr<LiveScreening> wider_;  // for more of it, still behind
-  std::size_t caught_up_{};               // samples of seen_ that it has taken
-  Utime newest_{};                        // valid state used
-  std::optional<Utime> commands_end_;     // next instant on the grid of commands
+  double shown_{};                         // s of the trial that its candidates were made for
+  std::unique_ptr<BackgroundPass> wider_;  // for more of it, still behind
+  std::size_t caught_up_{};                // samples of seen_ that it was told
+  Utime newest_{};                         // valid state used
+  std::optional<Utime> commands_end_;      // next instant on the grid of commands
   std::vector<LiveSuspicion> suspicions_;
   std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_;
   LiveSensorCheck sensors_;

@@ -14,7 +14,7 @@ namespace {
 constexpr Eigen::Index kTogether = 12;  // rows
 constexpr double kMemory = 0.3;         // correlation over two instants: far from white
 constexpr double kSignificance = 4.0;   // standard errors of that correlation
-constexpr double kSmallestMassRatio = 0.1;
+constexpr double kSmallestMassRatio = 0.1, kNoMass = 0.03;
 constexpr double kNegligible = 0.01;  // of the applied wrench's variance
 
 }  // namespace
@@ -195,13 +195,16 @@ LiveSuspicion LiveEvidence::fit(const LiveStart& start, double& cost) const {
 
 // The noise is in the motion, so in wrench it grows with the masses: a candidate that takes thrust away, and masses
 // with it, shrinks every residual and explains nothing. Its cost is therefore judged at the masses without it, by the
-// axis that shrinks most (cautious for the other axes).
-double LiveEvidence::shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const {
+// axis that shrinks most (cautious for the other axes). A lag does shrink what had been taken for inertia, to a tenth
+// and less, so that this has an end; but where next to nothing is left of a mass, thrust, drag and weight of its axis
+// have gone as well, and any residual with them.
+std::optional<double> LiveEvidence::shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const {
   double smallest = 1.0;
   for (const Mass& mass : masses_) {
     const double before = mass.prior_mean + without[mass.column];
     if (before > 0.0) smallest = std::min(smallest, (mass.prior_mean + with[mass.column]) / before);
   }
+  if (smallest < kNoMass) return std::nullopt;
   return 1.0 / std::pow(std::max(smallest, kSmallestMassRatio), 2);
 }
 
@@ -214,33 +217,40 @@ std::vector<LiveSuspicion> LiveEvidence::judge() {
   Eigen::VectorXd base(base_ + 1);
   base << -imitation_.col(0), 1.0;
   std::vector<double> without(blocks_.size());
-  std::vector<double> with(blocks_.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b) without[b] = block_cost(blocks_[b], nullptr, base, {});
   const double cost_without = 0.5 * projected_(0, 0);
   for (std::size_t s = 0; s < starts.size();) {
-    double best_cost = 0.0;
-    const LiveStart* best_start = nullptr;
-    LiveSuspicion best;
     const int form = starts[s].form;
+    const LiveStart* best_start = nullptr;
+    double best_cost = cost_without, best_penalty = 1.0;  // the cost as it is, without the penalty
+    Eigen::VectorXd best_base;
+    LiveSuspicion best{.form = form,
+                       .theta = starts[s].theta,
+                       .block_cost = without,
+                       .coefficients = Eigen::VectorXd::Zero(size_ - base_)};
     for (; s < starts.size() && starts[s].form == form; ++s) {
       double cost = 0.0;
       LiveSuspicion found = fit(starts[s], cost);
-      if (best_start != nullptr && cost >= best_cost) continue;
-      best_cost = cost;
+      Eigen::VectorXd weights = found.coefficients;
+      weights[0] = 1.0;
+      base << -(imitation_ * weights), 1.0;
+      const std::optional<double> penalty = shrinkage(imitation_.col(0), -base.head(base_));
+      if (!penalty || (best_start != nullptr && cost >= best_cost)) continue;
       best_start = &starts[s];
+      best_cost = cost;
+      best_penalty = *penalty;
+      best_base = base;
       best = std::move(found);
     }
-    Eigen::VectorXd weights = best.coefficients;
-    weights[0] = 1.0;
-    base << -(imitation_ * weights), 1.0;
-    const Eigen::VectorXd own = best.coefficients.segment(1 + best_start->column, best_start->columns());
-    const double penalty = shrinkage(imitation_.col(0), -base.head(base_));
-    for (std::size_t b = 0; b < blocks_.size(); ++b) with[b] = penalty * block_cost(blocks_[b], best_start, base, own);
+    if (best_start != nullptr) {
+      const Eigen::VectorXd own = best.coefficients.segment(1 + best_start->column, best_start->columns());
+      best.block_cost.resize(blocks_.size());
+      for (std::size_t b = 0; b < blocks_.size(); ++b)
+        best.block_cost[b] = best_penalty * block_cost(blocks_[b], best_start, best_base, own);
+    }
     const LiveForm& asked = candidates_.forms()[static_cast<std::size_t>(form)];
-    const int parameters = asked.effect->numbers(asked.variant);
-    best.log_odds = log_odds(without, with, parameters, tried);
-    best.error_reduction = 1.0 - std::sqrt(std::clamp(penalty * best_cost / cost_without, 0.0, 1.0));
-    best.block_cost = with;
+    best.log_odds = log_odds(without, best.block_cost, asked.effect->numbers(asked.variant), tried);
+    best.error_reduction = 1.0 - std::sqrt(std::clamp(best_penalty * best_cost / cost_without, 0.0, 1.0));
     judged.push_back(std::move(best));
   }
   std::stable_sort(judged.begin(), judged.end(),

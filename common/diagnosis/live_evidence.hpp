@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,7 +63,7 @@ class LiveEvidence {
     int pairs{};
     double applied{};
   };
-  [[nodiscard]] double shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const;
+  [[nodiscard]] std::optional<double> shrinkage(const Eigen::VectorXd& without, const Eigen::VectorXd& with) const;
   [[nodiscard]] double block_cost(const Block& block, const LiveStart* start, const Eigen::VectorXd& base,
                                   const Eigen::VectorXd& own) const;
   [[nodiscard]] LiveSuspicion fit(const LiveStart& start, double& cost) const;

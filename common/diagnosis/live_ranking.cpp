@@ -4,6 +4,7 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/live_diagnoser.hpp"
+#include "common/model/effect_size.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -47,8 +48,13 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
     if (form.effect->measures() && sensors_.velocity_judged()) return true;
     return screening_->places().rule_out(*form.effect, s.theta, form.variant);
   });
+  // One whose search was stopped by a limit has found no numbers that could be true, whatever it imitates.
+  const auto stopped = [&](const LiveSuspicion& s) {
+    const LiveForm& form = forms()[static_cast<std::size_t>(s.form)];
+    return model::stopped_at_limit(*form.effect, form.variant, s.theta, *vehicle_);
+  };
   const auto convinces = [&](const LiveSuspicion& s) {
-    return s.log_odds >= settings_.accept_log_odds && s.error_reduction >= settings_.smallest_reduction;
+    return s.log_odds >= settings_.accept_log_odds && s.error_reduction >= settings_.smallest_reduction && !stopped(s);
   };
   // Odds say whether; among those that convince, the one that explains most comes first.
   const auto doubtful = std::stable_partition(suspicions_.begin(), suspicions_.end(), convinces);
@@ -82,7 +88,7 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   const auto explained = [](const LiveSuspicion& s) { return 1.0 - std::pow(1.0 - s.error_reduction, 2); };
   const auto rival = std::find_if(best.begin() + 1, best.end(), [&](const LiveSuspicion* other) {
     // No name is safe while another explains more, and most of the same with it, though it may not convince by itself.
-    const bool more = other->error_reduction > winner.error_reduction;
+    const bool more = other->error_reduction > winner.error_reduction && !stopped(*other);
     if (!more && !convinces(*other)) return false;
     const double wider = more ? std::sqrt(explained(*other) / explained(winner)) : 1.0;
     return wider * evidence.likeness(winner, *other) > settings_.alias_correlation &&

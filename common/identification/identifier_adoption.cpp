@@ -183,8 +183,26 @@ double Identifier::cost_with(const model::ActiveEffect& effect, const ParameterV
   return cost_;
 }
 
-// Whether what the effect leaves is what noise makes: the wrong name may explain much, but hardly ever all.
+// Whether what the effect leaves is what noise makes: the wrong name may explain much, but hardly ever all. One that
+// takes an axis away leaves nothing there: without its thrust, its mass, drag and weight are zero, and so is the
+// residual.
 bool Identifier::explains() const {
+  const RecursiveReport report = estimator_.report();
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (model::sign_constraint(parameters_[i]) > 0 &&
+        report.estimate(k) + kPresent * report.sigma(k) < kSmallestMass * vehicle_->priors[i].mean)
+      return false;
+  }
+  if (track_) {
+    const model::ActiveEffect& effect = track_->effect();
+    const auto count = static_cast<Eigen::Index>(effect.theta.size());
+    const ParameterVector numbers = report.estimate.tail(count), doubt = report.sigma.tail(count);
+    for (const ParameterVector& each : {numbers, ParameterVector{numbers - doubt}, ParameterVector{numbers + doubt}}) {
+      if (model::stopped_at_limit(*effect.effect, effect.variant, {each.data(), effect.theta.size()}, *vehicle_))
+        return false;
+    }
+  }
   return std::all_of(recent_.begin(), recent_.end(),
                      [](const Recent& r) { return r.weight < kFewest || r.square < kLargestRatio; });
 }

@@ -106,4 +106,19 @@ std::vector<EffectParameter> parameters_of(const Effect& effect, int variant, co
   return parameters;
 }
 
+bool stopped_at_limit(const Effect& effect, int variant, EffectTheta theta, const Vehicle& vehicle) {
+  constexpr double kNear = 1e-6;  // of the limit, or of an ordinary size
+  const std::vector<EffectParameter> parameters = parameters_of(effect, variant, vehicle);
+  bool absent = effect.amplitudes() > 0;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    if (!effect.takes_part(variant, i)) continue;
+    if (i < static_cast<std::size_t>(effect.amplitudes()))
+      absent = absent && std::abs(theta[i]) <= kNear * parameters[i].sigma;
+    const auto [low, high] = std::pair{parameters[i].low, parameters[i].high};
+    if (low != 0.0 && !parameters[i].blurred && theta[i] <= low + kNear * std::abs(low)) return true;
+    if (high != 0.0 && theta[i] >= high - kNear * std::abs(high)) return true;
+  }
+  return absent;
+}
+
 }  // namespace fathom::model

@@ -24,4 +24,9 @@ namespace fathom::model {
 
 [[nodiscard]] std::vector<EffectParameter> parameters_of(const Effect& effect, int variant, const Vehicle& vehicle);
 
+/// Whether one of the numbers `theta` that take part in this form lies on a limit, or beyond it: a search that ended
+/// there was stopped and has found nothing. A limit of zero is no such end, unless every amplitude is zero: then there
+/// is no effect; nor is one below which it is blurred.
+[[nodiscard]] bool stopped_at_limit(const Effect& effect, int variant, EffectTheta theta, const Vehicle& vehicle);
+
 }  // namespace fathom::model

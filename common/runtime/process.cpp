@@ -225,6 +225,7 @@ void Process::run_live() {
   state_->out.emplace(state_->arguments.out);
   state_->live.emplace(state_->arguments.in, subscriptions);
   introduce(wall_clock());
+  report_health("running", "");  // whoever waits until it hears need not wait a second
   Clock::time_point last_call{};
   while (!state_->stop->raised() && !state_->ended) {
     if (!state_->wait) {
@@ -275,6 +276,7 @@ void Process::run_lockstep() {
   introduce(wall_clock());
   auto last_hello = Clock::now();
   tell(follower.hello());
+  report_health("running", "");
   while (!state_->stop->raised() && !state_->ended) {
     state_->live->wait(state_->stop->descriptor(), kWaitMs);
     while (auto message = state_->live->next()) {

@@ -1,6 +1,7 @@
 #include "processes/simulator/stage.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <fathom_lcm/operator_t.hpp>
 
 #include "common/base/error.hpp"
+#include "common/runtime/self.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "processes/simulator/speech.hpp"
@@ -100,6 +102,7 @@ void Stage::hear(const fathom_lcm::process_info_t& info) {
 void Stage::hear(const fathom_lcm::health_t& health) {
   const bool alive = health.state == "running" || health.state == "unhealthy";
   if (state_ != State::kLooking || health.process != "simulator" || !alive) return;
+  if (health.pid == getpid() && health.host == runtime::host_name()) return;  // our own
   throw InputError("another simulator is already running on this bus; stop it, or give each its own --in");
 }
 

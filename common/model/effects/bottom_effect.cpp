@@ -22,7 +22,8 @@ using namespace boundary;
 
 constexpr std::array kParameters{
     EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4}, EffectParameter{"bottom_depth", "m", 20.0},
-    EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach}, EffectParameter{"at_depth", "m"}};
+    EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach, 0.0, false, false, true},
+    EffectParameter{"at_depth", "m"}};
 constexpr std::size_t kBottomDepth = 1, kReach = 2, kAtDepth = 3;
 constexpr double kSmallestRange = 0.05;           // m of depth
 constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};  // m below the deepest place

@@ -20,10 +20,11 @@ namespace {
 
 using namespace boundary;
 
-constexpr std::array kParameters{EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4},
-                                 EffectParameter{"bearing", "rad", 3.0}, EffectParameter{"distance", "m", 20.0},
-                                 EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach},
-                                 EffectParameter{"at_distance", "m"}};
+constexpr std::array kParameters{
+    EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4}, EffectParameter{"bearing", "rad", 3.0},
+    EffectParameter{"distance", "m", 20.0},
+    EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach, 0.0, false, false, true},
+    EffectParameter{"at_distance", "m"}};
 constexpr std::size_t kBearing = 1, kDistance = 2, kReach = 3, kAtDistance = 4;
 constexpr int kBearings = 8;
 constexpr std::array kGaps{0.3, 1.0};    // m beyond the box of positions

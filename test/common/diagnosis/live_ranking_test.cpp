@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/diagnosis/live_diagnoser.hpp"
+#include "common/model/effect_size.hpp"
 #include "test/support/virtual_dive.hpp"
 
 namespace fathom::diagnosis {
@@ -116,7 +117,12 @@ TEST_CASE("live ranking: each effect once, the convincing ones first and by what
   CHECK(last.candidates.front().name == "thruster_lag");
   CHECK((last.verdict == "effect" || last.verdict == "ambiguous"));
   const auto convinces = [&](const EffectEvidence& one) {
-    return one.log_odds >= settings.accept_log_odds && one.error_reduction >= settings.smallest_reduction;
+    const model::Effect* effect = model::find_effect(one.name);
+    const auto variant = std::ranges::find_if(diagnoser.forms(), [&](const LiveForm& form) {
+                           return form.effect == effect && form.variant_name == one.variant;
+                         })->variant;
+    return one.log_odds >= settings.accept_log_odds && one.error_reduction >= settings.smallest_reduction &&
+           !model::stopped_at_limit(*effect, variant, one.numbers, vehicle);
   };
   std::set<std::string> names;
   for (std::size_t i = 0; i < last.candidates.size(); ++i) {

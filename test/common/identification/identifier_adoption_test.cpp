@@ -159,6 +159,27 @@ TEST_CASE("adoption: a form with more numbers gives way to the ordinary one that
   CHECK(std::abs(two.effect_numbers[1].value - 0.4) < kSigmas * two.effect_numbers[1].std);
 }
 
+TEST_CASE("adoption: what takes an axis away with its thrust, or has numbers that it cannot have, is not learnt") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const model::ActiveEffect truth = test::active("payload_change", {0.0, -3.5, 90.0});
+  model::ActiveEffect found = test::active("thrust_overshoot", {0.975, 1.7}, 2);
+  found.variant_name = "vertical";
+  for (const unsigned seed : {31U, 32U, 33U}) {
+    CAPTURE(seed);
+    const test::VirtualDive dive = test::make_dive(vehicle, {.duration = 200.0, .seed = seed, .effects = {truth}});
+    Identifier identifier{settings(), vehicle};
+    double next = 120.0;
+    feed(identifier, dive.trial, 0.0, 1e9, [&](double t) {
+      if (t < next) return;
+      identifier.hear(accepted(next, found));
+      next += 10.0;
+    });
+    const ModelEstimate model = identifier.model();
+    CHECK(model.effects.empty());
+    CHECK(identifier.rejected().contains("effect leaves a residual"));
+  }
+}
+
 TEST_CASE("adoption: it takes several rankings in a row, and nothing happens where it is not wished") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   const model::ActiveEffect gain = named(vehicle, "thruster_gain", {-0.4}, 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/model/vehicle.hpp"
+#include "test/support/virtual_dive.hpp"
 
 using namespace fathom::model;
 
@@ -52,6 +53,23 @@ TEST_CASE("effect size: small craft and unknown masses keep what effects state, 
         find_effect("sensor_latency")->parameters()[0].high);
   const Effect& failure = *find_effect("thruster_failure");
   CHECK(parameter_of(failure, 0, 1, vehicle).sigma == failure.parameters()[1].sigma);
+}
+
+TEST_CASE("effect size: a search that a limit has stopped, and one that found nothing, are told from one that found") {
+  const Vehicle vehicle = fathom::test::vehicle_from_repository("seabotix_lbv150");
+  const auto stopped = [&](const char* name, const std::vector<double>& theta, int variant = 0) {
+    return stopped_at_limit(*find_effect(name), variant, theta, vehicle);
+  };
+  CHECK_FALSE(stopped("thrust_overshoot", {0.4, 1.0}));
+  CHECK(stopped("thrust_overshoot", {0.98, 1.0}));
+  CHECK(stopped("thrust_overshoot", {1.02, 1.0}));  // beyond: by an estimate that knows no limits
+  CHECK(stopped("thrust_overshoot", {0.4, 0.05}));
+  CHECK(stopped("thrust_overshoot", {0.0, 1.0}));  // no effect at all
+  CHECK_FALSE(
+      stopped("tether_tension", {5.0, 0.0, 2.0, 0.0, 0.0}));  // never slack, made fast in the plane of the origin
+  CHECK_FALSE(stopped("payload_change", {0.0, -3.0, 0.0}));
+  CHECK(stopped("payload_change", {0.0, 0.0, 50.0}));
+  CHECK_FALSE(stopped("thruster_lag", {0.1, 0.0}));  // the second number has no part in the plain form
 }
 
 TEST_CASE("effect size: a memory is filled over four and a half time constants at least") {
