@@ -158,7 +158,9 @@ class Identifier {
   [[nodiscard]] bool vanishes() const;
   void drop();
   void follow(model::ActiveEffect effect, const ParameterVector& base);
-  void learn_anew(bool hold_effect = false);
+  enum class Held { kNothing, kEffect, kMoment };  // of an adopted effect's numbers
+  void learn_anew(Held held = Held::kNothing);
+  void find_moment(model::ActiveEffect& effect);
   [[nodiscard]] double moved() const;
   bool relearn();
   [[nodiscard]] double cost_with(const model::ActiveEffect& effect, const ParameterVector& base);

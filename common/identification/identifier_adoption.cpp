@@ -6,6 +6,7 @@
 
 #include "common/identification/identifier.hpp"
 #include "common/model/effect_size.hpp"
+#include "common/model/onset.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kMoved = 1.0;         // sigmas that a number may go from where
 constexpr std::array kShares{1.0, 0.5, 0.25, 0.1};  // of the way to the new numbers
 constexpr double kHeld = 1e-6;                      // of a number's prior sigma, where it shall stay
 constexpr double kGain = 1.0;                       // of twice the log likelihood, which a step must bring
+constexpr double kMomentWithin = 0.06;              // of the trial, to either side of what the diagnoser says
+constexpr double kMomentKnown = 0.1;                // s
 
 // A scene that admits every form whose place in the list of variants is then its number.
 model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
@@ -28,7 +31,7 @@ model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
   scene.voltage = true;
   scene.mean_voltage = vehicle.nominal_voltage > 0.0 ? vehicle.nominal_voltage : 1.0;
   scene.voltage_range = 1.0;
-  scene.duration = 1.0;
+  scene.duration = scene.t_high = 1.0;
   scene.nu_rms.setOnes();
   scene.tau_rms.setOnes();
   scene.force_rms = model::ActuatorForces::Ones(wrench ? 6 : vehicle.allocation.cols());
@@ -111,10 +114,49 @@ void Identifier::adopt(const EffectEvidence& found) {
 // Learnt anew with it in the model; whether it leaves no more than noise.
 bool Identifier::try_on(model::ActiveEffect effect) {
   keep_inside(effect, *vehicle_);
+  find_moment(effect);
   follow(std::move(effect), estimator_.projected().head(static_cast<Eigen::Index>(parameters_.size())));
   learn_anew();
   for (int round = 1; round < kRounds && relearn(); ++round) continue;
   return explains();
+}
+
+// The moment of a change is found where the fit is best with it held: its derivative is zero but for an instant, so
+// that no step leads there from afar. Misfit grows with every row between the moment and the true one: by golden
+// section. The diagnoser's moments are a tenth of the trial apart.
+void Identifier::find_moment(model::ActiveEffect& effect) {
+  const auto parameters = effect.effect->parameters();
+  const auto found = std::ranges::find(parameters, model::kOnset, &model::EffectParameter::name);
+  if (found == parameters.end() || kept_.empty()) return;
+  double& moment = effect.theta[static_cast<std::size_t>(found - parameters.begin())];
+  const ParameterVector base = estimator_.projected().head(static_cast<Eigen::Index>(parameters_.size()));
+  const double first = seconds_between(origin_, kept_.front().utime),
+               last = seconds_between(origin_, kept_.back().utime);
+  const auto cost_at = [&](double t) {
+    moment = t;
+    follow(effect, base);
+    learn_anew(Held::kMoment);
+    return cost_;
+  };
+  constexpr double kGolden = 0.618034;
+  const double around = kMomentWithin * (last - first);
+  double low = std::max(moment - around, first), high = std::min(moment + around, last);
+  double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+  double at_left = cost_at(left), at_right = cost_at(right);
+  while (high - low > kMomentKnown) {
+    if (at_left < at_right) {
+      high = std::exchange(right, left);
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = cost_at(left);
+    } else {
+      low = std::exchange(left, right);
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = cost_at(right);
+    }
+  }
+  moment = 0.5 * (low + high);
 }
 
 // The effect's ordinary form with no more numbers, where it leaves no more than noise either and the motion does not
@@ -179,7 +221,7 @@ bool Identifier::relearn() {
 
 double Identifier::cost_with(const model::ActiveEffect& effect, const ParameterVector& base) {
   follow(effect, base);
-  learn_anew(true);
+  learn_anew(Held::kEffect);
   return cost_;
 }
 
@@ -236,9 +278,13 @@ void Identifier::drop() {
 }
 
 // From the prior through all that is kept; parameters that are paused are paused again at the end.
-void Identifier::learn_anew(bool hold_effect) {
+void Identifier::learn_anew(Held held) {
   RecursiveSettings settings = estimator_settings(adopted());
-  if (hold_effect) settings.sigma.tail(settings.sigma.size() - static_cast<Eigen::Index>(parameters_.size())) *= kHeld;
+  const auto base = static_cast<Eigen::Index>(parameters_.size());
+  for (Eigen::Index k = base; held != Held::kNothing && k < settings.sigma.size(); ++k) {
+    const bool moment = track_->effect().effect->parameters()[static_cast<std::size_t>(k - base)].name == model::kOnset;
+    if (held == Held::kEffect || moment) settings.sigma[k] *= kHeld;
+  }
   estimator_ = RecursiveEstimator{std::move(settings)};
   regressor_.reset();
   recent_ = {};
@@ -276,7 +322,7 @@ void Identifier::add_effect(ModelEstimate& estimate, const RecursiveReport& repo
     const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
     estimate.effect_numbers.push_back({.name = name + "." + std::string{parameters[i].name},
                                        .value = report.estimate(k),
-                                       .std = report.sigma(k),
+                                       .std = std::hypot(report.sigma(k), parameters[i].form_sigma),
                                        .unit = std::string{effect.effect->unit(effect.variant, i)}});
   }
 }

@@ -86,6 +86,8 @@ TEST_CASE("adoption: an accepted effect is listed, its numbers are learnt, and t
   };
   for (const Case& c : {Case{named(vehicle, "thruster_gain", {-0.4}, 1), named(vehicle, "thruster_gain", {-0.3}, 1)},
                         Case{named(vehicle, "current", {0.2, -0.25}, 0), named(vehicle, "current", {0.15, -0.2}, 0)},
+                        Case{named(vehicle, "payload_change", {1.0, -4.0, 30.0}, 0),
+                             named(vehicle, "payload_change", {0.4, -3.0, 32.5}, 0)},
                         Case{named(vehicle, "tether_tension", {3.0, 0.5, 2.0, -1.0, 0.0}, 0),
                              named(vehicle, "tether_tension", {2.2, 0.3, 1.8, -0.7, 0.2}, 0)}}) {
     CAPTURE(c.truth.effect->name());
