@@ -19,6 +19,7 @@ constexpr double kBoundaryDrag = 0.5;   // m^2, or plain at the boundary itself
 constexpr double kOrbitalShare = 0.02;  // m/s of the water per N of the prior: the same number is both
 constexpr double kTiltShare = 0.3;      // of the righting moment that an unknown one may have
 constexpr double kMassShare = 0.15;     // of the vehicle's mass that a payload may have
+constexpr double kFlown = 200.0;        // s: a trial's limit may be far behind its end, and nothing would happen in it
 constexpr double kTypicalSpeed = 0.3;   // m/s, rad/s
 constexpr double kTypicalThrust = 0.4;  // of the largest
 
@@ -105,7 +106,7 @@ double drawn(const model::Effect& effect, const model::EffectParameter& paramete
   if (name == "anchor_E") return anchor.y();
   if (name == "anchor_D") return anchor.z();
   if (name == "slack_length") return (0.6 + 0.2 * share) * (anchor - occasion.start).norm();
-  if (name == "onset") return (0.5 * share) * occasion.duration;
+  if (name == "onset") return (0.5 * share) * std::min(occasion.duration, kFlown);
   if (name == "bottom_depth" || name == "at_depth") return site.floor;
   if (name == "bearing") return effect.name() == "wave" ? 2.0 * std::numbers::pi * side : wall_bearing;
   if (name == "distance" || name == "at_distance") return wall_distance;
