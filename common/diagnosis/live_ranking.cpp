@@ -16,6 +16,7 @@ constexpr double kExplainsMore = 0.05;    // of the error
 // Too little of all axes for a name may be most of what one of them leaves: at twice the evidence of a name and half of
 // what it must explain, something is at work. Trials without an effect stay below half of both (docs/live.md).
 constexpr double kMoreEvidence = 2.0, kLessExplained = 0.5;
+constexpr double kFarMore = 2.0;  // times the error that the named one explains
 
 }  // namespace
 
@@ -84,6 +85,16 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
     return ranking;
   }
   const LiveSuspicion& winner = *best.front();
+  // What a stopped one imitates so much better is at work, and has no name here: the winner explains something beside
+  // it.
+  const bool beside = std::ranges::any_of(suspicions_, [&](const LiveSuspicion& s) {
+    return s.log_odds >= settings_.accept_log_odds && stopped(s) &&
+           s.error_reduction > kFarMore * winner.error_reduction;
+  });
+  if (beside) {
+    ranking.verdict = "unexplained";
+    return ranking;
+  }
   // Of the residual's power.
   const auto explained = [](const LiveSuspicion& s) { return 1.0 - std::pow(1.0 - s.error_reduction, 2); };
   const auto rival = std::find_if(best.begin() + 1, best.end(), [&](const LiveSuspicion* other) {
