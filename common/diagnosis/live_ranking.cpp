@@ -16,7 +16,7 @@ constexpr double kExplainsMore = 0.05;    // of the error
 // Too little of all axes for a name may be most of what one of them leaves: at twice the evidence of a name and half of
 // what it must explain, something is at work. Trials without an effect stay below half of both (docs/live.md).
 constexpr double kMoreEvidence = 2.0, kLessExplained = 0.5;
-constexpr double kFarMore = 2.0;  // times the error that the named one explains
+constexpr double kFarMore = 2.0, kFarLess = 1.0 / 3.0;  // times the error that the named one explains, and leaves
 
 }  // namespace
 
@@ -88,8 +88,9 @@ EffectRanking LiveDiagnoser::by_forces(Utime utime) {
   // What a stopped one imitates so much better is at work, and has no name here: the winner explains something beside
   // it.
   const bool beside = std::ranges::any_of(suspicions_, [&](const LiveSuspicion& s) {
-    return s.log_odds >= settings_.accept_log_odds && stopped(s) &&
-           s.error_reduction > kFarMore * winner.error_reduction;
+    const bool far = s.error_reduction > kFarMore * winner.error_reduction ||
+                     1.0 - s.error_reduction < kFarLess * (1.0 - winner.error_reduction);
+    return far && s.log_odds >= settings_.accept_log_odds && stopped(s);
   });
   if (beside) {
     ranking.verdict = "unexplained";

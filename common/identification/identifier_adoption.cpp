@@ -141,6 +141,7 @@ void Identifier::find_moment(model::ActiveEffect& effect) {
   constexpr double kGolden = 0.618034;
   const double around = kMomentWithin * (last - first);
   double low = std::max(moment - around, first), high = std::min(moment + around, last);
+  if (high - low <= kMomentKnown) return;  // before all that is kept
   double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
   double at_left = cost_at(left), at_right = cost_at(right);
   while (high - low > kMomentKnown) {

@@ -8,10 +8,12 @@ namespace {
 constexpr int kOfASecond = 100;  // innovations
 constexpr int kSeen = 40;        // seconds looked back
 constexpr int kBefore = 20;      // seconds that are taken to have been white
+constexpr double kLeast = 0.1;   // what is learnt does not come from the inertial instruments alone
 
 }  // namespace
 
 void InnovationColour::hear(double score) {
+  if (score == 0.0) return;
   sum_ += score;
   squares_ += score * score;
   if (++count_ < kOfASecond) return;
@@ -22,6 +24,8 @@ void InnovationColour::hear(double score) {
   count_ = 0;
 }
 
-double InnovationColour::ratio() const { return (kBefore * white_ + seconds_ * sums_) / (kBefore + seconds_); }
+double InnovationColour::ratio() const {
+  return std::max((kBefore * white_ + seconds_ * sums_) / (kBefore + seconds_), kLeast);
+}
 
 }  // namespace fathom::joint

@@ -8,9 +8,11 @@ namespace fathom::joint {
 /// stated shows in the squares at once. By so much is the covariance of what was learnt from them to be multiplied.
 class InnovationColour {
  public:
-  /// One innovation of an inertial instrument in its standard deviations, 100 a second; 0 where it was refused.
+  /// One innovation of an inertial instrument in its standard deviations, 100 a second; 0, of one that was refused,
+  /// tells nothing of those that were not.
   void hear(double score);
-  /// Mean squared sum of a second over its length, of up to 40 seconds; beside them 20 as they would be if white.
+  /// Mean squared sum of a second over its length, of up to 40 seconds; beside them 20 as they would be if white. A
+  /// tenth at least: instruments that tell nearly nothing of their noise do not make everything certain.
   [[nodiscard]] double ratio() const;
 
  private:

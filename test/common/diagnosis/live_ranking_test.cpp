@@ -168,6 +168,20 @@ TEST_CASE("live ranking: a name that leaves a residual and is not adopted is tak
   CHECK(heard(1.0, {}).back().verdict == "effect");
 }
 
+TEST_CASE("live ranking: an effect larger than any can be names nothing, and nothing else is named beside it") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  for (const unsigned seed : {7U, 8U, 9U}) {
+    CAPTURE(seed);
+    const test::VirtualDive dive = test::make_dive(
+        vehicle, {.duration = 160.0, .seed = seed, .effects = {test::active("thrust_overshoot", {1.1, 1.0})}});
+    LiveDiagnoser diagnoser{short_settings(), vehicle};
+    const EffectRanking last = listen(diagnoser, dive.trial).back();
+    REQUIRE_FALSE(last.candidates.empty());
+    CHECK(last.candidates.front().log_odds > short_settings().accept_log_odds);  // by itself it would convince
+    CHECK(last.verdict == "unexplained");
+  }
+}
+
 TEST_CASE("live ranking: of two forms of an effect that are not told apart, the plain one") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   int named = 0;

@@ -59,3 +59,20 @@ TEST_CASE("innovation colour: what was seen long ago is forgotten") {
   for (int i = 0; i < 100 * 400; ++i) colour.hear(i % 2 == 0 ? 1.0 : -1.0);
   CHECK(colour.ratio() < 1.0);
 }
+
+TEST_CASE("innovation colour: refused innovations, and those of a dead instrument, make nothing certain") {
+  std::mt19937 random{5};
+  std::normal_distribution<double> normal;
+  InnovationColour all, every_other, dead, quiet;
+  for (int i = 0; i < 100 * 40; ++i) {
+    const double score = normal(random);
+    all.hear(score);
+    every_other.hear(score);
+    every_other.hear(0.0);
+    dead.hear(0.0);
+    quiet.hear(1e-6 * score);
+  }
+  CHECK(every_other.ratio() == all.ratio());
+  CHECK(dead.ratio() == 1.0);
+  CHECK(quiet.ratio() == 0.1);
+}
