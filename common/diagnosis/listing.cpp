@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/diagnosis/acting_order.hpp"
 #include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
@@ -10,6 +11,7 @@
 namespace fathom::diagnosis {
 namespace {
 
+constexpr const char* kLast = " It acts on the thrust that the others leave, not on the command.";
 constexpr double kEven = 0.0;  // log odds against something unlisted that looks the same
 
 /// Numbers of one accepted effect, under names that stay apart when it was accepted in several forms.
@@ -85,6 +87,7 @@ void list_effects(const SearchResult& found, double share, const model::Scene& s
         known->other_forms.push_back(either(judged.variant_name, other));
       continue;
     }
+    const bool last = acts_last(found.after.model, judged);
     std::vector<std::string> other_forms;
     for (const std::string& other : judged.other_forms) other_forms.push_back(either(judged.variant_name, other));
     result.effects.push_back({.name = name,
@@ -95,11 +98,12 @@ void list_effects(const SearchResult& found, double share, const model::Scene& s
                               .error_reduction = judged.error_reduction,
                               .alternatives = alternatives,
                               .other_forms = other_forms,
-                              .sentence = std::string(judged.effect->sentence()),
+                              .sentence = std::string(judged.effect->sentence()) + (last ? kLast : ""),
                               .unlisted = std::string(unlisted.what),
                               .unlisted_told_by = std::string(unlisted.told_by),
                               .corrupts = judged.corrupts,
-                              .corruption = judged.corruption});
+                              .corruption = judged.corruption,
+                              .last = last});
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/diagnosis/acting_order.hpp"
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/identification/input_hold.hpp"
@@ -68,13 +69,13 @@ bool is_accepted(const SearchResult& result, const model::Effect* effect, int va
 }
 
 /// The start from which the form costs least.
-std::optional<model::Model> best_start(const model::Model& rest, const Judged& form, const FitResult& like,
+std::optional<model::Model> best_start(const model::Model& rest, const Judged& form, bool last, const FitResult& like,
                                        const TrajectoryFit& problem, const model::Scene& scene) {
   std::optional<model::Model> best;
   double least = 0.0;
   for (const std::vector<double>& theta : form.effect->starts(scene, form.variant)) {
     model::Model model = rest;
-    model.add({form.effect, form.variant, form.variant_name, theta});
+    model.add({form.effect, form.variant, form.variant_name, theta, last});
     const double cost = problem.cost(model, like);
     if (best && cost >= least) continue;
     best = std::move(model);
@@ -91,6 +92,7 @@ std::optional<OtherForm> best_other_form(const SearchResult& result, std::size_t
     const Judged& other = result.accepted[j];
     if (j == i || other.effect->variants_matter()) continue;
     const model::Model rest = without(without_it.model, other);
+    const bool last = acts_last(without_it.model, other);
     const std::vector<std::string> names = other.effect->variants(scene);
     for (std::size_t v = 0; v < names.size(); ++v) {
       Judged form = other;
@@ -98,7 +100,7 @@ std::optional<OtherForm> best_other_form(const SearchResult& result, std::size_t
       form.variant_name = names[v];
       form.other_forms.clear();
       if (names[v] == "-" || is_accepted(result, form.effect, form.variant)) continue;
-      const std::optional<model::Model> start = best_start(rest, form, without_it, problem, scene);
+      const std::optional<model::Model> start = best_start(rest, form, last, without_it, problem, scene);
       if (!start) continue;
       FitResult fit = problem.fit(*start, &without_it, kQuickTolerance);
       if ((best && best->fit.cost <= fit.cost) || !at_limit(form, fit.model).empty()) continue;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/diagnosis/acting_order.hpp"
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/moments.hpp"
@@ -32,7 +33,7 @@ FitResult fit_in_its_place(const SearchResult& result, const Judged& there, cons
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& theta : starts) {
     model::Model model = rest;
-    model.add({form.effect, form.variant, form.variant_name, theta});
+    model.add({form.effect, form.variant, form.variant_name, theta, acts_last(result.after.model, there)});
     const double cost = problem.cost(model, result.after);
     if (cost >= least) continue;
     least = cost;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/diagnosis/acting_order.hpp"
 #include "common/diagnosis/final_fit.hpp"
 #include "common/diagnosis/lack_of_form.hpp"
 #include "common/diagnosis/left_to_explain.hpp"
@@ -97,6 +98,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       result.after = at_best_moment(problem, std::move(result.after), *accepted.effect, accepted.variant);
       result.after = identification::with_input_hold(problem, std::move(result.after));
       reconsider_forms(result, problem, scene, progress, done);
+      reconsider_order(result, problem, progress, done);
     }
     name_unfitted(answers);
     result.refused = best_of_each_effect(answers.judged, result.accepted);

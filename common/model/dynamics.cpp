@@ -12,9 +12,12 @@ namespace {
 constexpr double kUnknownRigidShare =
     0.5;  // of the lumped mass, when the vehicle file does not say: added mass of a blunt hull
 
-std::ptrdiff_t registry_rank(const Effect* effect) {
+/// Where the effect stands in the chain. Those that act last on the thrust stand behind all others that change it.
+std::ptrdiff_t rank(const ActiveEffect& active) {
   const auto all = all_effects();
-  return std::find(all.begin(), all.end(), effect) - all.begin();
+  if (active.last) return std::ranges::find_if(all, [](const Effect* e) { return !changes_thrust(*e); }) - all.begin();
+  const std::ptrdiff_t place = std::ranges::find(all, active.effect) - all.begin();
+  return changes_thrust(*active.effect) ? place : place + 1;
 }
 
 int actuators(const Model& model) { return static_cast<int>(model.allocation.cols()); }
@@ -31,9 +34,8 @@ Vector6d pushed(const Model& model, const Motion& motion) {
 }  // namespace
 
 void Model::add(ActiveEffect effect) {
-  const auto place = std::upper_bound(effects.begin(), effects.end(), effect, [](const auto& a, const auto& b) {
-    return registry_rank(a.effect) < registry_rank(b.effect);
-  });
+  const auto place =
+      std::ranges::upper_bound(effects, rank(effect), {}, [](const ActiveEffect& active) { return rank(active); });
   effects.insert(place, std::move(effect));
 }
 

@@ -1,5 +1,6 @@
 #include "common/model/effect.hpp"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 
@@ -18,6 +19,11 @@ std::span<const Effect* const> all_effects() {
   };
 #undef EFFECT
   return kEffects;
+}
+
+bool changes_thrust(const Effect& effect) {
+  const auto all = all_effects();
+  return std::ranges::find(all, &effect) < std::ranges::find(all, &effects::current());
 }
 
 const Effect* find_effect(std::string_view name) {

@@ -117,6 +117,8 @@ class Effect {
   virtual void load(const Motion&, EffectTheta, int /*variant*/, Load&) const {}
   /// False when feel() changes the thrust by command, time and voltage alone: derivatives then need not ask it.
   [[nodiscard]] virtual bool feels_motion() const { return true; }
+  /// True when the thrust is not the same where a gain, or a lag, comes before it as where that comes after it.
+  [[nodiscard]] virtual bool order_matters() const { return false; }
   /// True when the wrench is a share of the hull's drag: it then changes with the base parameters.
   [[nodiscard]] virtual bool multiplies_drag(int /*variant*/) const { return false; }
   /// True when the wrench depends on where the vehicle is (not only on how it moves).
@@ -151,12 +153,16 @@ class Effect {
 /// The effect of that name, or nullptr.
 [[nodiscard]] const Effect* find_effect(std::string_view name);
 
+/// Whether it is one of those that change the thrust before it meets the water.
+[[nodiscard]] bool changes_thrust(const Effect& effect);
+
 /// An effect with numbers: part of a model.
 struct ActiveEffect {
   const Effect* effect{};
   int variant{};
   std::string variant_name;
   std::vector<double> theta;
+  bool last{false};  ///< acts on the thrust that the others leave, not on the command
 };
 
 }  // namespace fathom::model

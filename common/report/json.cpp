@@ -105,6 +105,7 @@ Json effects(const std::vector<EffectFound>& found) {
                      {"unlisted_alternative", e.unlisted},
                      {"told_apart_by", told_apart},
                      {"other_forms", e.other_forms},
+                     {"acts_last", e.last},
                      {"sentence", e.sentence}});
   }
   return array;

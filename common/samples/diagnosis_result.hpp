@@ -96,6 +96,7 @@ struct EffectFound {
   std::vector<ToldApart> told_apart{};  ///< from some alternatives, by a segment; only where a site was given
   std::string corrupts{};               ///< as for an alternative; empty where none moves
   double corruption{};
+  bool last{false};  ///< acts on the thrust that the others leave, not on the command
 };
 
 struct CandidateTried {

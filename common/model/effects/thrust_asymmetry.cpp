@@ -18,6 +18,7 @@ class ThrustAsymmetry final : public Effect {
   std::string_view revealed_by() const override { return "equal thrust in both directions, for several seconds each"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
+  bool order_matters() const override { return true; }
 
   void feel(Motion& motion, EffectTheta theta, int, std::span<const double>) const override {
     for (double& force : motion.force) {

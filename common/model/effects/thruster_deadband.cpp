@@ -34,6 +34,7 @@ class ThrusterDeadband final : public Effect {
   std::string_view revealed_by() const override { return "small thrust commands that change sign"; }
   std::span<const EffectParameter> parameters() const override { return kParameters; }
   bool feels_motion() const override { return false; }
+  bool order_matters() const override { return true; }
   std::vector<std::string> variants(const Scene&) const override { return {"offset", "step", "rounded"}; }
   std::vector<std::vector<double>> starts(const Scene& scene, int variant) const override {
     const double typical = scene.force_rms.size() > 0 ? scene.force_rms.maxCoeff() : 1.0;

@@ -33,9 +33,9 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(file["train"].size() == 5);
   CHECK(keys(file["consistency"][0]) ==
         Names{"action", "evidence", "finding", "reference", "run", "signal", "size", "unit"});
-  CHECK(keys(file["effects"][0]) == Names{"accepted", "alternatives", "corruption", "corrupts", "error_reduction",
-                                          "log_odds", "name", "other_forms", "parameters", "rivals", "sentence",
-                                          "told_apart_by", "unlisted_alternative", "variant"});
+  CHECK(keys(file["effects"][0]) == Names{"accepted", "acts_last", "alternatives", "corruption", "corrupts",
+                                          "error_reduction", "log_odds", "name", "other_forms", "parameters", "rivals",
+                                          "sentence", "told_apart_by", "unlisted_alternative", "variant"});
   CHECK(file["effects"][1]["alternatives"] == json{"tether_tension"});
   CHECK(file["effects"][1]["rivals"][0]["name"] == "tether_tension");
   CHECK(file["effects"][1]["rivals"][0]["log_odds"] == 1.1);
