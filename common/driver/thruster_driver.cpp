@@ -153,6 +153,7 @@ class ThrusterDriver final : public devices::Output {
     if (gate_.refused() > 0) {
       detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";
     }
+    if (gate_.hears_stranger(utime)) detail += std::string(", ") + ThrusterGate::kStranger;
     if (parser_) detail += ", " + counts(*parser_, *watch_, *link_);
     return {.unhealthy = unhealthy, .detail = detail};
   }
@@ -235,7 +236,9 @@ class ThrusterDriver final : public devices::Output {
   // A change of what the driver does is said at once.
   void say() {
     const runtime::Process::Condition now = condition();
-    const std::string kind = now.unhealthy.substr(0, now.unhealthy.find(':')) + std::string{gate_.reason(wall_clock())};
+    const std::string kind = now.unhealthy.substr(0, now.unhealthy.find(':')) +
+                             std::string{gate_.reason(wall_clock())} +
+                             (gate_.hears_stranger(wall_clock()) ? ThrusterGate::kStranger : "");
     if (kind == said_) return;
     said_ = kind;
     if (now.unhealthy.empty()) {

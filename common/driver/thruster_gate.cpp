@@ -5,21 +5,25 @@
 
 namespace fathom::driver {
 
-void ThrusterGate::hear(const WrenchCommand& command, Utime now) {
-  // Armed is armed for the one who commands first: another one is never obeyed, and while both speak neither is.
-  if (command_ && command.commander != command_->commander) {
-    contested_ = now;
+bool ThrusterGate::was_armed(const WrenchCommand& command) const {
+  return armed_ && command.armed_by >= armed_since_ && command.armed_by <= sequence_;
+}
+
+/// It may be the commander of a driver that has died: then it must learn that nobody obeys it.
+void ThrusterGate::hear_unarmed(const WrenchCommand& command, Utime now) {
+  const bool asks = !command.tau.isZero();
+  if (armed_) {
+    if (asks) stranger_ = now;
     return;
   }
-  if (armed_ || seconds_between(heard_, now) > kPause) {
+  if (unarmed_ && seconds_between(*unarmed_, now) > kPause) {
     asked_.reset();
     ignores_ = false;
   }
-  command_ = command;
-  heard_ = now;
+  unarmed_ = now;
   const bool of_now = std::abs(seconds_between(command.utime, now)) <= kPause;  // a replayed log's are not
-  if (armed_ || !of_now) return;
-  if (command.tau.isZero()) {  // who is told so asks for nothing meanwhile, and yet is not obeyed
+  if (!of_now) return;
+  if (!asks) {  // who is told so asks for nothing meanwhile, and yet is not obeyed
     asked_.reset();
     return;
   }
@@ -27,8 +31,26 @@ void ThrusterGate::hear(const WrenchCommand& command, Utime now) {
   ignores_ = ignores_ || seconds_between(*asked_, now) >= kInVain;
 }
 
+void ThrusterGate::hear(const WrenchCommand& command, Utime now) {
+  if (!was_armed(command)) {
+    hear_unarmed(command, now);
+    return;
+  }
+  // Armed is armed for the one who commands first: another one is never obeyed, and while both speak neither is.
+  if (command_ && command.commander != command_->commander) {
+    contested_ = now;
+    return;
+  }
+  command_ = command;
+  heard_ = now;
+}
+
 bool ThrusterGate::ignores(Utime now) const {
-  return ignores_ && !armed_ && command_ && seconds_between(heard_, now) <= kPause;
+  return ignores_ && !armed_ && unarmed_ && seconds_between(*unarmed_, now) <= kPause;
+}
+
+bool ThrusterGate::hears_stranger(Utime now) const {
+  return armed_ && stranger_ && seconds_between(*stranger_, now) <= kPause;
 }
 
 std::string_view ThrusterGate::objection(const Operator& order, Utime now) const {
@@ -57,8 +79,12 @@ void ThrusterGate::hear(const Operator& order, Utime now) {
   sequence_ = order.sequence;
   if (!order.enable) return;
   // What was asked before is not taken up; and a commander that has died makes room for its successor.
-  if (!armed_ || seconds_between(heard_, now) > kPause) command_.reset();
+  if (!armed_ || !command_ || seconds_between(heard_, now) > kPause) {
+    command_.reset();
+    armed_since_ = order.sequence;
+  }
   armed_ = true;
+  stranger_.reset();
   asked_.reset();
   ignores_ = false;
   aborted_ = false;
@@ -68,7 +94,9 @@ void ThrusterGate::hear(const Operator& order, Utime now) {
 std::string_view ThrusterGate::reason(Utime now) const {
   if (aborted_) return "aborted by the operator; waits to be armed";
   if (!armed_) return "not armed";
-  if (!command_) return "no command";
+  if (!command_) {
+    return hears_stranger(now) ? "who commands was not armed; stop it" : "no command";
+  }
   if (contested_ && seconds_between(*contested_, now) <= kPause) return "two commanders; stop one and arm again";
   if (seconds_between(heard_, now) > std::min(kPause, command_->life)) return "commands have stopped";
   if (std::abs(seconds_between(command_->utime, now)) > std::max(kPause, command_->life))

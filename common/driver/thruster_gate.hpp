@@ -13,8 +13,9 @@ namespace fathom::driver {
 /// Zero until an operator has armed: an order to enable with the right token, a sequence number not heard before, and
 /// a time that is now; so that neither a stray publisher nor a replayed log can do it. An abort needs none of these
 /// and holds until the next arming. A command dies after its stated life, after half a second without a new one, and
-/// when its own time is too old. Armed is armed for
-/// the one who commands first: while another one speaks none is obeyed, and the other never without a new arming.
+/// when its own time is too old. It must name the order that armed its commander: who has been publishing before, or
+/// goes on when the commander has refused, stopped or died, is never obeyed. Of several who heard the order the first
+/// is; while another one speaks none is, and the other never without a new arming.
 class ThrusterGate {
  public:
   static constexpr double kPause = 0.5;     ///< s
@@ -33,21 +34,30 @@ class ThrusterGate {
   /// Somebody has been asking for thrust for a while and believes to get it, but nobody has armed: as after a driver's
   /// death, whose successor did not hear the order.
   [[nodiscard]] bool ignores(Utime now) const;
+  /// True while somebody whom no order has armed asks for thrust beside, or instead of, the one that was armed.
+  [[nodiscard]] bool hears_stranger(Utime now) const;
+  static constexpr const char* kStranger =
+      "somebody whom no order has armed asks for thrust too, and is ignored: stop it";
   /// Orders that were not believed, and why the last one was not.
   [[nodiscard]] std::int64_t refused() const { return refused_; }
   [[nodiscard]] std::string_view refusal() const { return refusal_; }
 
  private:
   [[nodiscard]] std::string_view objection(const Operator& order, Utime now) const;
+  [[nodiscard]] bool was_armed(const WrenchCommand& command) const;
+  void hear_unarmed(const WrenchCommand& command, Utime now);
 
   std::string token_;
   bool armed_{false};
   bool aborted_{false};
-  std::int64_t sequence_{};
+  std::int64_t sequence_{};        // of the last order that was believed
+  std::int64_t armed_since_{};     // of the order that armed, while commands went on
+  std::optional<Utime> stranger_;  // when thrust was asked for by one whom no order armed
   std::optional<WrenchCommand> command_;
   Utime heard_{};
   std::optional<Utime> contested_;  ///< when another commander was heard last
   std::optional<Utime> asked_;      ///< since when thrust is asked for in vain
+  std::optional<Utime> unarmed_;    ///< when it was asked so last
   bool ignores_{false};
   std::int64_t refused_{};
   std::string_view refusal_;

@@ -263,7 +263,7 @@ bool Supervisor::arrived() const {
 }
 
 void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
-  output_.command = WrenchCommand{.utime = state_.utime, .tau = tau, .life = settings_.life, .commander = {}};
+  output_.command = WrenchCommand{.utime = state_.utime, .tau = tau, .life = settings_.life, .armed_by = armed_by_};
   const bool active = phase_ == Phase::kExcite;
   Excitation said{.utime = state_.utime, .active = active, .reason = reason_, .probe = probe};
   if (!refused_.empty()) said.reason += "; " + refused_;

@@ -39,6 +39,7 @@ void Supervisor::hear(const Operator& order) {
   } else if (armed_) {
     this->order(order);
   }
+  if (armed_ && order.enable) armed_by_ = order.sequence;  // the thrusters may have lost what armed it before
 }
 
 void Supervisor::order(const Operator& order) {

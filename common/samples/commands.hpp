@@ -16,6 +16,7 @@ struct WrenchCommand {
   Vector6d tau{Vector6d::Zero()};  ///< N, N m at the body origin, body axes
   double life{};                   ///< s; after utime + life the thruster driver goes to zero
   std::string commander;           ///< who commands, different for every running process
+  std::int64_t armed_by{};         ///< sequence of the order that armed the commander; 0: none has
 };
 
 /// What the human wants.

@@ -196,8 +196,11 @@ fathom_lcm::effects_t encode(const EffectRanking& sample) {
 
 std::optional<WrenchCommand> decode(const fathom_lcm::wrench_command_t& message) {
   if (!finite(message.tau) || !finite(message.life)) return {};
-  return WrenchCommand{
-      .utime = message.utime, .tau = vector(message.tau), .life = message.life, .commander = message.commander};
+  return WrenchCommand{.utime = message.utime,
+                       .tau = vector(message.tau),
+                       .life = message.life,
+                       .commander = message.commander,
+                       .armed_by = message.armed_by};
 }
 
 fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
@@ -206,6 +209,7 @@ fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
   put(sample.tau, message.tau);
   message.life = sample.life;
   message.commander = sample.commander;
+  message.armed_by = sample.armed_by;
   return message;
 }
 

@@ -281,18 +281,20 @@ runtime::Process::Condition Stage::condition() const {
                 : reason.empty() ? "thrust as commanded"
                                  : "zero thrust: ",
                 std::string{reason}.c_str());
+  std::string detail = text;
+  if (gate_.hears_stranger(simulator_.now())) detail += std::string(", ") + driver::ThrusterGate::kStranger;
   std::string unhealthy = simulator_.complaint();
   if (unhealthy.empty() && late_ > 0) {
     unhealthy = std::to_string(late_) + " control intervals came late; " +
                 (has_lines() ? "this machine has too much else to do" : "lower --speed");
   }
-  return {.unhealthy = unhealthy, .detail = text};
+  return {.unhealthy = unhealthy, .detail = detail};
 }
 
 // A change of what reaches the thrusters is said at once.
 void Stage::tell_changes() {
-  const std::string kind =
-      (!commanded() ? "" : std::string{gate_.reason(simulator_.now())}) + "|" + simulator_.complaint();
+  const std::string kind = (!commanded() ? "" : std::string{gate_.reason(simulator_.now())}) +
+                           (gate_.hears_stranger(simulator_.now()) ? "|and a stranger|" : "|") + simulator_.complaint();
   if (kind == told_) return;
   told_ = kind;
   if (!simulator_.complaint().empty()) process_.log_warning(simulator_.complaint());

@@ -18,13 +18,15 @@ using test::now;
 using test::program;
 using test::Scratch;
 
-void arm(Bus& bus, const std::string& token) {
+/// The sequence that a commander must name.
+std::int64_t arm(Bus& bus, const std::string& token) {
   fathom_lcm::operator_t order{};
   order.utime = now();
   order.enable = true;
   order.token = token;
   order.sequence = order.utime;
   bus.publish("OPERATOR", order);
+  return order.sequence;
 }
 
 }  // namespace
@@ -61,22 +63,27 @@ TEST_CASE(
     CAPTURE(test::read_bytes(scratch.path("driver.text")));
     const auto thrust = [&] { return bus.thrusters.empty() ? -1.0 : bus.thrusters.back().tau[0]; };
     CHECK(thrust() == doctest::Approx(0.0));
+    std::int64_t armed_by = 0;
     const auto command = [&](double seconds) {
       for (int i = 0; i < static_cast<int>(20 * seconds); ++i) {
         fathom_lcm::wrench_command_t message{};
         message.utime = now();
         message.tau[0] = 20.0;
         message.life = 0.5;
+        message.armed_by = armed_by;
         bus.publish("WRENCH_COMMAND", message);
         bus.listen(0.05);
       }
     };
     command(0.7);
     CHECK(thrust() == doctest::Approx(0.0));  // nobody has armed
-    arm(bus, "a guess");
+    armed_by = arm(bus, "a guess");
     command(0.4);
     CHECK(thrust() == doctest::Approx(0.0));
-    arm(bus, "only-for-simulation");
+    const std::int64_t order = arm(bus, "only-for-simulation");
+    command(0.4);
+    CHECK(thrust() == doctest::Approx(0.0));  // who was publishing before
+    armed_by = order;
     command(1.0);
     CHECK(thrust() == doctest::Approx(20.0).epsilon(0.05));  // the rig rounds to a microsecond
     bus.listen(0.9);                                         // half a second, and the rig's next report
@@ -105,7 +112,7 @@ TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels,
                               test::file("config/vehicles/bluerov2.yaml") + " --config " +
                               test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
   bus.listen(1.5);
-  arm(bus, "only-for-simulation");
+  const std::int64_t armed_by = arm(bus, "only-for-simulation");
   (void)vehicle.wait(0.1);
   std::string bytes;
   for (int i = 0; i < 20; ++i) {
@@ -115,6 +122,7 @@ TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels,
     message.tau[2] = 5.0;   // down
     message.tau[5] = -0.4;  // to port
     message.life = 0.5;
+    message.armed_by = armed_by;
     bus.publish("WRENCH_COMMAND", message);
     bus.listen(0.05);
     bytes += vehicle.wait(0.0);

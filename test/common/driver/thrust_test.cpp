@@ -16,8 +16,10 @@ const std::string kToken = "a word that only they know";
 
 Utime at(double seconds) { return utime_after(kStart, seconds); }
 
-WrenchCommand surge(double seconds, const std::string& commander = "supervisor") {
-  WrenchCommand command{.utime = at(seconds), .life = 0.5, .commander = commander};
+/// Of a commander that was armed at kArmed, or at another time.
+constexpr double kArmed = 0.5;
+WrenchCommand surge(double seconds, const std::string& commander = "supervisor", double armed = kArmed) {
+  WrenchCommand command{.utime = at(seconds), .life = 0.5, .commander = commander, .armed_by = at(armed)};
   command.tau(0) = 10.0;
   return command;
 }
@@ -28,24 +30,59 @@ Operator arm(double seconds, const std::string& token = kToken) {
 
 }  // namespace
 
-TEST_CASE("gate: nothing passes before the operator has armed, whoever has been commanding for how long") {
-  ThrusterGate gate{kToken};
-  CHECK(gate.wrench(at(0.0)).isZero());
-  for (int i = 1; i <= 60; ++i) {  // with a pause in between
-    if (i > 20 && i < 40) continue;
-    gate.hear(surge(0.1 * i), at(0.1 * i));
-    CHECK(gate.wrench(at(0.1 * i)).isZero());
-    CHECK(gate.reason(at(0.1 * i)) == "not armed");
+TEST_CASE("gate: who commands before the operator has armed, or without having been armed, is never obeyed") {
+  for (const double claimed : {0.0, 1e6, 6.0}) {  // of no order, or of one that never was
+    CAPTURE(claimed);
+    ThrusterGate gate{kToken};
+    const auto stray = [&](double now) {
+      WrenchCommand command = surge(now, "stray", claimed);
+      if (claimed == 0.0) command.armed_by = 0;
+      gate.hear(command, at(now));
+      CHECK(gate.wrench(at(now)).isZero());
+    };
+    CHECK(gate.wrench(at(0.0)).isZero());
+    for (int i = 1; i <= 60; ++i) {  // with a pause in between
+      if (i > 20 && i < 40) continue;
+      stray(0.1 * i);
+      CHECK(gate.reason(at(0.1 * i)) == "not armed");
+    }
+    gate.hear(arm(6.05), at(6.05));
+    CHECK(gate.wrench(at(6.05)).isZero());          // what was asked before is not taken up
+    for (int i = 61; i <= 80; ++i) stray(0.1 * i);  // the supervisor has refused, and is silent
+    CHECK(std::string{gate.reason(at(8.0))}.find("was not armed") != std::string::npos);
+    CHECK(gate.hears_stranger(at(8.0)));
+    for (int i = 81; i <= 100; ++i) {  // beside one that was armed
+      gate.hear(surge(0.1 * i, "supervisor", 6.05), at(0.1 * i));
+      CHECK(gate.wrench(at(0.1 * i))(0) == 10.0);
+      gate.hear(surge(0.1 * i + 0.05, "stray", claimed), at(0.1 * i + 0.05));
+      CHECK(gate.wrench(at(0.1 * i + 0.05))(0) == 10.0);
+      CHECK(gate.hears_stranger(at(0.1 * i + 0.05)));
+    }
+    for (int i = 106; i <= 140; ++i) stray(0.1 * i);  // it has stopped, or died
+    gate.hear(arm(14.1), at(14.1));
+    for (int i = 142; i <= 160; ++i) stray(0.1 * i);
+    CHECK_FALSE(gate.hears_stranger(at(17.0)));  // when it is gone
   }
-  gate.hear(arm(6.05), at(6.05));
-  CHECK(gate.wrench(at(6.05)).isZero());  // what was asked before is not taken up
-  gate.hear(surge(6.1), at(6.1));
-  CHECK(gate.wrench(at(6.1))(0) == 10.0);
+}
+
+TEST_CASE("gate: an order that the commander did not hear leaves it obeyed, and a new arming does not stop it") {
+  ThrusterGate gate{kToken};
+  gate.hear(arm(kArmed), at(kArmed));
+  gate.hear(surge(1.0), at(1.0));
+  gate.hear(arm(1.05), at(1.05));  // "identify", said again
+  CHECK(gate.wrench(at(1.06))(0) == 10.0);
+  gate.hear(surge(1.1), at(1.1));
+  CHECK(gate.wrench(at(1.1))(0) == 10.0);
+  gate.hear(surge(1.2, "supervisor", 1.05), at(1.2));
+  CHECK(gate.wrench(at(1.2))(0) == 10.0);
+  gate.hear(arm(3.0), at(3.0));  // after a silence the old order is over
+  gate.hear(surge(3.1), at(3.1));
+  CHECK(gate.wrench(at(3.1)).isZero());
 }
 
 TEST_CASE("gate: a command is obeyed until half a second after the last, or for its life if that is shorter") {
   ThrusterGate gate{kToken};
-  gate.hear(arm(0.5), at(0.5));
+  gate.hear(arm(kArmed), at(kArmed));
   CHECK(gate.reason(at(0.6)) == "no command");
   gate.hear(surge(1.0), at(1.0));
   CHECK(gate.wrench(at(1.49))(0) == 10.0);
@@ -60,7 +97,7 @@ TEST_CASE("gate: a command is obeyed until half a second after the last, or for 
 
 TEST_CASE("gate: a command of another time and numbers that are none are refused") {
   ThrusterGate gate{kToken};
-  gate.hear(arm(0.5), at(0.5));
+  gate.hear(arm(kArmed), at(kArmed));
   gate.hear(surge(1.0), at(3.0));
   CHECK(gate.reason(at(3.0)) == "commands are not of now");
   gate.hear(surge(3600.0), at(3.1));
@@ -109,9 +146,9 @@ TEST_CASE("gate: a log player cannot move the vehicle, not even while it is arme
   replay(2.0);
 }
 
-TEST_CASE("gate: of two commanders none is obeyed, and a stranger never takes over") {
+TEST_CASE("gate: of two that were armed by one order none is obeyed, and the second never takes over") {
   ThrusterGate gate{kToken};
-  gate.hear(arm(0.5), at(0.5));
+  gate.hear(arm(kArmed), at(kArmed));
   for (int i = 0; i < 20; ++i) {
     gate.hear(surge(1.0 + 0.05 * i), at(1.0 + 0.05 * i));
     CHECK(gate.wrench(at(1.0 + 0.05 * i))(0) == 10.0);
@@ -128,13 +165,13 @@ TEST_CASE("gate: of two commanders none is obeyed, and a stranger never takes ov
     CHECK(gate.wrench(at(5.0 + 0.05 * i)).isZero());
   }
   gate.hear(arm(9.5), at(9.5));  // the operator knows of the successor
-  gate.hear(surge(9.6, "successor"), at(9.6));
+  gate.hear(surge(9.6, "successor", 9.5), at(9.6));
   CHECK(gate.wrench(at(9.6))(0) == 10.0);
 }
 
 TEST_CASE("gate: an abort needs no token, is at once, and holds until it is armed again") {
   ThrusterGate gate{kToken};
-  gate.hear(arm(0.5), at(0.5));
+  gate.hear(arm(kArmed), at(kArmed));
   gate.hear(surge(1.0), at(1.0));
   gate.hear(Operator{.abort = true}, at(1.1));
   CHECK(gate.wrench(at(1.1)).isZero());
@@ -144,7 +181,9 @@ TEST_CASE("gate: an abort needs no token, is at once, and holds until it is arme
   CHECK(gate.wrench(at(3.0)).isZero());
   gate.hear(arm(3.1), at(3.1));
   CHECK(gate.wrench(at(3.1)).isZero());  // nor is the old command taken up again
-  gate.hear(surge(3.2), at(3.2));
+  gate.hear(surge(3.15), at(3.15));      // of the arming before
+  CHECK(gate.wrench(at(3.15)).isZero());
+  gate.hear(surge(3.2, "supervisor", 3.1), at(3.2));
   CHECK(gate.wrench(at(3.2))(0) == 10.0);
 }
 
@@ -166,7 +205,7 @@ TEST_CASE("gate: who asks for thrust in vain is told, until it is armed; what is
   CHECK(successor.ignores(at(t)));
   successor.hear(arm(t), at(t));
   CHECK_FALSE(successor.ignores(at(t)));
-  successor.hear(surge(t + 0.1), at(t + 0.1));
+  successor.hear(surge(t + 0.1, "supervisor", t), at(t + 0.1));
   CHECK(successor.wrench(at(t + 0.1))(0) == 10.0);
   successor.hear(Operator{.abort = true}, at(t + 0.2));
   successor.hear(surge(t + 0.21), at(t + 0.21));

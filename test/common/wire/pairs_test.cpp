@@ -159,7 +159,7 @@ TEST_CASE("wire: every sensor sample comes back whole, and no non-finite number 
 }
 
 TEST_CASE("wire: every sample of minds, commands and processes comes back whole, and no non-finite number comes in") {
-  check_pair<WrenchCommand, 4>();
+  check_pair<WrenchCommand, 5>();
   check_pair<Operator, 9>();
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
