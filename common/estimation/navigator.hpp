@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/estimation/camera_geometry.hpp"
+#include "common/estimation/clock_check.hpp"
 #include "common/estimation/complementary_filter.hpp"
 #include "common/estimation/navigation_filter.hpp"
 #include "common/samples/estimates.hpp"
@@ -179,6 +180,7 @@ class Navigator {
   std::vector<Node> nodes_;  // a ring, oldest at first_
   std::size_t first_{}, count_{};
   std::vector<Measurement> waiting_;  // in the order of time, then kind
+  ClockCheck clocks_;
   std::array<std::int64_t, kSources> late_{}, overdue_{}, malformed_{};
   std::array<Clock, kSources> clock_{};  // as the newest sample of each shows it, beside AHRS
   std::map<std::string, std::int64_t> other_;

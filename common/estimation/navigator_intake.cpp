@@ -10,18 +10,16 @@ namespace fathom::estimation {
 namespace {
 
 constexpr int kAttitudePatience = 20;
-constexpr double kLatest = 2.5;         // s later than stated: rather a clock that is wrong than a slow instrument
-constexpr double kAhrsAway = 0.5;       // s without an attitude that can be used
-constexpr double kLargestForce = 50.0;  // m/s^2; a vehicle under water is far below
-constexpr double kLargestRate = 20.0;   // rad/s
-constexpr double kAttitudeJump = 0.1;   // rad between what the gyro says and what the attitude says
+constexpr std::size_t kMostWaiting = 1000;  // before the first attitude
+constexpr double kLatest = 2.5;             // s later than stated: rather a clock that is wrong than a slow instrument
+constexpr double kAhrsAway = 0.5;           // s without an attitude that can be used
+constexpr double kLargestForce = 50.0;      // m/s^2; a vehicle under water is far below
+constexpr double kLargestRate = 20.0;       // rad/s
+constexpr double kAttitudeJump = 0.1;       // rad between what the gyro says and what the attitude says
 
 std::size_t slot(Source source) { return static_cast<std::size_t>(source); }
-const char* channel(Source source) {
-  constexpr std::array kNames{"AHRS",        "POSE_CAPTURE", "TAG_POSE", "OPTICAL_FLOW",
-                              "LASER_RANGE", "DVL",          "USBL",     "DEPTH"};
-  return kNames[slot(source)];
-}
+constexpr std::array kNames{"AHRS", "POSE_CAPTURE", "TAG_POSE", "OPTICAL_FLOW", "LASER_RANGE", "DVL", "USBL", "DEPTH"};
+const char* channel(Source source) { return kNames[slot(source)]; }
 
 }  // namespace
 
@@ -108,6 +106,7 @@ const Navigator::Output& Navigator::wait(const Measurement& m) {
     const Utime newest = this->newest().utime;
     const double age = seconds_between(m.utime, newest);
     clock_[i] = Clock::kRight;
+    if (without_ahrs_ <= kAhrsAway) clocks_.hear(i, m.utime, age, aid(m.source).delay, settings_.max_gap);
     if (m.utime < nodes_[first_].utime || age > aid(m.source).delay + kLatest) {
       ++late_[i];
       clock_[i] = Clock::kBehind;
@@ -125,6 +124,7 @@ const Navigator::Output& Navigator::wait(const Measurement& m) {
       return output_;
     }
   }
+  if (count_ == 0 && waiting_.size() >= kMostWaiting) waiting_.erase(waiting_.begin());
   const auto place =
       std::upper_bound(waiting_.begin(), waiting_.end(), m, [](const Measurement& a, const Measurement& b) {
         return a.utime != b.utime ? a.utime < b.utime : a.source < b.source;
@@ -208,6 +208,7 @@ std::string Navigator::complaint() const {
                ? "AHRS is silent or sends no numbers; without it there is no STATE"
                : std::string{"AHRS is refused: "} + refused_ahrs_ + "; without it there is no STATE";
   }
+  if (const std::string disagree = clocks_.complaint(kNames); !disagree.empty()) return disagree;
   const auto& [utime, input, memory] = newest();
   if (!memory.started) return "no position yet: a tag of the site or an acoustic fix is needed";
   for (const Source source :

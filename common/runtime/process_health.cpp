@@ -3,6 +3,7 @@
 #include <fathom_lcm/health_t.hpp>
 #include <utility>
 
+#include "common/base/health_words.hpp"
 #include "common/runtime/process_state.hpp"
 
 namespace fathom::runtime {
@@ -30,7 +31,8 @@ void Process::report_health(const std::string& state, const std::string& reason)
     if (state_->condition) condition = state_->condition();
     // In lockstep the wall's second falls anywhere in virtual time: nothing may follow from it, or two runs would
     // differ.
-    if (state_->follower && !condition.unhealthy.empty()) health.detail = std::exchange(condition.unhealthy, "") + "; ";
+    if (state_->follower && !condition.unhealthy.empty())
+      health.detail = kWithoutConsequence + std::exchange(condition.unhealthy, "") + "; ";
     const std::string twin = state_->twins.complaint(now);
     if (!twin.empty()) condition.unhealthy = twin + (condition.unhealthy.empty() ? "" : "; " + condition.unhealthy);
     if (!condition.unhealthy.empty()) {

@@ -1,5 +1,7 @@
 // estimator: what the sensors say in, STATE out. The section's `filter` chooses between the trial's complementary
 // filter, the one for recordings with motion capture, and a Kalman filter.
+#include <cctype>
+#include <cmath>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
@@ -10,6 +12,8 @@
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/usbl_t.hpp>
+#include <optional>
+#include <string>
 
 #include "common/base/config.hpp"
 #include "common/estimation/corrections_file.hpp"
@@ -36,13 +40,47 @@ void hear(runtime::Process& process, Mind& mind, const std::string& channel) {
   });
 }
 
+/// A trial's filter, and what it complains of: said as soon as it changes, for a trial in lockstep may be over before
+/// HEALTH comes again.
+struct Trial {
+  static constexpr double kEvery = 0.5;  // s of the messages
+  runtime::Process& process;
+  estimation::Navigator& navigator;
+  std::optional<Utime> looked{};
+  std::optional<std::string> told{};
+
+  void look(Utime now) {
+    if (looked && std::abs(seconds_between(*looked, now)) < kEvery) return;
+    looked = now;
+    const std::string complaint = navigator.complaint();
+    std::string kind = complaint;
+    std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) != 0; });
+    if (told == kind) return;
+    const bool was_well = told && told->empty();
+    told = kind;
+    if (was_well) process.log_warning(complaint);
+    process.tell_health();
+  }
+};
+
+void hear_ahrs(Trial& trial) {
+  trial.process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&trial](const auto& message) {
+    const auto sample = wire::decode(message);
+    if (!sample) return trial.process.reject(wire::kAhrs);
+    for (const StateEstimate& state : trial.navigator.step(*sample))
+      trial.process.publish(wire::kState, wire::encode(state));
+    trial.look(sample->utime);
+  });
+}
+
 /// An instrument beside the one whose clock is STATE's: should its own jump, it is late, and nothing starts over.
 template <class Message>
-void hear_aid(runtime::Process& process, estimation::Navigator& navigator, const std::string& channel) {
-  process.listens_to<Message>(channel, [&process, &navigator, channel](const Message& message) {
+void hear_aid(Trial& trial, const std::string& channel) {
+  trial.process.listens_to<Message>(channel, [&trial, channel](const Message& message) {
     const auto sample = wire::decode(message);
-    if (!sample) return process.reject(channel);
-    navigator.step(*sample);
+    if (!sample) return trial.process.reject(channel);
+    trial.navigator.step(*sample);
+    trial.look(sample->utime);
   });
 }
 
@@ -84,13 +122,14 @@ void run_trial(runtime::Process& process, const Config& config) {
   const model::Site site = model::Site::load(process.config_path("site"));
   estimation::Navigator navigator{estimation::NavigatorSettings::from(config),
                                   estimation::NavigatorPlaces::of(vehicle.mounts, site)};
-  hear<fathom_lcm::ahrs_t>(process, navigator, wire::kAhrs);
-  hear_aid<fathom_lcm::tag_pose_t>(process, navigator, wire::kTagPose);
-  hear_aid<fathom_lcm::optical_flow_t>(process, navigator, wire::kOpticalFlow);
-  hear_aid<fathom_lcm::laser_range_t>(process, navigator, wire::kLaserRange);
-  hear_aid<fathom_lcm::dvl_t>(process, navigator, wire::kDvl);
-  hear_aid<fathom_lcm::usbl_t>(process, navigator, wire::kUsbl);
-  hear_aid<fathom_lcm::depth_t>(process, navigator, wire::kDepth);
+  Trial trial{.process = process, .navigator = navigator};
+  hear_ahrs(trial);
+  hear_aid<fathom_lcm::tag_pose_t>(trial, wire::kTagPose);
+  hear_aid<fathom_lcm::optical_flow_t>(trial, wire::kOpticalFlow);
+  hear_aid<fathom_lcm::laser_range_t>(trial, wire::kLaserRange);
+  hear_aid<fathom_lcm::dvl_t>(trial, wire::kDvl);
+  hear_aid<fathom_lcm::usbl_t>(trial, wire::kUsbl);
+  hear_aid<fathom_lcm::depth_t>(trial, wire::kDepth);
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
   process.on_health([&]() -> runtime::Process::Condition {

@@ -285,6 +285,9 @@ TEST_CASE("live: an instrument whose clock goes back is named, and the trial goe
   const Recording run = wire::read_log(scratch.path("out/run.lcmlog")).recording;
   CHECK(std::ranges::none_of(run.excitation, [](const auto& each) { return each.phase == "lost"; }));
   CHECK(run.excitation.back().phase == "excite");
+  CHECK(std::ranges::any_of(run.health, [](const Health& each) {
+    return each.process == "estimator" && each.detail.find("USBL comes") != std::string::npos;
+  }));
   CHECK_MESSAGE(
       test::read_bytes(scratch.path("out/processes/estimator.txt")).find("starting over") == std::string::npos,
       "the estimator started over");

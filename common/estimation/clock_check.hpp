@@ -1,0 +1,39 @@
+// Whose clock is off, or whose messages are long under way: every aid's stamps against those of the attitude sensor, by
+// which STATE is told. Times are those of messages, in the order of their arrival.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "common/base/time.hpp"
+
+namespace fathom::estimation {
+
+class ClockCheck {
+ public:
+  static constexpr std::size_t kMost = 16;  ///< channels
+  /// A sample of a channel came when the newest attitude was `age` s younger than it (< 0: older). `late`: the age that
+  /// is stated for the channel at most; `gap`: what the attitude sensor may lag by itself.
+  void hear(std::size_t channel, Utime utime, double age, double late, double gap);
+  /// One line, empty when all agree. `names`: of the channels, in their order.
+  [[nodiscard]] std::string complaint(std::span<const char* const> names) const;
+
+ private:
+  static constexpr double kLasts = 2.0;      // s: shorter, and a busy machine was it
+  static constexpr double kForgotten = 5.0;  // s: who is silent has no part in the comparison
+  static constexpr double kOneLate = 0.5;   // s beyond what is stated; STATE goes on without it, and is corrected later
+  static constexpr double kAllLate = 0.25;  // s: that all are late at once is hardly their doing
+  struct Channel {
+    std::optional<Utime> last, late_since, ahead_since;
+    double age{}, stated{}, gap{};  // s, of the last sample
+    [[nodiscard]] double late() const { return age - stated; }
+  };
+  [[nodiscard]] bool lasts(const std::optional<Utime>& since, const Channel& channel) const;
+
+  std::array<Channel, kMost> channels_{};
+  Utime newest_{};
+};
+
+}  // namespace fathom::estimation
