@@ -89,6 +89,10 @@ void FlowWitnesses::hear(const TagPose& tag) {
   const std::size_t c = camera(tag.camera);
   const model::Tag* mapped = site_.tag(tag.tag);
   if (c == cameras_.size() || mapped == nullptr || !tag.p_CT.allFinite()) return;
+  // What is said again bit by bit was not measured again: a camera that is frozen is no witness.
+  Eigen::Vector3d& last = last_.try_emplace({c, tag.tag}, Eigen::Vector3d::Constant(NAN)).first->second;
+  if (last == tag.p_CT) return;
+  last = tag.p_CT;
   if (pictures_.empty() || pictures_.back().utime != tag.utime) {
     pictures_.push_back({tag.utime, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
   }
@@ -112,6 +116,7 @@ void FlowWitnesses::forget_before(Utime utime) {
 void FlowWitnesses::clear() {
   pictures_.clear();
   flows_.clear();
+  last_.clear();
 }
 
 Recording FlowWitnesses::seen(const std::deque<MotionAt>& motion, Utime begin, Utime end) const {

@@ -4,8 +4,10 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/estimation/consistency.hpp"
@@ -60,6 +62,7 @@ class FlowWitnesses {
   model::Site site_;
   std::deque<Picture> pictures_;
   std::deque<Flow> flows_;
+  std::map<std::pair<std::size_t, int>, Eigen::Vector3d> last_;  // by camera and tag
 };
 
 /// `seen`: one per trial. Signs, scales and delay of optical_flow.u and .v against tag_pose, and turning that is left

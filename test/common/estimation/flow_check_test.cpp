@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "common/base/spatial.hpp"
 #include "common/estimation/state_as_measured.hpp"
@@ -101,6 +102,23 @@ TEST_CASE("flow check: what is in order is not accused") {
     CHECK(checked.result.pairs.at("optical_flow").checked);
     CHECK(checked.result.corrections.front().dvl.scale == Eigen::Vector3d::Ones());
   }
+}
+
+TEST_CASE("flow check: a camera that repeats its last picture is no witness against the flow") {
+  test::Pictures pictures{{.seed = 4}};
+  std::vector<TagPose>& tags = pictures.recording.tag_pose;
+  std::map<int, TagPose> last;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    if (i < tags.size() / 3) {
+      last[tags[i].tag] = tags[i];
+    } else if (last.contains(tags[i].tag)) {
+      tags[i].p_CT = last[tags[i].tag].p_CT;
+    }
+  }
+  ConsistencyResult result;
+  result.corrections.resize(1);
+  check_flow(std::span(&pictures.recording, 1), pictures.mounts, pictures.site, result);
+  CHECK(result.findings.empty());
 }
 
 TEST_CASE("flow check: unknown cameras, tags off the map and broken numbers are not heard") {
