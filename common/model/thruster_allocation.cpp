@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
 
 #include "common/base/error.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kNoForce = 1e-9;         // N
 constexpr double kReachTolerance = 1e-6;  // of a unit wrench
+constexpr double kHardly = 0.01;  // of a thruster's force, or of its farthest arm: what is less is an error of drawing
 
 std::string_view motion_name(Eigen::Index axis) {
   constexpr std::array<std::string_view, 6> kNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
@@ -30,12 +32,23 @@ ThrusterAllocation::ThrusterAllocation(const Vehicle& vehicle, double largest) :
     if (!vehicle.dof[static_cast<std::size_t>(i)]) rows.row(i).setZero();
   }
   inverse_ = rows.completeOrthogonalDecomposition().pseudoInverse();
+  double farthest = 0.0;  // m
+  for (const Thruster& thruster : vehicle.thrusters) farthest = std::max(farthest, thruster.p_BJ.norm());
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!vehicle.dof[static_cast<std::size_t>(i)]) {
       inverse_.col(i).setZero();
     } else if ((rows * inverse_.col(i) - Vector6d::Unit(i)).norm() > kReachTolerance) {
       throw InputError("vehicle " + vehicle.name + ": its thrusters cannot produce " + std::string{motion_name(i)} +
                        " by itself; correct their positions and axes, or leave it out of 'dof'");
+    }
+    if (!vehicle.dof[static_cast<std::size_t>(i)]) continue;
+    // With the strongest thruster at 1 N the others do what keeps it to this axis.
+    const double reach = 1.0 / inverse_.col(i).cwiseAbs().maxCoeff();
+    if (reach < kHardly * (i < 3 ? 1.0 : farthest)) {
+      char amount[48];
+      std::snprintf(amount, sizeof amount, i < 3 ? "%.2g N per newton" : "%.2g m of arm", reach);
+      throw InputError("vehicle " + vehicle.name + ": its thrusters hardly produce " + std::string{motion_name(i)} +
+                       " (" + amount + "); correct their positions and axes, or leave it out of 'dof'");
     }
   }
 }
