@@ -39,7 +39,8 @@ bool Timing::works(Utime utime) {
 }
 
 const std::vector<SensorKind>& sensor_kinds() {
-  static const std::vector<SensorKind> kKinds{{"battery", make_battery},
+  static const std::vector<SensorKind> kKinds{{kThrusterFeedback, make_thrusters},
+                                              {"battery", make_battery},
                                               {"loads", make_loads},
                                               {"ahrs", make_ahrs},
                                               {"dvl", make_dvl},

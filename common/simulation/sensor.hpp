@@ -47,7 +47,8 @@ struct Moment {
   Vector6d tau_felt{Vector6d::Zero()};                ///< N, N m
   Eigen::Vector3d tether_B{Eigen::Vector3d::Zero()};  ///< N, pull of the tether, in B
   Eigen::Vector3d umbilical_B{Eigen::Vector3d::Zero()}, chain_B{Eigen::Vector3d::Zero()};  ///< N at the attachment
-  double voltage{};  ///< V; 0 when the vehicle has no battery in the simulation
+  double voltage{};         ///< V; 0 when the vehicle has no battery in the simulation
+  const Thrusters* told{};  ///< what the thrusters were told last; nullptr before
 };
 
 /// What AHRS tells at any instant, as drivers and vision know it: between its samples, with the errors of the newest.
@@ -87,6 +88,8 @@ class Sensor {
 class Timing {
  public:
   Timing(const Config& config, const std::string& name, std::uint64_t seed);
+  /// Of what is told when it happens: no rate, no latency, no drop-outs.
+  Timing() : stream_{0, ""} {}
   /// When measurement number `count` is taken, from the run's start [us]: exact to the microsecond at every rate.
   [[nodiscard]] Utime taken(Utime start, std::int64_t count) const;
   [[nodiscard]] Utime latency() const { return latency_; }
@@ -102,6 +105,9 @@ class Timing {
   Utime silent_until_{};
   RandomStream stream_;
 };
+
+/// Carried everywhere: without a section the driver tells what it sends.
+inline constexpr char kThrusterFeedback[] = "thrusters";
 
 /// The instruments of sensors/, by the name of their section.
 using MakeSensor = std::unique_ptr<Sensor> (*)(const Config& config, const Surroundings& around);
@@ -124,6 +130,7 @@ struct SensorKind {
 [[nodiscard]] std::unique_ptr<Sensor> make_pose_capture(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_ranges(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_tag_pose(const Config&, const Surroundings&);
+[[nodiscard]] std::unique_ptr<Sensor> make_thrusters(const Config&, const Surroundings&);
 [[nodiscard]] std::unique_ptr<Sensor> make_usbl(const Config&, const Surroundings&);
 
 /// A probability: 0 to 1, written as "0.1" or "10 %".

@@ -113,6 +113,8 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
   if (setup.pictures && std::none_of(slots_.begin(), slots_.end(), [](const Slot& s) { return s.name == "camera"; })) {
     sensors.fail("camera", "pictures are wanted, and no camera is carried at " + site_.name);
   }
+  feedback_ = std::ranges::any_of(slots_, [](const Slot& slot) { return slot.name == kThrusterFeedback; });
+  if (!feedback_) slots_.push_back({kThrusterFeedback, Timing{}, nullptr});
   for (const Failure& failure : failures_) {
     if (std::none_of(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.name == failure.sensor; })) {
       throw InputError("--fail " + failure.sensor + ": this instrument is not carried at " + site_.name);
@@ -136,7 +138,9 @@ const ContactCounts& Simulator::contacts() const { return body_->contacts(); }
 std::vector<std::string> Simulator::sensors() const {
   std::vector<std::string> names;
   names.reserve(slots_.size());
-  for (const Slot& slot : slots_) names.push_back(slot.name);
+  for (const Slot& slot : slots_) {
+    if (slot.sensor) names.push_back(slot.name);
+  }
   return names;
 }
 
@@ -158,9 +162,9 @@ void Simulator::actuate() {
   const model::Allocated sent = this->sent();
   complaint_ = allocation_.complaint(sent);
   scale_ = sent.scale;
-  Thrusters told{.utime = utime, .pwm_us = sent.pwm_us, .force = sent.force, .has_tau = true};
-  std::copy(sent.tau.begin(), sent.tau.end(), told.tau.begin());
-  pending_.push_back({utime, order_++, std::move(told)});
+  told_ = {.utime = utime, .pwm_us = sent.pwm_us, .force = sent.force, .has_tau = true};
+  std::copy(sent.tau.begin(), sent.tau.end(), told_.tau.begin());
+  if (!feedback_) tell(slots_.back(), utime);
   const double volts = body_->voltage();
   model::ActuatorForces force(static_cast<Eigen::Index>(sent.force.size()));
   for (std::size_t i = 0; i < sent.force.size(); ++i) {
@@ -173,11 +177,13 @@ void Simulator::actuate() {
 }
 
 void Simulator::take(Slot& slot, Utime until) {
+  if (!slot.sensor) return;
   for (Utime utime = slot.timing.taken(origin_, slot.count); utime <= until;
        utime = slot.timing.taken(origin_, ++slot.count)) {
     if (!slot.timing.works(utime)) continue;
     Moment moment = body_->at(utime);
     if (!faults_->effects.empty()) moment.nu_seen = faults_->seen(moment.nu);
+    moment.told = &told_;
     taken_.clear();
     slot.sensor->measure(moment, taken_);
     for (const Sample& sample : taken_) {
@@ -187,6 +193,13 @@ void Simulator::take(Slot& slot, Utime until) {
     const Utime due = utime + slot.timing.latency() + (failures_.empty() ? 0 : spoil(slot, utime));
     for (Sample& sample : taken_) pending_.push_back({due, order_++, std::move(sample)});
   }
+}
+
+// What the thrusters' driver says of what it sends, unless it fails.
+void Simulator::tell(Slot& driver, Utime utime) {
+  taken_.assign(1, told_);
+  const Utime due = utime + (failures_.empty() ? 0 : spoil(driver, utime));
+  for (Sample& sample : taken_) pending_.push_back({due, order_++, std::move(sample)});
 }
 
 // Failures of this instrument, applied to what it just said; what they add to its latency.
@@ -247,6 +260,7 @@ Secrets Simulator::secrets() const {
   Secrets secrets{.theta = body_->model().theta, .effects = body_->model().effects, .contacts = body_->contacts()};
   secrets.effects.insert(secrets.effects.end(), faults_->effects.begin(), faults_->effects.end());
   for (const Slot& slot : slots_) {
+    if (!slot.sensor) continue;
     for (const auto& [name, value] : slot.sensor->drawn()) secrets.drawn.emplace_back(slot.name + "." + name, value);
   }
   return secrets;

@@ -82,6 +82,7 @@ class Simulator {
   void actuate();
   [[nodiscard]] model::Allocated sent() const;
   void take(Slot& slot, Utime until);
+  void tell(Slot& driver, Utime utime);
   [[nodiscard]] Utime spoil(Slot& slot, Utime utime);
   void deliver(Utime until);
 
@@ -97,6 +98,8 @@ class Simulator {
   double told_voltage_{};  ///< V, newest BATTERY sample taken
   Utime truth_period_{}, next_truth_{};
   std::vector<Slot> slots_;
+  Thrusters told_{};      ///< to the thrusters, last
+  bool feedback_{false};  ///< an instrument of its own tells what they do; else their driver does
   std::vector<Pending> pending_;
   std::vector<Failure> failures_;
   std::vector<Sample> taken_, out_;

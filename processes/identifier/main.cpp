@@ -34,6 +34,7 @@ using namespace fathom;
 
 namespace {
 
+constexpr double kPushed = 1.0;          // s that the newest THRUSTERS may be older than STATE
 constexpr double kSavePeriod = 2.0;      // s of message time between two savings
 constexpr double kResumeWithin = 120.0;  // s that a saved state may be older than the first state heard
 
@@ -104,6 +105,9 @@ int main(int argc, char** argv) {
     if (!saved.empty()) identifier.offer(content(saved), kResumeWithin);
     Utime last_save{};
     bool resumed = false;
+    std::optional<Utime> pushed;  // of the newest THRUSTERS, or the first STATE before there were any
+    double unpushed = 0.0;        // s
+    bool told_silent = false;
     estimation::ThrusterForces forces{corrections.thrusters, vehicle};
     const auto say = [&](const joint::LiveIdentifier::Output& output) {
       for (const Residual& residual : output.residuals) process.publish(wire::kResidual, wire::encode(residual));
@@ -125,10 +129,17 @@ int main(int argc, char** argv) {
       const auto state = wire::decode(message);
       if (!state) return process.reject(wire::kState);
       say(identifier.step(*state));
+      unpushed = seconds_between(pushed.value_or(state->utime), state->utime);
+      if (!pushed) pushed = state->utime;
+      if (const bool silent = unpushed > kPushed; silent != told_silent) {
+        told_silent = silent;
+        process.tell_health();
+      }
     });
     process.on<fathom_lcm::thrusters_t>(wire::kThrusters, [&](const auto& message) {
       const auto thrusters = wire::decode(message);
       if (!thrusters) return process.reject(wire::kThrusters);
+      pushed = thrusters->utime;
       say(identifier.step(forces.step(*thrusters)));
     });
     process.on<fathom_lcm::battery_t>(wire::kBattery, [&](const auto& message) {
@@ -148,7 +159,13 @@ int main(int argc, char** argv) {
       identifier.hear(*excitation);
     });
     if (identifier.joint() != nullptr) hear_instruments(process, identifier);
+    process.on_health([&]() -> runtime::Process::Condition {
+      if (unpushed <= kPushed) return {};
+      return {.unhealthy = "THRUSTERS is silent: without what they gave nothing can be learnt; is their driver well?"};
+    });
     process.on_restart([&] {
+      pushed.reset();
+      unpushed = 0.0;
       identifier.reset();
       forces.reset();
     });

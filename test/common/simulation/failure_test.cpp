@@ -50,6 +50,21 @@ TEST_CASE("failure: silent, frozen, nan, late, and a clock that jumps, from one 
   CHECK(late[20].utime == kOrigin + 1'000'000);  // nothing came in between
 }
 
+TEST_CASE("failure: what the thrusters tell of themselves fails too") {
+  const auto told = [](const std::string& failure) {
+    Setup setup{.seed = 4};
+    if (!failure.empty()) setup.fail = {failure};
+    auto simulator = test::make_simulator("seabotix_lbv150", "tank", setup);
+    return test::run<Thrusters>(*simulator, 4.0);
+  };
+  const std::size_t all = told("").size();
+  CHECK(all == 200);  // one an interval
+  CHECK(told("thrusters=silent,from:1,to:2").size() == 150);
+  CHECK(told("thrusters=delay,by:0.5,from:3.8").size() < all);
+  CHECK(told("thrusters=jump,by:-3,from:1").back().utime == told("").back().utime - 3'000'000);
+  CHECK(std::isnan(told("thrusters=nan").back().tau[0]));
+}
+
 TEST_CASE("failure: the others do not notice") {
   auto well = test::make_simulator("seabotix_lbv150", "deep", {.seed = 4});
   auto ill = test::make_simulator("seabotix_lbv150", "deep", {.seed = 4, .fail = {"ahrs=nan"}});

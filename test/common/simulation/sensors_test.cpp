@@ -283,3 +283,29 @@ TEST_CASE("sensor faults: a hidden latency of the rates reaches the gyro") {
   }
   CHECK(compared > 50);
 }
+
+TEST_CASE("thrusters: feedback has a gain per thruster, noise, and the wrench of what it reads") {
+  const Thrusters told{.force = {10.0, -10.0, 0.0, 5.0}, .has_tau = true};
+  Moment moment = moment_at({0, 0, 0.5});
+  moment.told = &told;
+  Moments gains, noise;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    Bench bench{make_thrusters, "noise: 0.2 N\ngain_error: 3 %\n", "tank", seed};
+    const auto first = std::get<Thrusters>(bench.measure(moment).front());
+    const auto second = std::get<Thrusters>(bench.measure(moment).front());
+    REQUIRE(first.force.size() == 4);
+    CHECK(first.force[2] == 0.0);  // it stands still, and knows it
+    gains.add(0.5 * (first.force[0] + second.force[0]) / 10.0 - 1.0);
+    noise.add((first.force[1] - second.force[1]) / std::sqrt(2.0));
+    Vector6d tau = Vector6d::Zero();
+    for (Eigen::Index i = 0; i < 4; ++i)
+      tau += bench.vehicle.allocation.col(i) * first.force[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i < 6; ++i) CHECK(std::abs(first.tau[static_cast<std::size_t>(i)] - tau[i]) < kExact);
+  }
+  check_mean(gains, 0.0, 0.035);
+  check_sigma(gains, std::hypot(0.03, 0.02 / std::sqrt(2.0)));
+  check_sigma(noise, 0.2);
+  Moment before = moment_at({0, 0, 0.5});
+  Bench bench{make_thrusters, "noise: 0 N\ngain_error: 0 %\n", "tank"};
+  CHECK(bench.measure(before).empty());
+}
