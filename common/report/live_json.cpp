@@ -87,6 +87,16 @@ std::string to_json(const LiveTrialResult& result) {
     json["diagnosis"]["candidates"].push_back(
         {{"name", one.name}, {"log_odds", finite(one.log_odds)}, {"error_reduction", finite(one.error_reduction)}});
   }
+  if (result.afterwards) {
+    Json effects = Json::array();
+    for (const EffectEvidence& one : result.afterwards->effects)
+      effects.push_back({{"name", one.name}, {"log_odds", finite(one.log_odds)}});
+    const std::optional<double>& improvement = result.afterwards->improvement;
+    json["closed_loop"] = {{"verdict", result.afterwards->verdict},
+                           {"effects", effects},
+                           {"improvement", improvement ? finite(*improvement) : Json(nullptr)},
+                           {"report", result.afterwards->page}};
+  }
   json["complaints"] = Json::object();
   for (const auto& [process, words] : result.complaints) json["complaints"][process] = words;
   if (result.truth) json["compared_with_truth"] = truth_of(result);

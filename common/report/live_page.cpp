@@ -277,6 +277,7 @@ std::string to_html(const LiveTrialResult& result, const Recording& recording, c
   page += contact_sheet(pictures, trial_origin(recording));
   page += evolution(recording, result, album);
   page += suspects(result);
+  if (result.afterwards) page += afterwards_section(*result.afterwards);
   if (result.truth) page += truth_section(result, recording, album);
   return album.fill(page + "</main></body></html>\n", gnuplot);
 }

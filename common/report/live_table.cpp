@@ -98,6 +98,12 @@ std::string to_table(const LiveTrialResult& result) {
   for (const std::string& line : wrap(result.reason, kColumns - 2)) text += "  " + line + "\n";
   text += modes(result) + parameters(result) + suspects(result);
   for (const auto& [process, words] : result.complaints) text += "  " + process + " said " + words + "\n";
+  if (result.afterwards) {
+    std::vector<std::string> names;
+    for (const EffectEvidence& one : result.afterwards->effects) names.push_back(one.name);
+    text += "  the loop closed on the log: " + result.afterwards->verdict +
+            (names.empty() ? "" : " (" + join(names, ", ") + ")") + "; " + result.afterwards->page + "\n";
+  }
   if (result.truth) text += truth(*result.truth);
   return text;
 }

@@ -1,8 +1,12 @@
 #include "common/report/live_trial.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <string>
 
 #include "common/base/error.hpp"
+#include "common/base/health_words.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -41,6 +45,42 @@ std::vector<ModeVisit> visits_of(const std::vector<Excitation>& said, Utime orig
     before = &one;
   }
   return visits;
+}
+
+/// The metric that a mode was left by came with the MODEL that settled it, and no EXCITATION of that mode tells it.
+void complete_metrics(std::vector<ModeVisit>& visits, const std::vector<ModelEstimate>& models, Utime origin) {
+  for (ModeVisit& visit : visits) {
+    if (!visit.left) continue;
+    for (const ModelEstimate& model : models) {
+      const double t = seconds_between(origin, model.utime);
+      if (t < visit.begun || t > visit.ended) continue;
+      for (const ModeMetric& metric : model.modes) {
+        if (metric.mode == visit.mode) visit.metric = metric.sum;
+      }
+    }
+  }
+}
+
+/// The last complaint of each process. That something was not there yet, before all was well for the first time, is
+/// none.
+std::map<std::string, std::string> complaints_of(const std::vector<Health>& all) {
+  std::map<std::string, std::string> complaints, early;
+  std::set<std::string> well;
+  for (const Health& health : all) {
+    const bool in_lockstep = health.detail.starts_with(kWithoutConsequence);
+    if (health.state == "stopped") continue;
+    if (health.state == "running" && !in_lockstep) {
+      well.insert(health.process);
+      continue;
+    }
+    const std::string said =
+        in_lockstep ? health.detail.substr(sizeof kWithoutConsequence - 1) : health.state + ": " + health.detail;
+    (health.state == "fault" || well.contains(health.process) ? complaints : early)[health.process] = said;
+  }
+  for (auto& [process, said] : early) {
+    if (!well.contains(process)) complaints.try_emplace(process, said);
+  }
+  return complaints;
 }
 
 std::vector<FlownSegment> flights_of(const std::vector<Excitation>& said, Utime origin) {
@@ -99,6 +139,7 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
     visit.left = last.reason.find(" " + visit.mode + ": ") == std::string::npos;
     if (visit.left) visit.missing.clear();
   }
+  complete_metrics(result.visits, recording.model, origin);
   const ModelEstimate& model = recording.model.back();
   result.parameters = model.parameters;
   result.joint = model.joint;
@@ -116,10 +157,7 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
         {.name = vehicle.parameters[i], .value = vehicle.priors[i].mean, .std = vehicle.priors[i].sigma, .unit = ""});
   }
   if (!recording.effects.empty()) result.ranking = recording.effects.back();
-  for (const Health& health : recording.health) {
-    if (health.state == "running" || health.state == "stopped") continue;
-    result.complaints[health.process] = health.state + ": " + health.detail;
-  }
+  result.complaints = complaints_of(recording.health);
   return result;
 }
 

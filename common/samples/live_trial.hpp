@@ -42,6 +42,15 @@ struct TruthComparison {
   std::size_t compared{};                    ///< states
 };
 
+/// What a diagnosis of the trial's own log found.
+struct Afterwards {
+  std::string page;     ///< its report, from where the trial's page lies; empty: none
+  std::string verdict;  ///< "adequate", "effect", "ambiguous", "unexplained" or "unjudged"
+  std::vector<EffectEvidence> effects;
+  std::map<std::string, double> before, after;  ///< RMS of 5 s predictions by velocity, m/s or rad/s
+  std::optional<double> improvement;            ///< share of the prediction error that is gone
+};
+
 struct LiveTrialResult {
   std::string vehicle;
   std::string site;
@@ -60,6 +69,7 @@ struct LiveTrialResult {
   std::vector<NamedValue> effect_numbers;  ///< theirs, "effect.parameter"
   EffectRanking ranking;                   ///< the diagnoser's last
   std::map<std::string, std::string> complaints;  ///< by process: what it called unhealthy
+  std::optional<Afterwards> afterwards;
   std::optional<TruthComparison> truth;
   /// Every mode was left by its own tests.
   [[nodiscard]] bool settled() const {

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kSheet = 12;  // pictures
 
 struct Options {
-  std::string log, vehicle, site, pipeline, truth, out;
+  std::string log, vehicle, site, pipeline, diagnosis, truth, out;
 };
 
 void save(const std::string& path, const std::string& text) {
@@ -48,6 +48,10 @@ void run(const Options& options) {
   const std::string complaints = wire::complaints(options.log, contents.report);
   if (!complaints.empty()) std::fprintf(stderr, "note: %s", complaints.c_str());
   LiveTrialResult result = report::summarise(contents.recording, vehicle, site);
+  if (!options.diagnosis.empty()) {
+    const auto beside = std::filesystem::path{options.diagnosis}.lexically_proximate(options.out) / "report.html";
+    result.afterwards = report::read_afterwards(options.diagnosis, beside.generic_string());
+  }
   if (!options.truth.empty()) result.truth = report::compare_truth(options.truth, contents.recording);
   save(options.out + "/result.json", report::to_json(result));
   save(options.out + "/report.html",
@@ -66,6 +70,7 @@ void add_trial(CLI::App& app) {
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site, "site file (YAML)")->required();
   command->add_option("--pipeline", options->pipeline, "the estimator's file (YAML), for Figures 1.4 and 1.5");
+  command->add_option("--diagnosis", options->diagnosis, "folder that fathom diagnose wrote for the same log");
   command->add_option("--truth", options->truth, "the simulator's truth.json, for a section of its own");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->callback([options] { run(*options); });

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
+#include "common/base/health_words.hpp"
 #include "common/estimation/navigator.hpp"
 #include "test/support/scratch.hpp"
 
@@ -80,7 +81,10 @@ TEST_CASE("live trial: modes are told apart, and the supervisor's last words say
   CHECK(result.visits[0].mode == "yaw");
   CHECK(result.visits[0].ended == doctest::Approx(20.0));
   CHECK(result.visits[0].left);
+  // The metric that it was left by is MODEL's, at that moment: EXCITATION never tells it.
+  CHECK(result.visits[0].metric == doctest::Approx(0.1 / 21.0));
   CHECK_FALSE(result.visits[1].left);
+  CHECK(result.visits[1].metric == doctest::Approx(1.0 / 40.9));  // what EXCITATION told last
   CHECK(result.visits[1].missing.find("residual on X") == 0);
   CHECK(result.visits[2].left);
   CHECK_FALSE(result.settled());
@@ -129,6 +133,53 @@ TEST_CASE("live trial: a run that was cut keeps as settled what had been left be
   const std::string page = to_html(result, cut, vehicle(), site());
   CHECK(page.find("Trace of the covariance of yaw") != std::string::npos);
   CHECK(page.find("Trace of the covariance of surge") == std::string::npos);
+}
+
+TEST_CASE("live trial: what was wrong is told, in lockstep too; what was not there yet at the start is not") {
+  Recording recording = trial();
+  const auto say = [&](const char* process, const char* state, const std::string& detail) {
+    recording.health.push_back({.process = process, .state = state, .detail = detail});
+  };
+  say("estimator", "unhealthy", "no AHRS sample yet; ");
+  say("identifier", "unhealthy", "no STATE; ");
+  say("vision", "running", "");
+  say("estimator", "running", "");
+  say("vision", "unhealthy", "no pictures; ");
+  say("vision", "running", "");
+  say("diagnoser", "running", "");
+  say("diagnoser", "running", std::string{kWithoutConsequence} + "MODEL is silent; ");
+  say("estimator", "stopped", "AHRS too late 3");
+  const auto complaints = summarise(recording, vehicle(), site()).complaints;
+  CHECK(complaints.size() == 3);
+  CHECK(complaints.at("identifier") == "unhealthy: no STATE; ");  // never well
+  CHECK(complaints.at("vision") == "unhealthy: no pictures; ");
+  CHECK(complaints.at("diagnoser") == "MODEL is silent; ");
+}
+
+TEST_CASE("live trial: a diagnosis of the log is told, with its page; a file that is none is refused") {
+  const test::Scratch scratch;
+  const Recording recording = trial();
+  LiveTrialResult result = summarise(recording, vehicle(), site());
+  CHECK_FALSE(nlohmann::json::parse(to_json(result)).contains("closed_loop"));
+  std::ofstream{scratch.path("result.json")} << R"json({"verdict": "effect",
+      "effects": [{"name": "thruster_lag", "log_odds": 9.5, "error_reduction": 0.6}],
+      "error": {"before": {"prediction": [{"horizon_s": 1, "rmse": {"u": 0.5}}, {"horizon_s": 5, "rmse": {"u": 0.04, "p": null}}]},
+                "after": {"prediction": [{"horizon_s": 5, "rmse": {"u": 0.01, "p": null}}]},
+                "improvement": {"value": 0.75, "ci95": [0.7, 0.8]}}})json";
+  result.afterwards = read_afterwards(scratch.path(""), "diagnosis/report.html");
+  CHECK(result.afterwards->before == std::map<std::string, double>{{"u", 0.04}});
+  CHECK(result.afterwards->after.at("u") == 0.01);
+  const auto json = nlohmann::json::parse(to_json(result));
+  CHECK(json["closed_loop"]["verdict"] == "effect");
+  CHECK(json["closed_loop"]["effects"][0]["name"] == "thruster_lag");
+  CHECK(json["closed_loop"]["improvement"] == 0.75);
+  CHECK(to_table(result).find("effect (thruster_lag); diagnosis/report.html") != std::string::npos);
+  const std::string page = to_html(result, recording, vehicle(), site());
+  for (const char* words : {"The loop closed on the log", "href=\"diagnosis/report.html\"", "0.0400 m/s", "0.0100 m/s"})
+    CHECK_MESSAGE(page.find(words) != std::string::npos, words);
+  std::ofstream{scratch.path("result.json")} << "{}";
+  CHECK_THROWS_AS((void)read_afterwards(scratch.path(""), ""), InputError);
+  CHECK_THROWS_AS((void)read_afterwards(scratch.path("none"), ""), InputError);
 }
 
 TEST_CASE("live trial: page, table and JSON say whose numbers the parameters are") {
