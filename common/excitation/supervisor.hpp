@@ -158,7 +158,7 @@ class Supervisor {
   std::string reason_{"waits for the operator to arm"};
   bool armed_{false};
   std::int64_t last_sequence_{};
-  std::int64_t armed_by_{};  // kept after a stop: the zeros that follow it must be obeyed
+  std::int64_t armed_by_{};          // kept after a stop: the zeros that follow it must be obeyed
   std::optional<Operator> pending_;  // an order to arm waits for the next state
   Needs needs_;
   std::optional<double> watched_{};  // s

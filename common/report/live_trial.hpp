@@ -22,7 +22,8 @@ namespace fathom::report {
                                         const model::Site& site);
 /// From the simulator's truth.json and the log's TRUTH; InputError when the file cannot be read.
 [[nodiscard]] TruthComparison compare_truth(const std::string& path, const Recording& recording);
-/// From the folder of a diagnosis; `page`: its report, as the trial's page shall refer to it. InputError when it is none.
+/// From the folder of a diagnosis; `page`: its report, as the trial's page shall refer to it. InputError when it is
+/// none.
 [[nodiscard]] Afterwards read_afterwards(const std::string& folder, const std::string& page);
 [[nodiscard]] std::string afterwards_section(const Afterwards& found);
 /// Whose numbers the parameters are: the recursive estimate's or the joint one's, and since when.
