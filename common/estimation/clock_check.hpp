@@ -23,8 +23,8 @@ class ClockCheck {
  private:
   static constexpr double kLasts = 2.0;      // s: shorter, and a busy machine was it
   static constexpr double kForgotten = 5.0;  // s: who is silent has no part in the comparison
-  static constexpr double kOneLate = 0.5;   // s beyond what is stated; STATE goes on without it, and is corrected later
-  static constexpr double kAllLate = 0.25;  // s: that all are late at once is hardly their doing
+  static constexpr double kOneLate = 0.5;  // s beyond what is stated; STATE goes on without it, and is corrected later
+  static constexpr double kAllLate = 0.2;  // s: that all are late at once is hardly their doing
   struct Channel {
     std::optional<Utime> last, late_since, ahead_since;
     double age{}, stated{}, gap{};  // s, of the last sample

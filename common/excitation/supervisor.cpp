@@ -319,7 +319,7 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   if (too_long && trouble) {
     stop(Phase::kAborted, words(*trouble));
   } else if (const std::string why = state.valid ? fence_.outside(state, turned_) : ""; !why.empty()) {
-    stop(Phase::kAborted, "left the envelope: " + why);
+    stop(Phase::kAborted, "left the envelope: " + why + (trouble ? ", without thrust since " + words(*trouble) : ""));
   } else if (too_long || gap > settings_.patience) {
     stop(Phase::kLost, "the state was lost; arm again");
   } else if (usable && settings_.model_patience > 0.0 && phase_ == Phase::kExcite &&
