@@ -43,6 +43,12 @@ Eigen::Vector3d place(const Config& config, devices::Kind kind) {
   return matters && config.has("position") ? config.vector3("position", "m") : Eigen::Vector3d::Zero().eval();
 }
 
+// From the north that an attitude sensor means to the world's: a compass's declination, or the way a tank lies.
+std::optional<Eigen::Quaterniond> heading_offset(const Config& config, devices::Kind kind) {
+  if (kind != devices::Kind::kAhrs || !config.has("heading_offset")) return {};
+  return Eigen::Quaterniond{Eigen::AngleAxisd{config.quantity("heading_offset", "rad"), Eigen::Vector3d::UnitZ()}};
+}
+
 class SensorDriver final : public devices::Output {
  public:
   SensorDriver(runtime::Process& process, const Config& config, const devices::Protocol& protocol)
@@ -52,6 +58,7 @@ class SensorDriver final : public devices::Output {
         clock_{config.quantity("latency", "s"), protocol.tick, protocol.turn},
         watch_{positive(config, "period", "s"), std::string{protocol.name}},
         arm_{place(config, protocol.kind)},
+        q_WN_{heading_offset(config, protocol.kind)},
         record_{process, config},
         link_{link::Endpoint::parse(config.text("link"), config.where("link")),
               [this](std::span<const std::uint8_t> bytes, Utime arrival) { received(bytes, arrival); },
@@ -169,7 +176,11 @@ class SensorDriver final : public devices::Output {
   }
 
   void publish(std::monostate, Utime) {}
-  void publish(const Ahrs* sample, Utime utime) { send(wire::kAhrs, *sample, utime); }
+  void publish(const Ahrs* sample, Utime utime) {
+    Ahrs in_world = *sample;
+    if (in_world.has_attitude && q_WN_) in_world.q_WB = *q_WN_ * in_world.q_WB;
+    send(wire::kAhrs, in_world, utime);
+  }
   void publish(const Ranges* sample, Utime utime) { send(wire::kRanges, *sample, utime); }
   void publish(const Loads* sample, Utime utime) { send(wire::kLoads, *sample, utime); }
   void publish(const Battery*, Utime) {}    // these two come from
@@ -205,6 +216,7 @@ class SensorDriver final : public devices::Output {
   devices::ClockMap clock_;
   Watch watch_;
   LeverArm arm_;
+  std::optional<Eigen::Quaterniond> q_WN_;  ///< of the north that the instrument means
   LineRecord record_;
   std::optional<link::RawReader> recording_;  ///< in place of the link, where a log is read
   std::optional<link::RawPiece> piece_;       ///< its next one

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <numbers>
 
+#include "common/base/spatial.hpp"
 #include "common/devices/dialogue.hpp"
 #include "common/devices/emulation.hpp"
 #include "common/link/server.hpp"
@@ -196,6 +198,25 @@ TEST_CASE("drivers: emulator, line, driver, LCM: the same samples as the parser 
     CHECK(at_origin[i].v_WB_B.y() - ahead[i].v_WB_B.y() == doctest::Approx(0.05).epsilon(0.02));
   }
   CHECK(corrected + 3 > ahead.size());
+
+  // A compass's declination turns the heading, and nothing else.
+  Chain compass = chain_of("ig500");
+  compass.keys += "  heading_offset: 10 deg\n";
+  configure(compass, "file://" + scratch.path("ig500.raw"), scratch.path("compass.yaml"), "");
+  const auto ran = shell(program("ahrs_driver") + " --log-level warning --config " + scratch.path("compass.yaml") +
+                         " --out file://" + scratch.path("compass.lcmlog"));
+  CHECK_MESSAGE(ran.code == 0, ran.text);
+  const auto turned = wire::read_log(scratch.path("compass.lcmlog")).recording.ahrs;
+  const auto plain = wire::read_log(scratch.path("ig500.again.lcmlog")).recording.ahrs;
+  REQUIRE(turned.size() == plain.size());
+  REQUIRE_FALSE(turned.empty());
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    const Eigen::Vector3d angles = euler_from_rotation(turned[i].q_WB.toRotationMatrix());
+    const Eigen::Vector3d before = euler_from_rotation(plain[i].q_WB.toRotationMatrix());
+    CHECK(wrap_angle(angles.z() - before.z()) == doctest::Approx(10.0 * std::numbers::pi / 180.0));
+    CHECK((angles - before).head<2>().norm() < 1e-9);
+    CHECK(turned[i].w_WB_B == plain[i].w_WB_B);
+  }
 }
 
 TEST_CASE("drivers: a recording that is played waits for its driver, and arrives whole at the line's pace") {
