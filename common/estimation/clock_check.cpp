@@ -40,48 +40,55 @@ bool ClockCheck::lasts(const std::optional<Utime>& since, const Channel& channel
   return since && seconds_between(*since, *channel.last) >= kLasts;
 }
 
-std::string ClockCheck::complaint(std::span<const char* const> names) const {
-  const std::size_t count = std::min(names.size(), kMost);
-  const auto heard = [&](const Channel& one) {
-    return one.last && std::abs(seconds_between(*one.last, newest_)) <= kForgotten;
-  };
-  std::size_t late = 0, ahead = 0, latest = kMost, foremost = kMost;
+bool ClockCheck::heard(const Channel& one) const {
+  return one.last && std::abs(seconds_between(*one.last, newest_)) <= kForgotten;
+}
+
+// Whether an attitude sensor whose clock is off by so much would leave every channel as it is: one that is slow by
+// itself is not ahead of it, and speaks for nobody.
+bool ClockCheck::explained_by(double behind) const {
+  return std::ranges::none_of(channels_, [&](const Channel& one) {
+    const double age = one.age + behind;  // by a right clock
+    return heard(one) && (age > one.stated + kAllLate || age < -one.gap);
+  });
+}
+
+std::string ClockCheck::attitude() const {
+  std::size_t late = 0, ahead = 0;
   double least_late = HUGE_VAL, least_ahead = HUGE_VAL;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Channel& one = channels_[i];
+  for (const Channel& one : channels_) {
     if (!heard(one)) continue;
     if (lasts(one.late_since, one)) {
       ++late;
       least_late = std::min(least_late, one.late());
-      if (latest == kMost || one.late() > channels_[latest].late()) latest = i;
     }
     if (lasts(one.ahead_since, one)) {
       ++ahead;
       least_ahead = std::min(least_ahead, -one.age);
-      if (foremost == kMost || one.age < channels_[foremost].age) foremost = i;
     }
   }
-  // Whether an attitude sensor whose clock is off by so much would leave every channel as it is: one that is slow by
-  // itself is not ahead of it, and speaks for nobody.
-  const auto explains = [&](double behind) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const Channel& one = channels_[i];
-      const double age = one.age + behind;  // by a right clock
-      if (heard(one) && (age > one.stated + kAllLate || age < -one.gap)) return false;
-    }
-    return true;
-  };
-  if (ahead > 1 && explains(least_ahead))
+  if (ahead > 1 && explained_by(least_ahead))
     return "AHRS is " + seconds(least_ahead) + " behind the other sensors; is its clock right, and its link quick?";
-  if (late > 1 && explains(-least_late))
+  if (late > 1 && explained_by(-least_late))
     return "all other sensors come " + seconds(least_late) + " later than stated; is the clock of AHRS ahead?";
-  if (foremost != kMost)
-    return std::string{names[foremost]} + " is " + seconds(-channels_[foremost].age) +
-           " ahead of AHRS; is its clock right?";
-  if (latest != kMost && channels_[latest].late() > kOneLate)
-    return std::string{names[latest]} + " comes " + seconds(channels_[latest].late()) +
-           " later than stated; is its clock right, and its link quick?";
   return {};
+}
+
+std::string ClockCheck::odd_one(std::span<const char* const> names, std::span<const double> tolerated) const {
+  std::string line;
+  double most = 0.0;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    const Channel& one = channels_[i];
+    const double tolerance = std::max(kOneOff, i < tolerated.size() ? tolerated[i] : 0.0);
+    const bool late = lasts(one.late_since, one), ahead = lasts(one.ahead_since, one);
+    const double off = late ? one.late() : -one.age;
+    if (!heard(one) || !(late || ahead) || off < std::max(tolerance, most)) continue;
+    most = off;
+    line = late ? std::string{names[i]} + " comes " + seconds(off) +
+                      " later than stated; is its clock right, and its link quick?"
+                : std::string{names[i]} + " is " + seconds(off) + " ahead of AHRS; is its clock right?";
+  }
+  return line;
 }
 
 }  // namespace fathom::estimation

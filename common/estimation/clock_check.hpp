@@ -17,19 +17,24 @@ class ClockCheck {
   /// A sample of a channel came when the newest attitude was `age` s younger than it (< 0: older). `late`: the age that
   /// is stated for the channel at most; `gap`: what the attitude sensor may lag by itself.
   void hear(std::size_t channel, Utime utime, double age, double late, double gap);
-  /// One line, empty when all agree. `names`: of the channels, in their order.
-  [[nodiscard]] std::string complaint(std::span<const char* const> names) const;
+  /// One line when the attitude sensor disagrees with all others, else empty.
+  [[nodiscard]] std::string attitude() const;
+  /// One line on the channel that disagrees most; empty when none does by more than its `tolerated` [s], or by half a
+  /// second where that is less. `names`: of the channels, in their order.
+  [[nodiscard]] std::string odd_one(std::span<const char* const> names, std::span<const double> tolerated = {}) const;
 
  private:
   static constexpr double kLasts = 2.0;      // s: shorter, and a busy machine was it
   static constexpr double kForgotten = 5.0;  // s: who is silent has no part in the comparison
-  static constexpr double kOneLate = 0.5;  // s beyond what is stated; STATE goes on without it, and is corrected later
-  static constexpr double kAllLate = 0.2;  // s: that all are late at once is hardly their doing
+  static constexpr double kOneOff = 0.5;     // s: STATE goes on without it, and is corrected later
+  static constexpr double kAllLate = 0.2;    // s: that all are late at once is hardly their doing
   struct Channel {
     std::optional<Utime> last, late_since, ahead_since;
     double age{}, stated{}, gap{};  // s, of the last sample
     [[nodiscard]] double late() const { return age - stated; }
   };
+  [[nodiscard]] bool heard(const Channel& one) const;
+  [[nodiscard]] bool explained_by(double behind) const;
   [[nodiscard]] bool lasts(const std::optional<Utime>& since, const Channel& channel) const;
 
   std::array<Channel, kMost> channels_{};

@@ -100,6 +100,8 @@ class Navigator {
   [[nodiscard]] std::map<std::string, std::int64_t> rejected() const;
   /// Why STATE cannot be trusted now, or what it lacks; empty when all is well. For HEALTH.
   [[nodiscard]] std::string complaint() const;
+  /// What is odd and can be lived with; empty when nothing is.
+  [[nodiscard]] std::string remark() const;
 
  private:
   static constexpr std::size_t kHistory = 512;  // attitude samples: 5 s at 100 Hz

@@ -200,6 +200,8 @@ std::map<std::string, std::int64_t> Navigator::rejected() const {
   return all;
 }
 
+std::string Navigator::remark() const { return clocks_.odd_one(kNames); }
+
 std::string Navigator::complaint() const {
   if (count_ == 0) return "no AHRS sample with attitude, rates and specific force yet";
   if (ahrs_repeated_ >= kRepeats) return "AHRS is frozen";
@@ -208,7 +210,12 @@ std::string Navigator::complaint() const {
                ? "AHRS is silent or sends no numbers; without it there is no STATE"
                : std::string{"AHRS is refused: "} + refused_ahrs_ + "; without it there is no STATE";
   }
-  if (const std::string disagree = clocks_.complaint(kNames); !disagree.empty()) return disagree;
+  std::array<double, kSources>
+      tolerated{};  // what comes late is made good later; not what comes hardly before it is old
+  for (std::size_t i = slot(Source::kTagPose); i < kSources; ++i)
+    tolerated[i] = 0.5 * aid(static_cast<Source>(i)).max_age;
+  if (const std::string attitude = clocks_.attitude(); !attitude.empty()) return attitude;
+  if (const std::string odd = clocks_.odd_one(kNames, tolerated); !odd.empty()) return odd;
   const auto& [utime, input, memory] = newest();
   if (!memory.started) return "no position yet: a tag of the site or an acoustic fix is needed";
   for (const Source source :

@@ -15,7 +15,9 @@ double probability(const Config& config, const std::string& key) {
 Timing::Timing(const Config& config, const std::string& name, std::uint64_t seed)
     : rate_{config.positive("rate", "Hz")},
       latency_{utime_after(0, config.not_negative("latency", "s"))},
-      stream_{seed, name + ".timing"} {
+      stream_{seed, name + ".timing"},
+      jitters_{seed, name + ".jitter"} {
+  if (config.has("jitter")) jitter_ = config.not_negative("jitter", "s");
   if (config.has("phase")) {
     phase_ = config.not_negative("phase", "s");
     if (phase_ * rate_ >= 1.0) config.fail("phase", "'phase' is below one period of 'rate'");
@@ -28,6 +30,8 @@ Timing::Timing(const Config& config, const std::string& name, std::uint64_t seed
 Utime Timing::taken(Utime start, std::int64_t count) const {
   return utime_after(start, phase_ + static_cast<double>(count) / rate_);
 }
+
+Utime Timing::latency() { return jitter_ > 0.0 ? latency_ + utime_after(0, jitters_.uniform(0.0, jitter_)) : latency_; }
 
 bool Timing::works(Utime utime) {
   if (drop_out_ <= 0.0) return true;

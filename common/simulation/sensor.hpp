@@ -89,10 +89,11 @@ class Timing {
  public:
   Timing(const Config& config, const std::string& name, std::uint64_t seed);
   /// Of what is told when it happens: no rate, no latency, no drop-outs.
-  Timing() : stream_{0, ""} {}
+  Timing() : stream_{0, ""}, jitters_{0, ""} {}
   /// When measurement number `count` is taken, from the run's start [us]: exact to the microsecond at every rate.
   [[nodiscard]] Utime taken(Utime start, std::int64_t count) const;
-  [[nodiscard]] Utime latency() const { return latency_; }
+  /// Of the next sample, jitter included.
+  [[nodiscard]] Utime latency();
   /// False while a drop-out lasts. To be asked once per measurement.
   [[nodiscard]] bool works(Utime utime);
 
@@ -100,10 +101,11 @@ class Timing {
   double rate_{};
   double phase_{};  ///< s after the run's start of the first one
   Utime latency_{};
+  double jitter_{};           ///< s: a sample is up to so much later than the latency, any time as likely
   double drop_out_{};         ///< chance per measurement that a drop-out begins
   double drop_out_length_{};  ///< s, mean; exponentially distributed
   Utime silent_until_{};
-  RandomStream stream_;
+  RandomStream stream_, jitters_;
 };
 
 /// Carried everywhere: without a section the driver tells what it sends.

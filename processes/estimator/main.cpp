@@ -52,7 +52,8 @@ struct Trial {
   void look(Utime now) {
     if (looked && std::abs(seconds_between(*looked, now)) < kEvery) return;
     looked = now;
-    const std::string complaint = navigator.complaint();
+    std::string complaint = navigator.complaint();
+    if (complaint.empty()) complaint = navigator.remark();
     std::string kind = complaint;
     std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) != 0; });
     if (told == kind) return;
@@ -133,7 +134,7 @@ void run_trial(runtime::Process& process, const Config& config) {
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
   process.on_health([&]() -> runtime::Process::Condition {
-    std::string detail;
+    std::string detail = navigator.remark();
     for (const auto& [reason, count] : navigator.rejected()) {
       detail += (detail.empty() ? "" : ", ") + reason + " " + std::to_string(count);
     }

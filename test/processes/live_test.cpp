@@ -55,16 +55,20 @@ std::string pid_of(const Scratch& scratch, const std::string& process) {
 TEST_CASE("live: a trial that is cut short still gives table, result, page and truth, and leaves nothing running") {
   if (!live_network()) return;
   const Scratch scratch;
-  const auto ran = shell(live(scratch, "tank seabotix_lbv150 paper lockstep 1007 45"));
+  const auto ran =
+      shell("export FATHOM_LIVE_DIAGNOSE=yes\n" + live(scratch, "tank seabotix_lbv150 paper lockstep 1007 45"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
   CHECK_MESSAGE(ran.says("Identified"), ran.text);
+  CHECK_MESSAGE(ran.says("the loop closed on the log: "), ran.text);
   CHECK_MESSAGE(ran.says("mode"), ran.text);
-  for (const char* name : {"run.lcmlog", "result.json", "report.html", "truth.json", "pipeline.yaml"}) {
+  for (const char* name : {"run.lcmlog", "result.json", "report.html", "truth.json", "pipeline.yaml",
+                           "diagnosis/result.json", "diagnosis/report.html"}) {
     CHECK_MESSAGE(std::filesystem::file_size(scratch.path(std::string{"out/"} + name)) > 0, name);
   }
   const auto result = result_of(scratch);
   CHECK(result["parameters"].size() == 13);
   CHECK(result["settled"] == false);
+  CHECK(result["closed_loop"]["report"] == "diagnosis/report.html");
   CHECK(result["modes"].size() >= 1);
   CHECK(result["modes"][0]["mode"] == "yaw");
   CHECK(result["compared_with_truth"]["states_compared"].get<int>() > 500);

@@ -309,3 +309,18 @@ TEST_CASE("thrusters: feedback has a gain per thruster, noise, and the wrench of
   Bench bench{make_thrusters, "noise: 0 N\ngain_error: 0 %\n", "tank"};
   CHECK(bench.measure(before).empty());
 }
+
+TEST_CASE("timing: with jitter samples come later by any time up to it; without, as ever") {
+  const Config plain = Config::parse("rate: 10 Hz\nlatency: 40 ms\n", "bench.yaml");
+  const Config jittery = Config::parse("rate: 10 Hz\nlatency: 40 ms\njitter: 60 ms\n", "bench.yaml");
+  Timing steady{plain, "depth", 1}, varies{jittery, "depth", 1};
+  Moments late;
+  for (int i = 0; i < 2000; ++i) {
+    CHECK(steady.latency() == 40'000);
+    const Utime latency = varies.latency();
+    CHECK(latency >= 40'000);
+    CHECK(latency <= 100'000);
+    late.add(1e-6 * static_cast<double>(latency));
+  }
+  check_mean(late, 0.07, 0.06 / std::sqrt(12.0));
+}
