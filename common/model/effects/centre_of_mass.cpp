@@ -49,7 +49,9 @@ class CentreOfMass final : public Effect {
     int form = 0;
     std::string name;
     for (std::size_t i = 0; i < kPairs.size(); ++i) {
-      if (std::ranges::none_of(kPairs[i], acts)) continue;
+      // A tilt that nobody measured pushes a heavy vehicle ahead as a centre of mass does that lies low.
+      const bool like_tilt = i == 2 && !scene.attitude;
+      if (like_tilt || std::ranges::none_of(kPairs[i], acts)) continue;
       form |= 1 << i;
       name += (name.empty() ? "" : ", ") + std::string{kParameters[i].name};
     }

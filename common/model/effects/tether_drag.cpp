@@ -1,11 +1,12 @@
 // Physics: the tether in the water drags as the vehicle pulls it along, the more of it the more is paid out. Length:
 // the straight way to the fixed end, L = |p - p_A|; force at the vehicle w = -k L |v_r| v_r, the share of 1/2 rho C_d d
 // L |v|v that does not end at the other end (Driscoll and Nahon 1996; Fossen 2011, sec. 6.4 for the form); `linear`, of
-// slow motion and thin tethers: w = -k L v_r. Ignores: slack beyond the straight way, the tether's weight and tension,
-// its drag in the current alone. Made fast at Bo, or at a place p_BC in B that is to be found (attachment.hpp): what
-// counts is then that place's own v_r + w x p_BC, and the force turns the vehicle by p_BC x w. Revealed by the same
-// speeds near and far from the fixed end. Confused with the drag of the mean length, with cross_coupling and with
-// tether_tension.
+// slow motion and thin tethers: w = -k L v_r; `across its line`, of a straight smooth cable, along which the water
+// hardly drags (Driscoll and Nahon 1996): w = -k L |v_n| v_n, v_n the part of v_r across the way to the fixed end.
+// Ignores: slack beyond the straight way, the tether's weight and tension, its drag in the current alone. Made fast at
+// Bo, or at a place p_BC in B that is to be found (attachment.hpp): what counts is then that place's own v_r + w x
+// p_BC, and the force turns the vehicle by p_BC x w. Revealed by the same speeds near and far from the fixed end.
+// Confused with the drag of the mean length, with cross_coupling and with tether_tension.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +26,8 @@ constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^2/m", 5
                                  kAttachment[1],
                                  kAttachment[2]};
 constexpr std::size_t kAttached = 4;  // its first number
-constexpr int kLinear = 8;            // after the sets of an attachment's components
+constexpr int kLinear = 8;            // after the sets of an attachment's components: none of these forms has any
+constexpr int kAcross = 16;
 constexpr int kBearings = 8;
 constexpr double kSwaying = 0.01;  // rad/s of roll and pitch, measured if not simulated: they move a high cleat
 
@@ -48,6 +50,8 @@ class TetherDrag final : public Effect {
     std::vector<std::string> forms = attachment_forms(*scene.vehicle, sways);
     forms.resize(kLinear, "-");
     forms.emplace_back("linear");
+    forms.resize(kAcross, "-");
+    forms.emplace_back("across its line");
     return forms;
   }
   std::string_view unit(int variant, std::size_t number) const override {
@@ -76,10 +80,14 @@ class TetherDrag final : public Effect {
     const Eigen::Vector3d p_BC = components(theta, variant, kAttached);
     Eigen::Vector3d way = Eigen::Vector3d(theta[1], theta[2], theta[3]) - motion.p_WB;
     Eigen::Vector3d v_r = motion.nu_r().head<3>();
-    const bool elsewhere = variant != 0 && variant != kLinear;
+    const bool elsewhere = variant != 0 && variant != kLinear && variant != kAcross;
     if (elsewhere) {
       way -= motion.R_WB * p_BC;
       v_r += motion.nu.tail<3>().cross(p_BC);
+    }
+    if (variant == kAcross) {
+      const Eigen::Vector3d along = (motion.R_WB.transpose() * way).stableNormalized();
+      v_r -= along.dot(v_r) * along;
     }
     const Eigen::Vector3d drag = -theta[0] * way.norm() * (variant == kLinear ? 1.0 : v_r.norm()) * v_r;
     load.wrench.head<3>() += drag;

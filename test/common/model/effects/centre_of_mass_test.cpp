@@ -140,7 +140,7 @@ TEST_CASE(
   model::Vehicle vehicle;
   vehicle.mass = kMass;
   vehicle.dof = {true, true, true, false, false, true};
-  model::Scene scene{.vehicle = &vehicle};
+  model::Scene scene{.vehicle = &vehicle, .attitude = true};
   scene.nu_rms.setConstant(0.3);
   const auto asked = [&] {
     const std::vector<std::string> names = effect.variants(scene);
@@ -163,6 +163,8 @@ TEST_CASE(
   CHECK(asked() == "none");
   scene.nu_rms.setConstant(0.3);
   CHECK(asked() == "x_G, y_G, z_G");
+  scene.attitude = false;  // a tilt would look like z_G
+  CHECK(asked() == "x_G, y_G");
   vehicle.mass = 0.0;
   CHECK(asked() == "none");
 }

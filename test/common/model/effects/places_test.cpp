@@ -152,6 +152,27 @@ TEST_CASE("tether_drag: linear, proportional to the way to the fixed end and to 
   CHECK(effect.unit(0, 0) == "N/(m/s)^2/m");
 }
 
+TEST_CASE("tether_drag: across its line only what goes across counts, whatever the heading") {
+  constexpr int kAcross = 16;
+  const std::vector<double> numbers{2.0, 0.0, 0.0, 0.0, 0.7, 0.7, 0.7};
+  model::Motion motion;
+  motion.p_WB = {3.0, 4.0, 0.0};
+  for (const double heading : {0.0, 0.9, -2.0}) {
+    CAPTURE(heading);
+    motion.R_WB = rotation_from_euler({0.1, -0.2, heading});
+    const Eigen::Vector3d along{0.6, 0.8, 0.0}, across{0.8, -0.6, 0.0};  // in W
+    motion.nu.head<3>() = motion.R_WB.transpose() * (0.4 * along);
+    CHECK(load_of("tether_drag", numbers, kAcross, motion).wrench.norm() < kRounding);
+    motion.nu.head<3>() = motion.R_WB.transpose() * (0.4 * along + 0.5 * across);
+    const model::Load load = load_of("tether_drag", numbers, kAcross, motion);
+    CHECK((motion.R_WB * load.wrench.head<3>() + 2.0 * 5.0 * 0.25 * across).norm() < kRounding);
+    CHECK(load.wrench.tail<3>().isZero(0.0));
+  }
+  motion.p_WB.setZero();  // at the fixed end there is no line
+  CHECK(load_of("tether_drag", numbers, kAcross, motion).wrench.isZero(0.0));
+  CHECK(model::find_effect("tether_drag")->numbers(kAcross) == model::find_effect("tether_drag")->numbers(0));
+}
+
 TEST_CASE("tethers made fast astern: the same pull as at that place of the hull, and its moment about the origin") {
   constexpr int kAstern = 7;
   const Eigen::Vector3d p_BC{-0.3, 0.05, -0.1};
