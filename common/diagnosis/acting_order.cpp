@@ -39,7 +39,11 @@ model::Model at_other_end(model::Model model, const Judged& judged) {
 }  // namespace
 
 bool acts_last(const model::Model& model, const Judged& judged) {
-  return std::ranges::any_of(model.effects, [&](const auto& active) { return is_of(active, judged) && active.last; });
+  const auto beside = [&](const auto& active) {
+    return active.effect != judged.effect && model::changes_thrust(*active.effect);
+  };
+  return std::ranges::any_of(model.effects, [&](const auto& active) { return is_of(active, judged) && active.last; }) &&
+         std::ranges::any_of(model.effects, beside);
 }
 
 void reconsider_order(SearchResult& result, const TrajectoryFit& problem, const Progress& progress, double done) {

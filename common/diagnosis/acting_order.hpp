@@ -6,7 +6,7 @@
 
 namespace fathom::diagnosis {
 
-/// Whether that form of the effect acts on the thrust that the others leave (ActiveEffect::last).
+/// Whether that form of the effect acts on the thrust that others leave (ActiveEffect::last): not where there are none.
 [[nodiscard]] bool acts_last(const model::Model& model, const Judged& judged);
 
 /// Fits the accepted effects whose place among those that change the thrust matters at the other end of them, and keeps

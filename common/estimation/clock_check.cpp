@@ -74,19 +74,26 @@ std::string ClockCheck::attitude() const {
   return {};
 }
 
+std::string ClockCheck::off(std::size_t channel, const char* name) const {
+  const Channel& one = channels_[channel];
+  if (!heard(one)) return {};
+  if (one.ahead_since) return std::string{name} + " is " + seconds(-one.age) + " ahead of AHRS; is its clock right?";
+  if (!one.late_since) return {};
+  return std::string{name} + " comes " + seconds(one.late()) +
+         " later than stated; is its clock right, and its link quick?";
+}
+
 std::string ClockCheck::odd_one(std::span<const char* const> names, std::span<const double> tolerated) const {
   std::string line;
   double most = 0.0;
   for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
     const Channel& one = channels_[i];
     const double tolerance = std::max(kOneOff, i < tolerated.size() ? tolerated[i] : 0.0);
-    const bool late = lasts(one.late_since, one), ahead = lasts(one.ahead_since, one);
-    const double off = late ? one.late() : -one.age;
-    if (!heard(one) || !(late || ahead) || off < std::max(tolerance, most)) continue;
-    most = off;
-    line = late ? std::string{names[i]} + " comes " + seconds(off) +
-                      " later than stated; is its clock right, and its link quick?"
-                : std::string{names[i]} + " is " + seconds(off) + " ahead of AHRS; is its clock right?";
+    const double by = one.ahead_since ? -one.age : one.late();
+    if (!heard(one) || !(lasts(one.late_since, one) || lasts(one.ahead_since, one))) continue;
+    if (by < std::max(tolerance, most)) continue;
+    most = by;
+    line = off(i, names[i]);
   }
   return line;
 }

@@ -19,6 +19,8 @@ class ClockCheck {
   void hear(std::size_t channel, Utime utime, double age, double late, double gap);
   /// One line when the attitude sensor disagrees with all others, else empty.
   [[nodiscard]] std::string attitude() const;
+  /// One line on that channel when it disagrees now, however briefly; for one that is missed already.
+  [[nodiscard]] std::string off(std::size_t channel, const char* name) const;
   /// One line on the channel that disagrees most; empty when none does by more than its `tolerated` [s], or by half a
   /// second where that is less. `names`: of the channels, in their order.
   [[nodiscard]] std::string odd_one(std::span<const char* const> names, std::span<const double> tolerated = {}) const;

@@ -106,7 +106,6 @@ class Navigator {
  private:
   static constexpr std::size_t kHistory = 512;  // attitude samples: 5 s at 100 Hz
   static constexpr int kRepeats = 4;            // bit by bit the same: no noisy sensor does that while moving
-  enum class Clock { kRight, kBehind, kAhead };
   enum Reason { kGated, kFrozen, kWall, kLate, kOverdue, kMalformed, kReasons };
   struct Input {
     Eigen::Quaterniond q_WB{Eigen::Quaterniond::Identity()};
@@ -182,9 +181,8 @@ class Navigator {
   std::vector<Node> nodes_;  // a ring, oldest at first_
   std::size_t first_{}, count_{};
   std::vector<Measurement> waiting_;  // in the order of time, then kind
-  ClockCheck clocks_;
+  ClockCheck clocks_;                 // of the aids, beside AHRS
   std::array<std::int64_t, kSources> late_{}, overdue_{}, malformed_{};
-  std::array<Clock, kSources> clock_{};  // as the newest sample of each shows it, beside AHRS
   std::map<std::string, std::int64_t> other_;
   std::optional<Ahrs> last_ahrs_;
   int ahrs_repeated_{};

@@ -105,11 +105,9 @@ const Navigator::Output& Navigator::wait(const Measurement& m) {
   if (count_ > 0) {
     const Utime newest = this->newest().utime;
     const double age = seconds_between(m.utime, newest);
-    clock_[i] = Clock::kRight;
     if (without_ahrs_ <= kAhrsAway) clocks_.hear(i, m.utime, age, aid(m.source).delay, settings_.max_gap);
     if (m.utime < nodes_[first_].utime || age > aid(m.source).delay + kLatest) {
       ++late_[i];
-      clock_[i] = Clock::kBehind;
       return output_;
     }
     if (age >= aid(m.source).delay) ++overdue_[i];
@@ -119,7 +117,6 @@ const Navigator::Output& Navigator::wait(const Measurement& m) {
         ++other_[std::string{channel(m.source)} + " without AHRS"];
       } else {
         ++malformed_[i];
-        clock_[i] = Clock::kAhead;
       }
       return output_;
     }
@@ -210,8 +207,8 @@ std::string Navigator::complaint() const {
                ? "AHRS is silent or sends no numbers; without it there is no STATE"
                : std::string{"AHRS is refused: "} + refused_ahrs_ + "; without it there is no STATE";
   }
-  std::array<double, kSources>
-      tolerated{};  // what comes late is made good later; not what comes hardly before it is old
+  // What comes late is made good later; not what comes hardly before it is too old.
+  std::array<double, kSources> tolerated{};
   for (std::size_t i = slot(Source::kTagPose); i < kSources; ++i)
     tolerated[i] = 0.5 * aid(static_cast<Source>(i)).max_age;
   if (const std::string attitude = clocks_.attitude(); !attitude.empty()) return attitude;
@@ -226,10 +223,7 @@ std::string Navigator::complaint() const {
     const double age = track.last ? seconds_between(*track.last, utime) : HUGE_VAL;
     if (age <= s.max_age) continue;
     if (track.repeats()) return std::string{channel(source)} + " is frozen";
-    if (clock_[slot(source)] == Clock::kBehind)
-      return std::string{channel(source)} + " comes too late; is its clock right?";
-    if (clock_[slot(source)] == Clock::kAhead)
-      return std::string{channel(source)} + " is ahead of AHRS; is its clock right?";
+    if (const std::string off = clocks_.off(slot(source), channel(source)); !off.empty()) return off;
     if (track.walled) return std::string{channel(source)} + " looks at a wall";
     if (track.refused > 0) return std::string{channel(source)} + " does not fit the motion";
     return std::string{channel(source)} + " is silent";

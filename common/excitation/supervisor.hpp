@@ -158,8 +158,7 @@ class Supervisor {
   std::string reason_{"waits for the operator to arm"};
   bool armed_{false};
   std::int64_t last_sequence_{};
-  std::int64_t armed_by_{};          // kept after a stop: the zeros that follow it must be obeyed
-  std::optional<Operator> pending_;  // an order to arm waits for the next state
+  std::int64_t armed_by_{};  // kept after a stop: the zeros that follow it must be obeyed
   Needs needs_;
   std::optional<double> watched_{};  // s
   double state_came_{};              // s, as far as watch() has seen

@@ -1,6 +1,4 @@
 // The closing of the loop on a live trial's own log: what `fathom diagnose` found afterwards, in the trial's report.
-#include <array>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -72,7 +70,8 @@ std::string afterwards_section(const Afterwards& found) {
         "<table>" + heading_cells({"Error of predictions over 5 s (RMS)", "Base model", "With what was found"}, {1, 2});
     for (const auto& [velocity, error] : found.before) {
       const auto after = found.after.find(velocity);
-      const std::string unit = velocity < "t" ? " rad/s" : " m/s";
+      const bool turns = velocity == "p" || velocity == "q" || velocity == "r";
+      const std::string unit = turns ? " rad/s" : " m/s";
       html += "<tr>" + cell(escape(velocity), "k") + cell(number(error, 3) + unit, "n") +
               cell(after == found.after.end() ? "-" : number(after->second, 3) + unit, "n") + "</tr>\n";
     }

@@ -134,11 +134,12 @@ void run_trial(runtime::Process& process, const Config& config) {
   ignore<fathom_lcm::pose_capture_t>(process, wire::kPoseCapture);
   ignore<fathom_lcm::ranges_t>(process, wire::kRanges);
   process.on_health([&]() -> runtime::Process::Condition {
-    std::string detail = navigator.remark();
+    const std::string complaint = navigator.complaint();
+    std::string detail = complaint.empty() ? navigator.remark() : "";
     for (const auto& [reason, count] : navigator.rejected()) {
       detail += (detail.empty() ? "" : ", ") + reason + " " + std::to_string(count);
     }
-    return {.unhealthy = navigator.complaint(), .detail = detail};
+    return {.unhealthy = complaint, .detail = detail};
   });
   process.on_restart([&] { navigator.reset(); });
   process.on_end([&] { tell_refused(process, navigator.rejected()); });

@@ -34,7 +34,7 @@ class ThrusterFeedback final : public Sensor {
 
   [[nodiscard]] std::vector<std::pair<std::string, double>> drawn() const override {
     std::vector<std::pair<std::string, double>> all;
-    for (std::size_t i = 0; i < gain_.size(); ++i) all.emplace_back(vehicle_->thrusters[i].name + ".gain", gain_[i]);
+    for (std::size_t i = 0; i < gain_.size(); ++i) all.emplace_back("gain_" + vehicle_->thrusters[i].name, gain_[i]);
     return all;
   }
 

@@ -85,6 +85,19 @@ TEST_CASE("acting order: nothing is asked where the order is nothing to the thru
   CHECK(alone.asked == 0);
 }
 
+TEST_CASE("acting order: alone, nothing acts on what others leave") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  model::Model model = model::nominal_model(vehicle, false);
+  model::ActiveEffect band = test::active("thruster_deadband", {2.0});
+  band.last = true;
+  const Judged judged{.effect = band.effect, .variant = band.variant};
+  model.add(band);
+  model.add(test::active("current", {0.1}));
+  CHECK_FALSE(acts_last(model, judged));
+  model.add(test::active("thruster_lag", {0.1}));
+  CHECK(acts_last(model, judged));
+}
+
 TEST_CASE("acting order: what acts last stands behind all that change the thrust, before the water") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   model::Model model = model::nominal_model(vehicle, false);

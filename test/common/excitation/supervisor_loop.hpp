@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,7 @@ struct Loop {
   bool heard{true};  // does STATE come at all?
   double largest_command{};
   int commands{};
+  std::int64_t armed_by{};  // of the last command
 
   Loop() { plant.place({0.2, -0.1, 0.75}); }
   void run(double seconds) {
@@ -41,6 +43,7 @@ struct Loop {
         const auto& output = supervisor.step(state);
         if (output.command) {
           plant.command(*output.command);
+          armed_by = output.command->armed_by;
           largest_command = std::max(largest_command, output.command->tau.cwiseAbs().maxCoeff());
           ++commands;
         }

@@ -63,6 +63,38 @@ TEST_CASE("supervisor: it does not arm on an invalid state, outside of the envel
   CHECK(loop.commands > 0);
 }
 
+TEST_CASE("supervisor: commands name the order that armed, those after a stop too, until the next arming") {
+  Loop loop;
+  loop.run(2.0);
+  const Operator first = order_to_arm(loop.plant.utime());
+  loop.supervisor.hear(first);
+  loop.run(1.0);
+  CHECK(loop.armed_by == first.sequence);
+  loop.order("hold");  // allows nothing anew
+  loop.run(1.0);
+  CHECK(loop.armed_by == first.sequence);
+  const Operator again = order_to_arm(loop.plant.utime());  // to thrusters that have lost the first
+  loop.supervisor.hear(again);
+  loop.run(1.0);
+  CHECK(loop.armed_by == again.sequence);
+  loop.supervisor.hear(Operator{.abort = true});
+  loop.run(0.5);
+  CHECK(loop.commands > 0);
+  CHECK(loop.armed_by == again.sequence);
+  loop.valid = false;
+  loop.run(2.0);
+  loop.arm();  // refused
+  loop.run(1.0);
+  CHECK(loop.commands == 0);
+  loop.valid = true;
+  const Operator last = order_to_arm(loop.plant.utime());
+  loop.run(0.1);
+  loop.supervisor.hear(last);
+  loop.run(1.0);
+  CHECK(loop.commands > 0);
+  CHECK(loop.armed_by == last.sequence);
+}
+
 TEST_CASE("supervisor: an abort in every mode stops the thrusters at once") {
   for (const std::size_t skips : {0U, 1U, 2U, 3U, 4U}) {
     Loop loop;
