@@ -238,7 +238,11 @@ const std::vector<Sample>& Simulator::step() {
   while (now() < end) {
     body_->step();
     if (!faults_->effects.empty()) faults_->remember(body_->at(now()).nu);
-    for (Slot& slot : slots_) take(slot, now());
+    for (Slot& slot : slots_) {
+      // A drive that is read as its command changes tells the new one, which comes with the next interval.
+      const bool of_commands = slot.name == kThrusterFeedback;
+      take(slot, of_commands ? now() - 1 : now());
+    }
     for (; next_truth_ <= now(); next_truth_ += truth_period_) {
       const Moment moment = body_->at(std::max(next_truth_, now() - body_->step_length()));
       pending_.push_back({moment.utime, order_++,

@@ -314,3 +314,26 @@ TEST_CASE("simulator: bad lines of its settings are refused with file and line")
   CHECK(complaint({{"    tank: {position", "    pool: {position"}}).find("no start is stated for the site 'tank'") !=
         std::string::npos);
 }
+
+TEST_CASE("simulator: feedback of drives without errors tells what their driver would, at the moment it changes too") {
+  const auto told = [](const test::Changes& changes) {
+    auto simulator = test::make_simulator("seabotix_lbv150", "tank", {.seed = 4}, changes);
+    std::vector<Thrusters> all;
+    Vector6d tau = Vector6d::Zero();
+    for (int k = 0; k < 200; ++k) {  // another command in every interval
+      tau[0] = 0.05 * k;
+      simulator->command({.utime = simulator->now(), .tau = tau, .life = 1.0});
+      test::collect(simulator->step(), all);
+    }
+    return all;
+  };
+  const auto driver = told({});
+  const auto drives =
+      told({{"    depth:", "    thrusters: {rate: 50 Hz, latency: 0 s, noise: 0 N, gain_error: 0 %}\n    depth:"}});
+  REQUIRE(drives.size() > 190);
+  for (std::size_t k = 0; k < std::min(driver.size(), drives.size()); ++k) {
+    CHECK(drives[k].utime == driver[k].utime);
+    CHECK(drives[k].force == driver[k].force);
+    for (std::size_t i = 0; i < 6; ++i) CHECK(drives[k].tau[i] == doctest::Approx(driver[k].tau[i]));
+  }
+}
