@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "common/diagnosis/bursts.hpp"
-#include "common/diagnosis/episode.hpp"
 #include "common/diagnosis/force_residual.hpp"
-#include "common/diagnosis/oscillation.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/product_sums.hpp"
 #include "common/identification/lag_sums.hpp"
@@ -20,29 +17,20 @@ using identification::ColouredFit;
 using identification::LagSums;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kSamplesPerColumn = 5;  // fewer tell nothing
-constexpr double kMargin = 8.0;       // s that a step has before and after it at least
-constexpr int kSteps = 40;            // moments that are asked, over all runs
-constexpr double kMoment = 1.0;       // parameters that the choice of a step's moment counts for
 
-bool always(const Trial&) { return true; }
+constexpr std::size_t kInTime = 5;  // questions besides the suspects: step, swing, oscillation, bursts, event
 
-std::string words(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-Indices range(Eigen::Index from, Eigen::Index to) {
-  Indices indices;
-  for (Eigen::Index i = from; i < to; ++i) indices.push_back(i);
-  return indices;
-}
-
-LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs) {
-  LagSums sums{runs.front().cols()};
-  for (const Eigen::MatrixXd& run : runs) sums.add(run);
-  return sums;
+/// m/s, rad/s: what is ordinary in these runs (RMS).
+Vector6d ordinary_speeds(std::span<const Trial> trials) {
+  Vector6d sum = Vector6d::Zero();
+  double samples = 0.0;
+  for (const Trial& trial : trials) {
+    for (const Vector6d& nu : trial.nu) {
+      sum += nu.array().isFinite().select(nu.cwiseAbs2(), 0.0);
+      samples += 1.0;
+    }
+  }
+  return samples > 0.0 ? Vector6d{(sum / samples).cwiseSqrt()} : sum;
 }
 
 }  // namespace
@@ -50,6 +38,7 @@ LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs) {
 LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
                    std::span<const std::vector<Vector6d>> residuals)
     : model_{model} {
+  const Vector6d ordinary = ordinary_speeds(trials);
   for (std::size_t r = 0; r < trials.size(); ++r) {
     const Trial& trial = trials[r];
     const std::size_t span = residual_span(trial.dt);
@@ -65,13 +54,14 @@ LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
       for (std::size_t axis = 0; axis < 6; ++axis)
         at.nu[static_cast<Eigen::Index>(axis)] = model.vehicle->dof[axis] ? nu[before][axis] : 0.0;
       at.dof = model.vehicle->dof;
+      at.nu_rms = ordinary;
       run.at.push_back(at);
       run.wrench.push_back(residuals[r][k]);
     }
     if (!run.at.empty()) runs_.push_back(std::move(run));
   }
   const auto axes = static_cast<double>(std::ranges::count(model.vehicle->dof, true));
-  tried_ = axes * static_cast<double>(suspects().size() + 4);
+  tried_ = axes * static_cast<double>(suspects().size() + kInTime);
 }
 
 std::vector<Eigen::MatrixXd> LeftOver::rows(int axis, bool (*seen)(const Trial&), const Asked& asked) const {
@@ -130,60 +120,6 @@ std::vector<Association> LeftOver::of_suspects(int axis) const {
   return found;
 }
 
-Association LeftOver::step(int axis) const {
-  struct Candidate {
-    const Trial* trial;
-    double t;
-  };
-  std::vector<Candidate> candidates;
-  double duration = 0.0;
-  for (const Run& run : runs_) duration += run.trial->t.back() - run.trial->t.front();
-  const double apart = std::max(duration / kSteps, kMargin);
-  for (const Run& run : runs_) {
-    for (double t = run.trial->t.front() + kMargin; t < run.trial->t.back() - kMargin; t += apart)
-      candidates.push_back({run.trial, t});
-  }
-  Association best{.axis = model::kAxisNames[static_cast<std::size_t>(axis)], .log_odds = -1.0};
-  if (candidates.empty()) return best;
-  const LagSums sums = sums_of(rows(axis, always, [&](const Moment& at, Columns& row) {
-    for (const Candidate& one : candidates)
-      row.push_back(&at.trial == one.trial && at.trial.t[at.k] >= one.t ? 1.0 : 0.0);
-  }));
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Answer told = answer(sums, {kBaseColumns + static_cast<Eigen::Index>(i)}, kMoment);
-    if (told.log_odds <= best.log_odds) continue;
-    best.with =
-        words("a step at %.0f s", candidates[i].t) + (runs_.size() > 1 ? " of " + candidates[i].trial->name : "");
-    best.share = told.share;
-    best.log_odds = told.log_odds;
-  }
-  return best;
-}
-
-Association LeftOver::oscillation(int axis) const {
-  Association best{.axis = model::kAxisNames[static_cast<std::size_t>(axis)], .log_odds = -1.0};
-  const std::vector<Eigen::MatrixXd> runs = rows(axis, always, [](const Moment&, Columns&) {});
-  if (runs.empty()) return best;
-  const LagSums sums = sums_of(runs);
-  if (sums.samples() < kSamplesPerColumn * kBaseColumns) return best;
-  const Eigen::MatrixXd products = sums.product(0, 0);
-  const Eigen::VectorXd x = taken_up(products, range(0, kBaseColumns), products.col(kBaseColumns));
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    std::vector<double> series;
-    for (Eigen::Index k = 0; k < runs[r].rows(); ++k) {
-      const double left = runs[r](k, kBaseColumns) - runs[r].row(k).head(kBaseColumns).dot(x);
-      series.push_back(std::isfinite(left) ? left : 0.0);
-    }
-    const Line line = strongest_line(series, runs_[r].step);
-    const double log_odds = line.log_odds - std::log(tried_ * static_cast<double>(runs.size()));
-    if (log_odds <= best.log_odds) continue;
-    best.with = words("an oscillation of %.2g Hz", line.frequency);
-    best.share = line.share;
-    best.log_odds = log_odds;
-  }
-  return best;
-}
-
 std::vector<std::vector<double>> LeftOver::unforetold_along(int axis) const {
   const auto& dof = model_.vehicle->dof;
   if (axis >= 3 && (dof[0] || dof[1] || dof[2])) return {};
@@ -220,19 +156,6 @@ Association LeftOver::in_bursts(int axis, std::span<const std::vector<double>> l
   return found;
 }
 
-Association LeftOver::once(int axis, std::span<const std::vector<double>> left) const {
-  const Episode told = episode(left);
-  Association found{.axis = model::kAxisNames[static_cast<std::size_t>(axis)],
-                    .share = told.share,
-                    .log_odds = told.log_odds - std::log(tried_)};
-  if (found.log_odds < 0.0) return found;
-  const Run& run = runs_[told.run];
-  const auto t = [&](std::size_t k) { return run.trial->t[run.at[k].k]; };
-  found.with = words("an event from %.0f s", t(told.first)) + words(" to %.0f s", t(told.last) + run.step) +
-               (runs_.size() > 1 ? " of " + run.trial->name : "");
-  return found;
-}
-
 double LeftOver::size(int axis) const {
   struct Spread {
     double sum{}, square{}, count{};
@@ -257,6 +180,7 @@ std::vector<Association> LeftOver::associations(double share, double log_odds, d
     if (!model_.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
     std::vector<Association> of_axis = of_suspects(axis);
     of_axis.push_back(step(axis));
+    of_axis.push_back(swing(axis));
     of_axis.push_back(oscillation(axis));
     const std::vector<std::vector<double>> unforetold = unforetold_along(axis);
     of_axis.push_back(in_bursts(axis, unforetold));

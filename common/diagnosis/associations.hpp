@@ -34,6 +34,8 @@ class LeftOver {
     std::vector<Moment> at;        ///< one for each sample
     std::vector<Vector6d> wrench;  ///< N, N m
   };
+  static constexpr int kSamplesPerColumn = 5;  // fewer tell nothing
+  [[nodiscard]] static bool always(const Trial&) { return true; }
   using Asked = std::function<void(const Moment&, Columns&)>;
   struct Answer {
     double share{};
@@ -48,6 +50,8 @@ class LeftOver {
   [[nodiscard]] Answer answer(int axis, bool (*seen)(const Trial&), const Asked& asked) const;
   [[nodiscard]] std::vector<Association> of_suspects(int axis) const;
   [[nodiscard]] Association step(int axis) const;
+  /// What swings slowly in the world, in whatever direction: a few cycles in a run.
+  [[nodiscard]] Association swing(int axis) const;
   [[nodiscard]] Association oscillation(int axis) const;
   /// What of the residual neither the base columns nor its own past foretell; empty where that cannot be told, and of
   /// moments beside forces: that of the added mass multiplies the noise of one velocity with another, so its noise

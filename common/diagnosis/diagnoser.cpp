@@ -18,6 +18,7 @@
 #include "common/diagnosis/random_rest.hpp"
 #include "common/diagnosis/search.hpp"
 #include "common/diagnosis/traces.hpp"
+#include "common/diagnosis/unseen_event.hpp"
 #include "common/diagnosis/verdict.hpp"
 #include "common/diagnosis/whiteness.hpp"
 #include "common/diagnosis/wiring.hpp"
@@ -94,6 +95,13 @@ std::vector<Association> left_in(std::span<const Trial> train, std::span<const T
   }
   std::ranges::stable_sort(left, std::greater{}, &Association::share);
   return left;
+}
+
+std::optional<UnseenEvent> began_unseen(std::span<const Trial> train, std::span<const Trial> unseen,
+                                        const model::Model& model) {
+  std::vector<Trial> fitted;
+  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  return unseen_event(fitted, residuals_of(model, fitted), unseen, residuals_of(model, unseen));
 }
 
 double length_of(std::span<const Trial> trials) {
@@ -233,6 +241,7 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
   model::Model learnt = found.after.model;
+  report.unseen_event = began_unseen(train, unseen, learnt);
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
   if (!found.accepted.empty() && judged &&
       !carries_over(found, improvement(before, after, vehicle),

@@ -194,6 +194,21 @@ void judge_by_odds(Judged& judged, const FitResult& without, const FitResult& wi
   judged.error_reduction = reduction(without.cost, with.cost);
 }
 
+double odds_by_what_is_left(const FitResult& fewer, const FitResult& more, int numbers, int tried) {
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    double with_fewer = 0.0, with_more = 0.0, windows = 0.0;
+    for (std::size_t w = 0; w < more.window_square.size(); ++w) {
+      if (!(more.window_count[w][axis] > 0.0)) continue;
+      with_fewer += fewer.window_square[w][axis];
+      with_more += more.window_square[w][axis];
+      ++windows;
+    }
+    if (with_fewer > 0.0 && with_more > 0.0) sum += 0.5 * windows * std::log(with_fewer / with_more);
+  }
+  return sum - price(numbers, static_cast<double>(more.window_square.size()), tried);
+}
+
 void judge_by_few_windows(Judged& judged, const TrajectoryFit& problem, const FitResult& with, int tried,
                           const Settings& settings) {
   if (judged.log_odds >= needed_log_odds(judged, settings) || judged.error_reduction < settings.convincing) return;

@@ -33,6 +33,10 @@ inline constexpr const char* kTooQuick = "shorter than how commands are held bet
 /// Odds and share of the error, by a fit of it against the fit without it.
 void judge_by_odds(Judged& judged, const identification::FitResult& without, const identification::FitResult& with,
                    int tried);
+/// Log odds for the fit with more numbers when the noise of each axis is not known, each window a single observation of
+/// it: what little is left of a cost tells much where it is most of what is left on an axis.
+[[nodiscard]] double odds_by_what_is_left(const identification::FitResult& fewer, const identification::FitResult& more,
+                                          int numbers, int tried);
 /// Where odds do not suffice for what explains much: better odds if the windows that it acts in leave no doubt of it.
 void judge_by_few_windows(Judged& judged, const identification::TrajectoryFit& problem,
                           const identification::FitResult& with, int tried, const Settings& settings);

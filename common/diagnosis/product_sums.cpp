@@ -6,6 +6,18 @@
 
 namespace fathom::diagnosis {
 
+Indices range(Eigen::Index from, Eigen::Index to) {
+  Indices indices;
+  for (Eigen::Index i = from; i < to; ++i) indices.push_back(i);
+  return indices;
+}
+
+identification::LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs) {
+  identification::LagSums sums{runs.front().cols()};
+  for (const Eigen::MatrixXd& run : runs) sums.add(run);
+  return sums;
+}
+
 void standardise(std::vector<Eigen::MatrixXd>& runs) {
   if (runs.empty()) return;
   for (Eigen::Index c = 1; c + 1 < runs.front().cols(); ++c) {

@@ -4,9 +4,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "common/identification/lag_sums.hpp"
+
 namespace fathom::diagnosis {
 
 using Indices = std::vector<Eigen::Index>;
+/// From the first to the one before the second.
+[[nodiscard]] Indices range(Eigen::Index from, Eigen::Index to);
+[[nodiscard]] identification::LagSums sums_of(const std::vector<Eigen::MatrixXd>& runs);
 
 /// Columns but the first and the last: mean removed and brought to the size of one, so that sums do not cancel.
 void standardise(std::vector<Eigen::MatrixXd>& runs);

@@ -48,6 +48,14 @@ std::vector<std::size_t> promising(const std::vector<Screened>& rough, const Lin
   return order;
 }
 
+Eigen::VectorXi axes_of(const TrajectoryFit& problem) {
+  std::vector<int> axes;
+  for (const auto& window : problem.windows()) {
+    for (Eigen::Index row = 0; row < window.rows(); ++row) axes.push_back(window.axis(row));
+  }
+  return Eigen::Map<const Eigen::VectorXi>(axes.data(), static_cast<Eigen::Index>(axes.size()));
+}
+
 identification::FitSettings near_settings(const Settings& settings) {
   identification::FitSettings near = settings.fit;
   near.window = kNearWindow;
@@ -101,6 +109,9 @@ Answers ask_near(std::span<const Candidate> candidates, const NearView& near, co
   }
   answers.fitted.assign(asked.size(), false);
   answers.found.resize(asked.size());
+  answers.unexplained = base.unexplained().col(0);
+  answers.axis = axes_of(near.problem);
+  answers.cost = total(base.window_cost());
   return answers;
 }
 

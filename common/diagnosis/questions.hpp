@@ -33,7 +33,10 @@ struct Answers {
   std::vector<Judged> judged;      ///< by the screening until a fit has told, refusals included
   std::vector<bool> fitted;        ///< in full
   std::vector<std::optional<model::Model>>
-      found;  ///< where a full fit should begin, when known better than by screening
+      found;                    ///< where a full fit should begin, when known better than by screening
+  Eigen::VectorXd unexplained;  ///< all residuals of the short windows, as the screening saw them
+  Eigen::VectorXi axis;         ///< 0..5, of each of them
+  double cost{};                ///< of all
 };
 
 /// The problem on short windows and its own fit of the model that is asked about. What lacks an effect bends long

@@ -26,23 +26,6 @@ constexpr double kClearlyMore = 2.0;     // log odds over those needed: so much 
 constexpr const char* kTrifle = "not evident beside what is too little or too quick to count";
 constexpr double kQuickTolerance = 1e-3;  // relative decrease of the cost; a tenth of the smallest gain that counts
 
-/// Log odds for the fit with more numbers when the noise of each axis is not known, each window a single observation
-/// of it: what little is left of a cost tells much where it is most of what is left on an axis.
-double odds_by_what_is_left(const FitResult& fewer, const FitResult& more, int numbers) {
-  double sum = 0.0;
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    double with_fewer = 0.0, with_more = 0.0, windows = 0.0;
-    for (std::size_t w = 0; w < more.window_square.size(); ++w) {
-      if (!(more.window_count[w][axis] > 0.0)) continue;
-      with_fewer += fewer.window_square[w][axis];
-      with_more += more.window_square[w][axis];
-      ++windows;
-    }
-    if (with_fewer > 0.0 && with_more > 0.0) sum += 0.5 * windows * std::log(with_fewer / with_more);
-  }
-  return sum - price(numbers, static_cast<double>(more.window_square.size()), 1);
-}
-
 /// More gain wins, but hardly more gain with more numbers does not, unless those numbers are evident.
 bool better(const Answers& answers, std::size_t place, const FitResult& fit, const Winner& best, double reference,
             double evident) {
@@ -54,7 +37,7 @@ bool better(const Answers& answers, std::size_t place, const FitResult& fit, con
   const FitResult &fewer = richer ? best.fit : fit, &more = richer ? fit : best.fit;
   const bool worth =
       kAsGood * (reference - more.cost) > reference - fewer.cost ||
-      (more.cost < fewer.cost && odds_by_what_is_left(fewer, more, std::abs(numbers - others)) > evident);
+      (more.cost < fewer.cost && odds_by_what_is_left(fewer, more, std::abs(numbers - others), 1) > evident);
   return richer ? worth : !worth;
 }
 

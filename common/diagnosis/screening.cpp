@@ -249,6 +249,7 @@ Screened told(const Linearisation& base, CandidateModel& candidate, const Point&
   if (step && screened.gain > 0.0) base.step_base(candidate.residual(best.theta), screened.base);
   const double norm = screened.signature.norm();
   if (norm > 0.0) screened.signature /= norm;
+  screened.change = norm;
   return screened;
 }
 

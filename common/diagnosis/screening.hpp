@@ -21,6 +21,7 @@ struct Screened {
   double gain{};                    ///< fall of the cost
   std::vector<double> window_cost;  ///< cost per window with the candidate
   Eigen::VectorXd signature;        ///< change of all residuals that only this candidate can make; unit norm
+  double change{};                  ///< its norm
 };
 
 /// Searches the candidate's numbers from `starts`: from the best of them when there are many. Where all that

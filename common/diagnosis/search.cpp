@@ -13,6 +13,7 @@
 #include "common/diagnosis/pruning.hpp"
 #include "common/diagnosis/reconsidered.hpp"
 #include "common/diagnosis/round.hpp"
+#include "common/diagnosis/two_at_once.hpp"
 #include "common/identification/fit_from_priors.hpp"
 #include "common/identification/input_hold.hpp"
 #include "common/identification/profile.hpp"
@@ -50,6 +51,15 @@ double explained(std::span<const Judged> accepted) {
   return 1.0 - left;
 }
 
+void accept(SearchResult& result, const Two& two, const TrajectoryFit& problem) {
+  result.after = problem.reweighted(two.fit);
+  for (const Judged& judged : two.judged) {
+    result.accepted.push_back(judged);
+    result.after = at_best_moment(problem, std::move(result.after), *judged.effect, judged.variant);
+  }
+  result.after = identification::with_input_hold(problem, std::move(result.after));
+}
+
 }  // namespace
 
 SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train, const Settings& settings,
@@ -78,6 +88,13 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
     std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kMostRefits);
+    if (auto two = find_two({candidates, near, problem, result.after, trials, scene, settings, tried, progress, done},
+                            answers, winner)) {
+      accept(result, *two, problem);
+      reconsider_forms(result, problem, scene, progress, done);
+      reconsider_order(result, problem, progress, done);
+      continue;
+    }
     const double left = winner ? 1.0 : left_to_explain(problem, result.after);
     // The least that counts, as a share of the cost, which is the error's square.
     const bool something = left > 2.0 * settings.smallest_reduction;

@@ -38,6 +38,27 @@ void of_others(const Moment& at, int axis, Columns& row, const Of& columns) {
   }
 }
 
+/// Which way it goes, from -1 to 1, whatever its speed but the slowest.
+double way(double velocity, double ordinary) {
+  constexpr double kSlowest = 0.1;  // of the ordinary: noise would turn it
+  return ordinary > 0.0 ? std::tanh(velocity / (kSlowest * ordinary)) : 0.0;
+}
+
+/// What is there whichever way it goes but against it, along the axis itself and, of what reaches it through the world,
+/// from north and east.
+void add_ways(const Moment& at, int axis, Columns& row) {
+  row.push_back(way(at.nu[axis], at.nu_rms[axis]));
+  if (axis > 2) return;
+  const Eigen::Matrix3d R_WB = at.trial.q_WB[at.k].toRotationMatrix();
+  const Eigen::Vector3d v_W = R_WB * at.nu.head<3>();
+  const double ordinary = at.nu_rms.head<2>().norm();
+  const double speed = std::max(v_W.norm(), 1e-9);
+  row.push_back(at.nu[axis] / speed * way(speed, ordinary));
+  for (int along = 0; along < 2; ++along) {
+    for (int from = 0; from < 2; ++from) row.push_back(way(v_W[from], ordinary) * R_WB(along, axis));
+  }
+}
+
 constexpr std::array kSuspects{
     Suspect{"position", with_position,
             [](const Moment& at, int, Columns& row) {
@@ -95,6 +116,22 @@ constexpr std::array kSuspects{
     Suspect{"thrust a moment ago", always,
             [](const Moment& at, int axis, Columns& row) {
               add(row, {at.tau[1][axis], at.tau[2][axis]});
+            }},
+    Suspect{"the way it goes, as of dry friction", always, add_ways},
+    Suspect{"thrust times speed", always,
+            [](const Moment& at, int axis, Columns& row) {
+              const double tau = at.tau[0][axis], v = at.nu[axis];
+              add(row, {tau * v, tau * std::abs(v), tau * v * v, std::pow(v, 3), std::pow(v, 4)});
+            }},
+    Suspect{"thrust of several axes at once", always,
+            [](const Moment& at, int axis, Columns& row) {
+              const double tau = at.tau[0][axis];
+              of_others(at, axis, row, [&](int other, Columns& into) {
+                add(into, {tau * at.tau[0][other], tau * std::abs(at.tau[0][other])});
+                of_others(at, axis, into, [&](int third, Columns& of_both) {
+                  if (third > other) of_both.push_back(at.tau[0][other] * at.tau[0][third]);
+                });
+              });
             }},
     Suspect{"thrust times turning, as of a rotor's spin", always,
             [](const Moment& at, int, Columns& row) {

@@ -19,6 +19,7 @@ struct Moment {
   Vector6d nu;                  ///< m/s, rad/s; 0 along axes that are not simulated
   std::array<Vector6d, 3> tau;  ///< N, N m: applied now, and one and two residual spans ago; NaN before the run
   std::span<const bool> dof;    ///< axes that are simulated
+  Vector6d nu_rms;              ///< m/s, rad/s: over all runs
 };
 
 using Columns = std::vector<double>;

@@ -19,4 +19,10 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
   return text;
 }
 
+std::string with_number(const char* format, double value) {
+  char text[96];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
 }  // namespace fathom::diagnosis

@@ -10,4 +10,7 @@ namespace fathom::diagnosis {
 /// "a, b and c".
 [[nodiscard]] std::string joined(const std::vector<std::string>& words, const std::string& last = " and ");
 
+/// A printf format with one number in it.
+[[nodiscard]] std::string with_number(const char* format, double value);
+
 }  // namespace fathom::diagnosis

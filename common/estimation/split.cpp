@@ -45,15 +45,28 @@ Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::stri
 
 }  // namespace
 
-std::pair<Trial, Trial> split(const Trial& trial, double held_out) {
+Parts split(const Trial& trial, double held_out, Kept kept) {
+  const double before = kept == Kept::kLast ? 0.0 : kept == Kept::kEnds ? 0.5 * held_out : held_out;
+  const double behind = held_out - before;
   const auto n = static_cast<double>(trial.size());
-  const auto at = static_cast<std::size_t>(std::lround((1.0 - held_out) * n));
-  if (at < 1 || at >= trial.size()) {
+  const auto from = static_cast<std::size_t>(std::lround(before * n));
+  const auto to = static_cast<std::size_t>(std::lround((1.0 - behind) * n));
+  if (to <= from || (before > 0.0 && from < 1) || (behind > 0.0 && to >= trial.size())) {
     throw InputError(trial.name + ": too short to hold a part out; give a validation run with --validate");
   }
-  const std::string percent = std::to_string(std::lround(100.0 * held_out));
-  return {part(trial, 0, at, trial.name + " (first " + std::to_string(std::lround(100.0 * (1.0 - held_out))) + " %)"),
-          part(trial, at, trial.size(), trial.name + " (last " + percent + " %)")};
+  const auto named = [&](const char* which, double share) {
+    return trial.name + " (" + which + " " + std::to_string(std::lround(100.0 * share)) + " %)";
+  };
+  const char* fitted = kept == Kept::kLast ? "first" : kept == Kept::kEnds ? "middle" : "last";
+  Parts parts{part(trial, from, to, named(fitted, 1.0 - held_out)), {}};
+  if (before > 0.0) parts.judged.push_back(part(trial, 0, from, named("first", before)));
+  if (behind > 0.0) parts.judged.push_back(part(trial, to, trial.size(), named("last", behind)));
+  return parts;
+}
+
+std::pair<Trial, Trial> split(const Trial& trial, double held_out) {
+  Parts parts = split(trial, held_out, Kept::kLast);
+  return {std::move(parts.fitted), std::move(parts.judged.front())};
 }
 
 std::vector<Trial> known_stretches(const Trial& trial, double shortest) {

@@ -169,9 +169,16 @@ struct PredictionTrace {
 };
 
 /// Everything that the report draws.
+/// Something that begins in a run that judges.
+struct UnseenEvent {
+  std::string run;
+  double t{};  ///< s, of the run's clock
+};
+
 struct DiagnosisReport {
   DiagnosisResult result;
   std::vector<PredictionTrace> traces;  ///< validation runs
+  std::optional<UnseenEvent> unseen_event{};
 };
 
 }  // namespace fathom

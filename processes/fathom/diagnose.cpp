@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/diagnosis/diagnoser.hpp"
@@ -34,6 +36,8 @@ namespace {
 constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
 constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
 constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
+constexpr double kTooLate =
+    0.3;  // of what judges: what begins later is seen for too short a time if half of it is fitted
 constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
 
 struct Options {
@@ -101,6 +105,17 @@ struct Explained {
   DiagnosisReport report;
 };
 
+/// True when the event begins within the first `share` of the run that it begins in.
+bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double share) {
+  double first = 0.0, last = 0.0;
+  for (const Trial& run : runs) {
+    if (run.name != event.run) continue;
+    if (last == 0.0) first = run.t.front();
+    last = run.t.back();
+  }
+  return event.t < first + share * (last - first);
+}
+
 DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
@@ -139,17 +154,18 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   const auto show = [&](const std::string& what, double share) {
     progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
   };
-  const auto explain = [&](std::vector<Trial> trials, Explained& out) {
+  bool told = false;
+  const auto explain = [&](std::vector<Trial> trials, Explained& out, estimation::Kept kept) {
     const bool one_clock = estimation::share_clock(recordings, trials);
-    if (one_clock && !out.fitting)
+    if (one_clock && !std::exchange(told, true))
       notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
     out.gaps = estimation::gap_findings(trials);
     std::vector<Trial> train, validate;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       if (options.validate.empty()) {
-        auto [first, last] = estimation::split(trials[i], kHeldOut);
-        train.push_back(std::move(first));
-        validate.push_back(std::move(last));
+        estimation::Parts parts = estimation::split(trials[i], kHeldOut, kept);
+        train.push_back(std::move(parts.fitted));
+        std::ranges::move(parts.judged, std::back_inserter(validate));
       } else {
         (i < fitted_runs ? train : validate).push_back(std::move(trials[i]));
       }
@@ -163,10 +179,22 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
   }
   Explained explained;
-  explain(trials_of_recordings(), explained);
+  explain(trials_of_recordings(), explained, estimation::Kept::kLast);
   if (diagnosis::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
     estimation::put_thrusters_on_pose_clock(consistency);
-    explain(trials_of_recordings(), explained);
+    explain(trials_of_recordings(), explained, estimation::Kept::kLast);
+  }
+  if (options.validate.empty() && explained.report.unseen_event) {
+    const UnseenEvent event = *explained.report.unseen_event;
+    const bool early = begins_before(event, explained.judging->trials(), kTooLate);
+    Explained again;
+    explain(trials_of_recordings(), again, early ? estimation::Kept::kEnds : estimation::Kept::kFirst);
+    if (!again.report.result.effects.empty() && !again.report.unseen_event) {
+      notes.push_back(estimation::text("something begins at %.0f s, in what was kept to judge by: ", event.t) +
+                      (early ? "half of that was taken at either end" : "the first 30 % of every run judge") +
+                      " in its place, so that it could be fitted");
+      explained = std::move(again);
+    }
   }
   DiagnosisReport& report = explained.report;
   const Stretches &fitting = *explained.fitting, &judging = *explained.judging;

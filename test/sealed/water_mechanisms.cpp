@@ -61,14 +61,16 @@ class FluidMemory : public Sized {
  public:
   FluidMemory(const std::string& name, const Craft& craft, const Site&, Random& random)
       : Sized(name, 0.3, 8.0), time_(random.log_uniform(0.4, 4.0)) {
+    if (random.chance(0.3)) swing_ = random.uniform(0.8, 2.5) / time_;
     const int only = random.chance(0.5) ? draw_axis(craft, random) : -1;
     for (int i = 0; i < 6; ++i) {
       if (!craft.actuated[static_cast<std::size_t>(i)] || (only >= 0 && i != only)) continue;
       weight_[i] = usual_drag(craft)[i] / craft.pace[i];
     }
   }
-  [[nodiscard]] int memory() const override { return 6; }
+  [[nodiscard]] int memory() const override { return swing_ > 0.0 ? 12 : 6; }
   void body(const Instant& at, std::span<const double> z, std::span<double> rate, Terms& terms) const override {
+    if (swing_ > 0.0) return swing(at, z, rate, terms);
     // The integral is nu minus its own low pass y, T y_dot = nu - y.
     for (int i = 0; i < 6; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -76,10 +78,25 @@ class FluidMemory : public Sized {
       terms.wrench[i] -= size() * weight_[i] * (at.nu_r[i] - z[k]);
     }
   }
-  [[nodiscard]] Numbers parameters() const override { return {{"T_memory", time_}, {"factor", size()}}; }
+  [[nodiscard]] Numbers parameters() const override {
+    Numbers numbers{{"T_memory", time_}, {"factor", size()}};
+    if (swing_ > 0.0) numbers["omega"] = swing_;
+    return numbers;
+  }
 
  private:
-  double time_;
+  /// Waves that come back: the kernel exp(-t/T) cos(omega t), as an oscillator that the motion drives.
+  void swing(const Instant& at, std::span<const double> z, std::span<double> rate, Terms& terms) const {
+    for (int i = 0; i < 6; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double x = z[k], v = z[6 + k], decay = 1.0 / time_;
+      rate[k] = v;
+      rate[6 + k] = at.nu_r[i] - 2.0 * decay * v - (decay * decay + swing_ * swing_) * x;
+      terms.wrench[i] -= size() * weight_[i] * decay * (v + decay * x);
+    }
+  }
+
+  double time_, swing_{};
   Vector6 weight_{Vector6::Zero()};
 };
 

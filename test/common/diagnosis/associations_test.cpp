@@ -206,6 +206,8 @@ TEST_CASE("associations: what is put in is named, in noise with a memory, and wi
       {"thrust a moment ago", [](const Trial& t, std::size_t k) { return k < 14 ? 0.0 : 0.2 * t.input[k - 14][0]; }},
       {"heading and time, like a force in the world that changes slowly",
        [](const Trial& t, std::size_t k) { return 12.0 * std::cos(heading(t, k)) * std::sin(0.06 * t.t[k] + 1.0); }},
+      {"heading and time, like a force in the world that swings with 0.014",
+       [](const Trial& t, std::size_t k) { return 3.0 * std::cos(heading(t, k) - 0.09 * t.t[k]); }},
       {"time, swinging slowly", [](const Trial& t, std::size_t k) { return 4.0 * std::sin(0.06 * t.t[k]); }},
       {"time, as a drift", [](const Trial& t, std::size_t k) { return 0.03 * t.t[k]; }},
       {"time, as thrust or drag that changes",
@@ -228,6 +230,22 @@ TEST_CASE("associations: what is put in is named, in noise with a memory, and wi
   REQUIRE_FALSE(left.empty());
   CHECK(left.front().with == "position");
   CHECK(left.front().share == doctest::Approx(8.0 / 9.0).epsilon(0.1));  // variances 4^2 / 2 of it, 1 of the noise
+}
+
+TEST_CASE("associations: what acts against the way it goes, and thrust that grows with speed") {
+  const auto friction = [](const Trial& t, std::size_t k) { return t.nu[k][0] > 0.0 ? -5.0 : 5.0; };
+  CHECK(among(Dive{7, 0.5, 0.0, friction, 60.0}.left(), "the way it goes, as of dry friction"));
+  const auto gains = [](const Trial& t, std::size_t k) { return 0.02 * t.input[k][0] * std::abs(t.nu[k][0]); };
+  CHECK(among(Dive{7, 0.5, 0.0, gains, 60.0}.left(), "thrust times speed"));
+}
+
+TEST_CASE("associations: thrusters that take each other's water") {
+  Tumble tumble{5, 600};
+  for (std::size_t k = 0; k < tumble.trials[0].size(); ++k) {
+    const Eigen::VectorXd& tau = tumble.trials[0].input[k];
+    tumble.residuals[0][k][0] += 1.5 * tau[0] * std::abs(tau[2]);
+  }
+  CHECK(among(tumble.left(), "thrust of several axes at once"));
 }
 
 TEST_CASE("associations: thrust that is lost now and then comes in bursts, whose size goes with thrust") {

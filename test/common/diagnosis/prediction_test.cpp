@@ -135,7 +135,7 @@ TEST_CASE("prediction: what was cut out of a longer run is predicted from where 
   const test::VirtualDive dive =
       test::make_dive(vehicle, {.duration = 160.0,
                                 .seed = 5,
-                                .effects = {test::active("fluid_memory", {30.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0}, 0)}});
+                                .effects = {test::active("fluid_memory", {30.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 0.0}, 0)}});
   const Trial cut = estimation::split(dive.trial, 0.7).second;
   CHECK(lead_of(dive.truth) == doctest::Approx(24.0));
   const auto all = prediction_windows({&cut, 1}), late = prediction_windows({&cut, 1}, lead_of(dive.truth));

@@ -5,6 +5,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <tuple>
+
+#include "common/base/error.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -26,6 +29,29 @@ Trial torn() {
 }
 
 }  // namespace
+
+TEST_CASE("split: what judges is the end, both ends or the beginning, and nothing is in two parts") {
+  const Trial run = torn();
+  for (const auto& [kept, from, to] :
+       {std::tuple{Kept::kLast, 0, 70}, {Kept::kEnds, 15, 85}, {Kept::kFirst, 30, 100}}) {
+    const Parts parts = split(run, 0.3, kept);
+    CHECK(parts.fitted.nu.front()[0] == from);
+    CHECK(parts.fitted.nu.back()[0] == to - 1);
+    std::size_t judged = 0;
+    for (const Trial& part : parts.judged) {
+      judged += part.size();
+      CHECK((part.t.back() < parts.fitted.t.front() || part.t.front() > parts.fitted.t.back()));
+      CHECK(part.held.size() == 2 * part.size());
+    }
+    CHECK(judged == 30);
+  }
+  CHECK(split(run, 0.3, Kept::kEnds).fitted.name == "dive (middle 70 %)");
+  CHECK(split(run, 0.3, Kept::kEnds).judged[1].name == "dive (last 15 %)");
+  CHECK(split(run, 0.3, Kept::kFirst).judged[0].name == "dive (first 30 %)");
+  Trial two = run;
+  two.t.resize(2);
+  CHECK_THROWS_AS((void)split(two, 0.3, Kept::kEnds), InputError);
+}
 
 TEST_CASE("known stretches: each is a trial under the run's name, and what is too short is left out") {
   const std::vector<Trial> known = known_stretches(torn(), 2.0);

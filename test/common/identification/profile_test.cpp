@@ -41,7 +41,7 @@ Profiled profiled(const model::Vehicle& vehicle, const test::DiveSettings& setti
 TEST_CASE("profile: where the cost is a parabola it ends where the standard deviation says") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   test::DiveSettings settings{.duration = 120.0, .seed = 4};
-  settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}, 0)};
+  settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}, 0)};
   const auto [fit, memory] = profiled(vehicle, settings, "fluid_memory.time_constant");
   CHECK(fit.t95() > kNormal95);
   const std::vector<NamedValue> all = fit.parameters();
@@ -60,7 +60,7 @@ TEST_CASE("profile: where the cost is a parabola it ends where the standard devi
 TEST_CASE("profile: a time constant that the data hardly shows may be far longer, not far shorter") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   test::DiveSettings settings{.duration = 120.0, .seed = 4, .velocity_noise = 0.06, .rate_noise = 0.06};
-  settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0}, 0)};
+  settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 0.0}, 0)};
   const auto [fit, memory] = profiled(vehicle, settings, "fluid_memory.time_constant");
   const auto [low, high] = memory.range95();
   CHECK(high - memory.value > 1.25 * (memory.value - low));
@@ -73,7 +73,7 @@ TEST_CASE("profile: holds the truth as often as it says") {
   double widths = 0.0;  // over what the standard deviation says
   for (unsigned seed = 1; seed <= dives; ++seed) {
     test::DiveSettings settings{.duration = 90.0, .seed = seed, .velocity_noise = 0.015, .rate_noise = 0.015};
-    settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0}, 0)};
+    settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0}, 0)};
     const auto [fit, memory] = profiled(vehicle, settings, "fluid_memory.time_constant");
     const auto [low, high] = memory.range95();
     held += low <= 2.0 && high >= 2.0 ? 1 : 0;
@@ -92,7 +92,7 @@ TEST_CASE("profile: a number that a bound stops neither widens nor narrows the i
     if (vehicle.parameters[i] == "X_u") vehicle.priors[i].mean = 0.0;
   }
   test::DiveSettings settings{.duration = 120.0, .seed = 6};
-  settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}, 0)};
+  settings.effects = {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}, 0)};
   const auto [fit, memory] = profiled(vehicle, settings, "fluid_memory.time_constant");
   const auto [low, high] = memory.range95();
   const std::vector<NamedValue> all = fit.parameters();

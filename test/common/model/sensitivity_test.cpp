@@ -124,7 +124,8 @@ TEST_CASE("sensitivity: six axes, with nothing and with each kind of effect") {
   check(vehicle, {test::active("tether_drag", {4.0, 1.5, 0.5, 0.0}, 16)}, 91);
   check(vehicle, {test::active("thruster_lag", {0.25}, 2), test::active("thruster_delay", {0.1, 0.2}, 1)}, 89);
   check(vehicle, {test::active("centre_of_mass", {0.05, -0.03, 0.02}, 7)}, 85);
-  check(vehicle, {test::active("fluid_memory", {20.0, 30.0, 30.0, 2.0, 2.0, 2.0, 1.5}, 6 + 63)}, 90);
+  check(vehicle, {test::active("fluid_memory", {20.0, 30.0, 30.0, 2.0, 2.0, 2.0, 1.5, 0.0}, 6 + 63)}, 90);
+  check(vehicle, {test::active("fluid_memory", {20.0, 30.0, 30.0, 2.0, 2.0, 2.0, 1.5, 0.9}, 70 + 6 + 63)}, 92);
 }
 
 TEST_CASE("sensitivity: where a boundary makes the hull's drag several times as large, its numbers count as often") {
@@ -151,7 +152,7 @@ TEST_CASE("sensitivity: four axes with the tilt as measured") {
   check(vehicle, {test::active("thruster_lag", {0.25}), test::active("thruster_delay", {0.15})}, 80, kAgreement, kTilt);
   check(vehicle, {added_inertia(vehicle)}, 81, kAgreement, kTilt);
   check(vehicle, {test::active("centre_of_mass", {0.05, -0.03, 0.0}, 3)}, 86, kAgreement, kTilt);
-  check(vehicle, {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}, 0)}, 91, kAgreement, kTilt);
+  check(vehicle, {test::active("fluid_memory", {12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}, 0)}, 91, kAgreement, kTilt);
 }
 
 TEST_CASE("sensitivity: a trajectory that diverges hands out nothing, and nothing that is not a number") {

@@ -199,7 +199,7 @@ TEST_CASE("cross_coupling: covers every pair that a symmetric hull has, and what
 
 TEST_CASE("fluid_memory: the memory is exact for constant motion, whatever the step") {
   const model::Effect& effect = *model::find_effect("fluid_memory");
-  const std::vector<double> theta{99.0, 10.0, 0.0, 0.0, 0.0, 0.0, 2.0};
+  const std::vector<double> theta{99.0, 10.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0};
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   model::Motion motion;
   motion.vehicle = &vehicle;
@@ -236,7 +236,7 @@ TEST_CASE("fluid_memory: on all axes that move each has its own strength") {
   motion.vehicle = &vehicle;
   motion.nu.setConstant(0.7);
   std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 6)), 0.0);
-  const std::vector<double> theta{10.0, 5.0, 30.0, 5.0, 5.0, 1.0, 2.0};
+  const std::vector<double> theta{10.0, 5.0, 30.0, 5.0, 5.0, 1.0, 2.0, 0.0};
   effect.settle(motion, theta, 0, z);
   effect.feel(motion, theta, variant, z);
   CHECK((motion.w_memory + 0.7 * Vector6d{10.0, 0.0, 30.0, 0.0, 0.0, 1.0}).norm() < 1e-12);
@@ -245,11 +245,51 @@ TEST_CASE("fluid_memory: on all axes that move each has its own strength") {
   CHECK_FALSE(std::ranges::count(effect.variants({.vehicle = &vehicle}), "all axes") > 0);  // one axis: its own form
 }
 
+TEST_CASE("fluid_memory: swinging, it is the motion folded with exp(-t/T) cos(omega t) / T, whatever the step") {
+  const model::Effect& effect = *model::find_effect("fluid_memory");
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const auto names = effect.variants({.vehicle = &vehicle});
+  const auto form = std::ranges::find(names, "v, swinging");
+  REQUIRE(form != names.end());
+  const auto variant = static_cast<int>(form - names.begin());
+  CHECK(effect.numbers(variant) == 3);
+  CHECK(effect.rules_out(variant, 1));
+  CHECK_FALSE(effect.rules_out(variant, 0));
+  constexpr double kT = 1.7, kOmega = 1.3, kK = 10.0;
+  const std::vector<double> theta{99.0, kK, 0.0, 0.0, 0.0, 0.0, kT, kOmega};
+  model::Motion motion;
+  motion.vehicle = &vehicle;
+  // At rest, then one m/s for good: the integral of the kernel from 0 to t.
+  const auto folded = [&](double t) {
+    const double a = 1.0 / kT, e = std::exp(-a * t);
+    const double whole = a / (a * a + kOmega * kOmega);
+    return a * (whole + e * (kOmega * std::sin(kOmega * t) - a * std::cos(kOmega * t)) / (a * a + kOmega * kOmega));
+  };
+  for (const double dt : {0.01, 0.4, 3.0}) {
+    std::vector<double> z(static_cast<std::size_t>(effect.state_size(vehicle, 4)), 0.0);
+    motion.nu.setZero();
+    effect.settle(motion, theta, variant, z);
+    motion.nu.setConstant(1.0);
+    effect.advance(motion, theta, variant, 1e-12, z);  // the step of velocity happens at once
+    for (int i = 1; i <= 10; ++i) {
+      effect.advance(motion, theta, variant, dt, z);
+      CHECK(z[1] == doctest::Approx(folded(i * dt)).epsilon(1e-9));
+    }
+    std::vector<double> settled(z.size(), 0.0);
+    effect.settle(motion, theta, variant, settled);
+    CHECK(settled[1] == doctest::Approx(folded(1e3)).epsilon(1e-9));
+    model::Motion felt = motion;
+    effect.feel(felt, theta, variant, z);
+    CHECK(felt.w_memory[1] == doctest::Approx(-kK * z[1]));
+    CHECK(felt.w_memory[0] == 0.0);
+  }
+}
+
 TEST_CASE("fluid_memory: follows a sine late and smaller, and takes energy") {
   // In a rollout: m u_dot = tau - k z. For u = sin(w t): z lags by atan(w T) and shrinks by 1 / sqrt(1 + w^2 T^2).
   constexpr double kOmega = 1.0, kT = 2.0, kK = 10.0;
   Bare bare{{true, false, false, false, false, false}};
-  bare.model.add(test::active("fluid_memory", {kK, 0.0, 0.0, 0.0, 0.0, 0.0, kT}, 0));
+  bare.model.add(test::active("fluid_memory", {kK, 0.0, 0.0, 0.0, 0.0, 0.0, kT, 0.0}, 0));
   const double gain = 1.0 / std::sqrt(1.0 + kOmega * kOmega * kT * kT), late = std::atan(kOmega * kT);
   const Trial trial = bare.run(60.0, [&](double t) {
     return along(0, 20.0 * kOmega * std::cos(kOmega * t) + kK * gain * std::sin(kOmega * t - late));

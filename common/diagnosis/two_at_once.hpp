@@ -1,0 +1,35 @@
+// Two effects that are found together or not at all: each is judged beside the other, as if that had been found first.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "common/diagnosis/round.hpp"
+
+namespace fathom::diagnosis {
+
+struct Two {
+  std::array<Judged, 2> judged;
+  identification::FitResult fit;
+};
+
+/// What a search hands to it; all of it must outlive the call.
+struct TwoAtOnce {
+  std::span<const Candidate> candidates;
+  NearView& near;  ///< left at another model's fit
+  const identification::TrajectoryFit& problem;
+  const identification::FitResult& reference;  ///< the model that lacks them
+  std::span<const Trial> trials;
+  const model::Scene& scene;
+  const Settings& settings;
+  int tried{};
+  const Progress& progress;
+  double done{};
+};
+
+/// Two effects that explain far more together than anything alone. `alone`: the fit with what was found alone, where
+/// something was.
+[[nodiscard]] std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers,
+                                          const std::optional<Winner>& alone);
+
+}  // namespace fathom::diagnosis
