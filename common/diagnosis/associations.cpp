@@ -18,7 +18,8 @@ using identification::LagSums;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::size_t kInTime = 5;  // questions besides the suspects: step, swing, oscillation, bursts, event
+constexpr std::size_t kBesides =
+    6;  // questions besides the suspects: thrusters, step, swing, oscillation, bursts, event
 
 /// m/s, rad/s: what is ordinary in these runs (RMS).
 Vector6d ordinary_speeds(std::span<const Trial> trials) {
@@ -61,7 +62,7 @@ LeftOver::LeftOver(const model::Model& model, std::span<const Trial> trials,
     if (!run.at.empty()) runs_.push_back(std::move(run));
   }
   const auto axes = static_cast<double>(std::ranges::count(model.vehicle->dof, true));
-  tried_ = axes * static_cast<double>(suspects().size() + kInTime);
+  tried_ = axes * static_cast<double>(suspects().size() + kBesides);
 }
 
 std::vector<Eigen::MatrixXd> LeftOver::rows(int axis, bool (*seen)(const Trial&), const Asked& asked) const {
@@ -179,6 +180,7 @@ std::vector<Association> LeftOver::associations(double share, double log_odds, d
   for (int axis = 0; axis < 6; ++axis) {
     if (!model_.vehicle->dof[static_cast<std::size_t>(axis)]) continue;
     std::vector<Association> of_axis = of_suspects(axis);
+    of_axis.push_back(of_thrusters(axis));
     of_axis.push_back(step(axis));
     of_axis.push_back(swing(axis));
     of_axis.push_back(oscillation(axis));

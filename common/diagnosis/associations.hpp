@@ -49,6 +49,8 @@ class LeftOver {
                               double hidden) const;
   [[nodiscard]] Answer answer(int axis, bool (*seen)(const Trial&), const Asked& asked) const;
   [[nodiscard]] std::vector<Association> of_suspects(int axis) const;
+  /// The thruster, or the two together, whose force the residual goes with.
+  [[nodiscard]] Association of_thrusters(int axis) const;
   [[nodiscard]] Association step(int axis) const;
   /// What swings slowly in the world, in whatever direction: a few cycles in a run.
   [[nodiscard]] Association swing(int axis) const;

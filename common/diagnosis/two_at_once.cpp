@@ -54,6 +54,7 @@ double odds_together(const TwoAtOnce& with, const FitResult& fit, const Judged& 
 /// The least share (RMS) that is left of the error along an axis.
 double least_left(const FitResult& before, const FitResult& after) {
   double least = 1.0;
+  if (before.window_square.size() != after.window_square.size()) return least;
   for (std::size_t axis = 0; axis < 6; ++axis) {
     double was = 0.0, is = 0.0;
     for (std::size_t w = 0; w < after.window_square.size(); ++w) {
@@ -102,6 +103,16 @@ std::optional<Winner> judge_beside_other(const TwoAtOnce& with, const FitResult&
   return winner;
 }
 
+std::optional<Two> judge_both(const TwoAtOnce& with, const FitResult& fit, const Judged& one, const Judged& other) {
+  Two two;
+  const std::optional<Winner> first = judge_beside_other(with, fit, one, two.judged[0]);
+  if (!first) return {};
+  std::optional<Winner> second = judge_beside_other(with, first->fit, other, two.judged[1]);
+  if (!second || same(two.judged[0], two.judged[1].effect, two.judged[1].variant)) return {};
+  two.fit = std::move(second->fit);
+  return two;
+}
+
 }  // namespace
 
 std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, const std::optional<Winner>& alone) {
@@ -127,14 +138,10 @@ std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, const
   if (fitted.empty()) return {};
   Fitted& best = *std::ranges::min_element(fitted, {}, [](const Fitted& one) { return one.fit.cost; });
   best.fit = with.problem.reweighted(std::move(best.fit));  // beside what neither explains each would hardly count
-  Two two;
-  std::optional<Winner> first =
-      judge_beside_other(with, best.fit, judged_of(answers.near[best.pair.first]), two.judged[0]);
-  if (!first) return {};
-  std::optional<Winner> second =
-      judge_beside_other(with, first->fit, judged_of(answers.near[best.pair.second]), two.judged[1]);
-  if (!second || same(two.judged[0], two.judged[1].effect, two.judged[1].variant)) return {};
-  two.fit = std::move(second->fit);
+  const FitResult asked = with.near.reference;
+  std::optional<Two> two =
+      judge_both(with, best.fit, judged_of(answers.near[best.pair.first]), judged_of(answers.near[best.pair.second]));
+  with.near.reference = asked;
   return two;
 }
 

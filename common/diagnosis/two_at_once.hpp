@@ -16,7 +16,7 @@ struct Two {
 /// What a search hands to it; all of it must outlive the call.
 struct TwoAtOnce {
   std::span<const Candidate> candidates;
-  NearView& near;  ///< left at another model's fit
+  NearView& near;
   const identification::TrajectoryFit& problem;
   const identification::FitResult& reference;  ///< the model that lacks them
   std::span<const Trial> trials;

@@ -4,142 +4,11 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <random>
-
-#include "common/diagnosis/force_residual.hpp"
+#include "test/common/diagnosis/made_up_runs.hpp"
 #include "test/support/timing.hpp"
 
 using namespace fathom;
 using namespace fathom::diagnosis;
-
-namespace {
-
-constexpr double kDt = 0.05;          // s
-constexpr std::size_t kCount = 6600;  // samples
-constexpr double kShare = 0.1, kOdds = 5.0;
-constexpr double kTumbleDt = 0.2;           // s
-constexpr std::size_t kTumbleSamples = 60;  // that do not overlap
-
-model::Vehicle one_axis() {
-  model::Vehicle vehicle;
-  vehicle.dof[0] = true;
-  return vehicle;
-}
-
-/// A craft of 10 kg that surges, turning slowly; `memory`: of the noise, s; `answer`: of a pilot to its speed,
-/// N/(m/s); `effort`: what is wanted of the thrusters, N (RMS). What the model lacks is noise of 1 N, and the
-/// structure.
-struct Dive {
-  model::Vehicle vehicle = one_axis();
-  model::Model model = model::nominal_model(vehicle, true);
-  std::vector<Trial> trials{1};
-  std::vector<std::vector<Vector6d>> residuals{1};
-
-  using Structure = std::function<double(const Trial&, std::size_t)>;
-  explicit Dive(unsigned seed, double memory = 0.0, double answer = 0.0, const Structure& structure = {},
-                double effort = 20.0, std::size_t count = kCount) {
-    model.theta[model::index(*model::parameter_from_name("m_X"))] = 10.0;
-    model.theta[model::index(*model::parameter_from_name("X_u"))] = -8.0;
-    std::mt19937 random{seed};
-    std::normal_distribution<double> normal;
-    Trial& trial = trials[0];
-    trial.name = "dive";
-    trial.dt = kDt;
-    trial.observed = {true, true, true, true};
-    const double keep = memory > 0.0 ? std::exp(-kDt / memory) : 0.0;
-    double noise = 0.0, u = 0.0, x = 0.0, wanted = 0.0;
-    std::vector<double> sum{0.0};  // of what the model lacks
-    for (std::size_t k = 0; k < count; ++k) {
-      const double t = kDt * static_cast<double>(k);
-      if (k % 80 == 0) wanted = effort * normal(random);
-      noise = keep * noise + std::sqrt(1.0 - keep * keep) * normal(random);
-      trial.t.push_back(t);
-      trial.p_WB.emplace_back(x, std::sin(0.11 * t), 2.0 + 0.5 * std::sin(0.07 * t));
-      trial.q_WB.emplace_back(Eigen::AngleAxisd(0.05 * t + std::sin(0.2 * t), Eigen::Vector3d::UnitZ()));
-      trial.nu.emplace_back(u * Vector6d::Unit(0));
-      trial.pose_valid.push_back(1);
-      trial.velocity_valid.push_back(1);
-      trial.rates_valid.push_back(1);
-      trial.input.emplace_back(Eigen::VectorXd::Unit(6, 0) * (wanted - answer * u - 0.5 * x));
-      const double lacking = noise + (structure ? structure(trial, k) : 0.0);
-      sum.push_back(sum.back() + lacking);
-      u += kDt / 10.0 * (trial.input.back()[0] - 8.0 * u + lacking);
-      x += kDt * u;
-    }
-    const std::size_t span = residual_span(kDt), half = span / 2;  // a residual is a mean
-    residuals[0].assign(count, Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()));
-    for (std::size_t k = half; k + half < count; ++k)
-      residuals[0][k] = (sum[k + half + 1] - sum[k - half]) / static_cast<double>(span) * Vector6d::Unit(0);
-  }
-  [[nodiscard]] std::vector<Association> left(double of_wrench = 0.0) const {
-    return LeftOver{model, trials, residuals}.associations(kShare, kOdds, of_wrench);
-  }
-};
-
-/// A craft that moves along and about all axes for as short a time as lets a thrust be asked, beside noise without a
-/// memory.
-struct Tumble {
-  model::Vehicle vehicle;
-  model::Model model;
-  std::vector<Trial> trials{1};
-  std::vector<std::vector<Vector6d>> residuals{1};
-
-  explicit Tumble(unsigned seed, std::size_t samples = kTumbleSamples) {
-    vehicle.dof.fill(true);
-    model = model::nominal_model(vehicle, true);
-    constexpr double kMemory = 2.0;  // s, of its speeds
-    const double keep = std::exp(-kTumbleDt / kMemory);
-    const std::size_t span = residual_span(kTumbleDt);
-    const std::size_t count = samples * span;
-    std::mt19937 random{seed};
-    std::normal_distribution<double> normal;
-    const auto drawn = [&] { return Vector6d{Vector6d::NullaryExpr([&] { return normal(random); })}; };
-    Trial& trial = trials[0];
-    trial.name = "tumble";
-    trial.dt = kTumbleDt;
-    trial.observed = {true, true, true, true};
-    Vector6d nu = drawn(), tau = drawn();
-    for (std::size_t k = 0; k < count; ++k) {
-      const double t = kTumbleDt * static_cast<double>(k);
-      if (k % 10 == 0) tau = drawn();
-      nu = keep * nu + std::sqrt(1.0 - keep * keep) * drawn();
-      trial.t.push_back(t);
-      trial.p_WB.emplace_back(std::sin(0.3 * t), std::sin(0.11 * t), 2.0 + 0.5 * std::sin(0.2 * t));
-      trial.q_WB.emplace_back(Eigen::AngleAxisd(0.2 * t, Eigen::Vector3d::UnitZ()));
-      trial.nu.push_back(nu);
-      trial.pose_valid.push_back(1);
-      trial.velocity_valid.push_back(1);
-      trial.rates_valid.push_back(1);
-      trial.input.emplace_back(tau);
-      if (k % span == 0) residuals[0].resize(k + span, drawn());  // a residual is a mean
-    }
-    residuals[0].resize(count);
-  }
-  [[nodiscard]] std::vector<Association> left() const {
-    return LeftOver{model, trials, residuals}.associations(kShare, kOdds, 0.0);
-  }
-};
-
-double heading(const Trial& trial, std::size_t k) { return euler_from_rotation(trial.q_WB[k].toRotationMatrix()).z(); }
-
-/// Three seconds in about fifteen, at moments without a period.
-bool episode(double t) {
-  const double n = std::floor(t / 15.0);
-  const double begin = 15.0 * n + 12.0 * (0.5 + 0.5 * std::sin(2.4 * n * n));
-  return t >= begin && t < begin + 3.0;
-}
-
-bool among(const std::vector<Association>& left, const std::string& with) {
-  return std::ranges::any_of(left, [&](const Association& a) { return a.with.starts_with(with); });
-}
-
-}  // namespace
 
 TEST_CASE("associations: noise goes with nothing, whatever its memory and however a pilot answers it") {
   int found = 0;
@@ -230,22 +99,6 @@ TEST_CASE("associations: what is put in is named, in noise with a memory, and wi
   REQUIRE_FALSE(left.empty());
   CHECK(left.front().with == "position");
   CHECK(left.front().share == doctest::Approx(8.0 / 9.0).epsilon(0.1));  // variances 4^2 / 2 of it, 1 of the noise
-}
-
-TEST_CASE("associations: what acts against the way it goes, and thrust that grows with speed") {
-  const auto friction = [](const Trial& t, std::size_t k) { return t.nu[k][0] > 0.0 ? -5.0 : 5.0; };
-  CHECK(among(Dive{7, 0.5, 0.0, friction, 60.0}.left(), "the way it goes, as of dry friction"));
-  const auto gains = [](const Trial& t, std::size_t k) { return 0.02 * t.input[k][0] * std::abs(t.nu[k][0]); };
-  CHECK(among(Dive{7, 0.5, 0.0, gains, 60.0}.left(), "thrust times speed"));
-}
-
-TEST_CASE("associations: thrusters that take each other's water") {
-  Tumble tumble{5, 600};
-  for (std::size_t k = 0; k < tumble.trials[0].size(); ++k) {
-    const Eigen::VectorXd& tau = tumble.trials[0].input[k];
-    tumble.residuals[0][k][0] += 1.5 * tau[0] * std::abs(tau[2]);
-  }
-  CHECK(among(tumble.left(), "thrust of several axes at once"));
 }
 
 TEST_CASE("associations: thrust that is lost now and then comes in bursts, whose size goes with thrust") {
