@@ -13,6 +13,7 @@
 #include "common/tables/writer.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
+#include "test/support/timing.hpp"
 #include "test/support/virtual_dive.hpp"
 
 namespace fathom {
@@ -164,6 +165,35 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   CHECK(held.says("last 30 %"));
   const auto other = nlohmann::json::parse(test::read_bytes(scratch.path("held/result.json")));
   CHECK(other.at("validate").at(0) == "run1 (last 30 %)");
+}
+
+TEST_CASE("fathom: what begins in the last 30 % of a run is fitted too, and other parts judge") {
+  if (!test::kTimed) return;
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
+  const std::string common = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train ";
+  const auto diagnosed = [&](double onset) {
+    const auto dive = test::make_dive(vehicle, {.duration = 200.0,
+                                                .seed = 7,
+                                                .wrench = true,
+                                                .effects = {test::active("payload_change", {30.0, 0.0, onset})}});
+    tables::write_file(scratch.path("run.csv"), tables::to_csv(dive.trial));
+    const Ran ran = shell(common + scratch.path("run.csv") + " --out " + scratch.path("out"));
+    REQUIRE_MESSAGE(ran.code == 0, ran.text);
+    return std::pair{ran, nlohmann::json::parse(test::read_bytes(scratch.path("out/result.json")))};
+  };
+  for (const auto& [onset, judging] : {std::pair{150.0, "run (first 15 %)"}, {175.0, "run (first 30 %)"}}) {
+    CAPTURE(onset);
+    const auto [ran, result] = diagnosed(onset);
+    CHECK(ran.says("note: something begins at 1"));
+    CHECK(result.at("validate").at(0) == judging);
+    REQUIRE_FALSE(result.at("effects").empty());
+    CHECK(result.at("effects").at(0).at("name") == "payload_change");
+    const double found = result.at("effects").at(0).at("parameters").at("onset").at("value");
+    CHECK(found == doctest::Approx(onset).epsilon(0.01));
+  }
+  CHECK(diagnosed(100.0).second.at("validate").at(0) == "run (last 30 %)");  // nothing begins there
 }
 
 TEST_CASE("fathom: which file is named first changes nothing") {
