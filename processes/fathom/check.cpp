@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/estimation/consistency.hpp"
 #include "common/estimation/corrections_file.hpp"
+#include "common/estimation/dead_axes.hpp"
 #include "common/estimation/flow_check.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
@@ -41,7 +42,9 @@ void run(const Options& options) {
   std::vector<std::string> notes;
   std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  const std::vector<ConsistencyFinding> dead = estimation::set_aside_dead_axes(recordings, vehicle.dof);
   estimation::ConsistencyResult result = estimation::check_consistency(recordings);
+  result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
   estimation::check_thrusters(recordings, vehicle, result);
   if (!options.site.empty()) {
     estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), result);

@@ -14,6 +14,7 @@
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/diagnosis/force_unit.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
+#include "common/estimation/dead_axes.hpp"
 #include "common/estimation/flow_check.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
@@ -134,7 +135,9 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   }
 
   progress.show("comparing the sensors with each other", kReadShare);
+  const std::vector<ConsistencyFinding> dead = estimation::set_aside_dead_axes(recordings, vehicle.dof);
   estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);
+  consistency.findings.insert(consistency.findings.begin(), dead.begin(), dead.end());
   estimation::check_thrusters(recordings, vehicle, consistency);
   if (!options.site.empty()) {
     estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
