@@ -43,7 +43,8 @@ std::vector<Pair> promising_pairs(const Answers& answers, std::size_t most) {
   const auto n = static_cast<Eigen::Index>(answers.near.size());
   Eigen::MatrixXd changes(answers.unexplained.size(), n);
   for (Eigen::Index i = 0; i < n; ++i) changes.col(i) = answers.near[static_cast<std::size_t>(i)].signature;
-  const Eigen::MatrixXd products = changes.transpose() * changes;
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n);  // of i <= j
+  products.selfadjointView<Eigen::Upper>().rankUpdate(changes.transpose());
   const Eigen::VectorXd with = -changes.transpose() * answers.unexplained;
   std::vector<Pair> pairs;
   for (Eigen::Index i = 0; i < n; ++i) {

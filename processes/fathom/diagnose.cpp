@@ -239,7 +239,9 @@ void add_diagnose(CLI::App& app) {
   CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
-  command->add_option("--validate", options->validate, "files to judge by; without: the last 30 % of every run");
+  command->add_option(
+      "--validate", options->validate,
+      "files to judge by; without: the last 30 % of every run, or other parts when something begins there");
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--site", options->site,
                       "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "
