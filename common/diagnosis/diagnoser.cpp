@@ -65,13 +65,19 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
   return names;
 }
 
+/// At the rate at which the others are judged.
+std::vector<Trial> fitted_as_judged(std::span<const Trial> train) {
+  std::vector<Trial> fitted;
+  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  return fitted;
+}
+
 /// What is left in the runs that were fitted, and in those that were not: what a model lacks shows in either, and
 /// something that grows with a run's time need not be the same in both. A free curve is believed when a residual goes
 /// with what it runs over, for noise with a memory goes a little with any curve; unless it took an effect's place.
 std::vector<Association> left_in(std::span<const Trial> train, std::span<const Trial> unseen, SearchResult& found,
                                  const model::Model& learnt, const model::Vehicle& vehicle, const Settings& settings) {
-  std::vector<Trial> fitted;
-  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  const std::vector<Trial> fitted = fitted_as_judged(train);
   const model::Model& model = found.after.model;
   const std::vector<NamedValue> numbers = found.after.parameters();
   const LeftOver in_fitted{learnt, fitted, residuals_unbent(learnt, fitted, numbers)};
@@ -95,13 +101,6 @@ std::vector<Association> left_in(std::span<const Trial> train, std::span<const T
   }
   std::ranges::stable_sort(left, std::greater{}, &Association::share);
   return left;
-}
-
-std::optional<UnseenEvent> began_unseen(std::span<const Trial> train, std::span<const Trial> unseen,
-                                        const model::Model& model) {
-  std::vector<Trial> fitted;
-  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
-  return unseen_event(fitted, residuals_of(model, fitted), unseen, residuals_of(model, unseen));
 }
 
 double length_of(std::span<const Trial> trials) {
@@ -217,9 +216,7 @@ std::optional<WiringFault> wrongly_wired(const model::Vehicle& vehicle, std::spa
                                          const Progress& progress) {
   if (astray(residual).empty()) return {};
   progress("asking whether thrusters are wired as filed", 0.98);
-  std::vector<Trial> fitted;
-  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
-  return wiring_fault(vehicle, fitted, settings.fit);
+  return wiring_fault(vehicle, fitted_as_judged(train), settings.fit);
 }
 
 }  // namespace
@@ -241,7 +238,9 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   Predictions before = predict(found.before.model, windows);
   Predictions after = predict(found.after.model, windows);
   model::Model learnt = found.after.model;
-  report.unseen_event = began_unseen(train, unseen, learnt);
+  report.unseen_event = unseen_event(learnt, fitted_as_judged(train), unseen);
+  if (!report.unseen_event && begins_too_late(found, settings))
+    report.unseen_event = {unseen.front().name, unseen.front().t.front()};
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
   if (!found.accepted.empty() && judged &&
       !carries_over(found, improvement(before, after, vehicle),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/diagnosis/force_residual.hpp"
+#include "common/model/onset.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -88,6 +89,23 @@ std::optional<UnseenEvent> unseen_event(std::span<const Trial> fitted_runs,
     }
   }
   return found;
+}
+
+std::optional<UnseenEvent> unseen_event(const model::Model& model, std::span<const Trial> fitted,
+                                        std::span<const Trial> unseen) {
+  std::vector<std::vector<Vector6d>> of_fitted, of_unseen;
+  for (const Trial& run : fitted) of_fitted.push_back(wrench_residuals(model, run));
+  for (const Trial& run : unseen) of_unseen.push_back(wrench_residuals(model, run));
+  return unseen_event(fitted, of_fitted, unseen, of_unseen);
+}
+
+bool begins_too_late(const SearchResult& found, const Settings& settings) {
+  return std::ranges::any_of(found.refused, [&](const Judged& judged) {
+    const auto numbers = judged.effect->parameters();
+    return std::ranges::find(numbers, model::kOnset, &model::EffectParameter::name) != numbers.end() &&
+           judged.held_out_blocks < 0.0 && judged.log_odds >= settings.accept_log_odds &&
+           judged.error_reduction >= settings.convincing;
+  });
 }
 
 }  // namespace fathom::diagnosis

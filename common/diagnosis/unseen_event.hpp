@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/diagnosis/search.hpp"
 #include "common/samples/diagnosis_result.hpp"
 #include "common/samples/trial.hpp"
 
@@ -17,5 +18,11 @@ namespace fathom::diagnosis {
                                                       std::span<const std::vector<Vector6d>> fitted,
                                                       std::span<const Trial> unseen_runs,
                                                       std::span<const std::vector<Vector6d>> unseen);
+[[nodiscard]] std::optional<UnseenEvent> unseen_event(const model::Model& model, std::span<const Trial> fitted,
+                                                      std::span<const Trial> unseen);
+
+/// Whether something was refused that explains much from some moment on, and acts in too short a part of the fitted
+/// runs to be told from it by another.
+[[nodiscard]] bool begins_too_late(const SearchResult& found, const Settings& settings);
 
 }  // namespace fathom::diagnosis

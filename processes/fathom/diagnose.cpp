@@ -193,9 +193,9 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     Explained again;
     explain(trials_of_recordings(), again, early ? estimation::Kept::kEnds : estimation::Kept::kFirst);
     if (!again.report.result.effects.empty() && !again.report.unseen_event) {
-      notes.push_back(estimation::text("something begins at %.0f s, in what was kept to judge by: ", event.t) +
-                      (early ? "half of that was taken at either end" : "the first 30 % of every run judge") +
-                      " in its place, so that it could be fitted");
+      notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted: ", event.t) +
+                      (early ? "the first and the last 15 % of every run judge" : "the first 30 % of every run judge") +
+                      " in place of the last 30 %");
       explained = std::move(again);
     }
   }

@@ -186,7 +186,7 @@ TEST_CASE("fathom: what begins in the last 30 % of a run is fitted too, and othe
   for (const auto& [onset, judging] : {std::pair{150.0, "run (first 15 %)"}, {175.0, "run (first 30 %)"}}) {
     CAPTURE(onset);
     const auto [ran, result] = diagnosed(onset);
-    CHECK(ran.says("note: something begins at 1"));
+    CHECK(ran.says("note: something begins near 1"));
     CHECK(result.at("validate").at(0) == judging);
     REQUIRE_FALSE(result.at("effects").empty());
     CHECK(result.at("effects").at(0).at("name") == "payload_change");
