@@ -51,6 +51,13 @@ double explained(std::span<const Judged> accepted) {
   return 1.0 - left;
 }
 
+/// How things stood when an effect was found alone that promised most beside another.
+struct First {
+  Answers answers;
+  FitResult reference;
+  std::vector<Judged> accepted;
+};
+
 void accept(SearchResult& result, const Two& two, const TrajectoryFit& problem) {
   result.after = problem.reweighted(two.fit);
   for (const Judged& judged : two.judged) {
@@ -79,6 +86,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
   const int tried = static_cast<int>(candidates.size());
   result.after = result.before;
   Promises promises;
+  std::optional<First> first;  // of two, if it was found alone
 
   for (int round = 0; round < settings.most_effects; ++round) {
     const double done = 0.2 + 0.6 * round / settings.most_effects;
@@ -88,14 +96,29 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
     std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kMostRefits);
-    if (auto two = find_two({candidates, near, problem, result.after, trials, scene, settings, tried, progress, done},
-                            answers, winner)) {
+    const auto two_beside = [&](const FitResult& reference, const Answers& asked, const FitResult& alone) {
+      auto two = find_two({candidates, near, problem, reference, trials, scene, settings, tried, progress, done}, asked,
+                          alone);
+      if (!two) return false;
       accept(result, *two, problem);
       reconsider_forms(result, problem, scene, progress, done);
       reconsider_order(result, problem, progress, done);
+      return true;
+    };
+    if (winner && will_be_followed(answers, *winner)) {
+      if (!first) first = First{answers, result.after, result.accepted};
+    } else if (two_beside(result.after, answers, winner ? winner->fit : result.after)) {
       continue;
     }
     const double left = winner ? 1.0 : left_to_explain(problem, result.after);
+    if (!winner && first && left > kLeftByFar) {
+      // It was not followed: alone, its numbers may have gone where the other cannot.
+      const First at = *std::exchange(first, std::nullopt);
+      const std::vector<Judged> alone = std::exchange(result.accepted, at.accepted);
+      const FitResult fit = result.after;
+      if (two_beside(at.reference, at.answers, fit)) continue;
+      result.accepted = alone;
+    }
     // The least that counts, as a share of the cost, which is the error's square.
     const bool something = left > 2.0 * settings.smallest_reduction;
     if (!winner && something) {

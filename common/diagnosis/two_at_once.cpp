@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/diagnosis/evidence.hpp"
+#include "common/diagnosis/moments.hpp"
 #include "common/diagnosis/pairs.hpp"
 #include "common/model/effect_size.hpp"
 
@@ -39,7 +40,10 @@ FitResult fit_both(const TwoAtOnce& with, const Answers& answers, const Pair& pa
   start.add(scaled(answers.near[pair.first], pair.of_first, with.problem.vehicle()));
   start.add(scaled(answers.near[pair.second], pair.of_second, with.problem.vehicle()));
   const FitResult short_windows = with.near.problem.fit(start, nullptr, kQuickTolerance);
-  return with.problem.fit(short_windows.model, &with.reference, kQuickTolerance);
+  FitResult fit = with.problem.fit(short_windows.model, &with.reference, kQuickTolerance);
+  for (const std::size_t place : {pair.first, pair.second})
+    fit = at_best_moment(with.problem, std::move(fit), *answers.near[place].effect, answers.near[place].variant);
+  return fit;
 }
 
 /// Odds for both against neither, all pairs that there are being tried.
@@ -72,7 +76,16 @@ bool same(const Form& form, const model::Effect* effect, int variant) {
   return form.effect == effect && (form.variant == variant || !effect->variants_matter());
 }
 
-/// What is found alone will be followed by the other of the two.
+/// Those that promise enough for a full fit, best first.
+std::vector<Pair> worthy_pairs(const Answers& answers) {
+  const double promised = answers.share.empty() ? 0.0 : std::ranges::max(answers.share);
+  std::vector<Pair> pairs = promising_pairs(answers, kPairs);
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return pair.share < std::max(kWorthIt, kMore * promised) || pair.least_left > kFarLess;
+  });
+  return pairs;
+}
+
 bool holds(const Pair& pair, const Answers& answers, const Screened& found) {
   return same(answers.near[pair.first], found.effect, found.variant) ||
          same(answers.near[pair.second], found.effect, found.variant);
@@ -115,23 +128,23 @@ std::optional<Two> judge_both(const TwoAtOnce& with, const FitResult& fit, const
 
 }  // namespace
 
-std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, const std::optional<Winner>& alone) {
-  const double promised = answers.share.empty() ? 0.0 : std::ranges::max(answers.share);
-  const FitResult& best_alone = alone ? alone->fit : with.reference;
+bool will_be_followed(const Answers& answers, const Winner& alone) {
+  const std::vector<Pair> pairs = worthy_pairs(answers);
+  return !pairs.empty() && holds(pairs.front(), answers, answers.near[alone.place]);
+}
+
+std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, const FitResult& alone) {
   struct Fitted {
     Pair pair;
     FitResult fit;
   };
   std::vector<Fitted> fitted;
-  const std::vector<Pair> pairs = promising_pairs(answers, kPairs);
-  if (alone && !pairs.empty() && holds(pairs.front(), answers, answers.near[alone->place])) return {};
-  for (const Pair& pair : pairs) {
-    if (pair.share < std::max(kWorthIt, kMore * promised) || pair.least_left > kFarLess) continue;
+  for (const Pair& pair : worthy_pairs(answers)) {
     const Screened &one = answers.near[pair.first], &other = answers.near[pair.second];
     with.progress("fitting " + std::string(one.effect->name()) + " and " + std::string(other.effect->name()),
                   with.done);
     FitResult fit = fit_both(with, answers, pair);
-    if (least_left(best_alone, fit) > kFarLess) continue;
+    if (least_left(alone, fit) > kFarLess) continue;
     if (odds_together(with, fit, judged_of(one), judged_of(other)) < with.settings.accept_log_odds) continue;
     fitted.push_back({pair, std::move(fit)});
   }

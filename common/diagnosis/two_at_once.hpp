@@ -27,9 +27,11 @@ struct TwoAtOnce {
   double done{};
 };
 
-/// Two effects that explain far more together than anything alone. `alone`: the fit with what was found alone, where
-/// something was.
+/// Whether what was found alone is one of the two that promise most together: the other follows by itself, mostly.
+[[nodiscard]] bool will_be_followed(const Answers& answers, const Winner& alone);
+
+/// Two effects that explain far more together than `alone`: the fit with what was found one by one, or the reference.
 [[nodiscard]] std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers,
-                                          const std::optional<Winner>& alone);
+                                          const identification::FitResult& alone);
 
 }  // namespace fathom::diagnosis

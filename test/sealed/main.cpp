@@ -117,6 +117,9 @@ void work(const Options& options) {
         const std::lock_guard lock(printing);
         std::printf("%s\n", said.c_str());
         std::fflush(stdout);
+      } catch (const RunsAway& none) {
+        const std::lock_guard lock(printing);
+        std::printf("%5llu  %s\n", static_cast<unsigned long long>(seed), none.what());
       } catch (const std::exception& error) {
         const std::lock_guard lock(printing);
         trouble = "set " + std::to_string(seed) + ": " + error.what();

@@ -226,7 +226,7 @@ SealedSet make_set(const Plan& plan) {
              {.begin = begin, .length = kValidation, .seed = plan.seed, .purpose = "validate", .hold = plan.hold});
   }
   if (!sound(set.train) || (set.validate && !set.validate->sound))
-    throw std::runtime_error("the vehicle runs away, however small the effect: draw another number");
+    throw RunsAway("not drawn: the vehicle runs away, however small the effect");
   return set;
 }
 

@@ -46,6 +46,11 @@ struct SealedSet {
   std::optional<Dive> validate;
 };
 
+/// No set has that number: nobody could have recorded it.
+struct RunsAway : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 [[nodiscard]] Plan make_plan(std::uint64_t seed, const Wish& wish);
 [[nodiscard]] SealedSet make_set(const Plan& plan);
 

@@ -8,8 +8,7 @@
 
 #include "common/identification/fit_from_priors.hpp"
 #include "common/identification/sparse.hpp"
-#include "test/support/timing.hpp"
-#include "test/support/virtual_dive.hpp"
+#include "test/common/diagnosis/search_dives.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -32,7 +31,7 @@ std::optional<Two> two_in(const model::Vehicle& vehicle, const std::vector<model
   const Progress silent = [](const std::string&, double) {};
   return find_two(
       {candidates, near, problem, base, trials, scene, settings, static_cast<int>(candidates.size()), silent, 0.0},
-      answers, std::nullopt);
+      answers, base);
 }
 
 std::string names_of(const std::optional<Two>& two) {
@@ -76,6 +75,30 @@ TEST_CASE("two at once: one effect alone is none, and neither is noise") {
     CHECK(names_of(two_in(vehicle, {}, seed)).empty());
     CHECK(names_of(two_in(vehicle, {test::active("compressibility", {6.0})}, seed)).empty());
     CHECK(names_of(two_in(vehicle, {test::active("thruster_lag", {0.2})}, seed)).empty());
+  }
+}
+
+TEST_CASE("two at once: a failure that was found alone, at the moment of a payload that it imitated, begins anew") {
+  if (!test::kTimed) return;
+  const model::Vehicle& vehicle = vehicle_named("seabotix_lbv150");
+  const auto names = model::find_effect("thruster_failure")->variants(model::Scene{.vehicle = &vehicle});
+  const auto vertical = static_cast<int>(std::ranges::find(names, "vertical") - names.begin());
+  std::mt19937 random{20261127};
+  std::uniform_real_distribution<double> factor{0.9, 1.1};
+  for (unsigned seed = 21; seed <= 22; ++seed) {
+    const double weight = -4.0 * factor(random), dropped = 70.0 * factor(random), fails = 150.0 * factor(random);
+    CAPTURE(seed);
+    const Outcome outcome = search_dive(vehicle,
+                                        {test::active("thruster_failure", {0.5 * factor(random), fails}, vertical),
+                                         test::active("payload_change", {-0.6 * factor(random), weight, dropped})},
+                                        220.0, seed);
+    CAPTURE(outcome.said);
+    REQUIRE(outcome.found.accepted.size() == 2);
+    for (const model::ActiveEffect& active : outcome.found.after.model.effects) {
+      const bool payload = active.effect->name() == "payload_change";
+      CHECK((payload || active.effect->name() == "thruster_failure"));
+      CHECK(active.theta.back() == doctest::Approx(payload ? dropped : fails).epsilon(0.01));
+    }
   }
 }
 
