@@ -18,8 +18,8 @@ using identification::LagSums;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-constexpr std::size_t kBesides =
-    6;  // questions besides the suspects: thrusters, step, swing, oscillation, bursts, event
+// Questions besides the suspects: thrusters, a step, a swing, an oscillation, bursts, an event.
+constexpr std::size_t kBesides = 6;
 
 /// m/s, rad/s: what is ordinary in these runs (RMS).
 Vector6d ordinary_speeds(std::span<const Trial> trials) {

@@ -54,6 +54,7 @@ double explained(std::span<const Judged> accepted) {
 /// How things stood when an effect was found alone that promised most beside another.
 struct First {
   Answers answers;
+  std::vector<Pair> pairs;
   FitResult reference;
   std::vector<Judged> accepted;
 };
@@ -96,18 +97,20 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
     promises.recall(answers);
     Round fits{answers, promises, problem, result.after, trials, settings, tried, progress, done};
     std::optional<Winner> winner = fits.fit_best(Which::kAll, kRefits, kMostRefits);
-    const auto two_beside = [&](const FitResult& reference, const Answers& asked, const FitResult& alone) {
+    const auto two_beside = [&](const FitResult& reference, const Answers& asked, std::span<const Pair> pairs,
+                                const FitResult& alone) {
       auto two = find_two({candidates, near, problem, reference, trials, scene, settings, tried, progress, done}, asked,
-                          alone);
+                          pairs, alone);
       if (!two) return false;
       accept(result, *two, problem);
       reconsider_forms(result, problem, scene, progress, done);
       reconsider_order(result, problem, progress, done);
       return true;
     };
-    if (winner && will_be_followed(answers, *winner)) {
-      if (!first) first = First{answers, result.after, result.accepted};
-    } else if (two_beside(result.after, answers, winner ? winner->fit : result.after)) {
+    const std::vector<Pair> pairs = worthy_pairs(answers);
+    if (winner && will_be_followed(pairs, answers, *winner)) {
+      if (!first) first = First{answers, pairs, result.after, result.accepted};
+    } else if (two_beside(result.after, answers, pairs, winner ? winner->fit : result.after)) {
       continue;
     }
     const double left = winner ? 1.0 : left_to_explain(problem, result.after);
@@ -116,7 +119,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       const First at = *std::exchange(first, std::nullopt);
       const std::vector<Judged> alone = std::exchange(result.accepted, at.accepted);
       const FitResult fit = result.after;
-      if (two_beside(at.reference, at.answers, fit)) continue;
+      if (two_beside(at.reference, at.answers, at.pairs, fit)) continue;
       result.accepted = alone;
     }
     // The least that counts, as a share of the cost, which is the error's square.

@@ -8,7 +8,6 @@
 
 #include "common/diagnosis/evidence.hpp"
 #include "common/diagnosis/moments.hpp"
-#include "common/diagnosis/pairs.hpp"
 #include "common/model/effect_size.hpp"
 
 namespace fathom::diagnosis {
@@ -76,16 +75,6 @@ bool same(const Form& form, const model::Effect* effect, int variant) {
   return form.effect == effect && (form.variant == variant || !effect->variants_matter());
 }
 
-/// Those that promise enough for a full fit, best first.
-std::vector<Pair> worthy_pairs(const Answers& answers) {
-  const double promised = answers.share.empty() ? 0.0 : std::ranges::max(answers.share);
-  std::vector<Pair> pairs = promising_pairs(answers, kPairs);
-  std::erase_if(pairs, [&](const Pair& pair) {
-    return pair.share < std::max(kWorthIt, kMore * promised) || pair.least_left > kFarLess;
-  });
-  return pairs;
-}
-
 bool holds(const Pair& pair, const Answers& answers, const Screened& found) {
   return same(answers.near[pair.first], found.effect, found.variant) ||
          same(answers.near[pair.second], found.effect, found.variant);
@@ -128,18 +117,27 @@ std::optional<Two> judge_both(const TwoAtOnce& with, const FitResult& fit, const
 
 }  // namespace
 
-bool will_be_followed(const Answers& answers, const Winner& alone) {
-  const std::vector<Pair> pairs = worthy_pairs(answers);
-  return !pairs.empty() && holds(pairs.front(), answers, answers.near[alone.place]);
+std::vector<Pair> worthy_pairs(const Answers& answers) {
+  const double promised = answers.share.empty() ? 0.0 : std::ranges::max(answers.share);
+  std::vector<Pair> pairs = promising_pairs(answers, kPairs);
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return pair.share < std::max(kWorthIt, kMore * promised) || pair.least_left > kFarLess;
+  });
+  return pairs;
 }
 
-std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, const FitResult& alone) {
+bool will_be_followed(std::span<const Pair> worthy, const Answers& answers, const Winner& alone) {
+  return !worthy.empty() && holds(worthy.front(), answers, answers.near[alone.place]);
+}
+
+std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, std::span<const Pair> worthy,
+                            const FitResult& alone) {
   struct Fitted {
     Pair pair;
     FitResult fit;
   };
   std::vector<Fitted> fitted;
-  for (const Pair& pair : worthy_pairs(answers)) {
+  for (const Pair& pair : worthy) {
     const Screened &one = answers.near[pair.first], &other = answers.near[pair.second];
     with.progress("fitting " + std::string(one.effect->name()) + " and " + std::string(other.effect->name()),
                   with.done);

@@ -3,7 +3,10 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
+#include "common/diagnosis/pairs.hpp"
 #include "common/diagnosis/round.hpp"
 
 namespace fathom::diagnosis {
@@ -27,11 +30,14 @@ struct TwoAtOnce {
   double done{};
 };
 
+/// The pairs that promise enough for a full fit, best first.
+[[nodiscard]] std::vector<Pair> worthy_pairs(const Answers& answers);
+
 /// Whether what was found alone is one of the two that promise most together: the other follows by itself, mostly.
-[[nodiscard]] bool will_be_followed(const Answers& answers, const Winner& alone);
+[[nodiscard]] bool will_be_followed(std::span<const Pair> worthy, const Answers& answers, const Winner& alone);
 
 /// Two effects that explain far more together than `alone`: the fit with what was found one by one, or the reference.
-[[nodiscard]] std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers,
+[[nodiscard]] std::optional<Two> find_two(const TwoAtOnce& with, const Answers& answers, std::span<const Pair> worthy,
                                           const identification::FitResult& alone);
 
 }  // namespace fathom::diagnosis

@@ -37,8 +37,8 @@ namespace {
 constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
 constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
 constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
-constexpr double kTooLate =
-    0.3;  // of what judges: what begins later is seen for too short a time if half of it is fitted
+// Of what judges: what begins later is seen for too short a time if half of it is fitted.
+constexpr double kTooLate = 0.3;
 constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
 
 struct Options {
@@ -191,7 +191,12 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     const UnseenEvent event = *explained.report.unseen_event;
     const bool early = begins_before(event, explained.judging->trials(), kTooLate);
     Explained again;
-    explain(trials_of_recordings(), again, early ? estimation::Kept::kEnds : estimation::Kept::kFirst);
+    try {
+      explain(trials_of_recordings(), again, early ? estimation::Kept::kEnds : estimation::Kept::kFirst);
+    } catch (const InputError& error) {  // of these parts alone: what the first look has found stands
+      notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted; ", event.t) +
+                      "other parts cannot judge: " + error.what());
+    }
     if (!again.report.result.effects.empty() && !again.report.unseen_event) {
       notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted: ", event.t) +
                       (early ? "the first and the last 15 % of every run judge" : "the first 30 % of every run judge") +

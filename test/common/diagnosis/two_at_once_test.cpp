@@ -31,7 +31,7 @@ std::optional<Two> two_in(const model::Vehicle& vehicle, const std::vector<model
   const Progress silent = [](const std::string&, double) {};
   return find_two(
       {candidates, near, problem, base, trials, scene, settings, static_cast<int>(candidates.size()), silent, 0.0},
-      answers, base);
+      answers, worthy_pairs(answers), base);
 }
 
 std::string names_of(const std::optional<Two>& two) {
