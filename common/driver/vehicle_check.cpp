@@ -162,7 +162,7 @@ VehicleCondition VehicleCheck::condition(Utime utime, double now) const {
   return all;
 }
 
-// What the vehicle refuses or says itself comes first: it knows best. What is not known counts as not well, unless the
+// Grave ones first, then causes before what follows from them. What is not known counts as not well, unless the
 // protocol never tells it.
 void VehicleCheck::say(VehicleCondition& all, double now) const {
   const auto line = [&](const char* name, const std::string& trouble, const std::string& well, bool grave = false) {
@@ -176,18 +176,6 @@ void VehicleCheck::say(VehicleCondition& all, double now) const {
   const char* older = "not told: a rig of before $FTSTA";
   if (ardusub) {
     line("vehicle", another_vehicle(now), "ArduSub, number " + std::to_string(expected_.system));
-  }
-  if (ardusub && !expected_.must_report) {
-    std::string refuses;
-    if (within(refused_at_, now, limits_.refusal)) {
-      const auto newest =
-          std::max_element(words_.begin(), words_.end(), [](const Words& a, const Words& b) { return a.at < b.at; });
-      const bool says = newest != words_.end() && now - newest->at <= limits_.refusal;
-      refuses = "the vehicle refuses motor tests (result " + std::to_string(result_) + "); " +
-                (says ? "it says '" + newest->said.text + "'"
-                      : "look at its safety switch, arm or disarm it, and leave it ten seconds after a failure");
-    }
-    line("motor tests", refuses, "not refused");
   }
   std::string failsafe, words;
   if (alive && failsafe_) failsafe = "the vehicle's own failsafe is active";
@@ -219,6 +207,18 @@ void VehicleCheck::say(VehicleCondition& all, double now) const {
            ": change its mode";
   }
   line("mode", mode, told ? (mode_.empty() ? "not told" : mode_) : older);
+  if (ardusub && !expected_.must_report) {
+    std::string refuses;
+    if (within(refused_at_, now, limits_.refusal)) {
+      const auto newest =
+          std::max_element(words_.begin(), words_.end(), [](const Words& a, const Words& b) { return a.at < b.at; });
+      const bool says = newest != words_.end() && now - newest->at <= limits_.refusal;
+      refuses = "the vehicle refuses motor tests (result " + std::to_string(result_) + "); " +
+                (says ? "it says '" + newest->said.text + "'"
+                      : "look at its safety switch, arm or disarm it, and leave it ten seconds after a failure");
+    }
+    line("motor tests", refuses, "not refused");
+  }
   std::string thrust = following_.trouble(now);
   if (thrust.empty() && expected_.must_report && alive && !all.has_applied)
     thrust = "the vehicle does not report its outputs: let it send SERVO_OUTPUT_RAW (SRn_RC_CHAN)";
