@@ -15,20 +15,21 @@ using model::AfterAbort;
 
 constexpr double kHeavy = 4.0;  // N of weight beyond the buoyancy
 
+test::TankSettings heavy(const AfterAbort& after) {
+  test::TankSettings settings = settings_without_model();
+  for (std::size_t i = 0; i < settings.vehicle.parameters.size(); ++i) {
+    if (settings.vehicle.parameters[i] == "W-B") settings.vehicle.priors[i].mean = kHeavy;
+  }
+  settings.supervisor.after_abort = after;
+  settings.supervisor.patience = 3.0;
+  return settings;
+}
+
 /// A heavy vehicle in the middle of an excitation.
 struct Trial {
   Loop loop;
 
-  explicit Trial(const AfterAbort& after) {
-    model::Vehicle& vehicle = loop.settings.vehicle;
-    for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
-      if (vehicle.parameters[i] == "W-B") vehicle.priors[i].mean = kHeavy;
-    }
-    loop.settings.supervisor.after_abort = after;
-    loop.settings.supervisor.patience = 3.0;
-    loop.plant = TankPlant{vehicle, {}};
-    loop.plant.place({0.2, -0.1, 0.75});
-    loop.supervisor = Supervisor{loop.settings.supervisor, vehicle, "secret"};
+  explicit Trial(const AfterAbort& after) : loop{heavy(after)} {
     loop.run(0.2);
     loop.arm();
     loop.run(25.0);
