@@ -12,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -150,7 +151,11 @@ Server::Server(const std::string& host, int port, const std::vector<std::string>
   });
   listener_ = listen_at(host, port_);
   wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  sigset_t all, before;  // signals are for the thread that waits for them
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
   thread_ = std::thread{[this] { serve(); }};
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 Server::~Server() {
