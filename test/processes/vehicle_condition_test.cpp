@@ -6,6 +6,7 @@
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
+#include <filesystem>
 #include <fstream>
 
 #include "common/wire/minds.hpp"
@@ -186,6 +187,7 @@ struct Trial {
   /// What `fathom arm` prints, with "code N" at its end.
   std::string arm() {
     const std::string text = behind.scratch.path("arm.text");
+    std::filesystem::remove(text);  // of the arming before
     {
       const Background arms{behind.scratch, "arms",
                             "bash -c \"" + program("fathom") + " arm --operator " +
