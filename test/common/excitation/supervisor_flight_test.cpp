@@ -146,7 +146,7 @@ TEST_CASE("supervisor: at the end it flies as many proposals as its settings all
     Loop loop;
     loop.settings.supervisor.flights = allowed;
     loop.settings.supervisor.schedule.resize(1);
-    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
     loop.run(0.2);
     loop.supervisor.hear(proposal(kSurge, 3.0));
     loop.arm();
