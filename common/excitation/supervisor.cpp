@@ -366,6 +366,7 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
       model::Manoeuvre manoeuvre = flight_->pilot->manoeuvre();
       manoeuvre.heading = last_heading_;
       flight_->pilot.emplace(manoeuvre);
+      flight_->turned = turned_;
     }
     reason_ = flight_ ? "flies '" + flight_->segment.name + "' " + flight_->purpose : "settles mode " + mode().name;
   }
@@ -373,7 +374,8 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   for (std::size_t axis = 0; axis < 6; ++axis) held[axis] = vehicle_.dof[axis];
   Vector6d share = Vector6d::Zero();
   if (phase_ == Phase::kExcite && flight_) {
-    if (now() - phase_since_ >= flight_->duration - kRounding) land("is flown");
+    const bool round = flight_->one_turn && std::abs(turned_ - flight_->turned) >= 2.0 * kHalfTurn;
+    if (round || now() - phase_since_ >= flight_->duration - kRounding) land("is flown");
   } else if (phase_ == Phase::kExcite) {
     dwell_ += dt;
     judge(now());

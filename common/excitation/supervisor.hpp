@@ -120,7 +120,9 @@ class Supervisor {
     std::string purpose;  // "to tell ... from ..."
     Phase before{};       // what goes on afterwards; kDone: nothing
     std::optional<model::ManoeuvrePilot>
-        pilot{};  // of a preset: flies in place of the segment, in shares of the largest
+        pilot{};           // of a preset: flies in place of the segment, in shares of the largest
+    bool one_turn{false};  // over when it has come round once: a tether is no coil
+    double turned{};       // rad, at its begin
   };
   struct Proposal {
     std::string segment;

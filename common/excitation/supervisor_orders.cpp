@@ -201,6 +201,7 @@ void Supervisor::fly(const Operator& order) {
   if (preset) {
     preset->duration = flight_->duration;
     flight_->pilot.emplace(*preset);
+    flight_->one_turn = preset->kind == model::ManoeuvreKind::kCircle && !(order.duration > 0.0);
   }
   take_off();
 }

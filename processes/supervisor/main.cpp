@@ -49,9 +49,9 @@ int main(int argc, char** argv) {
       if (output.command) {
         WrenchCommand command = *output.command;
         command.commander = commander;
-        const auto message = wire::encode_signed(command, keys.command);
-        strangers.sent(message);
-        process.publish(wire::kWrenchCommand, message);
+        const auto said = wire::encode_signed(command, keys.command);
+        strangers.sent(said);
+        process.publish(wire::kWrenchCommand, said);
       }
       if (output.excitation) process.publish(wire::kExcitation, wire::encode(*output.excitation));
       tell();

@@ -5,10 +5,13 @@
 #include <doctest/doctest.h>
 #include <linux/joystick.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fathom_lcm/state_t.hpp>
 #include <fstream>
 #include <functional>
+#include <memory>
 
 #include "common/link/server.hpp"
 
@@ -32,6 +35,7 @@ struct Vehicle {
   Scratch scratch;
   std::unique_ptr<Background> driver, supervisor;
   std::function<void()> meanwhile;  ///< every 5 ms
+  std::string identifier{"running"};
 
   Vehicle() { start_driver(); }
   void start_driver() {
@@ -59,12 +63,12 @@ struct Vehicle {
     const double end = link::wall_seconds() + seconds;
     for (int i = 0; link::wall_seconds() < end; ++i) {
       if (i % 100 == 0) {
-        for (const char* process : {"estimator", "identifier"}) {
+        for (const std::string process : {"estimator", "identifier"}) {
           fathom_lcm::health_t health{};
           health.utime = now();
           health.process = process;
           health.host = "vehicle";
-          health.state = "running";
+          health.state = process == "identifier" ? identifier : "running";
           bus.publish("HEALTH", health);
         }
       }
@@ -223,21 +227,12 @@ TEST_CASE("orders: fathom arm fails with the reason where it is refused or nobod
   CHECK(stranger.code == 1);
   CHECK_MESSAGE(stranger.says("has another key"), stranger.text);
   vehicle.start_supervisor();
-  // The identifier that the trial needs says that it is ill.
-  vehicle.meanwhile = [&, i = 0]() mutable {
-    if (++i % 20 != 0) return;
-    fathom_lcm::health_t health{};
-    health.utime = now();
-    health.process = "identifier";
-    health.host = "vehicle";
-    health.state = "fault";
-    vehicle.bus.publish("HEALTH", health);
-  };
+  vehicle.identifier = "fault";
   vehicle.run(0.5);
   const auto refused = vehicle.tool("arm --operator " + kOperator);
   CHECK(refused.code == 1);
   CHECK_MESSAGE(refused.says("refused by supervisor: not armed: identifier is fault"), refused.text);
-  vehicle.meanwhile = {};
+  vehicle.identifier = "running";
   vehicle.run(1.0);
   const auto armed = vehicle.tool("arm --operator " + kOperator);
   CHECK_MESSAGE(armed.code == 0, armed.text);
