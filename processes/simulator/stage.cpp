@@ -96,7 +96,7 @@ void Stage::say(Answer answer) {
 }
 
 void Stage::answer() {
-  if (driven()) return;  // its driver answers
+  if (driven()) return answers_.clear();  // its driver answers
   const Utime now = simulator_.now();
   if (!answered_ || seconds_between(*answered_, now) >= kAnswer - 1e-9) {
     answered_ = now;

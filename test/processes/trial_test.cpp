@@ -116,7 +116,7 @@ TEST_CASE("trial: an abort stops the thrusters at once and for good") {
   CHECK(live.excitation.back().phase == "aborted");
 }
 
-TEST_CASE("trial: a replayed log does not arm, and a token that does not match is told") {
+TEST_CASE("trial: a replayed log does not arm, and its orders are named") {
   if (!private_network()) return;
   const Scratch scratch;
   const auto ran = trial(scratch, "run.lcmlog", "--duration 4 --seed 4 --order 1=identify");
