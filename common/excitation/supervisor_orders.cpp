@@ -33,7 +33,7 @@ void Supervisor::hear(const Answer& answer) {
 Answer Supervisor::hear(const Operator& order) {
   Answer answer{.sequence = order.sequence};
   if (order.abort) {
-    stop(Phase::kAborted, "aborted by the operator");
+    stop(Phase::kAborted, "aborted by the operator", Then::kZero);
     answer.done = true;
     answer.text = reason_;
   } else if (check_.again(order)) {
@@ -142,10 +142,12 @@ bool Supervisor::arm() {
   if (why.empty()) why = fence_.outside(state_, 0.0);
   if (const auto trouble = needs_.trouble(); why.empty() && trouble)
     why = trouble->process + " " + trouble->what + "; " + trouble->remedy;
+  if (why.empty()) why = grave_;
   if (!why.empty()) {
     reason_ = "not armed: " + why;
     return false;
   }
+  after_.end();
   armed_ = true;
   armed_at_ = state_.utime;
   lost_since_ = 0;

@@ -63,7 +63,7 @@ struct Vehicle {
     const double end = link::wall_seconds() + seconds;
     for (int i = 0; link::wall_seconds() < end; ++i) {
       if (i % 100 == 0) {
-        for (const std::string process : {"estimator", "identifier"}) {
+        for (const std::string process : {"estimator", "identifier", "recorder"}) {
           fathom_lcm::health_t health{};
           health.utime = now();
           health.process = process;
@@ -229,7 +229,10 @@ TEST_CASE("orders: fathom arm fails with the reason where it is refused or nobod
   vehicle.start_supervisor();
   vehicle.identifier = "fault";
   vehicle.run(0.5);
-  const auto refused = vehicle.tool("arm --operator " + kOperator);
+  const auto listed = vehicle.tool("arm --operator " + kOperator);
+  CHECK(listed.code == 1);
+  CHECK_MESSAGE(listed.says("not armed: see to what is NOT OK"), listed.text);
+  const auto refused = vehicle.tool("arm --needs thruster_driver --operator " + kOperator);
   CHECK(refused.code == 1);
   CHECK_MESSAGE(refused.says("refused by supervisor: not armed: identifier is fault"), refused.text);
   vehicle.identifier = "running";

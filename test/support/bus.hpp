@@ -8,6 +8,7 @@
 #include <fathom_lcm/health_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <string>
@@ -30,6 +31,7 @@ class Bus {
     lcm_.subscribeFunction("ANSWER", &Bus::on_answer, this);
     lcm_.subscribeFunction("OPERATOR", &Bus::on_order, this);
     lcm_.subscribeFunction("WRENCH_COMMAND", &Bus::on_command, this);
+    lcm_.subscribeFunction("VEHICLE", &Bus::on_vehicle, this);
   }
   void listen(double seconds) {
     const double end = link::wall_seconds() + seconds;
@@ -60,6 +62,7 @@ class Bus {
     }
     return {};
   }
+  std::vector<fathom_lcm::vehicle_condition_t> vehicle;
 
  private:
   // Functions, not members: GCC 12's undefined-behaviour sanitizer miscompiles LCM's call of a member that is not
@@ -80,6 +83,10 @@ class Bus {
   static void on_command(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::wrench_command_t* message,
                          Bus* bus) {
     bus->commands.push_back(*message);
+  }
+  static void on_vehicle(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::vehicle_condition_t* message,
+                         Bus* bus) {
+    bus->vehicle.push_back(*message);
   }
   lcm::LCM lcm_;
 };

@@ -27,6 +27,7 @@ void print(const Excitation& e) {
 void order(const Options& options, bool enable, const std::string& word) {
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
+  if (enable && !options.no_supervisor) go_through(console, options.needs);
   const double stays = enable ? promised(options, console) : 0.0;
   orders.give(
       {.enable = enable, .order = word, .segment = options.segment, .duration = options.seconds, .attends = stays},
@@ -79,12 +80,19 @@ void add_operator(CLI::App& app) {
                      "stay, and give signs of life within so many seconds (5 where the bus leaves this host)")
         ->check(CLI::Range(0.5, 600.0));
     command->add_flag("--leave", options->leave, "go away, even where the bus leaves this host");
-    command->add_flag("--no-supervisor", options->no_supervisor,
-                      "a controller of your own commands: do not wait for ours");
+    command->add_flag(
+        "--no-supervisor", options->no_supervisor,
+        "a controller of your own commands, and judges for itself: no list of conditions, and ours is not waited for");
   };
   CLI::App* arm = add(app, "arm", "let the thrusters obey the supervisor, and begin", options);
   with_key(arm);
   may_stay(arm);
+  const auto with_needs = [&](CLI::App* command) {
+    command->add_option("--needs", options->needs,
+                        "processes that must be well, as in the supervisor's section; left out: estimator, "
+                        "identifier, thruster_driver or simulator, recorder or simulator");
+  };
+  with_needs(arm);
   arm->callback([options] { order(*options, true, "identify"); });
   CLI::App* say = add(app, "order", "say hold, identify, skip or retry to an armed supervisor", options);
   with_key(say);
@@ -100,6 +108,7 @@ void add_operator(CLI::App& app) {
   fly->add_option("segment", options->segment, "for instance 'full steps in surge', or zigzag");
   fly->add_option("--seconds", options->seconds, "of it, again and again (as proposed, else once)")
       ->check(CLI::Range(1.0, 600.0));
+  with_needs(fly);
   fly->callback([options] { order(*options, true, "fly"); });
   CLI::App* hand = add(app, "steer", "by hand: thrust only while a key, or the joystick's button, is held", options);
   with_key(hand);

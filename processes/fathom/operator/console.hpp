@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/base/operator_key.hpp"
+#include "common/excitation/preflight.hpp"
 #include "common/runtime/bus.hpp"
 #include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
@@ -43,6 +44,9 @@ class Console {
   std::optional<Excitation> excitation;
   std::optional<StateEstimate> state;
   std::map<std::string, Health> health;
+  std::optional<VehicleCondition> vehicle;
+  /// What a preflight list is made of, with its age.
+  [[nodiscard]] excitation::PreflightInput heard() const;
 
  private:
   void hear(const runtime::LiveInput::Message& message);
@@ -53,7 +57,8 @@ class Console {
   std::vector<runtime::Subscription> heard_;
   runtime::LiveInput input_;
   runtime::Output output_;
-  Clock::time_point gate_at_{};
+  std::map<std::string, Clock::time_point> health_came_;
+  Clock::time_point gate_at_{}, state_came_{}, vehicle_came_{};
 };
 
 }  // namespace fathom::tool

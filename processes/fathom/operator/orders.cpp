@@ -72,4 +72,13 @@ void Orders::give(Operator wanted, bool supervisor) {
   }
 }
 
+void go_through(Console& console, const std::vector<std::string>& needs) {
+  constexpr double kLongest = 2.5;  // s: HEALTH comes each second
+  const auto lines = [&] { return excitation::preflight(console.heard(), needs); };
+  console.listen(kLongest, [&] { return excitation::all_ok(lines()); });
+  for (const excitation::PreflightLine& line : lines()) std::printf("%s\n", excitation::shown(line).c_str());
+  std::fflush(stdout);
+  if (!excitation::all_ok(lines())) throw InputError("not armed: see to what is NOT OK above, then arm again");
+}
+
 }  // namespace fathom::tool

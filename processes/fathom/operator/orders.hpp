@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "common/excitation/preflight.hpp"
 #include "processes/fathom/operator/console.hpp"
 
 namespace fathom::tool {
@@ -12,6 +14,7 @@ struct OperatorOptions {
   std::string operator_file;
   std::string word, segment;
   double seconds{};
+  std::vector<std::string> needs = excitation::usual_needs();
   double attend{};                  ///< s between signs of life at most; 0: as the bus says
   bool leave{false};                ///< nobody stays, even over a link
   bool no_supervisor{false};        ///< somebody else commands: only the thrusters' answer counts
@@ -48,6 +51,8 @@ class Orders {
 /// Stays with a vehicle that was armed: signs of life, and a line whenever the supervisor says something new. Returns
 /// when the trial is done; InputError when it ended otherwise. Ctrl-C aborts.
 void attend(Console& console, Orders& orders, double promised);
+/// Line by line what must hold before anything moves; InputError where it does not.
+void go_through(Console& console, const std::vector<std::string>& needs);
 /// Thrusters to zero. InputError "NOT CONFIRMED" unless THRUSTERS says within two seconds that they are.
 void abort_now(Console& console, bool checked);
 /// Keyboard or joystick to forces, until Ctrl-C.

@@ -112,6 +112,7 @@ void steer(const OperatorOptions& options) {
   runtime::StopSignal stop;
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
+  go_through(console, options.needs);
   Hand hand{options};
   orders.give({.enable = true, .order = "hold", .attends = kPromised}, true);
   std::fflush(stdout);
