@@ -17,6 +17,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/health_words.hpp"
 #include "common/base/operator_key.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
@@ -185,7 +186,7 @@ class ThrusterDriver final : public devices::Output {
     }
     if (unhealthy.empty()) unhealthy = lacking_;
     if (unhealthy.empty() && gate_.ignores(utime))
-      unhealthy = "thrust is commanded and none is given, since this driver was not armed; arm again";
+      unhealthy = std::string{kNotArmedYet} + "; arm again";
     const std::string_view reason = gate_.reason(utime);
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {

@@ -36,6 +36,7 @@ struct Vehicle {
   std::unique_ptr<Background> driver, supervisor;
   std::function<void()> meanwhile;  ///< every 5 ms
   std::string identifier{"running"};
+  bool deaf_supervisor{false};  ///< one says HEALTH and hears nothing
 
   Vehicle() { start_driver(); }
   void start_driver() {
@@ -63,7 +64,9 @@ struct Vehicle {
     const double end = link::wall_seconds() + seconds;
     for (int i = 0; link::wall_seconds() < end; ++i) {
       if (i % 100 == 0) {
-        for (const std::string process : {"estimator", "identifier", "recorder"}) {
+        std::vector<std::string> neighbours{"estimator", "identifier", "recorder"};
+        if (deaf_supervisor) neighbours.emplace_back("supervisor");
+        for (const std::string& process : neighbours) {
           fathom_lcm::health_t health{};
           health.utime = now();
           health.process = process;
@@ -219,7 +222,13 @@ TEST_CASE("orders: fathom arm fails with the reason where it is refused or nobod
   Vehicle vehicle;
   const auto alone = vehicle.tool("arm --operator " + kOperator);
   CHECK(alone.code == 1);
-  CHECK_MESSAGE(alone.says("NOT CONFIRMED: no supervisor answered"), alone.text);
+  CHECK_MESSAGE(alone.says("NOT OK  supervisor"), alone.text);
+  vehicle.deaf_supervisor = true;
+  vehicle.run(1.0);
+  const auto deaf = vehicle.tool("arm --operator " + kOperator);
+  CHECK(deaf.code == 1);
+  CHECK_MESSAGE(deaf.says("NOT CONFIRMED: no supervisor answered"), deaf.text);
+  vehicle.deaf_supervisor = false;
   CHECK(vehicle.tool("arm --no-supervisor --operator " + kOperator).code == 0);
   std::ofstream{vehicle.scratch.path("other.yaml")} << "operator: {key: " << std::string(64, 'a')
                                                     << ", known_to_all: yes}\n";
