@@ -3,7 +3,9 @@
 #include "test/support/orders.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <linux/joystick.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -294,16 +296,15 @@ TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is h
     const std::string terminal = vehicle.scratch.path("keys"), pad = vehicle.scratch.path("js0");
     link::Server keys{"pty:" + terminal};
     if (joystick) test::shell("mkfifo " + pad);
-    std::ofstream stick;
+    const int stick =
+        joystick ? open(pad.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC) : -1;  // both ends: waits for nobody
     const Background tool{vehicle.scratch, "steer",
                           "sh -c \"exec " + program("fathom") + " steer --force 8 --operator " + kOperator +
                               " --bus '" + vehicle.bus.url + "'" + (joystick ? " --joystick " + pad : "") + " < " +
                               terminal + "\""};
-    if (joystick) stick.open(pad, std::ios::binary);
     const auto event = [&](std::int16_t value, int type, std::uint8_t number) {
       const js_event e{.time = 0, .value = value, .type = static_cast<std::uint8_t>(type), .number = number};
-      stick.write(reinterpret_cast<const char*>(&e), sizeof e);
-      stick.flush();
+      CHECK(write(stick, &e, sizeof e) == static_cast<ssize_t>(sizeof e));
     };
     if (joystick) event(0, JS_EVENT_BUTTON | JS_EVENT_INIT, 4);
     const auto said = [&] { return vehicle.bus.said_of("supervisor"); };
@@ -327,7 +328,7 @@ TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is h
     CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);
     CHECK_MESSAGE(said().find("hold: ") != std::string::npos, said());
     if (joystick) {
-      stick.close();
+      close(stick);  // pulled out
     } else {
       keys.send(" ");
     }

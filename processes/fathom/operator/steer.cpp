@@ -110,10 +110,10 @@ double seconds() { return std::chrono::duration<double>(Console::Clock::now().ti
 
 void steer(const OperatorOptions& options) {
   runtime::StopSignal stop;
+  Hand hand{options};
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
   go_through(console, options.needs);
-  Hand hand{options};
   orders.give({.enable = true, .order = "hold", .attends = kPromised}, true);
   std::fflush(stdout);
   console.excitation.reset();  // of before
