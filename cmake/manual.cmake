@@ -18,6 +18,10 @@ add_custom_command(
   DEPENDS ${programs} ${CMAKE_CURRENT_LIST_DIR}/manual.sh ${CMAKE_CURRENT_LIST_DIR}/completion.bash
   COMMENT "Man pages and completion"
   VERBATIM)
+add_custom_target(programs DEPENDS ${programs})  # what is installed
+if(TARGET fathom_types_jar)
+  add_dependencies(programs fathom_types_jar)
+endif()
 add_custom_target(manual DEPENDS ${manual}/completions/fathom)
 install(DIRECTORY ${manual}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
 install(DIRECTORY ${manual}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion OPTIONAL)

@@ -1,4 +1,4 @@
-# cpack makes fathom_VERSION_ARCHITECTURE.deb of what `cmake --install` installs, after `cmake --build ... --target all
+# cpack makes fathom_VERSION_ARCHITECTURE.deb of what `cmake --install` installs, after `cmake --build ... --target programs
 # manual`. `./check --package` does all of that and tries the package.
 include(GNUInstallDirs)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN decisions EXCLUDE)
@@ -13,12 +13,15 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
     WORLD_EXECUTE)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "explains why an underwater vehicle moves as it does")
 set(CPACK_PACKAGE_DESCRIPTION
-    "Identifies the hydrodynamic model of an underwater vehicle from recordings or on line, looks at what the model leaves
-unexplained, and traces that to physical effects which the model lacks: with intervals, with what cannot be distinguished,
-and with the manoeuvre that would distinguish it.
+    "Identifies the hydrodynamic model of an underwater vehicle from recordings or
+on line, looks at what the model leaves unexplained, and traces that to
+physical effects which the model lacks: with intervals, with what cannot be
+distinguished, and with the manoeuvre that would distinguish it.
 
-Contains the offline tool fathom, the processes of a live trial (drivers of instruments and thrusters, vision, estimator,
-identifier, diagnoser, supervisor, recorder, simulator), and the deputy that runs them on a vehicle. They talk over LCM.")
+Contains the offline tool fathom, the processes of a live trial (drivers of
+instruments and thrusters, vision, estimator, identifier, diagnoser,
+supervisor, recorder, simulator), and the deputy that runs them on a vehicle.
+They talk over LCM.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
