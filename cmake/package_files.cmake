@@ -3,6 +3,10 @@ set(tree ${CPACK_TEMPORARY_INSTALL_DIRECTORY})
 set(debian ${CMAKE_CURRENT_LIST_DIR}/debian)
 set(doc ${tree}/usr/share/doc/fathom)
 
+# CPACK_STRIP_FILES reaches targets alone, and processes are installed under another name.
+file(GLOB programs ${tree}/usr/bin/fathom-*)
+execute_process(COMMAND ${CPACK_FATHOM_STRIP} --strip-unneeded ${programs} COMMAND_ERROR_IS_FATAL ANY)
+
 file(COPY_FILE ${debian}/copyright ${doc}/copyright)
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${doc}/changelog "fathom (${CPACK_PACKAGE_VERSION}) bookworm; urgency=medium
