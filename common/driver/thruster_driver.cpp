@@ -332,7 +332,8 @@ class ThrusterDriver final : public devices::Output {
 }  // namespace
 
 int thruster_main(int argc, const char* const* argv) {
-  return runtime::main("thruster_driver", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"thruster_driver", "Drives the thrusters as the supervisor asks, once armed."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const OperatorKeys keys = operator_keys(process.config_path("operator"));
     ThrusterDriver driver{process, process.config(), vehicle, keys};

@@ -41,8 +41,10 @@ model::ManoeuvrePilot pilot_of(const std::string& name, const model::Vehicle& ve
 
 int main(int argc, char** argv) {
   simulator::Options options;
+  const runtime::Program program{
+      "simulator", "Stands in for the vehicle: water, thrusters, instruments, and effects hidden in the truth."};
   return runtime::main(
-      "simulator", argc, argv,
+      program, argc, argv,
       [&](runtime::Process& process) {
         options.check();
         options.setup.raw = !options.drivers.empty();

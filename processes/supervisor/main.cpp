@@ -24,7 +24,9 @@
 using namespace fathom;
 
 int main(int argc, char** argv) {
-  return runtime::main("supervisor", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"supervisor",
+                                 "Chooses the motions of a trial and keeps the vehicle inside its fence."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const model::Site site = model::Site::load(process.config_path("site"));
     const OperatorKeys keys = operator_keys(process.config_path("operator"));
