@@ -166,7 +166,8 @@ int recorder_main(int argc, const char* const* argv) {
     std::string path;
     bool number{false};
     std::vector<std::string> without;
-    const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
+    const Program program{"recorder", "Writes all messages of a bus to a log."};
+    const auto arguments = Arguments::parse(program, argc, argv, [&](CLI::App& app) {
       app.add_option("--file", path, "the log to be written");
       app.add_flag("--number", number, "add .00, .01, ... to its name, the next number");
       app.add_option("--without", without, "a channel that is not recorded; more than once if wanted")
