@@ -69,10 +69,24 @@ TEST_CASE("search: one effect beside a random force is named") {
   CHECK(current.found.best.names == std::vector<std::string>{"current"});
 }
 
-TEST_CASE("search: taken out of the list, the effect becomes unexplained") {
-  const Conclusion current = inferred(
-      {.duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}}, {"current"});
-  CHECK(current.verdict == Verdict::unexplained);
+TEST_CASE("free force: it finds what no list holds, says what it goes with, and nothing where nothing is") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto found_in = [&](const test::NoisyDive& settings) {
+    const auto dive = test::fly(vehicle, settings);
+    const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
+    const likelihood::Fit base = likelihood::fit(problem, likelihood::nominal_hypothesis(problem),
+                                                 likelihood::prior_noise(problem), {.noise_rounds = 4});
+    return find_free_force(problem, see(problem, base, 1), model::scene_of(vehicle, {&dive.trial, 1}), {}, 1);
+  };
+  const FreeForceFound nothing = found_in({.duration = 60.0, .seed = 3, .force = 0.05});
+  CHECK(nothing.log_odds < Thresholds{}.free_force_odds);
+  const FreeForceFound law =
+      found_in({.duration = 60.0, .seed = 3, .force = 0.05, .outside = [](double, const Vector6d& nu) {
+                  return Vector6d{0.0, 1.5 * nu[0] * std::abs(nu[0]), 0.0, 0.0, 0.0, 0.0};
+                }});
+  CHECK(law.log_odds > Thresholds{}.free_force_odds);
+  CHECK(law.size.share > Thresholds{}.smallest_size);
+  CHECK(words(law.groups.front()) == "velocity in Y");
 }
 
 TEST_CASE("scan: what the score test promises is what a full fit gains") {
