@@ -6,16 +6,19 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 #include <optional>
 #include <vector>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/base/operator_token.hpp"
+#include "common/base/health_words.hpp"
+#include "common/base/operator_key.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
 #include "common/driver/line_record.hpp"
@@ -28,14 +31,20 @@
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
+#include "common/wire/signature.hpp"
+#include "common/wire/vehicle.hpp"
 
 namespace fathom::driver {
 namespace {
 
 constexpr double kStaleVoltage = 5.0;  // s
 constexpr double kHeartbeat = 1.0;     // s between a ground station's signs of life
+constexpr double kAnswer = 0.5;        // s between two words about what an order must quote
 constexpr double kFeedback = 1.0;      // s: without newer feedback what was sent is told
 constexpr double kTestLife = 0.5;      // s that one motor test may run on without the next
+constexpr double kTellVehicle = 0.5;   // s between two of VEHICLE; a change is told at once
+// Of the nominal voltage, where no floor is stated: 3.0 V of a lithium cell's 3.7 to 4.0, below which it takes harm.
+constexpr double kFloorShare = 0.75;
 
 Utime wall_clock() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -62,16 +71,35 @@ Way way_of(const Config& config) {
   config.fail("protocol", "no protocol '" + name + "'; known: rc_override, motor_test, text, dry_run");
 }
 
+VehicleCheck::Expected expected(const Config& config, const model::Vehicle& vehicle, Way way) {
+  VehicleCheck::Expected wanted;
+  wanted.kind = way == Way::kDryRun ? VehicleCheck::Kind::kDryRun
+                : way == Way::kText ? VehicleCheck::Kind::kRig
+                                    : VehicleCheck::Kind::kArdusub;
+  wanted.largest_thrust = positive(config, "largest_thrust", "N");
+  wanted.must_report = way == Way::kRcOverride;
+  wanted.voltage_floor =
+      config.has("voltage_floor") ? config.not_negative("voltage_floor", "V") : kFloorShare * vehicle.nominal_voltage;
+  // In MANUAL ArduSub adds nothing of its own, and does nothing by itself when the commands end.
+  if (wanted.kind == VehicleCheck::Kind::kArdusub) wanted.modes = {"MANUAL"};
+  if (config.has("modes")) wanted.modes = config.texts("modes");
+  if (wanted.kind == VehicleCheck::Kind::kArdusub) wanted.system = std::clamp(config.integer("system"), 1, 255);
+  return wanted;
+}
+
 class ThrusterDriver final : public devices::Output {
  public:
-  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle, std::string token)
+  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle,
+                 const OperatorKeys& keys)
       : process_{process},
         way_{way_of(config)},
         curved_{!vehicle.curve.empty()},
         allocation_{vehicle, positive(config, "largest_thrust", "N")},
-        gate_{std::move(token)},
+        keys_{keys},
+        gate_{unforeseeable()},
         period_{1.0 / positive(config, "rate", "Hz")},
-        writer_{255, 190} {
+        writer_{255, 190},
+        check_{expected(config, vehicle, way_)} {
     if (!curved_ && way_ != Way::kDryRun && way_ != Way::kText) {
       config.fail("protocol", "'" + config.text("protocol") + "' sends pulse widths, and vehicle " + vehicle.name +
                                   " has no 'thrust_curve'; add it to its file, or send forces to a rig with 'text'");
@@ -84,7 +112,6 @@ class ThrusterDriver final : public devices::Output {
     } else {
       parser_ = std::make_unique<devices::Mavlink>(settings);
       target_ = static_cast<std::uint8_t>(std::clamp(config.integer("system"), 1, 255));
-      check_.emplace(target_);
     }
     if (way_ == Way::kRcOverride) {
       const Config full = config.section("full_stick");
@@ -103,14 +130,16 @@ class ThrusterDriver final : public devices::Output {
         },
         [this](bool up, const std::string& why) {
           parser_->restart();
+          check_.restart(steady_seconds());
           watch_->link(up, why, steady_seconds());
         });
   }
 
   void hear(const WrenchCommand& command) { gate_.hear(command, wall_clock()); }
   void hear(const Operator& order) {
-    gate_.hear(order, wall_clock());
+    const Answer answer = gate_.hear(order, wall_clock());
     if (order.abort) step(steady_seconds());  // at once
+    say(answer);
   }
 
   void wait(std::span<const int> descriptors, int milliseconds) {
@@ -128,6 +157,11 @@ class ThrusterDriver final : public devices::Output {
     next_ = std::max(next_ + period_, now);
     step(now);
     say();
+    if (now - answered_at_ >= kAnswer) {
+      answered_at_ = now;
+      say(gate_.answer(wall_clock()));
+    }
+    if (now - vehicle_told_at_ >= kTellVehicle) tell_vehicle(now);
   }
 
   /// The thrusters stand still before the driver goes.
@@ -143,16 +177,23 @@ class ThrusterDriver final : public devices::Output {
   [[nodiscard]] runtime::Process::Condition condition() const {
     std::string unhealthy;
     const double now = steady_seconds();
-    if (watch_) unhealthy = watch_->unhealthy(now, check_ ? check_->objection(now) : "", parser_->complaint());
-    if (unhealthy.empty()) unhealthy = lacking_;
     const Utime utime = wall_clock();
+    // A line that says nothing at all is the first thing to see to, then what the vehicle says.
+    if (watch_) {
+      const std::string trouble = first_trouble(check_.condition(utime, now));
+      const bool silent = watch_->silent(now);
+      unhealthy = watch_->unhealthy(now, silent ? "" : trouble, parser_->complaint());
+    }
+    if (unhealthy.empty()) unhealthy = lacking_;
     if (unhealthy.empty() && gate_.ignores(utime))
-      unhealthy = "thrust is commanded and none is given, since this driver was not armed; arm again";
+      unhealthy = std::string{kNotArmedYet} + "; arm again";
     const std::string_view reason = gate_.reason(utime);
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {
       detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";
     }
+    if (const std::string forged = gate_.forgeries(); !forged.empty()) detail += ", " + forged;
+    if (keys_.known_to_all) detail += ", armed by a key that everybody knows";
     if (gate_.hears_stranger(utime)) detail += std::string(", ") + ThrusterGate::kStranger;
     if (parser_) detail += ", " + counts(*parser_, *watch_, *link_);
     return {.unhealthy = unhealthy, .detail = detail};
@@ -161,10 +202,12 @@ class ThrusterDriver final : public devices::Output {
   void frame(const devices::Parser& parser, const devices::Frame& frame) override {
     const double now = steady_seconds();
     watch_->frame(now);
-    if (check_) check_->hear(dynamic_cast<const devices::Mavlink&>(parser), now);
+    if (const auto* packet = dynamic_cast<const devices::Mavlink*>(&parser)) check_.hear(*packet, now);
+    if (const auto* sentence = dynamic_cast<const devices::ThrusterText*>(&parser)) check_.hear(*sentence, now);
     if (const auto* battery = std::get_if<const Battery*>(&frame.sample)) {
       voltage_ = (*battery)->voltage;
       voltage_at_ = now;
+      check_.hear_voltage(voltage_, now);
       watch_->sample(arrival_, now);
       Battery sample = **battery;
       sample.utime = arrival_;
@@ -175,9 +218,10 @@ class ThrusterDriver final : public devices::Output {
       if (pulses && !curved_) return;  // nobody knows what they give
       watch_->sample(arrival_, now);
       feedback_at_ = now;
-      tell(pulses ? allocation_.applied((*thrusters)->pwm_us, voltage(now))
-                  : allocation_.applied_forces((*thrusters)->force),
-           arrival_);
+      const model::Allocated applied = pulses ? allocation_.applied((*thrusters)->pwm_us, voltage(now))
+                                              : allocation_.applied_forces((*thrusters)->force);
+      check_.applied(applied, now);
+      tell(applied, arrival_);
     }
   }
 
@@ -190,6 +234,7 @@ class ThrusterDriver final : public devices::Output {
     const model::Allocated allocated =
         gate_.reason(utime).empty() ? allocation_.allocate(tau, voltage(now)) : allocation_.neutral();
     lacking_ = allocation_.complaint(allocated);
+    check_.asked(allocated, now);
     send(allocated, tau * allocated.scale, now);
     const bool reported = now - feedback_at_ < kFeedback;  // what the vehicle says it applied counts more
     if (!reported && way_ != Way::kRcOverride) tell(allocated, utime);
@@ -233,26 +278,40 @@ class ThrusterDriver final : public devices::Output {
     process_.publish(wire::kThrusters, wire::encode(sample));
   }
 
+  void say(Answer answer) {
+    answer.process = "thruster_driver";
+    process_.publish(wire::kAnswer, wire::encode_signed(answer, keys_.answer));
+  }
+
+  void tell_vehicle(double now) {
+    vehicle_told_at_ = now;
+    process_.publish(wire::kVehicle, wire::encode(check_.condition(wall_clock(), now)));
+  }
+
   // A change of what the driver does is said at once.
   void say() {
     const runtime::Process::Condition now = condition();
     const std::string kind = now.unhealthy.substr(0, now.unhealthy.find(':')) +
                              std::string{gate_.reason(wall_clock())} +
-                             (gate_.hears_stranger(wall_clock()) ? ThrusterGate::kStranger : "");
+                             (gate_.hears_stranger(wall_clock()) ? ThrusterGate::kStranger : "") +
+                             (gate_.hears_forgeries(wall_clock()) ? "forged" : "");
     if (kind == said_) return;
     said_ = kind;
+    if (gate_.hears_forgeries(wall_clock())) process_.log_warning(gate_.forgeries());
     if (now.unhealthy.empty()) {
       process_.log_info(now.detail);
     } else {
       process_.log_warning(now.unhealthy);
     }
     process_.tell_health();
+    tell_vehicle(steady_seconds());
   }
 
   runtime::Process& process_;
   Way way_;
   bool curved_;  ///< the vehicle has a thrust curve: pulse widths are sent, else forces
   model::ThrusterAllocation allocation_;
+  OperatorKeys keys_;
   ThrusterGate gate_;
   double period_, next_{};
   std::uint8_t target_{1};
@@ -261,9 +320,10 @@ class ThrusterDriver final : public devices::Output {
   std::unique_ptr<devices::Parser> parser_;
   std::optional<Watch> watch_;
   std::optional<LineRecord> record_;
-  std::optional<VehicleCheck> check_;
+  VehicleCheck check_;
+  double vehicle_told_at_{-1e9};
   Utime arrival_{};
-  double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
+  double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9}, answered_at_{-1e9};
   std::string lacking_;  ///< what was commanded and the thrusters cannot give
   std::string said_{"?"};
   std::unique_ptr<link::Link> link_;  // last: its handlers use the others
@@ -272,18 +332,22 @@ class ThrusterDriver final : public devices::Output {
 }  // namespace
 
 int thruster_main(int argc, const char* const* argv) {
-  return runtime::main("thruster_driver", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"thruster_driver", "Drives the thrusters as the supervisor asks, once armed."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
-    ThrusterDriver driver{process, process.config(), vehicle, operator_token(process.config_path("operator"))};
+    const OperatorKeys keys = operator_keys(process.config_path("operator"));
+    ThrusterDriver driver{process, process.config(), vehicle, keys};
     process.publishes<fathom_lcm::thrusters_t>(wire::kThrusters);
     process.publishes<fathom_lcm::battery_t>(wire::kBattery);
+    process.publishes<fathom_lcm::answer_t>(wire::kAnswer);
+    process.publishes<fathom_lcm::vehicle_condition_t>(wire::kVehicle);
     process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
-      const auto command = wire::decode(message);
+      const auto command = wire::open(message, keys.command);
       if (!command) return process.reject(wire::kWrenchCommand);
       driver.hear(*command);
     });
     process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
-      const auto order = wire::decode(message);
+      const auto order = wire::open(message, keys.order);
       if (!order) return process.reject(wire::kOperator);
       driver.hear(*order);
     });

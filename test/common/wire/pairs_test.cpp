@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <fathom_lcm/camera_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -159,8 +160,9 @@ TEST_CASE("wire: every sensor sample comes back whole, and no non-finite number 
 }
 
 TEST_CASE("wire: every sample of minds, commands and processes comes back whole, and no non-finite number comes in") {
-  check_pair<WrenchCommand, 5>();
-  check_pair<Operator, 9>();
+  check_pair<WrenchCommand, 8>();
+  check_pair<Operator, 11>();
+  check_pair<Answer, 10>();
   check_pair<Excitation, 14>();
   check_pair<StateEstimate, 8>();
   check_pair<SmoothedState, 6>();
@@ -233,9 +235,11 @@ TEST_CASE("wire: a missing flag of a range means that no echo came") {
 }
 
 TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each rightly") {
-  std::set<std::int64_t> fingerprints{fathom_lcm::camera_t::getHash(), fathom_lcm::named_value_t::getHash(),
-                                      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash(),
-                                      fathom_lcm::channel_health_t::getHash()};
+  std::set<std::int64_t> fingerprints{
+      fathom_lcm::camera_t::getHash(),          fathom_lcm::named_value_t::getHash(),
+      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash(),
+      fathom_lcm::channel_health_t::getHash(),  fathom_lcm::vehicle_condition_t::getHash(),
+      fathom_lcm::vehicle_text_t::getHash(),    fathom_lcm::condition_line_t::getHash()};
   std::size_t types = fingerprints.size();
   std::set<std::string> channels{wire::kCamera};
   const Recording empty;
@@ -246,8 +250,8 @@ TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each
     ++types;
   });
   CHECK(fingerprints.size() == types);
-  CHECK(types == 28);  // as many as there are files in lcmtypes/, the two of lockstep apart
-  CHECK(channels.size() == 24);
+  CHECK(types == 32);  // as many as there are files in lcmtypes/, the two of lockstep apart
+  CHECK(channels.size() == 25);
 }
 
 }  // namespace fathom
