@@ -28,7 +28,7 @@ constexpr char kInfoChannel[] = "PROCESS_INFO";
 /// What a configuration file says. An operator's word is not for the bus, nor for logs.
 std::string content(const std::string& path) {
   const std::string head = "# file " + path;
-  if (Config::load(path).has("operator")) return head + ": not told, since it holds the operator's token\n";
+  if (Config::load(path).has("operator")) return head + ": not told, since it holds the operator's key\n";
   std::ifstream file{path};
   std::string text = head + "\n";
   for (std::string line; std::getline(file, line);) text += line + "\n";
@@ -114,6 +114,7 @@ bool Process::has_config(const std::string& key) const {
 }
 
 bool Process::reads_logs() const { return !state_->arguments.lockstep && !state_->arguments.in.front().live(); }
+bool Process::is_live() const { return !state_->arguments.lockstep && state_->arguments.in.front().live(); }
 
 void Process::send(const std::string& channel, const std::string& type, Utime utime) {
   const auto speech = find_channel(state_->speeches, channel);

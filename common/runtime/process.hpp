@@ -58,6 +58,8 @@ class Process {
 
   /// The input is recorded: nothing is waited for.
   [[nodiscard]] bool reads_logs() const;
+  /// On a bus in real time: neither from a log nor in lockstep.
+  [[nodiscard]] bool is_live() const;
   /// Counts a message that was decoded but refused; HEALTH shows the counts.
   void reject(const std::string& channel);
 

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "common/wire/minds.hpp"
-#include "test/support/bus.hpp"
+#include "test/support/orders.hpp"
 
 namespace fathom {
 namespace {
@@ -120,19 +120,10 @@ TEST_CASE("vehicle: outputs that stay neutral under a command are told within th
   Behind behind{"--condition 0:obeys=off"};
   behind.bus.listen(2.5);
   (void)behind.complaints();
-  fathom_lcm::operator_t order{};
-  order.utime = now();
-  order.enable = true;
-  order.token = "only-for-simulation";
-  order.sequence = order.utime;
-  behind.bus.publish("OPERATOR", order);
+  test::Commander commander{behind.bus};
+  commander.obey(test::give(behind.bus, {.enable = true}));
   for (int i = 0; i < 60; ++i) {
-    fathom_lcm::wrench_command_t message{};
-    message.utime = now();
-    message.tau[0] = 50.0;
-    message.life = 0.5;
-    message.armed_by = order.sequence;
-    behind.bus.publish("WRENCH_COMMAND", message);
+    commander.say(test::ahead(50.0));
     behind.bus.listen(0.05);
   }
   const std::string told = behind.complaints();

@@ -112,7 +112,7 @@ TEST_CASE("process: a log in gives a log out, twice the same bytes, stamped with
   CHECK(result.health.empty());
 }
 
-TEST_CASE("process: PROCESS_INFO tells the configuration, and never the operator's token, however it is written") {
+TEST_CASE("process: PROCESS_INFO tells the configuration, and never the operator's key, however it is written") {
   for (const std::string token :
        {"  token: deep-blue-4711", "  \"token\": deep-blue-4711", "  token:\n    deep-blue-4711"}) {
     CAPTURE(token);
