@@ -34,6 +34,7 @@ double steady() { return std::chrono::duration<double>(std::chrono::steady_clock
 constexpr double kListen = 1.3;      // s: every deputy speaks once a second
 constexpr double kListenHere = 0.4;  // s, where silence means no more than that we start one: two settle it themselves
 constexpr double kLocalPatience = 10.0;   // s until a deputy of our own speaks: liblcm may test itself that long
+constexpr double kAnswer = 0.5;           // s that a deputy may take to say what it may run
 constexpr double kCall = 0.5;             // s between two calls for a deputy that is silent
 constexpr double kSettle = 1.5;           // s after a script: what ends at once is seen to end
 constexpr std::size_t kLastWords = 2000;  // B that are kept of what a command prints
@@ -199,7 +200,14 @@ int Office::run() {
   for (const std::string& each : unheard) {
     screen_.say("deputy " + each + " is not heard on " + options_.url + "; start it there: fathom-deputy --id " + each);
   }
-  if (options_.status) return judge(!nobody);
+  if (options_.status) {
+    // A deputy's usual word may come before its answer to our call, in which it says what it may run; procman's says
+    // nothing of it.
+    const std::size_t heard = mind_.config().deputies().size() - unheard.size();
+    for (const double end = steady() + kAnswer; steady() < end && allowed_.size() < heard && !interrupt_.raised();)
+      round();
+    return judge(!nobody);
+  }
   if (nobody && !options_.local && (options_.stop || !options_.script.empty())) return 1;
 
   bool well = true;
