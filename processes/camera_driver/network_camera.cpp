@@ -12,9 +12,11 @@
 namespace fathom::camera_driver {
 namespace {
 
-constexpr double kSilence = 2.0;  // s without a picture
+constexpr double kNetworkCameraSilence = 2.0;  // s without a picture
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double network_camera_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -28,14 +30,14 @@ NetworkCamera::NetworkCamera(runtime::Process& process, NetworkSettings settings
 
 void NetworkCamera::wait(std::span<const int> descriptors, int milliseconds) {
   link_.wait(descriptors, milliseconds);
-  const bool silent = link_.up() && now() - last_ > kSilence;
+  const bool silent = link_.up() && network_camera_now() - last_ > kNetworkCameraSilence;
   if (silent != silent_) process_.tell_health();
   silent_ = silent;
 }
 
 void NetworkCamera::changed(bool up, const std::string& why) {
   stream_.restart();
-  last_ = now();
+  last_ = network_camera_now();
   if (std::exchange(why_, why) == why) return;
   if (up) {
     process_.log_info(settings_.endpoint.text + ": connected");
@@ -62,7 +64,7 @@ void NetworkCamera::publish(std::vector<std::uint8_t> jpeg) {
     return;
   }
   complaint_.clear();
-  last_ = now();
+  last_ = network_camera_now();
   const auto stamp = stamps_.step(begun_);
   if (const std::string news = stamps_.news(); !news.empty()) process_.log_warning(settings_.endpoint.text + news);
   if (!stamp) return;
@@ -77,10 +79,10 @@ void NetworkCamera::publish(std::vector<std::uint8_t> jpeg) {
 
 runtime::Process::Condition NetworkCamera::condition() const {
   std::string unhealthy = complaint_;
-  const double silent = now() - last_;
+  const double silent = network_camera_now() - last_;
   if (!link_.up()) {
     unhealthy = why_;
-  } else if (silent > kSilence) {
+  } else if (silent > kNetworkCameraSilence) {
     unhealthy = settings_.endpoint.text + ": connected, but no picture for " + std::to_string(std::lround(silent)) +
                 " s; does it send JPEG?";
   }

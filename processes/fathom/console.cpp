@@ -14,7 +14,7 @@
 namespace fathom::tool {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using ConsoleClock = std::chrono::steady_clock;
 
 template <class Message>
 std::optional<Message> message_of(const std::vector<std::uint8_t>& bytes) {
@@ -41,8 +41,8 @@ Console::Console(const std::string& url, Hears what)
 }
 
 void Console::listen(double seconds, const std::function<bool()>& enough) {
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (Clock::now() < end && !(enough && enough())) {
+  const auto end = ConsoleClock::now() + std::chrono::duration<double>(seconds);
+  while (ConsoleClock::now() < end && !(enough && enough())) {
     input_.wait(-1, 20);
     while (const auto message = input_.next()) hear(*message);
   }
