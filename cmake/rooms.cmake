@@ -30,7 +30,9 @@ endif()
 # What nearly every source reads, read once: a precompiled header per layer and per set of compiler options, made by an
 # empty library that lends it to all others. FATHOM_PCH=OFF builds without, as FATHOM_UNITY=OFF does without unity files:
 # `./check --includes` does, so that every source names what it uses.
-add_compile_options(-pthread)  # one of LCM's; the same everywhere, since a precompiled header insists on the same macros
+if(FATHOM_PCH)
+  add_compile_options(-pthread)  # one of LCM's; the same everywhere, since a precompiled header insists on the same macros
+endif()
 function(fathom_precompile layer)
   cmake_parse_arguments(arg "" "" "HEADERS;LINK;OPTIONS" ${ARGN})
   set(empty ${CMAKE_CURRENT_BINARY_DIR}/pch_${layer}.cpp)

@@ -14,11 +14,11 @@
 namespace fathom::tool {
 namespace {
 
-struct ImportOptions {
+struct Options {
   std::string data, map, vehicle, out;
 };
 
-void run_import(const ImportOptions& options) {
+void run(const Options& options) {
   std::optional<tables::SimulatedAxes> simulated;
   if (!options.vehicle.empty()) simulated = model::Vehicle::load(options.vehicle).dof;
   const tables::Imported imported = tables::import_csv(options.data, options.map, simulated);
@@ -31,14 +31,14 @@ void run_import(const ImportOptions& options) {
 }  // namespace
 
 void add_import(CLI::App& app) {
-  auto options = std::make_shared<ImportOptions>();
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("import", "CSV to an LCM log");
   command->add_option("data", options->data, "CSV file")->required();
   command->add_option("--map", options->map, "YAML file that says what each column is; without: canonical columns");
   command->add_option("--vehicle", options->vehicle,
                       "vehicle file: columns of axes that it does not simulate may lack");
   command->add_option("--out", options->out, "log to write, RUN.lcmlog")->required();
-  command->callback([options] { run_import(*options); });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace fathom::tool

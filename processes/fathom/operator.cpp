@@ -17,7 +17,7 @@
 namespace fathom::tool {
 namespace {
 
-struct OperatorOptions {
+struct Options {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
   std::string operator_file;
   std::string word, segment;
@@ -30,7 +30,7 @@ Utime wall_clock() {
       .count();
 }
 
-void operator_print(const Excitation& e) {
+void print(const Excitation& e) {
   std::printf("%-10s %s\n", e.phase.c_str(), e.reason.c_str());
   if (e.mode.empty()) return;
   std::printf("mode %s, %.0f of at most %.0f s", e.mode.c_str(), e.elapsed, e.duration);
@@ -49,7 +49,7 @@ void go_through(Console& console, const std::vector<std::string>& needs) {
   if (!excitation::all_ok(lines())) throw InputError("not armed: see to what is NOT OK above, then arm again");
 }
 
-void order(const OperatorOptions& options, bool enable, const std::string& word) {
+void order(const Options& options, bool enable, const std::string& word) {
   const std::string token = operator_token(options.operator_file);
   Console console{options.url};
   console.listen(1.0, [&] { return console.vehicle_time.has_value(); });
@@ -75,28 +75,28 @@ void order(const OperatorOptions& options, bool enable, const std::string& word)
   console.listen(1.5, moved);
   if (!console.excitation)
     throw InputError("no EXCITATION on the bus: are supervisor and estimator running? fathom status tells");
-  operator_print(*console.excitation);
+  print(*console.excitation);
   if (console.excitation->reason.find(excitation::kNotFlown) != std::string::npos)
     throw InputError("the supervisor goes on as before; see above");
   if (enable && console.excitation->phase == "disarmed") throw InputError("the supervisor did not arm; see above");
 }
 
-void abort_now(const OperatorOptions& options) {
+void abort_now(const Options& options) {
   Console console{options.url};
   for (int i = 0; i < 5; ++i) {  // one may be lost
     console.say({.utime = wall_clock(), .abort = true});
     console.listen(0.05);
   }
   console.listen(0.5, [&] { return console.excitation && console.excitation->phase == "aborted"; });
-  if (console.excitation) operator_print(*console.excitation);
+  if (console.excitation) print(*console.excitation);
 }
 
-void status(const OperatorOptions& options) {
+void status(const Options& options) {
   Console console{options.url};
   console.listen(1.6);
   if (console.health.empty())
     throw InputError("nobody says HEALTH on this bus; check --bus and that processes are running");
-  if (console.excitation) operator_print(*console.excitation);
+  if (console.excitation) print(*console.excitation);
   if (console.state) {
     const Eigen::Vector3d& p = console.state->p_WB;
     std::printf("state %s, at %.2f %.2f %.2f m\n", console.state->valid ? "valid" : "NOT VALID", p.x(), p.y(), p.z());
@@ -108,7 +108,7 @@ void status(const OperatorOptions& options) {
   }
 }
 
-CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shared_ptr<OperatorOptions>& options) {
+CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shared_ptr<Options>& options) {
   CLI::App* command = app.add_subcommand(name, what);
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
@@ -118,7 +118,7 @@ CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shar
 }  // namespace
 
 void add_operator(CLI::App& app) {
-  auto options = std::make_shared<OperatorOptions>();
+  auto options = std::make_shared<Options>();
   const auto with_token = [&](CLI::App* command) {
     command->add_option("--operator", options->operator_file, "file with the token that the vehicle knows")->required();
   };
