@@ -1,12 +1,13 @@
 #include "common/model/thruster_allocation.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 
 #include "common/base/error.hpp"
+#include "common/base/least_squares.hpp"
 
 namespace fathom::model {
 namespace {
@@ -31,7 +32,7 @@ ThrusterAllocation::ThrusterAllocation(const Vehicle& vehicle, double largest) :
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!vehicle.dof[static_cast<std::size_t>(i)]) rows.row(i).setZero();
   }
-  inverse_ = rows.completeOrthogonalDecomposition().pseudoInverse();
+  inverse_ = pseudo_inverse(rows);
   double farthest = 0.0;  // m
   for (const Thruster& thruster : vehicle.thrusters) farthest = std::max(farthest, thruster.p_BJ.norm());
   for (Eigen::Index i = 0; i < 6; ++i) {
