@@ -3,7 +3,9 @@
 #include <array>
 
 #include "common/recordings/dataflash/dataflash.hpp"
+#include "common/recordings/matlab/matlab.hpp"
 #include "common/recordings/mcap/mcap.hpp"
+#include "common/recordings/numpy/numpy.hpp"
 #include "common/recordings/packed/packed.hpp"
 #include "common/recordings/rosbag1/rosbag1.hpp"
 #include "common/recordings/rosbag2/rosbag2.hpp"
@@ -25,6 +27,9 @@ constexpr std::array kFormats{
     Format{"rosbag1", "ROS 1 bag", kOfDay, rosbag1::is_bag, rosbag1::read},
     Format{"packed", "one of these packed by zstd", kOfDay, packed::is_zstd, packed::read},
     Format{"tlog", "MAVLink telemetry log", kOfDay, tlog::is_tlog, tlog::read},
+    Format{"npz", "NumPy arrays (.npz)", kOfDay, numpy::is_npz, numpy::read_npz},
+    Format{"npy", "a NumPy array (.npy)", kOfDay, numpy::is_npy, numpy::read_npy},
+    Format{"mat", "MATLAB .mat", kOfDay, matlab::is_mat, matlab::read},
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Field {
   std::string unit{};  ///< as the file or the format's documents say; empty: not known
 };
 
-/// Messages of one kind from one source; an instance (a second IMU) is a topic of its own.
+/// Messages of one kind from one source. An instance (a second IMU) is a topic of its own.
 struct Topic {
   std::string name;  ///< "/imu/data", "BARO[1]"; unique within a file
   std::string type;  ///< "sensor_msgs/msg/Imu"
