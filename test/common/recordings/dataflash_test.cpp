@@ -104,8 +104,7 @@ TEST_CASE("dataflash: a velocity log's shifts become a velocity, unless their ti
 TEST_CASE("dataflash: the text form says the same as the binary one") {
   const auto file = test::hear(
       "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 5, 15, ATT, Qf, TimeUS,Roll\n"
-      "FMT, 6, 75, MSG, QZ, TimeUS,Message\nATT, 1000000, -0.5\nMSG, 1000001, a, b, and c\nATT, 1020000, NaN\nATT, "
-      "10\n");
+      "FMT, 6, 75, MSG, QZ, TimeUS,Message\nATT, 1000000, -0.5\nMSG, 1000001, a, b, and c\nATT, 1020000, NaN\nATT\n");
   CHECK(file.format == "dataflash_text");
   const auto& topic = file.heard.of("ATT");
   REQUIRE(topic.stamps.size() == 2);
