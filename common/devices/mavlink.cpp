@@ -40,6 +40,8 @@ void put(std::string& out, float value) { put(out, std::bit_cast<std::uint32_t>(
 
 }  // namespace
 
+std::span<const Message> messages() { return kMessages; }
+
 const Message* message(std::uint32_t id) {
   for (const Message& each : kMessages) {
     if (each.id == id) return &each;

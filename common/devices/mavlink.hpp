@@ -22,6 +22,7 @@ struct Message {
   std::uint8_t crc_extra;
   std::string_view fields;
 };
+[[nodiscard]] std::span<const Message> messages();
 /// Null when this message is not known.
 [[nodiscard]] const Message* message(std::uint32_t id);
 
@@ -46,8 +47,7 @@ class Writer {
 }  // namespace mavlink
 
 /// SERVO_OUTPUT_RAW gives Thrusters samples (pwm only), SYS_STATUS and BATTERY_STATUS the battery's voltage. The CRC of
-/// a message that is not known cannot be checked; its bytes are skipped. A telemetry log can be fed as it is: the times
-/// before its frames are the frames' device times.
+/// a message that is not known cannot be checked; its bytes are skipped. A tlog can be fed as it is.
 class Mavlink final : public Parser {
  public:
   explicit Mavlink(const Settings& settings);

@@ -13,11 +13,10 @@
 #include "common/recordings/clocks.hpp"
 #include "common/recordings/joined_parts.hpp"
 #include "common/tables/import.hpp"
+#include "common/tables/readers.hpp"
 
 namespace fathom::recordings {
 namespace {
-
-constexpr const char* kOwnTime = "(time)";
 
 template <class Sample>
 void append(std::vector<Sample>& to, std::vector<Sample>&& from) {
@@ -92,8 +91,7 @@ tables::CsvTable table_of(const Content& content, std::size_t topic, std::uint32
   std::ranges::stable_sort(sorted, {}, [&](std::size_t i) { return times[i]; });
   tables::CsvTable table;
   table.path = content.path() + ": " + content.topics->topics()[topic].topic.name;
-  table.own_clock = true;
-  table.names.push_back(kOwnTime);
+  table.names.push_back(tables::kOwnTime);
   table.columns.emplace_back();
   for (const std::size_t i : sorted) {
     table.columns.back().push_back(1e-6 * static_cast<double>(times[i]));
@@ -141,9 +139,10 @@ std::optional<ImportedRun> import_run(Content& content, const std::vector<tables
         std::ranges::count(topics.begin() + static_cast<std::ptrdiff_t>(s) + 1, topics.end(), topics[s]) == 0;
     if (last) content.topics->release(*topics[s]);  // an hour at 400 Hz must not stand in memory three times
     tables::ColumnMap map = streams[s].map;
-    if (map.time.columns.empty()) map.time.columns = {{kOwnTime, ""}};
+    if (map.time.columns.empty()) map.time.columns = {{tables::kOwnTime, ""}};
     try {
       tables::Imported imported = tables::import_table(table, std::move(map), simulated);
+      for (Depth& depth : imported.recording.depth) depth.z += streams[s].offset;
       append(run.recording, std::move(imported.recording));
       for (const std::string& note : imported.notes) {
         if (!note.starts_with("columns not used")) run.notes.push_back(own.topic + ": " + note);

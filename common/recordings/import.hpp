@@ -12,7 +12,7 @@
 #include "common/recordings/formats.hpp"
 #include "common/samples/recording.hpp"
 #include "common/tables/absent.hpp"
-#include "common/tables/column_map.hpp"
+#include "common/tables/mapped_streams.hpp"
 
 namespace fathom::recordings {
 

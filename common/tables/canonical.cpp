@@ -167,8 +167,8 @@ ColumnMap canonical_map(const CsvTable& table) {
     thrusters.wrench_moment = ColumnGroup{{wrench->columns.begin() + 3, wrench->columns.end()}};
   }
   if (thrusters.pwm || thrusters.force || thrusters.wrench_force) map.thrusters = thrusters;
-  if (const auto depth = shelf.take({"depth"})) map.depth = ScalarColumn{*depth, 0.0, {}};
-  if (const auto voltage = shelf.take({"voltage"})) map.battery = ScalarColumn{*voltage, 0.0, {}};
+  if (const auto depth = shelf.take({"depth"})) map.depth = ScalarColumn{*depth, {}};
+  if (const auto voltage = shelf.take({"voltage"})) map.battery = ScalarColumn{*voltage, {}};
   shelf.check_strangers();
   if (table.names.size() == 1) throw InputError(table.path + ":1: there is no column besides time");
   if (!map.pose_capture && !map.ahrs && !map.dvl && !map.thrusters && !map.depth && !map.battery)

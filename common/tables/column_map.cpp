@@ -6,6 +6,7 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
+#include "common/tables/mapped_streams.hpp"
 
 namespace fathom::tables {
 namespace {
@@ -189,17 +190,19 @@ DvlColumns dvl_of(const Config& section) {
   return dvl;
 }
 
-ScalarColumn depth_of(const Config& section) {
+/// z = (p - surface) / (density g): the second term goes to `offset`.
+ScalarColumn depth_by_pressure(const Config& section, double& offset) {
   constexpr double kGravity = 9.80665;  // m/s^2
-  if (section.has("pressure")) {        // z = (p - surface) / (density g)
-    const Config pressure = section.section("pressure");
-    ScalarColumn depth{scalar(pressure, "Pa"), 0.0, invalid_of(section)};
-    const double weight = kGravity * pressure.positive("density", "kg/m^3");
-    depth.group.factor /= weight;
-    depth.offset = -pressure.not_negative("surface", "Pa") / weight;
-    return depth;
-  }
-  ScalarColumn depth{scalar(section, "m"), 0.0, invalid_of(section)};
+  const Config pressure = section.section("pressure");
+  ScalarColumn depth{scalar(pressure, "Pa"), invalid_of(section)};
+  const double weight = kGravity * pressure.positive("density", "kg/m^3");
+  depth.group.factor /= weight;
+  offset = -pressure.not_negative("surface", "Pa") / weight;
+  return depth;
+}
+
+ScalarColumn depth_of(const Config& section) {
+  ScalarColumn depth{scalar(section, "m"), invalid_of(section)};
   const std::string direction = section.text("direction");
   if (direction != "down" && direction != "up") section.fail("direction", "'direction' must be down or up");
   if (direction == "up") depth.group.factor *= -1.0;
@@ -212,7 +215,7 @@ void read_stream(ColumnMap& map, const std::string& name, const Config& section)
   if (name == "dvl") map.dvl = dvl_of(section);
   if (name == "depth") map.depth = depth_of(section);
   if (name == "thrusters") map.thrusters = thrusters_of(section);
-  if (name == "battery") map.battery = ScalarColumn{scalar(section, "V"), 0.0, invalid_of(section)};
+  if (name == "battery") map.battery = ScalarColumn{scalar(section, "V"), invalid_of(section)};
 }
 
 ColumnMap read(const Config& config) {
@@ -262,7 +265,11 @@ std::vector<MappedStream> read_streams(const Config& config) {
         stream.map.time = *time;
         stream.columns.push_back(time->columns.front().name);
       }
-      read_stream(stream.map, name, section);
+      if (stream.name == "depth" && section.has("pressure")) {
+        stream.map.depth = depth_by_pressure(section, stream.offset);
+      } else {
+        read_stream(stream.map, name, section);
+      }
       gather(section, stream.columns);
       streams.push_back(std::move(stream));
     }

@@ -70,7 +70,6 @@ struct ThrusterColumns {
 
 struct ScalarColumn {
   ColumnGroup group;  ///< one column; the sign of its direction is in the factor
-  double offset{};    ///< SI, added behind the factor: the pressure of the air, as a depth
   std::vector<Column> invalid_where;
 };
 
@@ -90,19 +89,5 @@ struct ColumnMap {
   /// The same for text; `name` stands for the file in messages.
   [[nodiscard]] static ColumnMap parse(const std::string& text, const std::string& name);
 };
-
-/// One stream of a map for recordings whose topics keep their own times: the map holds this stream alone, and its time
-/// is without a column unless the stream names one.
-struct MappedStream {
-  std::string name;   ///< "ahrs"
-  std::string where;  ///< "map.yaml:12"
-  ColumnMap map;
-  std::vector<std::string> columns;  ///< all that the stream names, "topic.field"
-};
-
-/// Reads a map whose streams may be lists (rates from one topic, attitude from another) and may have a 'time' of their
-/// own; a 'time' of the whole map is that of every stream without. InputError as ColumnMap::load.
-[[nodiscard]] std::vector<MappedStream> load_streams(const std::string& path);
-[[nodiscard]] std::vector<MappedStream> parse_streams(const std::string& text, const std::string& name);
 
 }  // namespace fathom::tables

@@ -16,7 +16,6 @@ struct CsvTable {
   std::vector<std::vector<double>> columns;  ///< one per name, all of the same length
   std::vector<std::string> faults;           ///< per column: what is wrong with its first cell that is no number
   std::vector<std::size_t> lines;            ///< line of each row in the file, for messages
-  bool own_clock{false};                     ///< times are a recording's own: no question of their unit
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
   /// nullptr when there is no such column.

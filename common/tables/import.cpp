@@ -184,7 +184,7 @@ void import_scalar(Resolver& resolve, const ScalarColumn& column, double Sample:
   each_usable(rows, {&group}, invalid, count, [&](std::size_t row, Utime utime) {
     Sample sample;
     sample.utime = utime;
-    sample.*member = group.scalar(row) + column.offset;
+    sample.*member = group.scalar(row);
     samples.push_back(sample);
   });
   count.report(samples.size(), table, notes);

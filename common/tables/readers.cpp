@@ -188,7 +188,7 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnGroup& colu
                     table.where(first_falling));
   }
   const double typical = report_longest_gap(rows.utime, notes);
-  if (!table.own_clock) check_step(table, column, typical);
+  if (column.columns.front().name != kOwnTime) check_step(table, column, typical);
   return rows;
 }
 
