@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
@@ -48,6 +49,25 @@ bool is_version_4(Bytes head) {
   return true;
 }
 
+/// Variables of versions 5 and 7 stand one behind the other, each with its length: the library does not say when the
+/// last is cut off.
+void look_for_end(FileWindow& file, Damage& damage) {
+  const Bytes mark = file.at(124, 4);
+  const bool is_little = mark.size() == 4 && mark[0] == 0 && mark[1] == 1 && mark[2] == 'I';
+  const bool is_big = mark.size() == 4 && mark[0] == 1 && mark[1] == 0 && mark[2] == 'M';
+  if (!is_little && !is_big) return;
+  std::uint64_t at = kHeader;
+  while (at < file.size()) {
+    const Bytes tag = file.at(at, 8);
+    const std::uint64_t length = tag.size() < 8 ? file.size()
+                                 : is_big       ? big<std::uint32_t>(tag, 4)
+                                                : little<std::uint32_t>(tag, 4);
+    if (length > file.size() - at - std::min<std::uint64_t>(8, file.size() - at))
+      return damage.add("variables cut off by the end of the file", at, file.size() - at);
+    at += 8 + length;
+  }
+}
+
 }  // namespace
 
 bool is_mat(Bytes head) {
@@ -60,7 +80,8 @@ bool is_mat(Bytes head) {
 }
 
 void read(const std::string& path, Sink& sink, Damage& damage) {
-  (void)FileWindow{path};  // complains if it cannot be opened
+  FileWindow file{path};
+  look_for_end(file, damage);
   int ends[2];
   if (::pipe(ends) != 0) throw InputError(path + ": no pipe to read it through: " + std::strerror(errno));
   const pid_t child = ::fork();

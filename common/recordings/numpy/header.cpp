@@ -74,6 +74,10 @@ bool member_of(std::string_view type, Member& member) {
   if (order != '<' && order != '>' && order != '|' && order != '=') return false;
   member.big = order == '>';
   member.kind = type[1];
+  if (member.kind == 'O') {  // a pointer to what only Python understands
+    member.size = 8;
+    return true;
+  }
   const char* begin = type.data() + 2;
   const auto [end, error] = std::from_chars(begin, type.data() + type.size(), member.size);
   if (error != std::errc{} || member.size > (1U << 20U)) return false;
