@@ -243,7 +243,7 @@ TEST_CASE("fathom import: several files of one run on one clock, folders, patter
                     "source: s\nlicence: l\nahrs:\n  rates: {columns: ['sensor_combined.gyro_rad[0]', "
                     "'sensor_combined.gyro_rad[1]', 'sensor_combined.gyro_rad[3]'], unit: rad/s, frame: FRD}\n");
   refused(scratch.path("dives/pilot.ulg") + " --map " + scratch.path("map.yaml") + out,
-          "map.yaml:4: column 'sensor_combined.gyro_rad[3]'");
+          "map.yaml:3: column 'sensor_combined.gyro_rad[3]'");
   test::write_bytes(scratch.path("empty.ulg"), test::UlogLog{}.bytes);
   refused("--describe " + scratch.path("empty.ulg"), "holds no message");
   test::write_bytes(scratch.path("noise.bin"), std::string("\x01\x00\x02\x00", 4));
