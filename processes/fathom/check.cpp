@@ -21,7 +21,7 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string vehicle, site, map, write;
   std::vector<std::string> runs;
 };
@@ -37,7 +37,7 @@ void print(const std::vector<ConsistencyFinding>& findings) {
   }
 }
 
-void run(const Options& options) {
+void run_check(const CheckOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
   std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
@@ -72,7 +72,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site,
@@ -80,7 +80,7 @@ void add_check(CLI::App& app) {
   command->add_option("runs", options->runs, ".lcmlog or .csv files")->required();
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--write", options->write, "write the corrections for live processes to this file");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_check(*options); });
 }
 
 }  // namespace fathom::tool

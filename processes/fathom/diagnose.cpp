@@ -37,14 +37,14 @@ namespace {
 
 constexpr const char* kTrajectories = "trajectories";
 constexpr const char* kLikelihood = "likelihood";
-constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
+constexpr double kHeldOut = 0.3;   // of every run_diagnose, when no validation run_diagnose is given
 constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
 constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
 // Of what judges: what begins later is seen for too short a time if half of it is fitted.
 constexpr double kTooLate = 0.3;
 constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
 
-struct Options {
+struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
   std::vector<std::string> without;
@@ -85,11 +85,11 @@ class Stretches {
   Stretches(std::span<const Trial> runs, std::span<const std::string> paths, double needed) {
     double longest = 0.0, lost = 0.0;
     std::size_t gaps = 0;
-    for (const Trial& run : runs) {
-      whole_ += duration(run);
-      gaps += estimation::input_gaps(run).count;
-      lost += estimation::input_gaps(run).total;
-      for (Trial& stretch : estimation::known_stretches(run, kShortest)) {
+    for (const Trial& run_diagnose : runs) {
+      whole_ += duration(run_diagnose);
+      gaps += estimation::input_gaps(run_diagnose).count;
+      lost += estimation::input_gaps(run_diagnose).total;
+      for (Trial& stretch : estimation::known_stretches(run_diagnose, kShortest)) {
         longest = std::max(longest, duration(stretch));
         kept_ += duration(stretch);
         trials_.push_back(std::move(stretch));
@@ -122,18 +122,18 @@ struct Explained {
   VerdictGiven given;
 };
 
-/// True when the event begins within the first `share` of the run that it begins in.
+/// True when the event begins within the first `share` of the run_diagnose that it begins in.
 bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double share) {
   double first = 0.0, last = 0.0;
-  for (const Trial& run : runs) {
-    if (run.name != event.run) continue;
-    if (last == 0.0) first = run.t.front();
-    last = run.t.back();
+  for (const Trial& run_diagnose : runs) {
+    if (run_diagnose.name != event.run) continue;
+    if (last == 0.0) first = run_diagnose.t.front();
+    last = run_diagnose.t.back();
   }
   return event.t < first + share * (last - first);
 }
 
-DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress,
+DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, ProgressLine& progress,
                          VerdictGiven& given) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
@@ -206,7 +206,8 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
         diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, show, &out.fitted);
   };
   if (options.validate.empty()) {
-    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
+    notes.emplace_back(
+        "no --validate: the last 30 % of every run_diagnose is kept from the fits and used to judge them");
   }
   Explained explained;
   explain(trials_of_recordings(), explained, estimation::Kept::kLast);
@@ -226,7 +227,8 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     }
     if (!again.report.result.effects.empty() && !again.report.unseen_event) {
       notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted: ", event.t) +
-                      (early ? "the first and the last 15 % of every run judge" : "the first 30 % of every run judge") +
+                      (early ? "the first and the last 15 % of every run_diagnose judge"
+                             : "the first 30 % of every run_diagnose judge") +
                       " in place of the last 30 %");
       explained = std::move(again);
     }
@@ -249,7 +251,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   return std::move(explained.report);
 }
 
-void run(const Options& options) {
+void run_diagnose(const DiagnoseOptions& options) {
   std::vector<std::string> notes;
   DiagnosisReport report;
   VerdictGiven given;
@@ -270,13 +272,13 @@ void run(const Options& options) {
 }  // namespace
 
 void add_diagnose(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DiagnoseOptions>();
   CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
   command->add_option(
       "--validate", options->validate,
-      "files to judge by; without: the last 30 % of every run, or other parts when something begins there");
+      "files to judge by; without: the last 30 % of every run_diagnose, or other parts when something begins there");
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--site", options->site,
                       "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "
@@ -291,7 +293,7 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->check(CLI::Range(1, 64));
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_diagnose(*options); });
 }
 
 }  // namespace fathom::tool

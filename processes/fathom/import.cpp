@@ -17,14 +17,14 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::vector<std::string> data, maps, shifts;
   std::string vehicle, out;
   bool describe{};
 };
 
 /// "NAME=SECONDS" to the source that it names.
-std::map<std::string, double> shifts_of(const Options& options, const std::vector<Source>& sources) {
+std::map<std::string, double> shifts_of(const ImportOptions& options, const std::vector<Source>& sources) {
   std::map<std::string, double> shifts;
   for (const std::string& text : options.shifts) {
     const std::size_t equal = text.rfind('=');
@@ -64,7 +64,7 @@ void write(const Recording& recording, const std::string& path) {
               counts(recording).c_str());
 }
 
-/// All runs that came, each to a log of its own; `out` with the run's number where there are several.
+/// All runs that came, each to a log of its own; `out` with the run_import's number where there are several.
 void write_each(const std::vector<Recording>& runs, const std::string& out) {
   const std::filesystem::path path{out};
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -75,7 +75,7 @@ void write_each(const std::vector<Recording>& runs, const std::string& out) {
   }
 }
 
-void run(const Options& options) {
+void run_import(const ImportOptions& options) {
   std::optional<tables::SimulatedAxes> simulated;
   if (!options.vehicle.empty()) simulated = model::Vehicle::load(options.vehicle).dof;
   const std::vector<Source> sources = sources_of(options.data);
@@ -89,7 +89,8 @@ void run(const Options& options) {
                      std::to_string(sources.size()) + " recordings: once for all, or once for each");
   const bool folder = options.out.ends_with('/') || std::filesystem::is_directory(options.out);
   const std::map<std::string, double> shifts = shifts_of(options, sources);
-  if (folder && !shifts.empty()) throw InputError("--shift is for files of one run; --out names a folder of several");
+  if (folder && !shifts.empty())
+    throw InputError("--shift is for files of one run_import; --out names a folder of several");
   std::vector<Recording> parts;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::string map = options.maps.empty() ? "" : options.maps[options.maps.size() == 1 ? 0 : i];
@@ -123,7 +124,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_import(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImportOptions>();
   CLI::App* command = app.add_subcommand("import", "recordings of others to an LCM log");
   std::string known = "files, folders or patterns: tables of text";
   for (const recordings::Format& format : recordings::formats()) known += ", " + std::string{format.title};
@@ -136,9 +137,10 @@ void add_import(CLI::App& app) {
   command->add_option("--vehicle", options->vehicle,
                       "vehicle file: columns of axes that it does not simulate may lack");
   command->add_option("--shift", options->shifts, "NAME=SECONDS: added to the times of this file");
-  command->add_option("--out", options->out,
-                      "log to write, RUN.lcmlog: several files become one run; or a folder: each is a run of its own");
-  command->callback([options] { run(*options); });
+  command->add_option(
+      "--out", options->out,
+      "log to write, RUN.lcmlog: several files become one run_import; or a folder: each is a run_import of its own");
+  command->callback([options] { run_import(*options); });
 }
 
 }  // namespace fathom::tool

@@ -24,7 +24,7 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct MethodsOptions {
   std::string vehicle, config, map;
   std::vector<std::string> train, validate;
   bool truth{false};
@@ -123,7 +123,7 @@ void validate(const char* name, const model::Vehicle& vehicle, const std::vector
   }
 }
 
-void run(const Options& options) {
+void run_methods(const MethodsOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const Config config = Config::load(options.config);
   const auto filter_settings = estimation::EstimatorSettings::from(config.section("estimator"));
@@ -200,8 +200,8 @@ void run(const Options& options) {
   if (options.validate.empty()) return;
   std::vector<Trial> trials;
   for (std::size_t i = options.train.size(); i < recordings.size(); ++i) {
-    const Trial run = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
-    for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
+    const Trial run_methods = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
+    for (Trial& stretch : estimation::known_stretches(run_methods, diagnosis::kHorizons.back()))
       trials.push_back(std::move(stretch));
   }
   if (trials.empty()) {
@@ -218,7 +218,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_methods(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MethodsOptions>();
   CLI::App* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--config", options->config, "pipeline file with sections estimator and identifier")->required();
@@ -226,7 +226,7 @@ void add_methods(CLI::App& app) {
   command->add_option("--validate", options->validate, "logs or tables on which predictions are judged");
   command->add_option("--map", options->map, "column map of .csv files");
   command->add_flag("--truth", options->truth, "the vehicle file's means are the truth (simulated logs)");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_methods(*options); });
 }
 
 }  // namespace fathom::tool

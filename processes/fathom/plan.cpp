@@ -23,12 +23,12 @@ using planning::Foreseen;
 constexpr double kWindow = 10.0;  // s, as in a diagnosis
 constexpr double kTold = 2.0;     // times the excitation: an answer that takes longer is none
 
-struct Options {
+struct PlanOptions {
   std::string vehicle, site, config, excitation{"paper"}, json;
   double velocity_noise{0.005}, rate_noise{0.0035}, rate{100.0}, longest{600.0};
 };
 
-planning::RehearsalSettings settings_from(const Options& options, const model::Vehicle& vehicle) {
+planning::RehearsalSettings settings_from(const PlanOptions& options, const model::Vehicle& vehicle) {
   planning::RehearsalSettings s = rehearsal_settings(options.site, options.config, vehicle);
   s.longest = options.longest;
   s.rate = options.rate;
@@ -55,7 +55,7 @@ std::string size_of(const Foreseen& one) {
   return text;
 }
 
-void print(const std::vector<Foreseen>& all, double duration) {
+void plan_print(const std::vector<Foreseen>& all, double duration) {
   std::printf("\n%-22s %7s  %-18s %s\n", "effect", "hidden", "corrupts", "the smallest that would be found");
   for (const Foreseen& one : all) {
     const std::string form = one.form.empty() ? "" : " (" + one.form + ")";
@@ -84,7 +84,7 @@ Json json_of(const std::optional<Answer>& answer) {
   return {{"segment", answer->segment}, {"seconds", answer->seconds}};
 }
 
-void write(const Options& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
+void plan_write(const PlanOptions& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
   Json file{{"schema", 1},           {"fathom_version", version()},      {"vehicle", options.vehicle},
             {"site", options.site},  {"excitation", options.excitation}, {"duration_s", rehearsal.trial.t.back()},
             {"ends", rehearsal.end}, {"effects", Json::array()}};
@@ -110,7 +110,7 @@ void write(const Options& options, const std::vector<Foreseen>& all, const plann
   if (!out.flush()) throw InputError(options.json + ": cannot be written; check the free space");
 }
 
-void run(const Options& options) {
+void run_plan(const PlanOptions& options) {
   // Before the work, not after it.
   if (!options.json.empty()) {
     const bool there = std::filesystem::exists(options.json);
@@ -132,14 +132,14 @@ void run(const Options& options) {
   });
   std::printf("%s excitation of %s: %.0f s, %s\n", options.excitation.c_str(), vehicle.name.c_str(), duration,
               rehearsal.end.c_str());
-  print(all, duration);
-  if (!options.json.empty()) write(options, all, rehearsal);
+  plan_print(all, duration);
+  if (!options.json.empty()) plan_write(options, all, rehearsal);
 }
 
 }  // namespace
 
 void add_plan(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand("plan", "before a trial: what would its excitation tell about every effect?");
   command->add_option("--vehicle", options->vehicle, "vehicle file")->required()->check(CLI::ExistingFile);
   command->add_option("--site", options->site, "site file")->required()->check(CLI::ExistingFile);
@@ -154,7 +154,7 @@ void add_plan(CLI::App& app) {
   command->add_option("--longest", options->longest, "s after which the trial is ended (600)")
       ->check(CLI::PositiveNumber);
   command->add_option("--json", options->json, "write the plan here too");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_plan(*options); });
 }
 
 }  // namespace fathom::tool

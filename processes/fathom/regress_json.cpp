@@ -8,18 +8,19 @@
 namespace fathom::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using RegressJsonJson = nlohmann::ordered_json;
 
-Json of(const identification::StepwiseResult& result, const identification::AxisCandidates& candidates) {
+RegressJsonJson of(const identification::StepwiseResult& result, const identification::AxisCandidates& candidates) {
   const auto name = [&](int column) { return candidates.names[static_cast<std::size_t>(column)]; };
-  Json terms = Json::array(), refused = Json::array();
+  RegressJsonJson terms = RegressJsonJson::array(), refused = RegressJsonJson::array();
   for (const auto& term : result.terms)
     terms.push_back(
         {{"name", name(term.column)}, {"value", term.value}, {"std", term.sigma}, {"f", term.f}, {"p", term.p}});
   for (const auto& one : result.refused) refused.push_back({{"name", name(one.column)}, {"why", one.why}});
   const int most = result.most_significant;
   return {{"terms", terms},
-          {"most_significant", most >= 0 ? Json(name(result.terms[static_cast<std::size_t>(most)].column)) : Json()},
+          {"most_significant",
+           most >= 0 ? RegressJsonJson(name(result.terms[static_cast<std::size_t>(most)].column)) : RegressJsonJson()},
           {"refused", refused},
           {"phi", result.phi},
           {"phi_std", result.phi_sigma},
@@ -35,14 +36,14 @@ Json of(const identification::StepwiseResult& result, const identification::Axis
 std::string regression_json(const std::vector<identification::AxisRegression>& axes,
                             std::span<const identification::ManoeuvreRows> runs, const model::Vehicle& vehicle,
                             const identification::RegressionSettings& settings) {
-  Json all{{"schema", "fathom-regression-1"}, {"fathom_version", version()}, {"vehicle", vehicle.name}};
+  RegressJsonJson all{{"schema", "fathom-regression-1"}, {"fathom_version", version()}, {"vehicle", vehicle.name}};
   if (!runs.empty()) all["forces_from"] = runs.front().known_from;
   all["current_north_m_s"] = settings.v_WF.x();
   all["current_east_m_s"] = settings.v_WF.y();
   for (const auto& axis : axes) {
-    Json one{{"axis", model::kAxisNames[static_cast<std::size_t>(axis.axis)]}};
+    RegressJsonJson one{{"axis", model::kAxisNames[static_cast<std::size_t>(axis.axis)]}};
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      Json of_run = of(axis.manoeuvres[i], axis.candidates);
+      RegressJsonJson of_run = of(axis.manoeuvres[i], axis.candidates);
       of_run["name"] = runs[i].name;
       one["manoeuvres"].push_back(of_run);
     }

@@ -1,4 +1,4 @@
-// fathom watch: how far a live trial is, a line at a time, until it ends or is stopped. It only listens.
+// fathom watch: how far a live trial is, a watch_line at a time, until it ends or is stopped. It only listens.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -15,10 +15,10 @@
 namespace fathom::tool {
 namespace {
 
-constexpr double kTerminalPeriod = 0.2;  // s between two looks where a line can be written over
+constexpr double kWatchTerminalPeriod = 0.2;  // s between two looks where a watch_line can be written over
 constexpr double kFilePeriod = 1.0;
 
-struct Options {
+struct WatchOptions {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
 };
 
@@ -29,7 +29,7 @@ std::optional<double> time_left(const Excitation& e) {
   return std::clamp(left, 0.0, std::max(e.duration - e.elapsed, 0.0));
 }
 
-std::string line(const Excitation& e, double t) {
+std::string watch_line(const Excitation& e, double t) {
   char text[200];
   const auto add = [&](const char* format, auto... values) {
     std::snprintf(text, sizeof text, format, values...);
@@ -44,18 +44,18 @@ std::string line(const Excitation& e, double t) {
   return said;
 }
 
-void watch(const Options& options) {
+void watch(const WatchOptions& options) {
   runtime::StopSignal stop;
   const bool terminal = isatty(STDERR_FILENO) != 0;
   Console console{options.url, Console::Hears::kExcitation};
   std::optional<Utime> origin;
   std::string said, stage;
   while (!stop.raised()) {
-    console.listen(terminal ? kTerminalPeriod : kFilePeriod, [&] { return stop.raised(); });
+    console.listen(terminal ? kWatchTerminalPeriod : kFilePeriod, [&] { return stop.raised(); });
     if (!console.excitation) continue;
     const Excitation& e = *console.excitation;
     if (!origin) origin = e.utime;
-    std::string now = line(e, seconds_between(*origin, e.utime));
+    std::string now = watch_line(e, seconds_between(*origin, e.utime));
     if (now == said) continue;
     said = now;
     if (!terminal) {
@@ -74,7 +74,7 @@ void watch(const Options& options) {
 }  // namespace
 
 void add_watch(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WatchOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   CLI::App* command = app.add_subcommand("watch", "how far a live trial is, until Ctrl-C");
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
