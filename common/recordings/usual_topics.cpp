@@ -254,7 +254,7 @@ void px4(const TopicAccount& topic, const Columns& c, Out& out) {
   }
 }
 
-void ros(const TopicAccount& topic, const Columns& c, Out& out) {
+void ros_topics(const TopicAccount& topic, const Columns& c, Out& out) {
   std::string type = topic.topic.type;  // pkg/msg/Type and pkg/Type are the same
   if (const auto msg = type.find("/msg/"); msg != std::string::npos) type.erase(msg, 4);
   const std::string& name = topic.topic.name;
@@ -342,7 +342,7 @@ std::vector<Entry> entries_of(const TopicAccount& topic) {
   std::vector<Entry> out;
   const Columns columns{topic};
   if (topic.topic.type.find('/') != std::string::npos) {
-    ros(topic, columns, out);
+    ros_topics(topic, columns, out);
   } else {
     ardupilot(topic, columns, out);
     mavlink(topic, columns, out);

@@ -12,11 +12,9 @@
 namespace fathom::camera_driver {
 namespace {
 
-constexpr double kNetworkCameraSilence = 2.0;  // s without a picture
+constexpr double kSilence = 2.0;  // s without a picture
 
-double network_camera_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
@@ -30,14 +28,14 @@ NetworkCamera::NetworkCamera(runtime::Process& process, NetworkSettings settings
 
 void NetworkCamera::wait(std::span<const int> descriptors, int milliseconds) {
   link_.wait(descriptors, milliseconds);
-  const bool silent = link_.up() && network_camera_now() - last_ > kNetworkCameraSilence;
+  const bool silent = link_.up() && now() - last_ > kSilence;
   if (silent != silent_) process_.tell_health();
   silent_ = silent;
 }
 
 void NetworkCamera::changed(bool up, const std::string& why) {
   stream_.restart();
-  last_ = network_camera_now();
+  last_ = now();
   if (std::exchange(why_, why) == why) return;
   if (up) {
     process_.log_info(settings_.endpoint.text + ": connected");
@@ -64,7 +62,7 @@ void NetworkCamera::publish(std::vector<std::uint8_t> jpeg) {
     return;
   }
   complaint_.clear();
-  last_ = network_camera_now();
+  last_ = now();
   const auto stamp = stamps_.step(begun_);
   if (const std::string news = stamps_.news(); !news.empty()) process_.log_warning(settings_.endpoint.text + news);
   if (!stamp) return;
@@ -79,10 +77,10 @@ void NetworkCamera::publish(std::vector<std::uint8_t> jpeg) {
 
 runtime::Process::Condition NetworkCamera::condition() const {
   std::string unhealthy = complaint_;
-  const double silent = network_camera_now() - last_;
+  const double silent = now() - last_;
   if (!link_.up()) {
     unhealthy = why_;
-  } else if (silent > kNetworkCameraSilence) {
+  } else if (silent > kSilence) {
     unhealthy = settings_.endpoint.text + ": connected, but no picture for " + std::to_string(std::lround(silent)) +
                 " s; does it send JPEG?";
   }

@@ -37,7 +37,7 @@ namespace {
 
 constexpr const char* kTrajectories = "trajectories";
 constexpr const char* kLikelihood = "likelihood";
-constexpr double kHeldOut = 0.3;   // of every run_diagnose, when no validation run_diagnose is given
+constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
 constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
 constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
 // Of what judges: what begins later is seen for too short a time if half of it is fitted.
@@ -85,11 +85,11 @@ class Stretches {
   Stretches(std::span<const Trial> runs, std::span<const std::string> paths, double needed) {
     double longest = 0.0, lost = 0.0;
     std::size_t gaps = 0;
-    for (const Trial& run_diagnose : runs) {
-      whole_ += duration(run_diagnose);
-      gaps += estimation::input_gaps(run_diagnose).count;
-      lost += estimation::input_gaps(run_diagnose).total;
-      for (Trial& stretch : estimation::known_stretches(run_diagnose, kShortest)) {
+    for (const Trial& run : runs) {
+      whole_ += duration(run);
+      gaps += estimation::input_gaps(run).count;
+      lost += estimation::input_gaps(run).total;
+      for (Trial& stretch : estimation::known_stretches(run, kShortest)) {
         longest = std::max(longest, duration(stretch));
         kept_ += duration(stretch);
         trials_.push_back(std::move(stretch));
@@ -122,13 +122,13 @@ struct Explained {
   VerdictGiven given;
 };
 
-/// True when the event begins within the first `share` of the run_diagnose that it begins in.
+/// True when the event begins within the first `share` of the run that it begins in.
 bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double share) {
   double first = 0.0, last = 0.0;
-  for (const Trial& run_diagnose : runs) {
-    if (run_diagnose.name != event.run) continue;
-    if (last == 0.0) first = run_diagnose.t.front();
-    last = run_diagnose.t.back();
+  for (const Trial& run : runs) {
+    if (run.name != event.run) continue;
+    if (last == 0.0) first = run.t.front();
+    last = run.t.back();
   }
   return event.t < first + share * (last - first);
 }
@@ -206,8 +206,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
         diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, show, &out.fitted);
   };
   if (options.validate.empty()) {
-    notes.emplace_back(
-        "no --validate: the last 30 % of every run_diagnose is kept from the fits and used to judge them");
+    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
   }
   Explained explained;
   explain(trials_of_recordings(), explained, estimation::Kept::kLast);
@@ -227,8 +226,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
     }
     if (!again.report.result.effects.empty() && !again.report.unseen_event) {
       notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted: ", event.t) +
-                      (early ? "the first and the last 15 % of every run_diagnose judge"
-                             : "the first 30 % of every run_diagnose judge") +
+                      (early ? "the first and the last 15 % of every run judge" : "the first 30 % of every run judge") +
                       " in place of the last 30 %");
       explained = std::move(again);
     }
@@ -278,7 +276,7 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
   command->add_option(
       "--validate", options->validate,
-      "files to judge by; without: the last 30 % of every run_diagnose, or other parts when something begins there");
+      "files to judge by; without: the last 30 % of every run, or other parts when something begins there");
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--site", options->site,
                       "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "

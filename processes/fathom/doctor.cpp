@@ -46,8 +46,7 @@ void run_doctor(const DoctorOptions& options) {
 void add_doctor(CLI::App& app) {
   auto options = std::make_shared<DoctorOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
-  if (const char* run_doctor = std::getenv("FATHOM_RUN"); run_doctor != nullptr && *run_doctor != '\0')
-    options->folder = run_doctor;
+  if (const char* run = std::getenv("FATHOM_RUN"); run != nullptr && *run != '\0') options->folder = run;
   if (const char* file = std::getenv("FATHOM_OPERATOR"); file != nullptr) options->operator_file = file;
   CLI::App* command =
       app.add_subcommand("doctor", "is this host ready: programs, network, buffers, clock, disk, devices");

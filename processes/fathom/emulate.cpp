@@ -28,9 +28,9 @@ struct EmulateOptions {
 };
 
 // What an instrument says next: a recording piece by piece, or reports of an emulated motion.
-class Source {
+class PlayedBytes {
  public:
-  Source(const EmulateOptions& options, const devices::Settings& settings)
+  PlayedBytes(const EmulateOptions& options, const devices::Settings& settings)
       : protocol_{options.protocol}, settings_{settings}, begin_{link::wall_seconds()} {
     period_ = 1.0 / (options.rate > 0.0 ? options.rate : devices::emulated_rate(options.protocol));
     if (options.file.empty()) return;
@@ -77,7 +77,7 @@ void run_emulate(const EmulateOptions& options) {
   devices::EmulatedAnswers answers{options.protocol};
   std::vector<devices::PlayedCondition> conditions;
   for (const std::string& each : options.conditions) conditions.push_back(devices::PlayedCondition::parse(each));
-  Source source{options, settings};
+  PlayedBytes source{options, settings};
   std::ofstream sent;
   if (!options.sent.empty()) sent.open(options.sent, std::ios::binary);
   if (!options.sent.empty() && !sent) throw InputError(options.sent + ": cannot be written");

@@ -64,7 +64,7 @@ void write(const Recording& recording, const std::string& path) {
               counts(recording).c_str());
 }
 
-/// All runs that came, each to a log of its own; `out` with the run_import's number where there are several.
+/// All runs that came, each to a log of its own; `out` with the run's number where there are several.
 void write_each(const std::vector<Recording>& runs, const std::string& out) {
   const std::filesystem::path path{out};
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -89,8 +89,7 @@ void run_import(const ImportOptions& options) {
                      std::to_string(sources.size()) + " recordings: once for all, or once for each");
   const bool folder = options.out.ends_with('/') || std::filesystem::is_directory(options.out);
   const std::map<std::string, double> shifts = shifts_of(options, sources);
-  if (folder && !shifts.empty())
-    throw InputError("--shift is for files of one run_import; --out names a folder of several");
+  if (folder && !shifts.empty()) throw InputError("--shift is for files of one run; --out names a folder of several");
   std::vector<Recording> parts;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::string map = options.maps.empty() ? "" : options.maps[options.maps.size() == 1 ? 0 : i];
@@ -137,9 +136,8 @@ void add_import(CLI::App& app) {
   command->add_option("--vehicle", options->vehicle,
                       "vehicle file: columns of axes that it does not simulate may lack");
   command->add_option("--shift", options->shifts, "NAME=SECONDS: added to the times of this file");
-  command->add_option(
-      "--out", options->out,
-      "log to write, RUN.lcmlog: several files become one run_import; or a folder: each is a run_import of its own");
+  command->add_option("--out", options->out,
+                      "log to write, RUN.lcmlog: several files become one run; or a folder: each is a run of its own");
   command->callback([options] { run_import(*options); });
 }
 

@@ -28,15 +28,15 @@ model::Vehicle vehicle_of(const std::string& path, const model::Vehicle* base) {
   return vehicle;
 }
 
-struct ManoeuvreFigures {
+struct Figures {
   double speed{}, drift{}, yaw_rate{}, radius{}, pitch{}, overshoot{}, period{};
 };
 
 double yaw(const model::FlightMoment& m) { return euler_from_rotation(m.q_WB.toRotationMatrix()).z(); }
 
 /// Means over the second half; overshoot and period of a zigzag from its turns of heading.
-ManoeuvreFigures figures_of(const Flight& flight, const model::Manoeuvre& manoeuvre) {
-  ManoeuvreFigures f;
+Figures figures_of(const Flight& flight, const model::Manoeuvre& manoeuvre) {
+  Figures f;
   double n = 0.0, last_turn = 0.0, turns = 0.0, first_turn = 0.0;
   for (std::size_t k = flight.size() / 2; k < flight.size(); ++k) {
     const model::FlightMoment& m = flight[k];
@@ -109,7 +109,7 @@ void compare_manoeuvre(const std::string& first, const std::string& second, cons
   model::Manoeuvre manoeuvre;
   manoeuvre.kind = model::manoeuvre_from(name);
   const Flight one = model::fly(a, manoeuvre, kEvery), two = model::fly(b, manoeuvre, kEvery);
-  const ManoeuvreFigures x = figures_of(one, manoeuvre), y = figures_of(two, manoeuvre);
+  const Figures x = figures_of(one, manoeuvre), y = figures_of(two, manoeuvre);
   std::printf("%s, %.0f s, the same thrusters' rule for both; means over the second half\n%-28s %12s %12s\n",
               name.c_str(), manoeuvre.duration, "", "first", "second");
   line("speed", x.speed, y.speed, "m/s");

@@ -200,8 +200,8 @@ void run_methods(const MethodsOptions& options) {
   if (options.validate.empty()) return;
   std::vector<Trial> trials;
   for (std::size_t i = options.train.size(); i < recordings.size(); ++i) {
-    const Trial run_methods = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
-    for (Trial& stretch : estimation::known_stretches(run_methods, diagnosis::kHorizons.back()))
+    const Trial run = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
+    for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
       trials.push_back(std::move(stretch));
   }
   if (trials.empty()) {

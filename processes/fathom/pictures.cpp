@@ -1,5 +1,5 @@
-// fathom track, fathom calibrate: run_pictures by the program fathom-pictures, which lies beside this one and brings
-// what reads pictures and videos.
+// fathom track, fathom calibrate: run by the program fathom-pictures, which lies beside this one and brings what reads
+// pictures and videos.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@
 namespace fathom::tool {
 namespace {
 
-[[noreturn]] void run_pictures(const std::string& subcommand, const std::vector<std::string>& rest) {
+[[noreturn]] void run(const std::string& subcommand, const std::vector<std::string>& rest) {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto program = self.parent_path() / "fathom-pictures";
@@ -29,18 +29,18 @@ namespace {
                    ": cannot be started; it belongs beside fathom: cmake --build --preset release --target pictures");
 }
 
-void pictures_add(CLI::App& app, const std::string& name, const std::string& what) {
+void add(CLI::App& app, const std::string& name, const std::string& what) {
   CLI::App* command = app.add_subcommand(name, what);
   command->prefix_command();  // all words behind it go on unread
   command->set_help_flag();   // --help too
-  command->callback([command, name] { run_pictures(name, command->remaining()); });
+  command->callback([command, name] { run(name, command->remaining()); });
 }
 
 }  // namespace
 
 void add_pictures(CLI::App& app) {
-  pictures_add(app, "track", "tags, camera pose, velocity and laser range from recorded pictures");
-  pictures_add(app, "calibrate", "lens and map of tags from a sequence of pictures");
+  add(app, "track", "tags, camera pose, velocity and laser range from recorded pictures");
+  add(app, "calibrate", "lens and map of tags from a sequence of pictures");
 }
 
 }  // namespace fathom::tool

@@ -55,7 +55,7 @@ std::string size_of(const Foreseen& one) {
   return text;
 }
 
-void plan_print(const std::vector<Foreseen>& all, double duration) {
+void print(const std::vector<Foreseen>& all, double duration) {
   std::printf("\n%-22s %7s  %-18s %s\n", "effect", "hidden", "corrupts", "the smallest that would be found");
   for (const Foreseen& one : all) {
     const std::string form = one.form.empty() ? "" : " (" + one.form + ")";
@@ -84,7 +84,7 @@ Json json_of(const std::optional<Answer>& answer) {
   return {{"segment", answer->segment}, {"seconds", answer->seconds}};
 }
 
-void plan_write(const PlanOptions& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
+void write(const PlanOptions& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
   Json file{{"schema", 1},           {"fathom_version", version()},      {"vehicle", options.vehicle},
             {"site", options.site},  {"excitation", options.excitation}, {"duration_s", rehearsal.trial.t.back()},
             {"ends", rehearsal.end}, {"effects", Json::array()}};
@@ -132,8 +132,8 @@ void run_plan(const PlanOptions& options) {
   });
   std::printf("%s excitation of %s: %.0f s, %s\n", options.excitation.c_str(), vehicle.name.c_str(), duration,
               rehearsal.end.c_str());
-  plan_print(all, duration);
-  if (!options.json.empty()) plan_write(options, all, rehearsal);
+  print(all, duration);
+  if (!options.json.empty()) write(options, all, rehearsal);
 }
 
 }  // namespace

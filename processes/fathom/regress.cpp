@@ -40,11 +40,11 @@ std::string cell(const StepwiseResult& result, int column) {
   return "";
 }
 
-void regress_print(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs,
-                   const model::Vehicle& vehicle) {
+void print(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs,
+           const model::Vehicle& vehicle) {
   std::printf("\n%s (%s): dimensionless, standard error in per cent, * most significant\n%-10s",
               model::kAxisNames[static_cast<std::size_t>(axis.axis)], kTitles[static_cast<std::size_t>(axis.axis)], "");
-  for (const auto& run_regress : runs) std::printf(" | %16.16s", run_regress.name.c_str());
+  for (const auto& run : runs) std::printf(" | %16.16s", run.name.c_str());
   if (runs.size() > 1) std::printf(" | %16s", "together");
   std::printf(" | %16s\n", "reference");
   std::set<int> shown;
@@ -143,7 +143,7 @@ void run_regress(const RegressOptions& options) {
   const std::vector<AxisRegression> axes = identification::regress(vehicle, runs, settings);
   if (!options.table) std::printf("forces from %s; rows of %.3g s\n", runs.front().known_from.c_str(), runs.front().dt);
   for (const AxisRegression& axis : axes) {
-    regress_print(axis, runs, vehicle);
+    print(axis, runs, vehicle);
     if (!options.table) print_quality(axis, runs);
   }
   if (options.trace) print_trace(identification::trace_pulls(vehicle, runs, settings));

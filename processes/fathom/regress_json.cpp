@@ -8,19 +8,18 @@
 namespace fathom::tool {
 namespace {
 
-using RegressJsonJson = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
-RegressJsonJson of(const identification::StepwiseResult& result, const identification::AxisCandidates& candidates) {
+Json of(const identification::StepwiseResult& result, const identification::AxisCandidates& candidates) {
   const auto name = [&](int column) { return candidates.names[static_cast<std::size_t>(column)]; };
-  RegressJsonJson terms = RegressJsonJson::array(), refused = RegressJsonJson::array();
+  Json terms = Json::array(), refused = Json::array();
   for (const auto& term : result.terms)
     terms.push_back(
         {{"name", name(term.column)}, {"value", term.value}, {"std", term.sigma}, {"f", term.f}, {"p", term.p}});
   for (const auto& one : result.refused) refused.push_back({{"name", name(one.column)}, {"why", one.why}});
   const int most = result.most_significant;
   return {{"terms", terms},
-          {"most_significant",
-           most >= 0 ? RegressJsonJson(name(result.terms[static_cast<std::size_t>(most)].column)) : RegressJsonJson()},
+          {"most_significant", most >= 0 ? Json(name(result.terms[static_cast<std::size_t>(most)].column)) : Json()},
           {"refused", refused},
           {"phi", result.phi},
           {"phi_std", result.phi_sigma},
@@ -36,14 +35,14 @@ RegressJsonJson of(const identification::StepwiseResult& result, const identific
 std::string regression_json(const std::vector<identification::AxisRegression>& axes,
                             std::span<const identification::ManoeuvreRows> runs, const model::Vehicle& vehicle,
                             const identification::RegressionSettings& settings) {
-  RegressJsonJson all{{"schema", "fathom-regression-1"}, {"fathom_version", version()}, {"vehicle", vehicle.name}};
+  Json all{{"schema", "fathom-regression-1"}, {"fathom_version", version()}, {"vehicle", vehicle.name}};
   if (!runs.empty()) all["forces_from"] = runs.front().known_from;
   all["current_north_m_s"] = settings.v_WF.x();
   all["current_east_m_s"] = settings.v_WF.y();
   for (const auto& axis : axes) {
-    RegressJsonJson one{{"axis", model::kAxisNames[static_cast<std::size_t>(axis.axis)]}};
+    Json one{{"axis", model::kAxisNames[static_cast<std::size_t>(axis.axis)]}};
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      RegressJsonJson of_run = of(axis.manoeuvres[i], axis.candidates);
+      Json of_run = of(axis.manoeuvres[i], axis.candidates);
       of_run["name"] = runs[i].name;
       one["manoeuvres"].push_back(of_run);
     }

@@ -12,7 +12,7 @@
 namespace fathom::tool {
 namespace {
 
-constexpr double kSeparationsWindow = 10.0;  // s, as in a diagnosis
+constexpr double kWindow = 10.0;  // s, as in a diagnosis
 
 /// Of the base parameters alone: the effects stand beside it as suspects.
 model::Model bare(model::Model model) {
@@ -37,7 +37,7 @@ void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& 
               const identification::FitResult& fit, DiagnosisResult& result) {
   const bool open = std::ranges::any_of(result.effects, [](const EffectFound& e) { return !e.alternatives.empty(); });
   if (!open || train.empty()) return;
-  const planning::View data{vehicle, {train.begin(), train.end()}, bare(fit.model), fit.sigma, kSeparationsWindow};
+  const planning::View data{vehicle, {train.begin(), train.end()}, bare(fit.model), fit.sigma, kWindow};
   const model::Scene scene = model::scene_of(vehicle, train);
   const planning::Flights flights{vehicle, data, settings};
   std::string proposal;

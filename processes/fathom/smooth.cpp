@@ -1,4 +1,4 @@
-// fathom smooth: a recorded run_smooth through the Kalman filter and back through the smoother.
+// fathom smooth: a recorded run through the Kalman filter and back through the smoother.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -22,11 +22,11 @@ constexpr double kConverged = 30.0;   // s after which filter and smoother are c
 constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
 struct SmoothOptions {
-  std::string run_smooth, out, config, model, map;
+  std::string run, out, config, model, map;
   bool stated{false};
 };
 
-void smooth_print(const estimation::SmoothedTrial& trial) {
+void print(const estimation::SmoothedTrial& trial) {
   std::printf("%-18s %9s %9s %9s %8s\n", "instrument", "used", "refused", "not heard", "NIS");
   for (const estimation::InnovationStatistics& one : trial.statistics) {
     if (one.used + one.refused + one.dropped == 0) continue;
@@ -84,7 +84,7 @@ void run_smooth(const SmoothOptions& options) {
   }
   std::error_code ignored;
   if (std::filesystem::equivalent(options.run, options.out, ignored)) {
-    throw InputError(options.out + ": --out is the run_smooth itself; what was recorded is not written over");
+    throw InputError(options.out + ": --out is the run itself; what was recorded is not written over");
   }
   std::vector<std::string> notes;
   Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
@@ -104,7 +104,7 @@ void run_smooth(const SmoothOptions& options) {
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   estimation::SmoothedTrial trial = estimation::smooth(recording, settings);
   for (const std::string& note : trial.notes) std::fprintf(stderr, "%s\n", note.c_str());
-  smooth_print(trial);
+  print(trial);
   recording.state.clear();
   for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));
   recording.smoothed = std::move(trial.smoothed);
@@ -117,10 +117,9 @@ void run_smooth(const SmoothOptions& options) {
 
 void add_smooth(CLI::App& app) {
   auto options = std::make_shared<SmoothOptions>();
-  CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run_smooth with a Kalman smoother");
+  CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
-  command->add_option("--out", options->out, "LCM log to write: the run_smooth with SMOOTHED, and STATE from it")
-      ->required();
+  command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
   command->add_option("--config", options->config, "YAML file whose section estimator has `filter: ekf`");
   command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
   command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));

@@ -1,4 +1,4 @@
-// fathom watch: how far a live trial is, a watch_line at a time, until it ends or is stopped. It only listens.
+// fathom watch: how far a live trial is, a line at a time, until it ends or is stopped. It only listens.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -15,7 +15,7 @@
 namespace fathom::tool {
 namespace {
 
-constexpr double kWatchTerminalPeriod = 0.2;  // s between two looks where a watch_line can be written over
+constexpr double kTerminalPeriod = 0.2;  // s between two looks where a line can be written over
 constexpr double kFilePeriod = 1.0;
 
 struct WatchOptions {
@@ -29,7 +29,7 @@ std::optional<double> time_left(const Excitation& e) {
   return std::clamp(left, 0.0, std::max(e.duration - e.elapsed, 0.0));
 }
 
-std::string watch_line(const Excitation& e, double t) {
+std::string line(const Excitation& e, double t) {
   char text[200];
   const auto add = [&](const char* format, auto... values) {
     std::snprintf(text, sizeof text, format, values...);
@@ -51,11 +51,11 @@ void watch(const WatchOptions& options) {
   std::optional<Utime> origin;
   std::string said, stage;
   while (!stop.raised()) {
-    console.listen(terminal ? kWatchTerminalPeriod : kFilePeriod, [&] { return stop.raised(); });
+    console.listen(terminal ? kTerminalPeriod : kFilePeriod, [&] { return stop.raised(); });
     if (!console.excitation) continue;
     const Excitation& e = *console.excitation;
     if (!origin) origin = e.utime;
-    std::string now = watch_line(e, seconds_between(*origin, e.utime));
+    std::string now = line(e, seconds_between(*origin, e.utime));
     if (now == said) continue;
     said = now;
     if (!terminal) {

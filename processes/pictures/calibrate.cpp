@@ -18,7 +18,7 @@
 namespace fathom::pictures {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   std::string source, site, out, picture, vehicle, camera, what{"all"};
   int distortion{2}, every{1}, held_out{0};
   double map_sigma{0.0}, focal{0.0}, focal_sigma{0.1};
@@ -26,7 +26,7 @@ struct Options {
   std::vector<std::string> families, sizes;
 };
 
-std::vector<vision::View> look(const Options& options, model::Site& site) {
+std::vector<vision::View> look(const CalibrateOptions& options, model::Site& site) {
   vision::TagDetector detector{{.families = site.search.families, .decimation = 1.0, .coarser = true}};
   const auto source = open(options.source, 0.0);
   std::vector<vision::View> views;
@@ -67,7 +67,7 @@ void print(const char* what, const vision::Reprojection& error) {
               error.high, error.per_view.size());
 }
 
-void run(const Options& options) {
+void run_calibrate(const CalibrateOptions& options) {
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
   if (!options.families.empty()) site.look_for(options.families);
@@ -155,7 +155,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand("calibrate", "lens and map of tags from a sequence of pictures");
   command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
   command->add_option("--site", options->site, "what is known: tags or board, a lens to begin with");
@@ -183,7 +183,7 @@ void add_calibrate(CLI::App& app) {
       ->check(CLI::Range(2, 1'000'000));
   command->add_option("--families", options->families, "families of tags in place of the site's");
   command->add_flag("--not-flat", options->not_flat, "the tags do not lie in one plane");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_calibrate(*options); });
 }
 
 }  // namespace fathom::pictures

@@ -13,9 +13,9 @@
 namespace fathom::tool {
 namespace {
 
-using CommandsOptions = OperatorOptions;
+using Options = OperatorOptions;
 
-void commands_print(const Excitation& e) {
+void print(const Excitation& e) {
   std::printf("%-10s %s\n", e.phase.c_str(), e.reason.c_str());
   if (e.mode.empty()) return;
   std::printf("mode %s, %.0f of at most %.0f s", e.mode.c_str(), e.elapsed, e.duration);
@@ -24,7 +24,7 @@ void commands_print(const Excitation& e) {
   if (!e.missing.empty()) std::printf("still missing: %s\n", e.missing.c_str());
 }
 
-void order(const CommandsOptions& options, bool enable, const std::string& word) {
+void order(const Options& options, bool enable, const std::string& word) {
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
   if (enable && !options.no_supervisor) go_through(console, options.needs);
@@ -35,19 +35,19 @@ void order(const CommandsOptions& options, bool enable, const std::string& word)
   if (stays > 0.0) attend(console, orders, stays);
 }
 
-void abort(const CommandsOptions& options) {
+void abort(const Options& options) {
   std::optional<OperatorKeys> keys;
   if (!options.operator_file.empty()) keys = operator_keys(options.operator_file);
   Console console{options.url, Console::Hears::kAll, keys};
   abort_now(console, keys.has_value());
 }
 
-void status(const CommandsOptions& options) {
+void status(const Options& options) {
   Console console{options.url};
   console.listen(1.6);
   if (console.health.empty())
     throw InputError("nobody says HEALTH on this bus; check --bus and that processes are running");
-  if (console.excitation) commands_print(*console.excitation);
+  if (console.excitation) print(*console.excitation);
   if (console.state) {
     const Eigen::Vector3d& p = console.state->p_WB;
     std::printf("state %s, at %.2f %.2f %.2f m\n", console.state->valid ? "valid" : "NOT VALID", p.x(), p.y(), p.z());
@@ -59,7 +59,7 @@ void status(const CommandsOptions& options) {
   }
 }
 
-CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shared_ptr<CommandsOptions>& options) {
+CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shared_ptr<Options>& options) {
   CLI::App* command = app.add_subcommand(name, what);
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
@@ -69,7 +69,7 @@ CLI::App* add(CLI::App& app, const char* name, const char* what, const std::shar
 }  // namespace
 
 void add_operator(CLI::App& app) {
-  auto options = std::make_shared<CommandsOptions>();
+  auto options = std::make_shared<Options>();
   const auto with_key = [&](CLI::App* command) {
     command->add_option("--operator", options->operator_file, "file with the key that the vehicle has, too")
         ->required();
