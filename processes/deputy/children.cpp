@@ -35,7 +35,7 @@ struct Actions {
   Actions& operator=(const Actions&) = delete;
 };
 
-std::optional<std::string> variable(const std::string& name) {
+std::optional<std::string> environment_variable(const std::string& name) {
   const char* value = std::getenv(name.c_str());
   if (value == nullptr) return {};
   return value;
