@@ -14,7 +14,7 @@ namespace {
 
 const std::map<std::string, int> kFloors{
     {"base", 0},    {"samples", 1},   {"model", 2},      {"devices", 2},        {"vision", 3},     {"tables", 2},
-    {"launch", 2},  {"link", 3},      {"estimation", 3}, {"identification", 3}, {"excitation", 3}, {"simulation", 3},
+    {"launch", 2},  {"orders", 2},  {"link", 3},      {"estimation", 3}, {"identification", 3}, {"excitation", 3}, {"simulation", 3},
     {"board", 3},   {"diagnosis", 4}, {"pictures", 4},   {"report", 4},         {"joint", 4},      {"planning", 5},
     {"likelihood", 3}, {"inference", 4},
     {"runtime", 5}, {"wire", 5},      {"driver", 6}};
@@ -30,6 +30,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kLibraries{
     {"opencv2/", {"vision", "pictures"}},
     {"apriltag/", {"vision"}},
     {"yaml-cpp/", {"base"}},
+    {"sodium", {"base"}},
     {"spdlog/", {"runtime"}},
     {"httplib.h", {"processes"}},
     {"asio", {"link"}}};
