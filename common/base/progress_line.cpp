@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 
 namespace fathom {
@@ -59,12 +58,8 @@ void ProgressLine::tick(const std::stop_token& stop) {
 void ProgressLine::print() {
   shown_ = elapsed();
   std::string left;
-  if (const auto seconds = remaining_.left(shown_)) {
-    share_ = std::max(share_, shown_ / (shown_ + *seconds));
-    left = ", " + time_left(*seconds);
-  }
-  std::fprintf(stderr, terminal_ ? "\r\033[K%5.1f s %3.0f %% %.60s%s" : "%5.1f s %3.0f %% %s%s\n", shown_,
-               100.0 * share_, what_.c_str(), left.c_str());
+  if (const auto seconds = remaining_.left(shown_)) left = ", " + time_left(*seconds);
+  std::fprintf(stderr, terminal_ ? "\r\033[K%5.1f s %.60s%s" : "%5.1f s %s%s\n", shown_, what_.c_str(), left.c_str());
   std::fflush(stderr);
 }
 

@@ -36,7 +36,6 @@ class ProgressLine {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   double shown_{};  ///< s; what is over at once shows no line
-  double share_{};  ///< of the time, the largest so far: the number does not fall back, what is left may grow
   std::string what_;
   RemainingTime remaining_;
   std::jthread ticker_;  // last: ends before what it uses

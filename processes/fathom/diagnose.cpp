@@ -45,7 +45,8 @@ constexpr double kTooLate = 0.3;
 /// Phases of the work beside those of the diagnosis.
 constexpr std::string_view kReading = "reading", kSensors = "sensors", kReconstruction = "reconstruction",
                            kReport = "report", kDiagnosis = "diagnosis";
-constexpr double kGuessedDiagnosis = 100.0;  // times as long as reading a recording, until it says more itself
+constexpr double kLight = 0.03;             // of a fit: reading or reconstructing a run, until it has been timed
+constexpr double kGuessedDiagnosis = 40.0;  // fits, until it says more itself
 
 struct Options {
   std::string vehicle, map, out, site, config;
@@ -131,9 +132,9 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   const auto runs = static_cast<double>(paths.size());
-  progress.expect(kReading, runs);
-  progress.expect(kSensors, 1, runs);
-  progress.expect(kReconstruction, runs);
+  progress.expect(kReading, runs, kLight);
+  progress.expect(kSensors, 1, kLight * runs);
+  progress.expect(kReconstruction, runs, kLight);
   progress.expect(kReport, 1, 1.0);
   progress.expect(kDiagnosis, 1, kGuessedDiagnosis);
   progress.begin(kReading, "reading recordings");
@@ -159,7 +160,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   progress.done(kSensors);
   const auto trials_of_recordings = [&] {
     std::vector<Trial> trials;
-    progress.expect(kReconstruction, runs);
+    progress.expect(kReconstruction, runs, kLight);
     for (std::size_t i = 0; i < recordings.size(); ++i) {
       progress.begin(kReconstruction, "reconstructing " + recordings[i].name);
       trials.push_back(reconstruct(paths[i], recordings[i], consistency.corrections[i], vehicle));
