@@ -28,7 +28,7 @@ struct Symbol {
 };
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::array<Symbol, 37> kSymbols{{
+constexpr std::array<Symbol, 40> kSymbols{{
     {"m", {1.0, {1}}},
     {"mm", {1e-3, {1}}},
     {"cm", {1e-2, {1}}},
@@ -48,6 +48,7 @@ constexpr std::array<Symbol, 37> kSymbols{{
     {"kPa", {1e3, {-1, 1, -2}}},
     {"MPa", {1e6, {-1, 1, -2}}},
     {"mbar", {1e2, {-1, 1, -2}}},
+    {"hPa", {1e2, {-1, 1, -2}}},
     {"bar", {1e5, {-1, 1, -2}}},
     {"V", {1.0, {2, 1, -3, -1}}},
     {"mV", {1e-3, {2, 1, -3, -1}}},
@@ -63,6 +64,8 @@ constexpr std::array<Symbol, 37> kSymbols{{
     {"mrad", {1e-3, {0, 0, 0, 0, 0, 0, 1}}},
     {"deg", {kPi / 180.0, {0, 0, 0, 0, 0, 0, 1}}},
     {"rpm", {2.0 * kPi / 60.0, {0, 0, -1, 0, 0, 0, 1}}},
+    {"G", {9.80665, {1, 0, -2}}},  // of accelerometers; gauss has no use here
+    {"mG", {9.80665e-3, {1, 0, -2}}},
     {"%", {1e-2, {}}},
     {"-", {1.0, {}}},
     {"1", {1.0, {}}},

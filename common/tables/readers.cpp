@@ -187,7 +187,8 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnGroup& colu
     notes.push_back("time: " + std::to_string(falling) + " rows dropped because time did not rise, first at " +
                     table.where(first_falling));
   }
-  check_step(table, column, report_longest_gap(rows.utime, notes));
+  const double typical = report_longest_gap(rows.utime, notes);
+  if (column.columns.front().name != kOwnTime) check_step(table, column, typical);
   return rows;
 }
 
