@@ -211,11 +211,11 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
     progress.expect(kDiagnosis, 0);
     if (options.core == kLikelihood) {
-      double told = 0.0;  // of its hundred units; it tells its share of the work
+      double share_told = 0.0;  // of its hundred units; it tells its share of the work
       progress.expect(kLikelihoodSearch, 100.0, kGuessedDiagnosis / 100.0);
       const auto show = [&](const std::string& what, double share) {
-        progress.done(kLikelihoodSearch, 100.0 * (share - told));
-        told = std::max(told, share);
+        progress.done(kLikelihoodSearch, 100.0 * (share - share_told));
+        share_told = std::max(share_told, share);
         progress.begin(kLikelihoodSearch, what);
       };
       verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
