@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/base/version.hpp"
 #include "common/planning/flights.hpp"
 #include "common/planning/foresight.hpp"
 #include "processes/fathom/commands.hpp"
-#include "processes/fathom/progress.hpp"
 #include "processes/fathom/rehearsals.hpp"
 
 namespace fathom::tool {
@@ -120,16 +120,16 @@ void run_plan(const PlanOptions& options) {
   }
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const planning::RehearsalSettings settings = settings_from(options, vehicle);
-  ProgressLine progress;
-  progress.show("rehearsing the " + options.excitation + " excitation", 0.0);
+  ProgressLine line;
+  const Progress progress = line.progress();
+  constexpr const char* kRehearsal = "rehearsal";
+  progress.begin(kRehearsal, "rehearsing the " + options.excitation + " excitation");
   const planning::Rehearsal rehearsal = planning::rehearse(vehicle, settings);
+  progress.done(kRehearsal);
   const double duration = rehearsal.trial.t.back();
   const planning::View excitation{vehicle, rehearsal.trial, kWindow};
-  const planning::Flights flights{vehicle, excitation, settings,
-                                  [&](const std::string& segment) { progress.show("flying " + segment, 0.1); }};
-  const std::vector<Foreseen> all = planning::foresee(vehicle, excitation, flights.extras(), {}, [&](double share) {
-    progress.show("asking every effect", 0.2 + 0.8 * share);
-  });
+  const planning::Flights flights{vehicle, excitation, settings, progress};
+  const std::vector<Foreseen> all = planning::foresee(vehicle, excitation, flights.extras(), {}, progress);
   std::printf("%s excitation of %s: %.0f s, %s\n", options.excitation.c_str(), vehicle.name.c_str(), duration,
               rehearsal.end.c_str());
   print(all, duration);

@@ -4,9 +4,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/estimation/noise_from_rest.hpp"
 #include "common/estimation/process_tuning.hpp"
 #include "common/estimation/transponder_check.hpp"
@@ -19,6 +21,7 @@ namespace fathom::tool {
 namespace {
 
 constexpr double kConverged = 30.0;   // s after which filter and smoother are compared, as Pereira and Duncan did
+constexpr double kTuned = 120.0;      // s of the run, at most, by which the process noise is tuned
 constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
 struct SmoothOptions {
@@ -93,16 +96,19 @@ void run_smooth(const SmoothOptions& options) {
   }
   if (!options.stated) settings = estimation::noise_from_rest(recording, settings, notes);
   settings = estimation::without_wrong_transponders(recording, settings, notes);
+  std::optional<ProgressLine> line{std::in_place};
+  const Progress progress = line->progress();
   if (!process_stated) {
-    settings = estimation::tune_process(recording, settings);
+    settings = estimation::tune_process(recording, settings, kTuned, progress);
     char text[160];
     std::snprintf(text, sizeof text,
                   ": most probable process noise: jerk %.3g m/s^2, angular jerk %.3g rad/s^2 per root second",
                   settings.process.jerk, settings.process.angular_jerk);
     notes.push_back(recording.name + text);
   }
-  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
-  estimation::SmoothedTrial trial = estimation::smooth(recording, settings);
+  for (const std::string& note : notes) line->say(note);
+  estimation::SmoothedTrial trial = estimation::smooth(recording, settings, nullptr, progress);
+  line.reset();
   for (const std::string& note : trial.notes) std::fprintf(stderr, "%s\n", note.c_str());
   print(trial);
   recording.state.clear();

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/model/site.hpp"
 #include "common/pictures/source.hpp"
 #include "common/vision/calibration.hpp"
@@ -26,15 +28,22 @@ struct CalibrateOptions {
   std::vector<std::string> families, sizes;
 };
 
-std::vector<vision::View> look(const CalibrateOptions& options, model::Site& site) {
+constexpr const char *kPictures = "pictures", *kAdjustment = "adjustment";  // phases of the work
+
+std::vector<vision::View> look(const CalibrateOptions& options, model::Site& site, ProgressLine& line) {
+  const Progress progress = line.progress();
   vision::TagDetector detector{{.families = site.search.families, .decimation = 1.0, .coarser = true}};
   const auto source = open(options.source, 0.0);
   std::vector<vision::View> views;
   int count = 0;
+  progress.expect(kPictures, source->to_come());
+  progress.expect(kAdjustment, 1, 0.2 * source->to_come());
+  progress.begin(kPictures, "finding tags");
   while (auto frame = source->next()) {
+    progress.done(kPictures);
     if (count++ % options.every != 0) continue;
     if (!frame->problem.empty()) {
-      std::fprintf(stderr, "fathom: %s; the picture is left out\n", frame->problem.c_str());
+      line.say("fathom: " + frame->problem + "; the picture is left out");
       continue;
     }
     const cv::Mat grey = in_grey(frame->picture);
@@ -52,13 +61,13 @@ std::vector<vision::View> look(const CalibrateOptions& options, model::Site& sit
                                   " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
                                   std::to_string(site.lens->height);
       if (views.empty()) throw InputError(problem);
-      std::fprintf(stderr, "fathom: %s; the picture is left out\n", problem.c_str());
+      line.say("fathom: " + problem + "; the picture is left out");
       continue;
     }
     views.push_back({frame->name, detector.step(grey)});
   }
-  if (const std::string remark = source->remark(); !remark.empty())
-    std::fprintf(stderr, "fathom: %s\n", remark.c_str());
+  progress.expect(kPictures, 0);
+  if (const std::string remark = source->remark(); !remark.empty()) line.say("fathom: " + remark);
   return views;
 }
 
@@ -81,7 +90,8 @@ void run_calibrate(const CalibrateOptions& options) {
   vision::check_map(site);
   const vision::TagSizes sizes = vision::TagSizes::parse(options.sizes);
   sizes.check_against(site);
-  std::vector<vision::View> views = look(options, site), held;
+  std::optional<ProgressLine> line{std::in_place};
+  std::vector<vision::View> views = look(options, site, *line), held;
   if (options.held_out > 1) {
     std::vector<vision::View> kept;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -98,7 +108,9 @@ void run_calibrate(const CalibrateOptions& options) {
                                        .given = site_has_lens,
                                        .focal_sigma = options.focal_sigma,
                                        .sizes = sizes};
+  line->progress().begin(kAdjustment, "adjusting " + options.what);
   const vision::Calibration result = vision::calibrate(site, views, settings);
+  line.reset();
   std::printf("%d pictures, %d corners; %s\n", result.n_views, result.n_corners,
               result.converged ? "converged" : ("not converged: " + result.message).c_str());
   int seen = 0;

@@ -1,10 +1,10 @@
-#include "processes/fathom/progress.hpp"
+#include "common/base/progress_line.hpp"
 
 #include <unistd.h>
 
 #include <cstdio>
 
-namespace fathom::tool {
+namespace fathom {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod{200};
@@ -28,12 +28,23 @@ double ProgressLine::elapsed() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
-void ProgressLine::show(const std::string& what, double share) {
+Progress ProgressLine::progress() {
+  return Progress{[this](const Progress::Event& event) { take(event); }};
+}
+
+void ProgressLine::take(const Progress::Event& event) {
   const std::lock_guard lock{mutex_};
-  const bool news = what != what_;
-  what_ = what;
-  share_ = share;
+  remaining_.take(elapsed(), event);
+  if (event.kind != Progress::Event::Kind::kBegin) return;
+  const bool news = event.what != what_;
+  what_ = event.what;
   if (!terminal_ && news && elapsed() - shown_ >= kPlainSpacing) print();
+}
+
+void ProgressLine::say(const std::string& line) {
+  const std::lock_guard lock{mutex_};
+  std::fprintf(stderr, terminal_ ? "\r\033[K%s\n" : "%s\n", line.c_str());
+  if (terminal_ && !what_.empty()) print();
 }
 
 void ProgressLine::tick(const std::stop_token& stop) {
@@ -46,9 +57,10 @@ void ProgressLine::tick(const std::stop_token& stop) {
 
 void ProgressLine::print() {
   shown_ = elapsed();
-  std::fprintf(stderr, terminal_ ? "\r\033[K%5.1f s %3.0f %% %.60s" : "%5.1f s %3.0f %% %s\n", shown_, 100.0 * share_,
-               what_.c_str());
+  std::string left;
+  if (const auto seconds = remaining_.left(shown_)) left = ", " + time_left(*seconds);
+  std::fprintf(stderr, terminal_ ? "\r\033[K%5.1f s %.60s%s" : "%5.1f s %s%s\n", shown_, what_.c_str(), left.c_str());
   std::fflush(stderr);
 }
 
-}  // namespace fathom::tool
+}  // namespace fathom
