@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/model/driven_axes.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
@@ -20,7 +21,11 @@ struct Options {
 
 void run(const Options& options) {
   std::optional<tables::SimulatedAxes> simulated;
-  if (!options.vehicle.empty()) simulated = model::Vehicle::load(options.vehicle).dof;
+  if (!options.vehicle.empty()) {
+    const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+    simulated = vehicle.dof;
+    if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
+  }
   const tables::Imported imported = tables::import_csv(options.data, options.map, simulated);
   for (const std::string& note : imported.notes) std::printf("%s: %s\n", options.data.c_str(), note.c_str());
   const std::uint64_t events = wire::write_log(imported.recording, options.out);

@@ -138,8 +138,8 @@ void run(const Options& options) {
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
-  auto consistency = estimation::check_consistency(recordings);
-  estimation::check_thrusters(recordings, vehicle, consistency);
+  auto consistency = consistency::check_consistency(recordings);
+  consistency::check_thrusters(recordings, vehicle, consistency);
 
   identification::Identifier identifier{identifier_settings, vehicle};
   std::vector<identification::BaseRun> runs;
