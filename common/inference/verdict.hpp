@@ -1,0 +1,57 @@
+// What a diagnosis comes to, as data: one verdict, the causes that decided it with their values and thresholds, and for
+// every candidate that was refused, the rule and what was missing.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom::inference {
+
+enum class Verdict {
+  adequate,     ///< nothing of practical size is missing
+  effect,       ///< named effects, each above its odds and its rivals
+  ambiguous,    ///< something is there, and more than one name fits it
+  unexplained,  ///< something is there that no listed effect explains
+  no_model,     ///< the model does not follow its thrust: its numbers mean nothing
+  not_judged    ///< too short, or the filter did not run
+};
+
+enum class Cause {
+  kNothingFound,     ///< no effect of practical size and odds
+  kNamed,            ///< least probability of an accepted name against others
+  kRivals,           ///< the same, below what a name needs
+  kFreeForce,        ///< log odds of a force that no list holds
+  kSlowRandomForce,  ///< memory [s] of a random force of practical size: no noise
+  kNotFollowing,     ///< share of an axis' acceleration that the model explains
+  kAbsurdNumber,     ///< a base number on its bound, over its prior's size
+  kTooShort,         ///< s of data
+  kNotFinite,        ///< the filter diverged
+  kScoresDisagree    ///< standard deviations between the numbers of the one-step and of the multi-horizon score
+};
+
+enum class Rule {
+  kOdds,         ///< log odds over the model without it
+  kSize,         ///< share of the applied acceleration
+  kProbability,  ///< against other names
+  kFit,          ///< the full fit did not reach what the score test promised
+  kBound,        ///< numbers on a bound that nothing can have
+  kScore         ///< promised too little to be fitted
+};
+
+struct Reason {
+  Cause cause{};
+  double value{}, threshold{};
+  std::string of;  ///< axis, number or name that it is about; empty: all
+};
+
+struct Refusal {
+  Rule rule{};
+  double value{}, needed{};
+};
+
+[[nodiscard]] std::string_view word(Verdict verdict);
+[[nodiscard]] std::string_view word(Cause cause);
+[[nodiscard]] std::string_view word(Rule rule);
+
+}  // namespace fathom::inference

@@ -1,0 +1,180 @@
+#include "common/likelihood/noise_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace fathom::likelihood {
+namespace {
+
+constexpr int kLanes = 8;  // filters run side by side: the numbers themselves and one moved in each, or trial steps
+using Lanes = Eigen::Array<double, kLanes, 1>;
+using LaneLogs = std::array<NoiseLogs, kLanes>;
+using Information = Eigen::Matrix<double, kNoiseNumbers, kNoiseNumbers>;
+
+constexpr double kStep = 1e-3;                                // of a logarithm, for differences
+constexpr double kLongest = 1.5;                              // of a logarithm, in one step
+constexpr double kEnough = 0.02;                              // nats: what one iteration must gain
+constexpr double kMemory = 1.0, kFloor = 0.05, kMost = 25.0;  // FollowedScale's
+
+struct Scored {
+  Lanes log_likelihood{Lanes::Zero()};
+  Information information{Information::Zero()};
+};
+
+/// The filter of filter_pass.hpp for one axis. `information`: expected, from lane 0 and the six lanes behind it.
+void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, const Tail& tail, bool with_information,
+               Scored& scored) {
+  if (blocks.empty()) return;
+  const auto lane = [&](NoiseNumber number) {
+    Lanes values;
+    for (int l = 0; l < kLanes; ++l) values[l] = std::exp(logs[static_cast<std::size_t>(l)][number]);
+    return values;
+  };
+  const double dt = blocks.front().dt;
+  const Lanes force = lane(kForce).square(), memory = lane(kForceMemory), colour = lane(kColoured).square();
+  const Lanes rho = (-dt / memory).exp(), rho_c = (-dt / lane(kColourMemory)).exp();
+  const Lanes mean_force = (1.0 - rho) * memory / dt, fresh = force * (1.0 - rho.square());
+  const Lanes own_white = lane(kWhiteForce).square() * dt;
+  const Lanes Q_c = colour * (1.0 - rho_c.square()), R = lane(kSensor).square();
+  Lanes nn = 4.0 * R + colour, nd = Lanes::Zero(), nc = -colour, dd = force, dc = nd, cc = colour;
+  Lanes n = nd, d = nd, c = nd, hv = Lanes::Ones();
+  const double keep = std::exp(-dt / kMemory);
+  const double freedom = tail.freedom;
+  const double gain_location = freedom > 0.0 ? (freedom + 1.0) / (freedom + 3.0) : 1.0;
+  const double gain_scale = 0.5 * (freedom > 0.0 ? freedom / (freedom + 3.0) : 1.0);
+  for (const ReducedBlock& block : blocks) {
+    const double F = block.F, lag = block.lag, late = 1.0 - block.lag;
+    const Lanes g = block.G * mean_force;
+    const Lanes T_nn = F * nn + g * nd, T_nd = F * nd + g * dd, T_nc = F * nc + g * dc;
+    const Lanes Z = nn + 2.0 * nc + cc, C_n = T_nn + T_nc, C_d = rho * (nd + dc), C_c = rho_c * (nc + cc);
+    const Lanes before = n + c;
+    nn = F * T_nn + g * T_nd;
+    nd = rho * T_nd;
+    nc = rho_c * T_nc;
+    dd = rho.square() * dd;
+    dc = rho * rho_c * dc;
+    cc = rho_c.square() * cc;
+    const Lanes D_n = nn + nc, D_d = nd + dc, D_c = nc + cc;
+    const Lanes white = own_white + block.others;
+    nn += white + fresh * (dt * dt / 3.0);
+    nd += (0.5 * dt) * fresh;
+    dd += fresh;
+    cc += Q_c;
+    n = F * n + g * d + block.r;
+    d *= rho;
+    c *= rho_c;
+    if (block.n <= 0.0) continue;
+    const Lanes S = late * late * (D_n + D_c) + lag * lag * Z + 2.0 * late * lag * (C_n + C_c) +
+                    block.walk * (white + Q_c) + (block.force_mean * dt * dt) * fresh + R / block.n;
+    const Lanes e = block.z - lag * before - late * (n + c), inverse = 1.0 / S, square = e.square() * inverse;
+    if (block.scored) {
+      const Lanes scale = tail.follows ? Lanes{kFloor + (1.0 - kFloor) * hv} : Lanes{Lanes::Ones()};
+      if (freedom > 0.0) {
+        scored.log_likelihood -=
+            0.5 * (freedom + 1.0) * (1.0 + square / (freedom * scale)).log() + 0.5 * (S * scale).log();
+      } else {
+        scored.log_likelihood -= 0.5 * (square / scale + (S * scale).log());
+      }
+      if (with_information) {
+        std::array<double, kNoiseNumbers> de{}, dS{};
+        for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
+          const auto l = static_cast<Eigen::Index>(j) + 1;
+          de[j] = (e[l] - e[0]) / kStep;
+          dS[j] = (S[l] - S[0]) / kStep;
+        }
+        const double of_location = gain_location * inverse[0] / scale[0],
+                     of_scale = gain_scale * inverse[0] * inverse[0];
+        for (std::size_t i = 0; i < kNoiseNumbers; ++i)
+          for (std::size_t j = 0; j <= i; ++j)
+            scored.information(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
+                de[i] * de[j] * of_location + dS[i] * dS[j] * of_scale;
+      }
+    }
+    if (tail.follows) hv = keep * hv + (1.0 - keep) * square.min(kMost);
+    const Lanes K_n = (late * D_n + lag * C_n + late * white + (block.force_end * dt * dt) * fresh) * inverse,
+                K_d = (late * D_d + lag * C_d + (block.force_walk * dt) * fresh) * inverse,
+                K_c = (late * D_c + lag * C_c + late * Q_c) * inverse;
+    n += K_n * e;
+    d += K_d * e;
+    c += K_c * e;
+    nn -= K_n * K_n * S;
+    nd -= K_n * K_d * S;
+    nc -= K_n * K_c * S;
+    dd -= K_d * K_d * S;
+    dc -= K_d * K_c * S;
+    cc -= K_c * K_c * S;
+  }
+}
+
+Scored score(std::span<const std::vector<ReducedBlock>* const> runs, const LaneLogs& logs, const Tail& tail,
+             bool with_information) {
+  Scored scored;
+  for (const auto* run : runs) run_lanes(*run, logs, tail, with_information, scored);
+  return scored;
+}
+
+double or_never(double value) { return std::isfinite(value) ? value : -std::numeric_limits<double>::infinity(); }
+
+}  // namespace
+
+double reduced_log_likelihood(std::span<const std::vector<ReducedBlock>* const> runs, const AxisNoise& noise) {
+  LaneLogs logs;
+  logs.fill(noise.log);
+  double count = 0.0;
+  for (const auto* run : runs)
+    for (const ReducedBlock& block : *run) count += block.scored && block.n > 0.0 ? 1.0 : 0.0;
+  // run_lanes leaves out the density's constant.
+  return score(runs, logs, noise.tail, false).log_likelihood[0] + count * TailDensity{noise.tail}(0.0, 1.0).log_density;
+}
+
+NoiseFit fit_noise(std::span<const std::vector<ReducedBlock>* const> runs, const AxisNoise& start,
+                   const NoisePrior& prior, int iterations) {
+  NoiseFit fit{.noise = start};
+  NoiseLogs& at = fit.noise.log;
+  for (int turn = 0; turn < iterations; ++turn) {
+    LaneLogs logs;
+    logs.fill(at);
+    for (std::size_t j = 0; j < kNoiseNumbers; ++j) logs[j + 1][j] += kStep;
+    const Scored here = score(runs, logs, start.tail, true);
+    if (!std::isfinite(here.log_likelihood[0])) break;
+    Information information = here.information.selfadjointView<Eigen::Lower>();
+    Eigen::Matrix<double, kNoiseNumbers, 1> gradient;
+    for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      const double weight = 1.0 / (prior.sigma[j] * prior.sigma[j]);
+      gradient[i] = (here.log_likelihood[i + 1] - here.log_likelihood[0]) / kStep - weight * (at[j] - prior.mean[j]);
+      information(i, i) += weight;
+    }
+    // Trial steps, each with its own damping, all in one pass.
+    LaneLogs trials;
+    for (int l = 0; l < kLanes; ++l) {
+      Information damped = information;
+      damped.diagonal() *= 1.0 + (l == 0 ? 0.0 : std::pow(10.0, l - 4));
+      const Eigen::Matrix<double, kNoiseNumbers, 1> step = damped.ldlt().solve(gradient);
+      for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
+        const double moved = at[j] + std::clamp(step[static_cast<Eigen::Index>(j)], -kLongest, kLongest);
+        trials[static_cast<std::size_t>(l)][j] = std::clamp(moved, prior.low[j], prior.high[j]);
+      }
+    }
+    const Scored tried = score(runs, trials, start.tail, false);
+    const double now = here.log_likelihood[0] + prior.log_density(at);
+    double best = now;
+    NoiseLogs found = at;
+    for (int l = 0; l < kLanes; ++l) {
+      const NoiseLogs& trial = trials[static_cast<std::size_t>(l)];
+      const double value = or_never(tried.log_likelihood[l]) + prior.log_density(trial);
+      if (value <= best) continue;
+      best = value;
+      found = trial;
+    }
+    at = found;
+    fit.gained += best - now;
+    if (best - now < kEnough) break;
+  }
+  return fit;
+}
+
+}  // namespace fathom::likelihood

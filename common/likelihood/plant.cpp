@@ -1,0 +1,255 @@
+#include "common/likelihood/plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::likelihood {
+namespace {
+
+constexpr double kVelocityStep = 1e-5;  // m/s, rad/s: truncation and rounding both below 1e-5 of a slope
+
+bool moves_thrust(const Hypothesis& hypothesis, const Number& number) {
+  if (number.kind == NumberKind::kCommandOffset) return true;
+  return number.kind == NumberKind::kEffect &&
+         stage_of(hypothesis.model.effects[static_cast<std::size_t>(number.index)]) == Stage::kThrust;
+}
+
+}  // namespace
+
+Plant::Plant(const Hypothesis& hypothesis, const std::vector<Number>& numbers, const RunData& run,
+             std::size_t run_index, bool with_columns)
+    : model_{hypothesis.model},
+      free_{hypothesis.force},
+      own_{hypothesis.runs[run_index]},
+      numbers_{numbers},
+      run_{run},
+      run_index_{run_index},
+      memory_{model_, with_columns ? numbers : std::vector<Number>{}},
+      feels_{has_stage(model_, Stage::kHull)},
+      slope_of_(numbers.size(), -1) {
+  free_moves_ = std::ranges::any_of(free_.features, [](const Feature& f) { return f.moves_with_velocity(); });
+  thrust_forces(model_, run_, own_.command_offset, forces_);
+  mean_over_blocks(forces_, mean_);
+  motion_.vehicle = model_.vehicle;
+  if (!with_columns) return;
+  Eigen::MatrixXd moved, mean;
+  for (std::size_t j = 0; j < numbers.size(); ++j) {
+    const Number& number = numbers[j];
+    if (!moves_thrust(hypothesis, number)) continue;
+    if (number.kind == NumberKind::kCommandOffset && number.run != static_cast<int>(run_index)) continue;
+    Hypothesis other{.model = model_, .runs = hypothesis.runs};
+    double& there = at(other, number);
+    // Forward, or backward where the limit is near.
+    const double step = there + number.step <= number.high ? number.step : -number.step;
+    there += step;
+    thrust_forces(other.model, run_, other.runs[run_index].command_offset, moved);
+    mean_over_blocks(moved, mean);
+    slope_of_[j] = static_cast<int>(slopes_.size());
+    slopes_.emplace_back((mean - mean_) / step);
+  }
+}
+
+void Plant::mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const {
+  const auto& blocks = run_.blocks();
+  mean.resize(forces.rows(), static_cast<Eigen::Index>(blocks.size()));
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const auto first = static_cast<Eigen::Index>(blocks[b].first) * run_.substeps();
+    const auto count = static_cast<Eigen::Index>(blocks[b].last - blocks[b].first) * run_.substeps();
+    mean.col(static_cast<Eigen::Index>(b)) = forces.middleCols(first, count).rowwise().mean();
+  }
+}
+
+void Plant::set(const Interval& interval, double t) {
+  motion_.t = t;
+  motion_.p_WB = interval.p_WB;
+  motion_.R_WB = interval.R_WB;
+  motion_.nu_dot_told = interval.told_slope;
+  motion_.voltage = interval.voltage;
+}
+
+void Plant::begin(const Vector6d& nu) {
+  if (run_.intervals().empty()) return;
+  const Interval& first = run_.intervals().front();
+  set(first, first.t);
+  motion_.nu = nu;
+  motion_.v_WF_B.setZero();
+  if (!memory_.empty()) {
+    feel_hull(model_, motion_);
+    memory_.begin(motion_);
+  }
+  for (auto& slow : features_.slow_nu) slow = nu;
+  const Vector6d tau = model_.allocation * forces_.col(0);
+  for (auto& slow : features_.slow_tau) slow = tau;
+}
+
+void Plant::at_substep(std::size_t interval, int substep) {
+  const Interval& here = run_.intervals()[interval];
+  set(here, here.t + (substep + 0.5 - 0.5 * run_.substeps()) * run_.h());
+  force_ = forces_.col(static_cast<Eigen::Index>(interval) * run_.substeps() + substep);
+  motion_.force = force_;
+  if (free_.empty()) return;
+  features_.t = motion_.t;
+  features_.p_WB = motion_.p_WB;
+  features_.R_WB = motion_.R_WB;
+  const double across = std::hypot(motion_.R_WB(0, 0), motion_.R_WB(1, 0));
+  features_.heading_cosine = across > 0.0 ? motion_.R_WB(0, 0) / across : 1.0;
+  features_.heading_sine = across > 0.0 ? motion_.R_WB(1, 0) / across : 0.0;
+  features_.force = force_;
+  features_.tau = model_.allocation * force_;
+  if (!free_moves_) free_still_ = free_.wrench(features_);
+}
+
+void Plant::at_middle(std::size_t block) {
+  const Block& here = run_.blocks()[block];
+  const std::size_t interval = (here.first + here.last) / 2;
+  const Interval& at = run_.intervals()[std::min(interval, run_.intervals().size() - 1)];
+  const double middle = run_.trial().t[here.first] + 0.5 * here.dt;
+  set(at, middle);
+  force_ = mean_.col(static_cast<Eigen::Index>(block));
+  motion_.force = force_;
+  features_.t = middle;
+  features_.p_WB = motion_.p_WB;
+  features_.R_WB = motion_.R_WB;
+  const double across = std::hypot(motion_.R_WB(0, 0), motion_.R_WB(1, 0));
+  features_.heading_cosine = across > 0.0 ? motion_.R_WB(0, 0) / across : 1.0;
+  features_.heading_sine = across > 0.0 ? motion_.R_WB(1, 0) / across : 0.0;
+  features_.force = force_;
+  features_.tau = model_.allocation * force_;
+  if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);
+}
+
+Vector6d Plant::outside_wrench(const Vector6d& nu) {
+  Vector6d wrench = memory_.empty() ? Vector6d{Vector6d::Zero()} : memory_.wrench();
+  if (!own_.world_force.isZero(0.0)) wrench.head<3>() += motion_.R_WB.transpose() * own_.world_force;
+  if (free_.empty()) return wrench;
+  if (!free_moves_) return wrench + free_still_;
+  features_.nu = nu;
+  return wrench + free_.wrench(features_);
+}
+
+Vector6d Plant::acceleration(const Vector6d& nu) {
+  motion_.nu = nu;
+  motion_.v_WF_B.setZero();
+  motion_.a_WF_B.setZero();
+  motion_.w_memory = outside_wrench(nu);
+  if (feels_) {
+    motion_.force = force_;
+    feel_hull(model_, motion_);
+  }
+  return model::acceleration(model_, motion_);
+}
+
+Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {
+  Matrix6d slope = Matrix6d::Zero();
+  Vector6d moved = nu;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
+    moved[i] += kVelocityStep;
+    slope.col(i) = (acceleration(moved) - nu_dot) / kVelocityStep;
+    moved[i] = nu[i];
+  }
+  return slope;
+}
+
+Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
+  Matrix6d inverse = Matrix6d::Zero();
+  motion_.nu = nu;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
+    motion_.v_WF_B.setZero();
+    motion_.a_WF_B.setZero();
+    motion_.w_memory = outside_wrench(nu) + Vector6d::Unit(i);
+    motion_.force = force_;
+    if (feels_) feel_hull(model_, motion_);
+    inverse.col(i) = model::acceleration(model_, motion_) - nu_dot;
+  }
+  return inverse;
+}
+
+void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_dot, Columns& out) {
+  const auto b = static_cast<Eigen::Index>(block);
+  const Matrix6d inverse = inverse_inertia(nu, nu_dot);
+  features_.nu = nu;
+  for (std::size_t j = 0; j < numbers_.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    const Number& number = numbers_[j];
+    if (slope_of_[j] >= 0) {
+      const Eigen::VectorXd slope = slopes_[static_cast<std::size_t>(slope_of_[j])].col(b);
+      if (!feels_) {
+        out.col(column) = inverse * (model_.allocation * slope);
+      } else {  // hull effects read the thrust too; over a step that changes it by a newton at most
+        const double size = 1.0 / std::max(slope.cwiseAbs().maxCoeff(), 1e-9);
+        const model::ActuatorForces before = force_;
+        force_ += size * slope;
+        out.col(column) = (acceleration(nu) - nu_dot) / size;
+        force_ = before;
+      }
+      continue;
+    }
+    switch (number.kind) {
+      case NumberKind::kBase: {
+        double& there = model_.theta[number.index];
+        const double before = there;
+        there += number.step;
+        out.col(column) = (acceleration(nu) - nu_dot) / number.step;
+        there = before;
+        break;
+      }
+      case NumberKind::kEffect: {
+        const auto e = static_cast<std::size_t>(number.index);
+        const Vector6d* remembered = memory_.slope(j);
+        const Stage stage = stage_of(model_.effects[e]);
+        if (remembered != nullptr) {
+          out.col(column) = inverse * *remembered;
+        } else if (stage != Stage::kHull) {
+          out.col(column).setZero();
+        } else {
+          double& there = model_.effects[e].theta[static_cast<std::size_t>(number.component)];
+          const double before = there;
+          there += number.step;
+          out.col(column) = (acceleration(nu) - nu_dot) / number.step;
+          there = before;
+        }
+        break;
+      }
+      case NumberKind::kWeight: {
+        Vector6d wrench = Vector6d::Zero();
+        free_.features[static_cast<std::size_t>(number.index)].add(features_, 1.0, wrench);
+        out.col(column) = inverse * wrench;
+        break;
+      }
+      case NumberKind::kWorldForce:
+        out.col(column).setZero();
+        if (number.run == static_cast<int>(run_index_))
+          out.col(column) = inverse.leftCols<3>() * motion_.R_WB.row(number.index).transpose();
+        break;
+      default:
+        out.col(column).setZero();
+    }
+  }
+}
+
+void Plant::end_block(std::size_t block, const Vector6d& nu) {
+  const Block& here = run_.blocks()[block];
+  if (!memory_.empty()) {
+    at_middle(block);
+    motion_.nu = nu;
+    motion_.v_WF_B.setZero();
+    motion_.a_WF_B.setZero();
+    motion_.w_memory.setZero();
+    feel_hull(model_, motion_);
+    memory_.advance(motion_, here.dt);
+  }
+  const Vector6d tau = model_.allocation * mean_.col(static_cast<Eigen::Index>(block));
+  for (std::size_t b = 0; b < kThrustMemories.size(); ++b)
+    features_.slow_tau[b] += -std::expm1(-here.dt / kThrustMemories[b]) * (tau - features_.slow_tau[b]);
+  for (std::size_t b = 0; b < kVelocityMemories.size(); ++b)
+    features_.slow_nu[b] += -std::expm1(-here.dt / kVelocityMemories[b]) * (nu - features_.slow_nu[b]);
+}
+
+void Plant::remember_columns(std::size_t block, const Columns& nu_columns, Columns& wrenches) {
+  wrenches.setZero();
+  if (!memory_.empty()) memory_.advance_columns(motion_, run_.blocks()[block].dt, nu_columns, wrenches);
+}
+
+}  // namespace fathom::likelihood

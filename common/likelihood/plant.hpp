@@ -1,0 +1,74 @@
+// A hypothesis on one run as accelerations: thrust worked out once, then the acceleration at any velocity, its slope
+// with the velocity and its columns with the free numbers. All slopes are differences of the acceleration itself, so
+// that whatever a model holds enters the fit by the same door.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/likelihood/effect_stages.hpp"
+
+namespace fathom::likelihood {
+
+using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+class Plant {
+ public:
+  /// `with_columns`: derivatives with the numbers will be asked for.
+  Plant(const Hypothesis& hypothesis, const std::vector<Number>& numbers, const RunData& run, std::size_t run_index,
+        bool with_columns);
+  Plant(const Plant&) = delete;
+  Plant& operator=(const Plant&) = delete;
+
+  /// The beginning of the run: memories settle.
+  void begin(const Vector6d& nu);
+  /// Situation of a substep of a block; `block` must be the one that memories were advanced to.
+  void at_substep(std::size_t interval, int substep);
+  /// Situation of a block's middle, with its mean thrust.
+  void at_middle(std::size_t block);
+  /// nu_dot where the plant is; zero on axes that are not simulated.
+  [[nodiscard]] Vector6d acceleration(const Vector6d& nu);
+  /// d acceleration / d nu, at `nu` where it is `nu_dot`; columns of axes that are not simulated stay zero.
+  [[nodiscard]] Matrix6d slope(const Vector6d& nu, const Vector6d& nu_dot);
+  /// d acceleration / d wrench: the inverse of the inertia.
+  [[nodiscard]] Matrix6d inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot);
+  /// d acceleration / d numbers, 6 x numbers.
+  void columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_dot, Columns& out);
+  /// Ends a block: memories and low passes move on with the velocity there.
+  void end_block(std::size_t block, const Vector6d& nu);
+  /// Sensitivities of the velocity at the block's end pass into the memory: wrenches of the next block, per number.
+  void remember_columns(std::size_t block, const Columns& nu_columns, Columns& wrenches);
+
+  [[nodiscard]] bool remembers() const { return !memory_.empty(); }
+  [[nodiscard]] const model::Model& model() const { return model_; }
+  [[nodiscard]] const RunData& run() const { return run_; }
+  [[nodiscard]] const Eigen::MatrixXd& mean_forces() const { return mean_; }  ///< actuators x blocks
+  [[nodiscard]] const FeatureState& features() const { return features_; }
+  [[nodiscard]] const model::Motion& motion() const { return motion_; }
+  /// The same place with another force of the actuators: for who asks what other thrust would do.
+  void replace_force(const Eigen::Ref<const Eigen::VectorXd>& force) { force_ = force; }
+
+ private:
+  void set(const Interval& interval, double t);
+  [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
+  void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
+
+  model::Model model_;
+  FreeForce free_;
+  RunNumbers own_;
+  const std::vector<Number>& numbers_;
+  const RunData& run_;
+  std::size_t run_index_;
+  MotionMemory memory_;
+  bool feels_{};                         // some hull effect alters what is felt
+  bool free_moves_{};                    // some feature goes with the velocity
+  Eigen::MatrixXd forces_, mean_;        // actuators x substeps, x blocks
+  std::vector<Eigen::MatrixXd> slopes_;  // of the mean forces, per number that has one
+  std::vector<int> slope_of_;            // number -> place in slopes_, -1: none
+  model::Motion motion_;
+  model::ActuatorForces force_;
+  FeatureState features_;
+  Vector6d free_still_{Vector6d::Zero()};  // features at this place, when they do not go with the velocity
+};
+
+}  // namespace fathom::likelihood
