@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/devices/emulated_vehicle.hpp"
 #include "common/devices/parser.hpp"
 #include "common/devices/settings.hpp"
 
@@ -45,6 +46,9 @@ class EmulatedAnswers {
   /// Deflections of the pilot's sticks that a vehicle was told, -1 to 1: pitch, roll, throttle, yaw, forward, lateral.
   /// Null while nobody overrides them.
   [[nodiscard]] const std::array<double, 6>* sticks() const { return overridden_ ? &sticks_ : nullptr; }
+  /// Of the vehicle that is played behind a thruster driver; what it is told it does only when it is well.
+  [[nodiscard]] EmulatedVehicle& vehicle() { return vehicle_; }
+  [[nodiscard]] const EmulatedVehicle& vehicle() const { return vehicle_; }
   /// Time goes on [s].
   void at(double now);
 
@@ -64,6 +68,7 @@ class EmulatedAnswers {
   std::array<double, 6> sticks_{};
   bool overridden_{false};
   double now_{}, commanded_{}, overridden_at_{};
+  EmulatedVehicle vehicle_;
   std::unique_ptr<Parser> commands_;  ///< of a ground station (MAVLink)
 };
 

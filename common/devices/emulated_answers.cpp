@@ -68,6 +68,10 @@ std::string EmulatedAnswers::hear_mavlink(std::string_view bytes) {
 
    private:
     bool run(double motor, double pwm) {
+      if (!vehicle_.vehicle_.armed) {  // in ArduSub's words
+        vehicle_.vehicle_.words.push_back({.severity = 4, .text = "Arm motors before testing motors.", .age = 0.0});
+        return false;
+      }
       if (!(motor >= 0.0 && motor < static_cast<double>(vehicle_.applied_.size()))) return false;
       vehicle_.applied_[static_cast<std::size_t>(motor)] = std::round(pwm);  // outputs are whole microseconds
       vehicle_.commanded_ = vehicle_.now_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/devices/emulated_vehicle.hpp"
 #include "common/devices/janus.hpp"
 #include "common/devices/settings.hpp"
 #include "common/samples/sensors.hpp"
@@ -21,8 +22,9 @@ struct Instant {
   Depth depth;
   Ranges ranges;
   Loads loads;
-  Thrusters thrusters;   ///< pulse widths; of a rig without any, forces
-  double voltage{16.2};  ///< V, of the battery; 0: nothing is said of it
+  Thrusters thrusters;        ///< pulse widths; of a rig without any, forces
+  double voltage{16.2};       ///< V, of the battery; 0: nothing is said of it
+  EmulatedVehicle vehicle{};  ///< behind a thruster driver
 };
 
 struct EmulatedDvl {

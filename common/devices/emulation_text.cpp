@@ -1,7 +1,6 @@
 // Acoustic positions and ranges, depth and loads: text lines from samples.
 #include <cmath>
 
-#include "common/devices/checksum.hpp"
 #include "common/devices/emulation.hpp"
 
 namespace fathom::devices::detail {
@@ -61,47 +60,6 @@ std::string load_text(const Instant& now, const Settings& settings) {
   return text + "\r\n";
 }
 
-// What ArduSub says unasked: HEARTBEAT, SERVO_OUTPUT_RAW and SYS_STATUS.
-std::string mavlink_packets(const Instant& now) {
-  const auto packet = [](std::uint8_t id, std::uint8_t crc_extra, const std::string& payload) {
-    FrameWriter body;
-    body.little(static_cast<std::uint8_t>(payload.size()));
-    body.text += std::string("\0\0\0\1\1", 5);
-    body.little(id);
-    body.zeros(2);
-    body.text += payload;
-    const std::string checked = body.text + static_cast<char>(crc_extra);
-    body.little(crc16_reflected(as_bytes(checked), 0xFFFF));
-    return "\xFD" + body.text;
-  };
-  FrameWriter heartbeat;
-  heartbeat.little(std::uint32_t{19});                       // manual mode
-  heartbeat.text += std::string("\x0C\x03\x40\x04\x03", 5);  // submarine, ArduPilot, manual input, active
-  FrameWriter servo;
-  servo.little(static_cast<std::uint32_t>(static_cast<std::uint64_t>(now.time * 1e6) & 0xFFFFFFFFU));
-  for (int i = 0; i < 8; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double pwm = k < now.thrusters.pwm_us.size() ? now.thrusters.pwm_us[k] : 1500.0;
-    servo.little(static_cast<std::uint16_t>(std::lround(pwm)));
-  }
-  servo.little(std::uint8_t{1});
-  FrameWriter status;
-  status.zeros(14);
-  status.little(static_cast<std::uint16_t>(std::lround(1e3 * now.voltage)));  // mV
-  status.zeros(14);
-  status.little(std::int8_t{80});
-  return packet(0, 50, heartbeat.text) + packet(36, 222, servo.text) +
-         (now.voltage > 0.0 ? packet(1, 124, status.text) : "");
-}
-
-std::string rig_sentences(const Instant& now) {
-  const Thrusters& told = now.thrusters;
-  std::string applied = told.pwm_us.empty() ? "FTAPF" : "FTAPP";
-  for (const double pwm : told.pwm_us) applied += format(",%.0f", pwm);
-  for (std::size_t i = 0; told.pwm_us.empty() && i < told.force.size(); ++i) applied += format(",%.3f", told.force[i]);
-  return (now.voltage > 0.0 ? nmea_sentence(format("FTBAT,%.2f", now.voltage)) : "") + nmea_sentence(applied);
-}
-
 }  // namespace
 
 std::string emulate_text(std::string_view protocol, const Instant& now, const Settings& settings) {
@@ -110,8 +68,8 @@ std::string emulate_text(std::string_view protocol, const Instant& now, const Se
   if (protocol == "psimlbm") return psimlbm(now);
   if (protocol == "range_text") return range_text(now, settings);
   if (protocol == "load_text") return load_text(now, settings);
-  if (protocol == "mavlink") return mavlink_packets(now);
-  if (protocol == "thruster_text") return rig_sentences(now);
+  if (protocol == "mavlink") return mavlink_packets(now.vehicle, now.thrusters, now.voltage, now.time);
+  if (protocol == "thruster_text") return rig_sentences(now.vehicle, now.thrusters, now.voltage);
   return nmea_sentence(format("SDDPT,%.3f,0.00", now.depth.z));
 }
 

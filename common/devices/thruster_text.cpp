@@ -1,5 +1,7 @@
 #include "common/devices/thruster_text.hpp"
 
+#include <utility>
+
 #include "common/devices/emulation.hpp"
 
 namespace fathom::devices {
@@ -23,11 +25,26 @@ ThrusterText::ThrusterText(const Settings& settings) : NmeaParser{true} {
 
 void ThrusterText::sentence(const Words& words, Frame& frame) {
   voltage_.reset();
+  state_.reset();
+  text_.reset();
   if (words[0] == "FTBAT") {
     voltage_ = words.number_at(1);
     if (!voltage_) return;
     battery_ = Battery{.voltage = *voltage_};
     frame.sample = &battery_;
+  } else if (words[0] == "FTSTA") {
+    const bool known = (words[1] == "0" || words[1] == "1") && (words[3] == "0" || words[3] == "1" || words[3].empty());
+    if (!known) {
+      complain("the rig's state is not $FTSTA,0|1,MODE,0|1");
+      return;
+    }
+    state_ = RigState{.armed = words[1] == "1", .mode = std::string{words[2]}, .failsafe = words[3] == "1"};
+  } else if (words[0] == "FTMSG") {
+    const auto severity = whole(words[1]);
+    if (!severity || *severity > 7) return;
+    std::string text{words[2]};  // a comma in it is not the end
+    for (std::size_t i = 3; i < words.size(); ++i) text += "," + std::string{words[i]};
+    text_ = VehicleText{.severity = static_cast<int>(*severity), .text = std::move(text), .age = 0.0};
   } else if (words[0] == "FTAPP" || words[0] == "FTAPF") {
     const bool pulses = words[0] == "FTAPP";
     std::vector<double>& applied = pulses ? pulses_.pwm_us : forces_.force;

@@ -9,6 +9,7 @@
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 #include <optional>
 #include <vector>
@@ -28,6 +29,7 @@
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
+#include "common/wire/vehicle.hpp"
 
 namespace fathom::driver {
 namespace {
@@ -36,6 +38,9 @@ constexpr double kStaleVoltage = 5.0;  // s
 constexpr double kHeartbeat = 1.0;     // s between a ground station's signs of life
 constexpr double kFeedback = 1.0;      // s: without newer feedback what was sent is told
 constexpr double kTestLife = 0.5;      // s that one motor test may run on without the next
+constexpr double kTellVehicle = 0.5;   // s between two of VEHICLE; a change is told at once
+// Of the nominal voltage, where no floor is stated: 3.0 V of a lithium cell's 3.7 to 4.0, below which it takes harm.
+constexpr double kFloorShare = 0.75;
 
 Utime wall_clock() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -62,6 +67,22 @@ Way way_of(const Config& config) {
   config.fail("protocol", "no protocol '" + name + "'; known: rc_override, motor_test, text, dry_run");
 }
 
+VehicleCheck::Expected expected(const Config& config, const model::Vehicle& vehicle, Way way) {
+  VehicleCheck::Expected wanted;
+  wanted.kind = way == Way::kDryRun ? VehicleCheck::Kind::kDryRun
+                : way == Way::kText ? VehicleCheck::Kind::kRig
+                                    : VehicleCheck::Kind::kArdusub;
+  wanted.largest_thrust = positive(config, "largest_thrust", "N");
+  wanted.must_report = way == Way::kRcOverride;
+  wanted.voltage_floor =
+      config.has("voltage_floor") ? config.not_negative("voltage_floor", "V") : kFloorShare * vehicle.nominal_voltage;
+  // In MANUAL ArduSub adds nothing of its own, and does nothing by itself when the commands end.
+  if (wanted.kind == VehicleCheck::Kind::kArdusub) wanted.modes = {"MANUAL"};
+  if (config.has("modes")) wanted.modes = config.texts("modes");
+  if (wanted.kind == VehicleCheck::Kind::kArdusub) wanted.system = std::clamp(config.integer("system"), 1, 255);
+  return wanted;
+}
+
 class ThrusterDriver final : public devices::Output {
  public:
   ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle, std::string token)
@@ -71,7 +92,8 @@ class ThrusterDriver final : public devices::Output {
         allocation_{vehicle, positive(config, "largest_thrust", "N")},
         gate_{std::move(token)},
         period_{1.0 / positive(config, "rate", "Hz")},
-        writer_{255, 190} {
+        writer_{255, 190},
+        check_{expected(config, vehicle, way_)} {
     if (!curved_ && way_ != Way::kDryRun && way_ != Way::kText) {
       config.fail("protocol", "'" + config.text("protocol") + "' sends pulse widths, and vehicle " + vehicle.name +
                                   " has no 'thrust_curve'; add it to its file, or send forces to a rig with 'text'");
@@ -84,7 +106,6 @@ class ThrusterDriver final : public devices::Output {
     } else {
       parser_ = std::make_unique<devices::Mavlink>(settings);
       target_ = static_cast<std::uint8_t>(std::clamp(config.integer("system"), 1, 255));
-      check_.emplace(target_);
     }
     if (way_ == Way::kRcOverride) {
       const Config full = config.section("full_stick");
@@ -103,6 +124,7 @@ class ThrusterDriver final : public devices::Output {
         },
         [this](bool up, const std::string& why) {
           parser_->restart();
+          check_.restart(steady_seconds());
           watch_->link(up, why, steady_seconds());
         });
   }
@@ -128,6 +150,7 @@ class ThrusterDriver final : public devices::Output {
     next_ = std::max(next_ + period_, now);
     step(now);
     say();
+    if (now - vehicle_told_at_ >= kTellVehicle) tell_vehicle(now);
   }
 
   /// The thrusters stand still before the driver goes.
@@ -143,9 +166,14 @@ class ThrusterDriver final : public devices::Output {
   [[nodiscard]] runtime::Process::Condition condition() const {
     std::string unhealthy;
     const double now = steady_seconds();
-    if (watch_) unhealthy = watch_->unhealthy(now, check_ ? check_->objection(now) : "", parser_->complaint());
-    if (unhealthy.empty()) unhealthy = lacking_;
     const Utime utime = wall_clock();
+    // A line that says nothing at all is the first thing to see to, then what the vehicle says.
+    if (watch_) {
+      const std::string trouble = first_trouble(check_.condition(utime, now));
+      const bool silent = watch_->silent(now);
+      unhealthy = watch_->unhealthy(now, silent ? "" : trouble, parser_->complaint());
+    }
+    if (unhealthy.empty()) unhealthy = lacking_;
     if (unhealthy.empty() && gate_.ignores(utime))
       unhealthy = "thrust is commanded and none is given, since this driver was not armed; arm again";
     const std::string_view reason = gate_.reason(utime);
@@ -161,10 +189,12 @@ class ThrusterDriver final : public devices::Output {
   void frame(const devices::Parser& parser, const devices::Frame& frame) override {
     const double now = steady_seconds();
     watch_->frame(now);
-    if (check_) check_->hear(dynamic_cast<const devices::Mavlink&>(parser), now);
+    if (const auto* packet = dynamic_cast<const devices::Mavlink*>(&parser)) check_.hear(*packet, now);
+    if (const auto* sentence = dynamic_cast<const devices::ThrusterText*>(&parser)) check_.hear(*sentence, now);
     if (const auto* battery = std::get_if<const Battery*>(&frame.sample)) {
       voltage_ = (*battery)->voltage;
       voltage_at_ = now;
+      check_.hear_voltage(voltage_, now);
       watch_->sample(arrival_, now);
       Battery sample = **battery;
       sample.utime = arrival_;
@@ -175,9 +205,10 @@ class ThrusterDriver final : public devices::Output {
       if (pulses && !curved_) return;  // nobody knows what they give
       watch_->sample(arrival_, now);
       feedback_at_ = now;
-      tell(pulses ? allocation_.applied((*thrusters)->pwm_us, voltage(now))
-                  : allocation_.applied_forces((*thrusters)->force),
-           arrival_);
+      const model::Allocated applied = pulses ? allocation_.applied((*thrusters)->pwm_us, voltage(now))
+                                              : allocation_.applied_forces((*thrusters)->force);
+      check_.applied(applied, now);
+      tell(applied, arrival_);
     }
   }
 
@@ -190,6 +221,7 @@ class ThrusterDriver final : public devices::Output {
     const model::Allocated allocated =
         gate_.reason(utime).empty() ? allocation_.allocate(tau, voltage(now)) : allocation_.neutral();
     lacking_ = allocation_.complaint(allocated);
+    check_.asked(allocated, now);
     send(allocated, tau * allocated.scale, now);
     const bool reported = now - feedback_at_ < kFeedback;  // what the vehicle says it applied counts more
     if (!reported && way_ != Way::kRcOverride) tell(allocated, utime);
@@ -233,6 +265,11 @@ class ThrusterDriver final : public devices::Output {
     process_.publish(wire::kThrusters, wire::encode(sample));
   }
 
+  void tell_vehicle(double now) {
+    vehicle_told_at_ = now;
+    process_.publish(wire::kVehicle, wire::encode(check_.condition(wall_clock(), now)));
+  }
+
   // A change of what the driver does is said at once.
   void say() {
     const runtime::Process::Condition now = condition();
@@ -247,6 +284,7 @@ class ThrusterDriver final : public devices::Output {
       process_.log_warning(now.unhealthy);
     }
     process_.tell_health();
+    tell_vehicle(steady_seconds());
   }
 
   runtime::Process& process_;
@@ -261,7 +299,8 @@ class ThrusterDriver final : public devices::Output {
   std::unique_ptr<devices::Parser> parser_;
   std::optional<Watch> watch_;
   std::optional<LineRecord> record_;
-  std::optional<VehicleCheck> check_;
+  VehicleCheck check_;
+  double vehicle_told_at_{-1e9};
   Utime arrival_{};
   double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
   std::string lacking_;  ///< what was commanded and the thrusters cannot give
@@ -277,6 +316,7 @@ int thruster_main(int argc, const char* const* argv) {
     ThrusterDriver driver{process, process.config(), vehicle, operator_token(process.config_path("operator"))};
     process.publishes<fathom_lcm::thrusters_t>(wire::kThrusters);
     process.publishes<fathom_lcm::battery_t>(wire::kBattery);
+    process.publishes<fathom_lcm::vehicle_condition_t>(wire::kVehicle);
     process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
       const auto command = wire::decode(message);
       if (!command) return process.reject(wire::kWrenchCommand);

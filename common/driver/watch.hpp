@@ -25,6 +25,8 @@ class Watch {
   /// Why the instrument is not well; empty when it is. A line that came up again is believed with its first
   /// measurement. `failure` and `complaint` are those of dialogue and parser.
   [[nodiscard]] std::string unhealthy(double now, const std::string& failure, const std::string& complaint) const;
+  /// Nothing comes at all, or nothing that can be read.
+  [[nodiscard]] bool silent(double now) const { return !up_ || now - last_frame_ > patience(); }
   [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
   /// s since the newest sample, or since the line came up.
   [[nodiscard]] double since_sample(double now) const { return now - last_sample_; }

@@ -22,18 +22,20 @@ bool ended(const Health& health) { return health.state == "stopped" || health.st
 
 }  // namespace
 
-Needs::Needs(const std::vector<std::string>& needs, double silence) : silence_{silence} {
+std::vector<std::string> alternatives(const std::string& need) {
   constexpr std::string_view kOr = " or ";
-  for (const std::string& text : needs) {
-    Need need{.text = text, .names = {}};
-    std::size_t from = 0;
-    for (auto at = text.find(kOr); at != std::string::npos; at = text.find(kOr, from)) {
-      need.names.push_back(text.substr(from, at - from));
-      from = at + kOr.size();
-    }
-    need.names.push_back(text.substr(from));
-    needs_.push_back(std::move(need));
+  std::vector<std::string> names;
+  std::size_t from = 0;
+  for (auto at = need.find(kOr); at != std::string::npos; at = need.find(kOr, from)) {
+    names.push_back(need.substr(from, at - from));
+    from = at + kOr.size();
   }
+  names.push_back(need.substr(from));
+  return names;
+}
+
+Needs::Needs(const std::vector<std::string>& needs, double silence) : silence_{silence} {
+  for (const std::string& text : needs) needs_.push_back({.text = text, .names = alternatives(text)});
 }
 
 void Needs::hear(const Health& health) {

@@ -11,6 +11,9 @@
 
 namespace fathom::excitation {
 
+/// "A or B" to its names.
+[[nodiscard]] std::vector<std::string> alternatives(const std::string& need);
+
 class Needs {
  public:
   /// `needs`: names of processes. "A or B": where A has never spoken, B stands in for it; it must be there, but what it

@@ -64,7 +64,8 @@ Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle&
       hold_{settings.hold, settings.largest},
       designer_{settings.design, vehicle, settings.largest, settings.seed},
       signals_(6),
-      needs_{settings.needs, settings.silence} {
+      needs_{settings.needs, settings.silence},
+      after_{settings.after_abort, settings.surface} {
   if (token_.empty()) throw InputError("supervisor: the operator's token is empty; give a --config file with operator");
   if (settings_.schedule.empty()) throw InputError("supervisor: the schedule is empty");
   for (const Mode& mode : settings_.schedule) {
@@ -88,6 +89,13 @@ void Supervisor::hear(const ModelEstimate& model) {
 
 void Supervisor::hear(const Health& health) { needs_.hear(health); }
 
+void Supervisor::hear(const VehicleCondition& vehicle) {
+  const auto grave = std::find_if(vehicle.lines.begin(), vehicle.lines.end(),
+                                  [](const ConditionLine& line) { return line.grave && !line.ok; });
+  grave_ = grave == vehicle.lines.end() ? "" : grave->text;
+  if (armed_ && !grave_.empty()) stop(Phase::kAborted, grave_);
+}
+
 // Where no STATE comes there is no step either; somebody must say that the trial is over.
 void Supervisor::watch(double now) {
   constexpr double kAway = 1.0;  // s; it was this process that stood still
@@ -109,11 +117,16 @@ void Supervisor::watch(double now) {
   }
 }
 
-void Supervisor::stop(Phase phase, const std::string& reason) {
-  if (phase_ == Phase::kAborted && !armed_) return;
+// The operator's zero is above everything; an end that nobody ordered is followed by what the vehicle file says.
+void Supervisor::stop(Phase phase, const std::string& reason, Then then) {
+  const bool flies = after_.active();
+  if (then == Then::kZero) after_.end();
+  if (phase_ == Phase::kAborted && !armed_ && !(flies && then == Then::kZero)) return;
+  if (armed_ && then == Then::kAsTheVehicleFileSays) after_.begin(state_);
   armed_ = false;
   phase_ = phase;
-  reason_ = reason;
+  reason_ = ended_ = reason;
+  if (after_.active()) reason_ += "; then: " + after_.text();
   armed_at_ = state_.utime;
   segment_.reset();
   flight_.reset();
@@ -306,6 +319,13 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   const double dt = last_command_ == 0 ? 0.0 : std::min(since, 2.0 / settings_.rate);
   last_command_ = state.utime;
 
+  if (!armed_ && after_.active()) {
+    const Vector6d tau = after_.step(state, hold_, dt);
+    reason_ = ended_ + "; then: " + after_.text();
+    if (!after_.active()) armed_at_ = state.utime;  // zeros are said for a while
+    say(tau.cwiseMax(-settings_.largest).cwiseMin(settings_.largest), Vector6d::Zero(), false);
+    return output_;
+  }
   if (!armed_) {
     say(Vector6d::Zero(), Vector6d::Zero(), false);
     const bool stopping = phase_ == Phase::kAborted || phase_ == Phase::kLost;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/excitation/depth_action.hpp"
 #include "common/excitation/design.hpp"
 #include "common/excitation/fence.hpp"
 #include "common/excitation/hold.hpp"
@@ -19,6 +20,7 @@
 #include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/health.hpp"
+#include "common/samples/vehicle_condition.hpp"
 
 namespace fathom {
 class Config;
@@ -52,6 +54,8 @@ struct SupervisorSettings {
   int flights{0};                  ///< proposed segments that may be flown at the end without an order
   double open_range{8.0};          ///< m around the place of arming, where walls, floor and surface are farther
   std::vector<std::string> needs;  ///< processes that must be well
+  model::AfterAbort after_abort;   ///< of the vehicle file
+  double surface{};                ///< m, z of Bo with the vehicle's top at the water's surface
   double silence{5.0};             ///< s without HEALTH after which one of them counts as gone, in real time
   HoldSettings hold;
   FenceSettings fence;
@@ -92,6 +96,8 @@ class Supervisor {
   void hear(const ModelEstimate& model);
   void hear(const Operator& order);
   void hear(const Health& health);
+  /// A grave condition of the vehicle (a leak, a failsafe, an empty battery) ends a trial at once.
+  void hear(const VehicleCondition& vehicle);
   /// In real time alone, some ten times a second, by any steady clock [s]: what has ceased to come is missed here.
   void watch(double now);
   /// What the diagnoser suspects is named beside a residual that does not fit; what it proposes may be flown.
@@ -125,7 +131,8 @@ class Supervisor {
   void take_off();
   void land(const std::string& how);
   void finish(const std::string& reason);
-  void stop(Phase phase, const std::string& reason);
+  enum class Then { kAsTheVehicleFileSays, kZero };
+  void stop(Phase phase, const std::string& reason, Then then = Then::kAsTheVehicleFileSays);
   void enter(std::size_t mode);
   void begin();
   void finish_mode(bool left, const std::string& missing);
@@ -160,6 +167,9 @@ class Supervisor {
   std::int64_t last_sequence_{};
   std::int64_t armed_by_{};  // kept after a stop: the zeros that follow it must be obeyed
   Needs needs_;
+  DepthAction after_;
+  std::string grave_;                // what speaks against any trial, by the vehicle's own words
+  std::string ended_;                // why the last trial ended
   std::optional<double> watched_{};  // s
   double state_came_{};              // s, as far as watch() has seen
   Utime state_seen_{};

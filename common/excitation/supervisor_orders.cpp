@@ -26,7 +26,7 @@ void Supervisor::hear(const EffectRanking& ranking) {
 // An abort needs no permission. Everything else must come from somebody who knows the token, once, and now.
 void Supervisor::hear(const Operator& order) {
   if (order.abort) {
-    stop(Phase::kAborted, "aborted by the operator");
+    stop(Phase::kAborted, "aborted by the operator", Then::kZero);
     return;
   }
   if (order.token != token_ || order.sequence <= last_sequence_) return;
@@ -74,10 +74,12 @@ bool Supervisor::arm() {
   if (why.empty()) why = fence_.outside(state_, 0.0);
   if (const auto trouble = needs_.trouble(); why.empty() && trouble)
     why = trouble->process + " " + trouble->what + "; " + trouble->remedy;
+  if (why.empty()) why = grave_;
   if (!why.empty()) {
     reason_ = "not armed: " + why;
     return false;
   }
+  after_.end();
   armed_ = true;
   armed_at_ = state_.utime;
   lost_since_ = 0;

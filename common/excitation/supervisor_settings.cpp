@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/base/config.hpp"
+#include "common/excitation/preflight.hpp"
 #include "common/excitation/supervisor.hpp"
 #include "common/model/expected_inertia.hpp"
 #include "common/model/parameters.hpp"
@@ -103,7 +104,8 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   if (config.has("flights")) s.flights = std::max(0, config.integer("flights"));
   s.order_age = config.positive("order_age", "s");
   s.open_range = config.positive("open_range", "m");
-  s.needs = config.texts("needs");
+  s.needs = config.has("needs") ? config.texts("needs") : usual_needs();
+  s.surface = site.surface + 0.5 * vehicle.hull.z();
   if (config.has("silence")) s.silence = config.positive("silence", "s");
   s.fence = fence_from(config.section("fence"), vehicle, site);
   const Vector6d expected = model::expected_inertia(vehicle);

@@ -8,6 +8,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/model/after_abort.hpp"
 #include "common/model/wide_prior.hpp"
 
 namespace fathom::model {
@@ -276,6 +277,11 @@ Vehicle Vehicle::load(const std::string& path) {
     }
   }
   if (config.has("hydrodynamics")) vehicle.hydrodynamics = Hydrodynamics::from(config.section("hydrodynamics"));
+  if (config.has("after_abort")) {
+    const AfterAbort after = AfterAbort::from(config.section("after_abort"));
+    if (after.action != AfterAbort::Action::kZero && !vehicle.dof[2])
+      config.fail("after_abort", "this vehicle has no 'heave' in its 'dof': it can only have zero thrust");
+  }
   config.finish();
   return vehicle;
 }

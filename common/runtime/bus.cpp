@@ -1,7 +1,6 @@
 #include "common/runtime/bus.hpp"
 
 #include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -216,11 +215,6 @@ void Output::write(const std::string& channel, std::span<std::uint8_t> bytes, Ut
 
 void Output::finish() {
   if (log_ && std::fflush(log_->getFilePtr()) != 0) throw InputError(path_ + ": writing failed; is the disk full?");
-}
-
-void Output::keep() {
-  finish();
-  if (log_) fdatasync(fileno(log_->getFilePtr()));  // not every file system can, and a pipe cannot
 }
 
 }  // namespace fathom::runtime

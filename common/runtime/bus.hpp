@@ -122,8 +122,6 @@ class Output {
   void write(const std::string& channel, std::span<std::uint8_t> bytes, Utime utime);
   /// InputError when not everything reached the disk.
   void finish();
-  /// The same, and what was written outlives a loss of power.
-  void keep();
 
  private:
   [[nodiscard]] lcm::LCM& bus_for(const std::string& channel);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <csignal>
 #include <iostream>
 #include <limits>
 
@@ -80,7 +81,7 @@ void run(const Arguments& arguments, const std::string& path, const std::vector<
     }
     if (arrangement.tick() >= told + Conductor::kRecorderEvery) tell(told = arrangement.tick());
     const auto now = std::chrono::steady_clock::now();
-    health.tell(arrangement.written());
+    health.tell("", std::to_string(arrangement.written()) + " messages written");
     if (!started && now - last_hello >= std::chrono::milliseconds{200}) {
       last_hello = now;
       tell(-1);
@@ -151,6 +152,7 @@ void Arrangement::write_complete() {
 }
 
 int recorder_main(int argc, const char* const* argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is told by what the write returns
   spdlog::logger logger{"recorder", std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
   logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
   try {
@@ -159,7 +161,7 @@ int recorder_main(int argc, const char* const* argv) {
     std::vector<std::string> without;
     const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
       app.add_option("--file", path, "the log to be written");
-      app.add_flag("--number", number, "add .00, .01, ... to its name, the first that is free");
+      app.add_flag("--number", number, "add .00, .01, ... to its name, the next number");
       app.add_option("--without", without, "a channel that is not recorded; more than once if wanted")
           ->take_all()
           ->expected(1);

@@ -13,6 +13,7 @@ inline constexpr char kRanges[] = "RANGES";
 inline constexpr char kLoads[] = "LOADS";
 inline constexpr char kPoseCapture[] = "POSE_CAPTURE";
 inline constexpr char kBattery[] = "BATTERY";
+inline constexpr char kVehicle[] = "VEHICLE";
 inline constexpr char kTagPose[] = "TAG_POSE";
 inline constexpr char kOpticalFlow[] = "OPTICAL_FLOW";
 inline constexpr char kLaserRange[] = "LASER_RANGE";

@@ -6,15 +6,15 @@
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 
 #include "common/base/error.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
+#include "common/wire/vehicle.hpp"
 
 namespace fathom::tool {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 template <class Message>
 std::optional<Message> message_of(const std::vector<std::uint8_t>& bytes) {
@@ -32,7 +32,8 @@ Console::Console(const std::string& url, Hears what)
       input_{{url_},
              [&] {
                if (what == Hears::kAll) {
-                 heard_.insert(heard_.end(), {{wire::kThrusters, 1}, {wire::kHealth, 200}, {wire::kState, 1}});
+                 heard_.insert(heard_.end(),
+                               {{wire::kThrusters, 1}, {wire::kHealth, 200}, {wire::kState, 1}, {wire::kVehicle, 1}});
                }
                return heard_;
              }()},
@@ -63,11 +64,29 @@ void Console::hear(const runtime::LiveInput::Message& message) {
     if (const auto one = message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
   } else if (channel == wire::kHealth) {
     if (const auto one = message_of<fathom_lcm::health_t>(message.bytes)) {
-      if (const auto heard = wire::decode(*one)) health[heard->process] = *heard;
+      const auto heard = wire::decode(*one);
+      if (!heard) return;
+      health[heard->process] = *heard;
+      health_came_[heard->process] = Clock::now();
     }
+  } else if (channel == wire::kVehicle) {
+    if (const auto one = message_of<fathom_lcm::vehicle_condition_t>(message.bytes)) vehicle = wire::decode(*one);
+    vehicle_came_ = Clock::now();
   } else if (const auto one = message_of<fathom_lcm::state_t>(message.bytes)) {
     state = wire::decode(*one);
+    state_came_ = Clock::now();
   }
+}
+
+excitation::PreflightInput Console::heard() const {
+  const auto age = [now = Clock::now()](Clock::time_point came) {
+    return std::chrono::duration<double>(now - came).count();
+  };
+  excitation::PreflightInput input;
+  for (const auto& [name, one] : health) input.health[name] = {one, age(health_came_.at(name))};
+  if (state) input.state = {*state, age(state_came_)};
+  if (vehicle) input.vehicle = {*vehicle, age(vehicle_came_)};
+  return input;
 }
 
 }  // namespace fathom::tool

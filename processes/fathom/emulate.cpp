@@ -24,7 +24,7 @@ constexpr double kHears = 0.3;
 struct Options {
   std::string protocol, to, file, sent;
   double seconds{0.0}, rate{0.0};
-  std::vector<std::string> transponders;
+  std::vector<std::string> transponders, conditions;
 };
 
 // What an instrument says next: a recording piece by piece, or reports of an emulated motion.
@@ -45,7 +45,7 @@ class Source {
     if (!piece_) return {};
     return seconds_between(first_, piece_->utime);
   }
-  [[nodiscard]] std::string next(const devices::EmulatedAnswers& answers) {
+  [[nodiscard]] std::string next(devices::EmulatedAnswers& answers) {
     if (recording_) {
       std::string bytes{devices::as_text(piece_->bytes)};
       piece_ = recording_->next();
@@ -54,6 +54,8 @@ class Source {
     const double since = period_ * static_cast<double>(count_++);
     devices::Instant now = devices::emulated_motion(begin_ + since, since, settings_);
     now.thrusters.pwm_us = answers.applied();
+    now.vehicle = answers.vehicle();
+    answers.vehicle().words.clear();
     return devices::emulate(protocol_, now, settings_);
   }
 
@@ -73,6 +75,8 @@ void run(const Options& options) {
   devices::Settings settings;
   settings.transponders = options.transponders;
   devices::EmulatedAnswers answers{options.protocol};
+  std::vector<devices::PlayedCondition> conditions;
+  for (const std::string& each : options.conditions) conditions.push_back(devices::PlayedCondition::parse(each));
   Source source{options, settings};
   std::ofstream sent;
   if (!options.sent.empty()) sent.open(options.sent, std::ios::binary);
@@ -98,6 +102,11 @@ void run(const Options& options) {
     const double pause = due ? *due - elapsed() : 0.1;
     say(answers.hear(server.wait(std::max(0.0, std::min(pause, 0.1)))));
     answers.at(elapsed());
+    std::erase_if(conditions, [&](const devices::PlayedCondition& each) {
+      const bool now = each.time <= elapsed();
+      if (now) devices::play(answers.vehicle(), each.word);
+      return now;
+    });
     if (due && elapsed() >= *due) {
       const std::string bytes = source.next(answers);
       if (answers.sends_data()) say(bytes);
@@ -121,6 +130,12 @@ void add_emulate(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "ends after this time; left out: never, or with the file")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--sent", options->sent, "writes what was sent to this file");
+  command
+      ->add_option("--condition", options->conditions,
+                   "of the vehicle behind a thruster driver, TIME:CONDITION, more than once if wanted: 0:disarmed, "
+                   "5:mode=STABILIZE, 8:says=2,Leak Detected, 9:voltage=9.0, heartbeat=off, failsafe=on, obeys=off")
+      ->take_all()
+      ->expected(1);
   command->add_option("--transponders", options->transponders, "names, for range_text");
   command->callback([options] { run(*options); });
 }

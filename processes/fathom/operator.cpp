@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/operator_token.hpp"
+#include "common/excitation/preflight.hpp"
 #include "common/excitation/supervisor.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/console.hpp"
@@ -20,6 +22,7 @@ struct Options {
   std::string operator_file;
   std::string word, segment;
   double seconds{};
+  std::vector<std::string> needs = excitation::usual_needs();
 };
 
 Utime wall_clock() {
@@ -36,12 +39,23 @@ void print(const Excitation& e) {
   if (!e.missing.empty()) std::printf("still missing: %s\n", e.missing.c_str());
 }
 
+/// Line by line what must hold before anything moves; InputError where it does not.
+void go_through(Console& console, const std::vector<std::string>& needs) {
+  constexpr double kLongest = 2.5;  // s: HEALTH comes each second
+  const auto lines = [&] { return excitation::preflight(console.heard(), needs); };
+  console.listen(kLongest, [&] { return excitation::all_ok(lines()); });
+  for (const excitation::PreflightLine& line : lines()) std::printf("%s\n", excitation::shown(line).c_str());
+  std::fflush(stdout);
+  if (!excitation::all_ok(lines())) throw InputError("not armed: see to what is NOT OK above, then arm again");
+}
+
 void order(const Options& options, bool enable, const std::string& word) {
   const std::string token = operator_token(options.operator_file);
   Console console{options.url};
   console.listen(1.0, [&] { return console.vehicle_time.has_value(); });
   if (!console.vehicle_time)
     throw InputError("no THRUSTERS on the bus: is the thruster driver (or the simulator) running?");
+  if (enable) go_through(console, options.needs);
   const std::string before = console.excitation ? console.excitation->phase : "";
   const auto give = [&] {
     console.say({.utime = *console.vehicle_time,
@@ -110,6 +124,12 @@ void add_operator(CLI::App& app) {
   };
   CLI::App* arm = add(app, "arm", "let the thrusters obey the supervisor, and begin", options);
   with_token(arm);
+  const auto with_needs = [&](CLI::App* command) {
+    command->add_option("--needs", options->needs,
+                        "processes that must be well, as in the supervisor's section; left out: estimator, "
+                        "identifier, thruster_driver or simulator, recorder or simulator");
+  };
+  with_needs(arm);
   arm->callback([options] { order(*options, true, "identify"); });
   CLI::App* say = add(app, "order", "say hold, identify, skip or retry to an armed supervisor", options);
   with_token(say);
@@ -122,6 +142,7 @@ void add_operator(CLI::App& app) {
   fly->add_option("segment", options->segment, "for instance 'full steps in surge'");
   fly->add_option("--seconds", options->seconds, "of it, again and again (as proposed, else once)")
       ->check(CLI::Range(1.0, 600.0));
+  with_needs(fly);
   fly->callback([options] { order(*options, true, "fly"); });
   CLI::App* abort = add(app, "abort", "thrusters to zero at once; needs no token", options);
   abort->callback([options] { abort_now(*options); });

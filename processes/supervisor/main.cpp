@@ -7,6 +7,7 @@
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 
 #include "common/base/operator_token.hpp"
@@ -15,6 +16,7 @@
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
+#include "common/wire/vehicle.hpp"
 
 using namespace fathom;
 
@@ -22,8 +24,9 @@ int main(int argc, char** argv) {
   return runtime::main("supervisor", argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const model::Site site = model::Site::load(process.config_path("site"));
-    excitation::Supervisor supervisor{excitation::SupervisorSettings::from(process.config(), vehicle, site), vehicle,
-                                      operator_token(process.config_path("operator"))};
+    excitation::SupervisorSettings settings = excitation::SupervisorSettings::from(process.config(), vehicle, site);
+    settings.after_abort = model::AfterAbort::load(process.config_path("dof"));
+    excitation::Supervisor supervisor{settings, vehicle, operator_token(process.config_path("operator"))};
     // Two supervisors must not look alike to the thrusters.
     const std::string commander = "supervisor " + std::to_string(getpid());
     std::string told;
@@ -70,6 +73,12 @@ int main(int argc, char** argv) {
       const auto health = wire::decode(message);
       if (!health) return process.reject(wire::kHealth);
       supervisor.hear(*health);
+    });
+    process.listens_to<fathom_lcm::vehicle_condition_t>(wire::kVehicle, [&](const auto& message) {
+      const auto vehicle_now = wire::decode(message);
+      if (!vehicle_now) return process.reject(wire::kVehicle);
+      supervisor.hear(*vehicle_now);
+      tell();
     });
     process.on_health([&]() -> runtime::Process::Condition {
       return {.unhealthy = "", .detail = std::string{name(supervisor.phase())} + ": " + supervisor.reason()};

@@ -46,7 +46,7 @@ struct Beside {
   void run(double seconds) {
     for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
       if (i % 20 == 0) {
-        for (const char* process : {"estimator", "identifier"}) health(process, now());
+        for (const char* process : {"estimator", "identifier", "recorder"}) health(process, now());
         if (vehicle) health("thruster_driver", now());
       }
       StateEstimate state{.utime = now(), .valid = true};

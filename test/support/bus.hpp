@@ -6,6 +6,7 @@
 
 #include <fathom_lcm/health_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ class Bus {
     REQUIRE(lcm_.good());
     lcm_.subscribeFunction("HEALTH", &Bus::on_health, this);
     lcm_.subscribeFunction("THRUSTERS", &Bus::on_thrusters, this);
+    lcm_.subscribeFunction("VEHICLE", &Bus::on_vehicle, this);
   }
   void listen(double seconds) {
     const double end = link::wall_seconds() + seconds;
@@ -36,6 +38,7 @@ class Bus {
   std::string url;
   std::vector<fathom_lcm::health_t> health;
   std::vector<fathom_lcm::thrusters_t> thrusters;
+  std::vector<fathom_lcm::vehicle_condition_t> vehicle;
 
  private:
   // Functions, not members: GCC 12's undefined-behaviour sanitizer miscompiles LCM's call of a member that is not
@@ -46,6 +49,10 @@ class Bus {
   static void on_thrusters(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::thrusters_t* message,
                            Bus* bus) {
     bus->thrusters.push_back(*message);
+  }
+  static void on_vehicle(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::vehicle_condition_t* message,
+                         Bus* bus) {
+    bus->vehicle.push_back(*message);
   }
   lcm::LCM lcm_;
 };

@@ -4,10 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "common/base/spatial.hpp"
-#include "common/devices/checksum.hpp"
-#include "common/devices/mavlink.hpp"
 #include "common/driver/lever_arm.hpp"
-#include "common/driver/vehicle_check.hpp"
 
 using namespace fathom;
 using namespace fathom::driver;
@@ -70,52 +67,6 @@ TEST_CASE("watch: a sample that is late makes a gap, a new line does not") {
   watch.link(true, "", 5.0);
   watch.sample(utime_after(kStart, 5.0), 5.0);
   CHECK(watch.gaps() == 1);
-}
-
-TEST_CASE("vehicle check: another firmware, another vehicle, and one that refuses are told with what to do") {
-  const auto packet = [](std::uint8_t system, std::uint8_t id, std::uint8_t extra, const std::string& payload) {
-    std::string body{static_cast<char>(payload.size())};
-    body += std::string("\0\0\0", 3) + static_cast<char>(system) + '\1' + static_cast<char>(id) + std::string(2, '\0');
-    body += payload;
-    const std::uint16_t crc = devices::crc16_reflected(devices::as_bytes(body + static_cast<char>(extra)), 0xFFFF);
-    return "\xFD" + body + static_cast<char>(crc & 0xFFU) + static_cast<char>(crc >> 8);
-  };
-  class Hears final : public devices::Output {
-   public:
-    explicit Hears(VehicleCheck& check) : check_{check} {}
-    void frame(const devices::Parser& parser, const devices::Frame&) override {
-      check_.hear(dynamic_cast<const devices::Mavlink&>(parser), now);
-    }
-    double now{};
-
-   private:
-    VehicleCheck& check_;
-  };
-  const auto heartbeat = [&](std::uint8_t system, char type, char autopilot) {
-    return packet(system, 0, 50, std::string(4, '\0') + type + autopilot + std::string("\x40\x04\x03"));
-  };
-  const auto answer = [&](char result) { return packet(1, 77, 143, std::string("\xD1\0", 2) + result); };
-  VehicleCheck check{1};
-  Hears output{check};
-  devices::Mavlink parser{{}};
-  const auto hear = [&](double now, const std::string& bytes) {
-    output.now = now;
-    parser.feed(devices::as_bytes(bytes), output);
-    return check.objection(now);
-  };
-  CHECK(hear(0.0, heartbeat(1, 12, 3)).empty());
-  CHECK(hear(1.0, heartbeat(7, 12, 3)).empty());  // another one beside ours
-  CHECK(says(hear(8.0, heartbeat(7, 12, 3)), "set 'system'"));
-  CHECK(says(hear(9.0, heartbeat(1, 2, 12)), "not ArduSub"));
-  CHECK(hear(10.0, heartbeat(1, 12, 3)).empty());
-  CHECK(hear(11.0, answer(0)).empty());
-  CHECK(says(hear(11.5, heartbeat(1, 12, 3) + answer(4)), "refuses motor tests (result 4)"));
-  CHECK(check.objection(15.0).empty());
-
-  // What the vehicle says itself is the remedy, unless it only chats.
-  const auto words = [&](char severity, const std::string& text) { return packet(1, 253, 83, severity + text); };
-  CHECK(says(hear(20.0, words(6, "EKF is using GPS") + answer(4)), "safety switch"));
-  CHECK(says(hear(21.0, words(4, "Arm motors first\n") + answer(4)), "(result 4); it says 'Arm motors first'"));
 }
 
 TEST_CASE("lever arm: turning about down moves an instrument ahead of the origin sideways") {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/excitation/supervisor.hpp"
 #include "test/common/excitation/tank_run.hpp"
@@ -22,7 +23,7 @@ inline test::TankSettings settings_without_model() {
 }
 
 struct Loop {
-  test::TankSettings settings = settings_without_model();
+  test::TankSettings settings;
   TankPlant plant{settings.vehicle, {}};
   Supervisor supervisor{settings.supervisor, settings.vehicle, "secret"};
   std::optional<Excitation> said{};
@@ -32,7 +33,9 @@ struct Loop {
   int commands{};
   std::int64_t armed_by{};  // of the last command
 
-  Loop() { plant.place({0.2, -0.1, 0.75}); }
+  explicit Loop(test::TankSettings from = settings_without_model()) : settings{std::move(from)} {
+    plant.place({0.2, -0.1, 0.75});
+  }
   void run(double seconds) {
     largest_command = 0.0;
     commands = 0;

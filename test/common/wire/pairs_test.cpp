@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <fathom_lcm/camera_t.hpp>
+#include <fathom_lcm/vehicle_condition_t.hpp>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -233,9 +234,11 @@ TEST_CASE("wire: a missing flag of a range means that no echo came") {
 }
 
 TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each rightly") {
-  std::set<std::int64_t> fingerprints{fathom_lcm::camera_t::getHash(), fathom_lcm::named_value_t::getHash(),
-                                      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash(),
-                                      fathom_lcm::channel_health_t::getHash()};
+  std::set<std::int64_t> fingerprints{
+      fathom_lcm::camera_t::getHash(),          fathom_lcm::named_value_t::getHash(),
+      fathom_lcm::effect_evidence_t::getHash(), fathom_lcm::mode_metric_t::getHash(),
+      fathom_lcm::channel_health_t::getHash(),  fathom_lcm::vehicle_condition_t::getHash(),
+      fathom_lcm::vehicle_text_t::getHash(),    fathom_lcm::condition_line_t::getHash()};
   std::size_t types = fingerprints.size();
   std::set<std::string> channels{wire::kCamera};
   const Recording empty;
@@ -246,7 +249,7 @@ TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each
     ++types;
   });
   CHECK(fingerprints.size() == types);
-  CHECK(types == 28);  // as many as there are files in lcmtypes/, the two of lockstep apart
+  CHECK(types == 31);  // as many as there are files in lcmtypes/, the two of lockstep apart
   CHECK(channels.size() == 24);
 }
 

@@ -1,0 +1,249 @@
+// The vehicle behind the thruster driver, played out of order in every way: HEALTH and VEHICLE say so, arming is
+// refused line by line, and a trial ends by it as the vehicle file wants.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <fathom_lcm/operator_t.hpp>
+#include <fathom_lcm/state_t.hpp>
+#include <fathom_lcm/wrench_command_t.hpp>
+#include <fstream>
+
+#include "common/wire/minds.hpp"
+#include "test/support/bus.hpp"
+
+namespace fathom {
+namespace {
+
+using test::Background;
+using test::Bus;
+using test::now;
+using test::program;
+using test::Scratch;
+
+constexpr char kVehicle[] = "config/vehicles/bluerov2.yaml";
+
+/// A played ArduSub (or rig) and the thruster driver before it.
+struct Behind {
+  Bus bus;
+  Scratch scratch;
+  Background ardusub, driver;
+
+  explicit Behind(const std::string& conditions, const std::string& protocol = "motor_test")
+      : ardusub{scratch, "ardusub",
+                program("fathom") + " emulate " + (protocol == "text" ? "thruster_text" : "mavlink") +
+                    " --to pty:" + scratch.path("tty") + " " + conditions},
+        driver{scratch, "driver", command(protocol)} {}
+  [[nodiscard]] std::string command(const std::string& protocol) const {
+    std::ofstream{scratch.path("drivers.yaml")} << "thruster_driver:\n  protocol: " << protocol
+                                                << "\n  rate: 20 Hz\n  largest_thrust: 30 N\n"
+                                                << "  link: serial://" << scratch.path("tty") << "?baud=115200\n"
+                                                << (protocol == "text" ? "" : "  system: 1\n");
+    return program("thruster_driver") + " --config " + scratch.path("drivers.yaml") + " --config " +
+           test::file(protocol == "text" ? "config/vehicles/beluga.yaml" : kVehicle) + " --config " +
+           test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'";
+  }
+  /// Words that HEALTH of the driver said while `unhealthy` since the last call.
+  [[nodiscard]] std::string complaints() {
+    std::string all;
+    for (const auto& each : bus.health) {
+      if (each.process == "thruster_driver" && each.state == "unhealthy") all += each.detail + "\n";
+    }
+    bus.health.clear();
+    return all;
+  }
+};
+
+bool says(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("vehicle: whatever keeps a played ArduSub from moving is told by HEALTH and VEHICLE") {
+  struct Condition {
+    double begin, end;
+    const char *word, *back, *told, *line;
+  };
+  const std::vector<Condition> conditions{
+      {3.0, 5.0, "disarmed", "armed", "the vehicle is disarmed: arm it", "armed"},
+      {5.0, 7.0, "mode=STABILIZE", "mode=MANUAL", "the vehicle is in STABILIZE; it obeys in MANUAL", "mode"},
+      {7.0, 11.5, "heartbeat=off", "heartbeat=on", "no heartbeat of the vehicle: none for ", "heartbeat"},
+      {11.5, 13.5, "failsafe=on", "failsafe=off", "the vehicle's own failsafe is active", "failsafe"},
+      {13.5, 17.0, "voltage=9.0", "voltage=16.0", "the battery is low: 9.0 V, the floor is 12.0 V", "voltage"},
+      {17.0, 19.0, "says=2,Leak Detected", "armed", "the vehicle says 'Leak Detected'", "failsafe"}};
+  std::string options;
+  for (const Condition& each : conditions) {
+    options += " --condition '" + std::to_string(each.begin) + ":" + each.word + "' --condition '" +
+               std::to_string(each.end) + ":" + each.back + "'";
+  }
+  Behind behind{options};
+  const double begin = link::wall_seconds();
+  const auto until = [&](double time) { behind.bus.listen(std::max(0.0, begin + time - link::wall_seconds())); };
+  until(2.8);
+  (void)behind.complaints();  // until the first heartbeat has come
+  REQUIRE_FALSE(behind.bus.vehicle.empty());
+  CHECK(behind.bus.vehicle.back().kind == "ArduSub");
+  CHECK(behind.bus.vehicle.back().armed == 1);
+  CHECK(behind.bus.vehicle.back().mode == "MANUAL");
+  CHECK(behind.bus.vehicle.back().voltage == doctest::Approx(16.2));
+  for (const auto& line : behind.bus.vehicle.back().lines) CHECK_MESSAGE(line.ok, line.text);
+  for (const Condition& each : conditions) {
+    CAPTURE(each.word);
+    behind.bus.vehicle.clear();
+    until(each.end - 0.1);
+    const std::string told = behind.complaints();
+    CHECK_MESSAGE(says(told, each.told), told);
+    const bool line_told = std::any_of(behind.bus.vehicle.begin(), behind.bus.vehicle.end(), [&](const auto& vehicle) {
+      return std::any_of(vehicle.lines.begin(), vehicle.lines.end(), [&](const auto& line) {
+        return line.name == each.line && line.ok == 0 && says(line.text, each.told);
+      });
+    });
+    CHECK(line_told);
+    until(each.end + 0.3);  // the first report after it
+    (void)behind.complaints();
+  }
+}
+
+TEST_CASE("vehicle: a rig that tells by the plain text protocol is judged as well") {
+  Behind behind{"--condition 3:disarmed --condition 5:armed --condition '6:says=1,Leak in the front tube'", "text"};
+  behind.bus.listen(2.8);
+  (void)behind.complaints();
+  REQUIRE_FALSE(behind.bus.vehicle.empty());
+  CHECK(behind.bus.vehicle.back().kind == "rig");
+  for (const auto& line : behind.bus.vehicle.back().lines) CHECK_MESSAGE(line.ok, line.text);
+  behind.bus.listen(1.7);
+  CHECK(says(behind.complaints(), "the rig is disarmed: arm it"));
+  behind.bus.listen(3.0);
+  CHECK(says(behind.complaints(), "the vehicle says 'Leak in the front tube'"));
+}
+
+TEST_CASE("vehicle: outputs that stay neutral under a command are told within three seconds") {
+  Behind behind{"--condition 0:obeys=off"};
+  behind.bus.listen(2.5);
+  (void)behind.complaints();
+  fathom_lcm::operator_t order{};
+  order.utime = now();
+  order.enable = true;
+  order.token = "only-for-simulation";
+  order.sequence = order.utime;
+  behind.bus.publish("OPERATOR", order);
+  for (int i = 0; i < 60; ++i) {
+    fathom_lcm::wrench_command_t message{};
+    message.utime = now();
+    message.tau[0] = 50.0;
+    message.life = 0.5;
+    message.armed_by = order.sequence;
+    behind.bus.publish("WRENCH_COMMAND", message);
+    behind.bus.listen(0.05);
+  }
+  const std::string told = behind.complaints();
+  CHECK_MESSAGE(says(told, "the thrusters do not follow: of "), told);
+  REQUIRE_FALSE(behind.bus.vehicle.empty());
+  CHECK(behind.bus.vehicle.back().asked[0] == doctest::Approx(50.0).epsilon(0.05));
+  CHECK(behind.bus.vehicle.back().has_applied == 1);
+  CHECK(behind.bus.vehicle.back().applied[0] == doctest::Approx(0.0));
+}
+
+namespace {
+
+/// The supervisor with everybody whom it needs, and `fathom arm` beside it.
+struct Trial {
+  Behind behind;
+  bool recorder{true};
+  std::string vehicle_file;
+  Background supervisor;
+
+  explicit Trial(const std::string& conditions, const std::string& more_of_vehicle = "")
+      : behind{conditions},
+        vehicle_file{behind.scratch.path("vehicle.yaml")},
+        supervisor{behind.scratch, "supervisor", command(more_of_vehicle)} {}
+  [[nodiscard]] std::string command(const std::string& more) const {
+    test::write_bytes(vehicle_file, test::read_bytes(std::string{FATHOM_SOURCE_DIR} + "/" + kVehicle) + more);
+    return program("supervisor") + " --config " + test::file("config/pipelines/deep.yaml") + " --config " +
+           vehicle_file + " --config " + test::file("config/sites/deep.yaml") + " --config " +
+           test::file("config/operators/simulated.yaml") + " --in '" + behind.bus.url + "'";
+  }
+  void health(const std::string& process) {
+    fathom_lcm::health_t message{};
+    message.utime = now();
+    message.process = process;
+    message.host = "vehicle";
+    message.state = "running";
+    behind.bus.publish("HEALTH", message);
+  }
+  void run(double seconds) {
+    for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
+      if (i % 10 == 0) {
+        for (const char* process : {"estimator", "identifier"}) health(process);
+        if (recorder) health("recorder");
+      }
+      StateEstimate state{.utime = now(), .valid = true};
+      state.p_WB = {0.0, 0.0, 5.0};
+      behind.bus.publish("STATE", wire::encode(state));
+      behind.bus.listen(0.05);
+    }
+  }
+  /// What `fathom arm` prints, with "code N" at its end.
+  std::string arm() {
+    const std::string text = behind.scratch.path("arm.text");
+    {
+      const Background arms{behind.scratch, "arms",
+                            "bash -c \"" + program("fathom") + " arm --operator " +
+                                test::file("config/operators/simulated.yaml") + " --bus '" + behind.bus.url + "' > " +
+                                text + " 2>&1; echo code \\$? >> " + text + "\""};
+      for (int i = 0; i < 40 && !says(test::read_bytes(text), "code "); ++i) run(0.25);
+    }
+    return test::read_bytes(text);
+  }
+  [[nodiscard]] std::string said() const {
+    const auto& all = behind.bus.health;
+    for (auto each = all.rbegin(); each != all.rend(); ++each) {
+      if (each->process == "supervisor") return each->detail;
+    }
+    return {};
+  }
+  [[nodiscard]] const fathom_lcm::thrusters_t& thrust() const { return behind.bus.thrusters.back(); }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "preflight: fathom arm prints what is so, line by line, and refuses a disarmed vehicle and a missing recorder") {
+  Trial trial{"--condition 9:disarmed"};
+  trial.recorder = false;
+  trial.run(4.0);
+  const std::string unrecorded = trial.arm();
+  CHECK_MESSAGE(says(unrecorded, "NOT OK  recorder        no HEALTH heard: start it"), unrecorded);
+  CHECK(says(unrecorded, "ok      armed           armed"));
+  CHECK(says(unrecorded, "code 1"));
+  trial.recorder = true;
+  trial.run(3.0);
+  const std::string disarmed = trial.arm();
+  CHECK_MESSAGE(says(disarmed, "NOT OK  armed           the vehicle is disarmed: arm it"), disarmed);
+  CHECK(says(disarmed, "ok      recorder        running"));
+  CHECK(says(disarmed, "code 1"));
+  CHECK(trial.said().starts_with("disarmed: "));
+}
+
+TEST_CASE(
+    "preflight: with all well it arms; a leak then ends the trial at once, and the vehicle goes up as its file says") {
+  Trial trial{"--condition '14:says=2,Leak Detected'",
+              "after_abort: {action: surface, speed: 0.2 m/s, largest: 20 N, duration: 60 s}\n"};
+  trial.run(4.0);
+  const std::string armed = trial.arm();
+  CHECK_MESSAGE(says(armed, "code 0"), armed);
+  CHECK_FALSE(says(armed, "NOT OK"));
+  CHECK(says(armed, "ok      thrust          as asked"));
+  CHECK(says(armed, "ok      voltage         16.2 V, floor 12.0 V"));
+  for (int i = 0; i < 20 && !says(trial.said(), "Leak"); ++i) trial.run(0.5);
+  CHECK_MESSAGE(
+      trial.said().starts_with("aborted: the vehicle says 'Leak Detected'; then: goes to the surface, at most 60 s"),
+      trial.said());
+  trial.run(3.0);  // the depth stays 5 m here, so that it goes on pushing
+  CHECK(trial.thrust().tau[2] < -2.0);
+  CHECK(std::abs(trial.thrust().tau[0]) < 0.5);
+  CHECK(test::shell(program("fathom") + " abort --bus '" + trial.behind.bus.url + "'").code == 0);
+  trial.run(0.5);
+  CHECK(trial.thrust().tau[2] == doctest::Approx(0.0));
+  CHECK(trial.said().starts_with("aborted: aborted by the operator"));
+}
+
+}  // namespace fathom
