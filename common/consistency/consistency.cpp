@@ -14,7 +14,8 @@ namespace {
 constexpr double kWorkingRate =
     25.0;  // Hz: faster streams are averaged; a 40 ms mean takes 0.3 % off at 1 Hz, off both sides
 
-constexpr double kTogether = 0.5;  // of a delay: two sensors whose own delay is surely below this share go together
+constexpr double kSettled = 0.001;  // s: a delay that is measured no better
+constexpr double kTogether = 0.5;   // of a delay: two sensors whose own delay is surely below this share go together
 
 }  // namespace
 
@@ -79,10 +80,15 @@ bool Check::blame_late_position(const PairResult& gyro, const PairResult& dvl) {
   if (!gyro.checked || !dvl.checked) return false;
   bool any = false;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const double delay = dvl.faults[r].delay;
-    if (!(delay < 0.0) || !gyro.fits[r].ok || gyro.faults[r].delay != 0.0) continue;
+    // Once begun, what is left is taken too, however small: turning while late bends the first answer.
+    const bool begun = result_.corrections[r].position_late != 0.0;
+    const double delay = begun && dvl.fits[r].ok ? dvl.fits[r].delay : dvl.faults[r].delay;
+    if (begun ? std::abs(delay) < kSettled : !(delay < 0.0)) continue;
+    if (!gyro.fits[r].ok || gyro.faults[r].delay != 0.0) continue;
     const Estimate together = estimate_delay(gyro.fits[r]);
-    if (std::abs(together.value) + 2.0 * together.sigma > kTogether * std::abs(delay)) continue;
+    if (std::abs(together.value) + 2.0 * together.sigma >
+        kTogether * std::max(std::abs(delay), result_.corrections[r].position_late))
+      continue;
     result_.corrections[r].position_late -= delay;
     any = true;
   }
@@ -178,7 +184,7 @@ ConsistencyResult Check::run() {
     dvl = velocity(gyro);
   }
   if (blame_position_scale(dvl)) dvl = velocity(gyro);
-  for (int round = 0; round < 3 && blame_late_position(gyro, dvl); ++round) dvl = velocity(gyro);
+  for (int round = 0; round < 4 && blame_late_position(gyro, dvl); ++round) dvl = velocity(gyro);
   compare_distances(dvl);
   PairResult force = acceleration();
   for (std::size_t r = 0; r < runs_.size(); ++r) {

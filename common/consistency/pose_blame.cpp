@@ -29,7 +29,8 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
 }
 
 /// Position's way over the velocity log's, over stretches; its sigma by leaving out one block of the run at a time.
-Estimate distance_ratio(const PoseSeries& pose, const Series& velocity) {
+/// `lever` [m]: where the log measures; its point moves by the change of R r more than the origin.
+Estimate distance_ratio(const PoseSeries& pose, const Series& velocity, const Eigen::Vector3d& lever) {
   Estimate result;
   const Spline spline(velocity);
   struct Sums {
@@ -54,6 +55,7 @@ Estimate distance_ratio(const PoseSeries& pose, const Series& velocity) {
     before = now;
     if (pose.t[i] - pose.t[first] < kStretch) continue;
     const Eigen::Vector3d moved = pose.p_WB[i] - pose.p_WB[first];
+    way -= pose.q_WB[i] * lever - pose.q_WB[first] * lever;
     stretches.push_back({way.dot(moved), way.squaredNorm()});
     whole = false;
   }
@@ -199,7 +201,20 @@ bool Check::blame_position_scale(const PairResult& dvl) {
   const auto [least, most] = std::ranges::minmax(scales);
   const double scale = median(scales);
   if (std::abs(scale - 1.0) < kSoundSpeed || most - least > kAlike * std::abs(scale - 1.0)) return false;
+  // A depth sensor that agrees with the position's vertical as it is speaks for the position.
+  const auto depth_disagrees = [&] {
+    bool any = false;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      for (const ConsistencyFinding& one : compare_depth(runs_[r], pose(r))) any = any || one.finding == "scale";
+    }
+    return any;
+  };
+  const bool before = depth_disagrees();
   for (Corrections& corrections : result_.corrections) corrections.position_scale /= scale;
+  if (!before && depth_disagrees()) {
+    for (Corrections& corrections : result_.corrections) corrections.position_scale *= scale;
+    return false;
+  }
   report(
       "pose_capture.position", "scale", scale, "",
       text("the position moves %.4g times as far as the velocity log says, on all axes alike; a wrong speed of sound "
@@ -218,8 +233,9 @@ void Check::compare_distances(const PairResult& dvl) {
   bool scale_known = true;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (!poses_[r].has_position || !poses_[r].has_attitude || dvl_[r].empty()) continue;
-    const SensorFault none;
-    ratios[r] = distance_ratio(pose(r), on_reference_clock(dvl.checked ? dvl.faults[r] : none, dvl_[r]));
+    const SensorFault fault = dvl.checked ? dvl.faults[r] : SensorFault{};
+    if (!fault.coupling.isZero()) continue;  // what goes with the rates is no scale
+    ratios[r] = distance_ratio(pose(r), on_reference_clock(fault, dvl_[r]), fault.lever);
   }
   const SharedValue ratio = share(ratios, 1.0, kDistanceFloor);
   result_.distance = ratio.pooled;

@@ -7,6 +7,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/consistency/consistency.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/estimation/corrected_recording.hpp"
 #include "common/estimation/estimator.hpp"
