@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 namespace fathom::consistency {
 namespace {
@@ -44,29 +45,43 @@ std::vector<Statement> statements_of(const ConsistencyResult& result) {
 
 }  // namespace
 
+void keep_axes(ConsistencyResult& result, const std::array<bool, 6>& dof) {
+  constexpr std::string_view kAxes = "uvwpqr";
+  for (auto& [name, pair] : result.pairs) {
+    if (name != "dvl" && name != "gyro") continue;
+    std::erase_if(pair.statements, [&](const Statement& one) {
+      const auto axis = one.signal.size() > 2 && one.signal[one.signal.size() - 2] == '.'
+                            ? kAxes.find(one.signal.back())
+                            : std::string_view::npos;
+      return axis != std::string_view::npos && !dof[axis];
+    });
+  }
+}
+
 std::vector<std::string> table_of(const ConsistencyResult& result) {
   std::vector<std::string> lines;
+  std::string silent;
   for (const Statement& one : statements_of(result)) {
+    const bool measured = one.quantity == "axis" ? one.answer != Answer::kCannotTell : std::isfinite(one.sigma);
+    if (!measured) {
+      silent += (silent.empty() ? "" : ", ") + one.signal + " " + one.quantity;
+      continue;
+    }
     std::array<char, 64> mismatch{};
     if (one.quantity == "axis") {
-      std::snprintf(mismatch.data(), mismatch.size(), one.answer == Answer::kCannotTell ? "-" : "along itself by %.3f",
-                    one.value);
-    } else if (std::isfinite(one.sigma)) {
-      std::snprintf(mismatch.data(), mismatch.size(), "%.4g +- %.2g %s", one.value, one.sigma, one.unit.c_str());
+      std::snprintf(mismatch.data(), mismatch.size(), "along itself by %.3f", one.value);
     } else {
-      std::snprintf(mismatch.data(), mismatch.size(), "-");
+      std::snprintf(mismatch.data(), mismatch.size(), "%.4g +- %.2g %s", one.value, one.sigma, one.unit.c_str());
     }
     std::array<char, 64> seen{};
-    if (one.quantity != "axis" && std::isfinite(one.seen)) {
+    if (one.quantity != "axis")
       std::snprintf(seen.data(), seen.size(), "a fault of %.2g %s would have been seen", one.seen, one.unit.c_str());
-    } else if (one.quantity != "axis") {
-      std::snprintf(seen.data(), seen.size(), "the motion does not show it");
-    }
     std::array<char, 256> line{};
     std::snprintf(line.data(), line.size(), "%-22s %-14s %-15s %-26s %-12s %s", one.signal.c_str(),
                   one.reference.c_str(), one.quantity.c_str(), mismatch.data(), word_of(one.answer), seen.data());
     lines.emplace_back(line.data());
   }
+  if (!silent.empty()) lines.push_back("cannot tell, for the motion does not show it: " + silent);
   return lines;
 }
 

@@ -62,6 +62,7 @@ void run(const Options& options) {
       std::fprintf(stderr, "not looked for gaps: %s\n", error.what());
     }
   }
+  consistency::keep_axes(result, vehicle.dof);
   for (const std::string& line : consistency::table_of(result)) std::printf("%s\n", line.c_str());
   if (result.findings.empty()) {
     std::printf("%s\n", consistency::conclusion_of(result).c_str());

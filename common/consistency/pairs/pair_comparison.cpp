@@ -75,9 +75,11 @@ void Comparison::report(const SharedValue& decision, const std::string& signal, 
          .finding = finding,
          .size = decision.applied[r],
          .unit = unit,
-         .evidence = text("%.5g here, %.5g in the other recordings ", decision.applied[r],
-                          decision.found || decision.disagree ? decision.pooled.value : neutral) +
-                     unit + more + (decision.disagree ? "; the recordings disagree" : ""),
+         .evidence = (decision.disagree ? text("%.5g here, %.5g over all recordings, which disagree: ",
+                                               decision.applied[r], decision.pooled.value)
+                                        : text("%.5g here, %.5g in the other recordings ", decision.applied[r],
+                                               decision.found ? decision.pooled.value : neutral)) +
+                     unit + more,
          .action = action + (decision.disagree ? ", each recording by its own number" : ", in this recording only")});
   }
 }

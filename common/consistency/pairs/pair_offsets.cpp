@@ -80,7 +80,8 @@ void Comparison::find_offsets() {
   for (int a = 0; a < 3; ++a) {
     const SharedValue& decision = levers[static_cast<std::size_t>(a)];
     for (std::size_t r = 0; r < runs_.size(); ++r) result_.faults[r].lever[a] = decision.applied[r];
-    if (rigid) {
+    const auto has_arm = [&](const IncrementFit& one) { return one.ok && lever + a < one.theta.size(); };
+    if (rigid && std::ranges::any_of(result_.fits, has_arm)) {  // rates have no lever arm
       report(decision, names_.signal, std::string("lever_arm_") + kAxis[static_cast<std::size_t>(a)], "m", 0.0,
              kPracticalLever, "corrected: moved to the body origin", unknown);
     }
