@@ -9,6 +9,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release" 
   target_compile_options(fathom_warnings INTERFACE -Wno-error=array-bounds -Wno-error=free-nonheap-object
                          -Wno-error=restrict -Wno-error=stringop-overflow -Wno-error=stringop-overread)
 endif()
+# The compiler may fuse a product and a sum into one operation where the processor has it (arm64), which rounds once
+# instead of twice. Without that a log gives nearly the same numbers on the vehicle and on the shore
+# (docs/decisions/116-*).
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_compile_options(-ffp-contract=off)
+endif()
 if(FATHOM_FUZZ)  # every room is instrumented; clang's own further warnings are no errors here
   target_compile_options(fathom_warnings INTERFACE -Wno-error)
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -48,6 +54,7 @@ function(fathom_process name)
     target_link_libraries(${name} PRIVATE fathom_${need})
   endforeach()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  set_property(GLOBAL APPEND PROPERTY FATHOM_PROGRAMS ${name})
   include(GNUInstallDirs)
   if(name STREQUAL "fathom")
     install(TARGETS fathom)

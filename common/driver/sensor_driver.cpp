@@ -248,7 +248,8 @@ void declare(runtime::Process& process, devices::Kind kind) {
 }  // namespace
 
 int sensor_main(const char* name, devices::Kind kind, int argc, const char* const* argv) {
-  return runtime::main(name, argc, argv, [kind](runtime::Process& process) {
+  const runtime::Program program{name, "Reads the bytes of an instrument and publishes what they measure."};
+  return runtime::main(program, argc, argv, [kind](runtime::Process& process) {
     const Config config = process.config();
     declare(process, kind);
     const std::string protocol = config.text("protocol");

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
@@ -16,7 +17,8 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/base/operator_token.hpp"
+#include "common/base/health_words.hpp"
+#include "common/base/operator_key.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
 #include "common/driver/line_record.hpp"
@@ -29,6 +31,7 @@
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
+#include "common/wire/signature.hpp"
 #include "common/wire/vehicle.hpp"
 
 namespace fathom::driver {
@@ -36,6 +39,7 @@ namespace {
 
 constexpr double kStaleVoltage = 5.0;  // s
 constexpr double kHeartbeat = 1.0;     // s between a ground station's signs of life
+constexpr double kAnswer = 0.5;        // s between two words about what an order must quote
 constexpr double kFeedback = 1.0;      // s: without newer feedback what was sent is told
 constexpr double kTestLife = 0.5;      // s that one motor test may run on without the next
 constexpr double kTellVehicle = 0.5;   // s between two of VEHICLE; a change is told at once
@@ -85,12 +89,14 @@ VehicleCheck::Expected expected(const Config& config, const model::Vehicle& vehi
 
 class ThrusterDriver final : public devices::Output {
  public:
-  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle, std::string token)
+  ThrusterDriver(runtime::Process& process, const Config& config, const model::Vehicle& vehicle,
+                 const OperatorKeys& keys)
       : process_{process},
         way_{way_of(config)},
         curved_{!vehicle.curve.empty()},
         allocation_{vehicle, positive(config, "largest_thrust", "N")},
-        gate_{std::move(token)},
+        keys_{keys},
+        gate_{unforeseeable()},
         period_{1.0 / positive(config, "rate", "Hz")},
         writer_{255, 190},
         check_{expected(config, vehicle, way_)} {
@@ -131,8 +137,9 @@ class ThrusterDriver final : public devices::Output {
 
   void hear(const WrenchCommand& command) { gate_.hear(command, wall_clock()); }
   void hear(const Operator& order) {
-    gate_.hear(order, wall_clock());
+    const Answer answer = gate_.hear(order, wall_clock());
     if (order.abort) step(steady_seconds());  // at once
+    say(answer);
   }
 
   void wait(std::span<const int> descriptors, int milliseconds) {
@@ -150,6 +157,10 @@ class ThrusterDriver final : public devices::Output {
     next_ = std::max(next_ + period_, now);
     step(now);
     say();
+    if (now - answered_at_ >= kAnswer) {
+      answered_at_ = now;
+      say(gate_.answer(wall_clock()));
+    }
     if (now - vehicle_told_at_ >= kTellVehicle) tell_vehicle(now);
   }
 
@@ -175,12 +186,14 @@ class ThrusterDriver final : public devices::Output {
     }
     if (unhealthy.empty()) unhealthy = lacking_;
     if (unhealthy.empty() && gate_.ignores(utime))
-      unhealthy = "thrust is commanded and none is given, since this driver was not armed; arm again";
+      unhealthy = std::string{kNotArmedYet} + "; arm again";
     const std::string_view reason = gate_.reason(utime);
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {
       detail += ", orders refused " + std::to_string(gate_.refused()) + " (" + std::string{gate_.refusal()} + ")";
     }
+    if (const std::string forged = gate_.forgeries(); !forged.empty()) detail += ", " + forged;
+    if (keys_.known_to_all) detail += ", armed by a key that everybody knows";
     if (gate_.hears_stranger(utime)) detail += std::string(", ") + ThrusterGate::kStranger;
     if (parser_) detail += ", " + counts(*parser_, *watch_, *link_);
     return {.unhealthy = unhealthy, .detail = detail};
@@ -265,6 +278,11 @@ class ThrusterDriver final : public devices::Output {
     process_.publish(wire::kThrusters, wire::encode(sample));
   }
 
+  void say(Answer answer) {
+    answer.process = "thruster_driver";
+    process_.publish(wire::kAnswer, wire::encode_signed(answer, keys_.answer));
+  }
+
   void tell_vehicle(double now) {
     vehicle_told_at_ = now;
     process_.publish(wire::kVehicle, wire::encode(check_.condition(wall_clock(), now)));
@@ -275,9 +293,11 @@ class ThrusterDriver final : public devices::Output {
     const runtime::Process::Condition now = condition();
     const std::string kind = now.unhealthy.substr(0, now.unhealthy.find(':')) +
                              std::string{gate_.reason(wall_clock())} +
-                             (gate_.hears_stranger(wall_clock()) ? ThrusterGate::kStranger : "");
+                             (gate_.hears_stranger(wall_clock()) ? ThrusterGate::kStranger : "") +
+                             (gate_.hears_forgeries(wall_clock()) ? "forged" : "");
     if (kind == said_) return;
     said_ = kind;
+    if (gate_.hears_forgeries(wall_clock())) process_.log_warning(gate_.forgeries());
     if (now.unhealthy.empty()) {
       process_.log_info(now.detail);
     } else {
@@ -291,6 +311,7 @@ class ThrusterDriver final : public devices::Output {
   Way way_;
   bool curved_;  ///< the vehicle has a thrust curve: pulse widths are sent, else forces
   model::ThrusterAllocation allocation_;
+  OperatorKeys keys_;
   ThrusterGate gate_;
   double period_, next_{};
   std::uint8_t target_{1};
@@ -302,7 +323,7 @@ class ThrusterDriver final : public devices::Output {
   VehicleCheck check_;
   double vehicle_told_at_{-1e9};
   Utime arrival_{};
-  double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9};
+  double voltage_{}, voltage_at_{-1e9}, feedback_at_{-1e9}, heartbeat_at_{-1e9}, answered_at_{-1e9};
   std::string lacking_;  ///< what was commanded and the thrusters cannot give
   std::string said_{"?"};
   std::unique_ptr<link::Link> link_;  // last: its handlers use the others
@@ -311,19 +332,22 @@ class ThrusterDriver final : public devices::Output {
 }  // namespace
 
 int thruster_main(int argc, const char* const* argv) {
-  return runtime::main("thruster_driver", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"thruster_driver", "Drives the thrusters as the supervisor asks, once armed."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
-    ThrusterDriver driver{process, process.config(), vehicle, operator_token(process.config_path("operator"))};
+    const OperatorKeys keys = operator_keys(process.config_path("operator"));
+    ThrusterDriver driver{process, process.config(), vehicle, keys};
     process.publishes<fathom_lcm::thrusters_t>(wire::kThrusters);
     process.publishes<fathom_lcm::battery_t>(wire::kBattery);
+    process.publishes<fathom_lcm::answer_t>(wire::kAnswer);
     process.publishes<fathom_lcm::vehicle_condition_t>(wire::kVehicle);
     process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
-      const auto command = wire::decode(message);
+      const auto command = wire::open(message, keys.command);
       if (!command) return process.reject(wire::kWrenchCommand);
       driver.hear(*command);
     });
     process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
-      const auto order = wire::decode(message);
+      const auto order = wire::open(message, keys.order);
       if (!order) return process.reject(wire::kOperator);
       driver.hear(*order);
     });

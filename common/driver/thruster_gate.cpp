@@ -6,7 +6,29 @@
 namespace fathom::driver {
 
 bool ThrusterGate::was_armed(const WrenchCommand& command) const {
-  return armed_ && command.armed_by >= armed_since_ && command.armed_by <= sequence_;
+  return armed_ && command.challenge == check_.challenge() && command.armed_by >= armed_since_ &&
+         command.armed_by <= check_.accepted();
+}
+
+void ThrusterGate::refuse(const WrenchCommand& command, Utime now) {
+  constexpr std::size_t kLongest = 40;
+  ++(command.authentic ? replayed_ : unsigned_);
+  forged_at_ = now;
+  forger_ = command.commander.substr(0, kLongest);
+  for (char& c : forger_) {  // what a stranger says shall not command the operator's terminal
+    if (c < ' ' || c > '~') c = '?';
+  }
+}
+
+bool ThrusterGate::hears_forgeries(Utime now) const {
+  return forged_at_ && std::abs(seconds_between(*forged_at_, now)) <= kPause;
+}
+
+std::string ThrusterGate::forgeries() const {
+  std::string text;
+  if (unsigned_ > 0) text = std::to_string(unsigned_) + " not signed with this vehicle's key";
+  if (replayed_ > 0) text += (text.empty() ? "" : ", ") + std::to_string(replayed_) + " replayed";
+  return text.empty() ? "" : "forged commands refused: " + text + ", the last in the name of '" + forger_ + "'";
 }
 
 /// It may be the commander of a driver that has died: then it must learn that nobody obeys it.
@@ -32,6 +54,10 @@ void ThrusterGate::hear_unarmed(const WrenchCommand& command, Utime now) {
 }
 
 void ThrusterGate::hear(const WrenchCommand& command, Utime now) {
+  if (!command.authentic) {
+    refuse(command, now);
+    return;
+  }
   if (!was_armed(command)) {
     hear_unarmed(command, now);
     return;
@@ -39,6 +65,10 @@ void ThrusterGate::hear(const WrenchCommand& command, Utime now) {
   // Armed is armed for the one who commands first: another one is never obeyed, and while both speak neither is.
   if (command_ && command.commander != command_->commander) {
     contested_ = now;
+    return;
+  }
+  if (command_ && command.sequence <= command_->sequence) {
+    refuse(command, now);
     return;
   }
   command_ = command;
@@ -53,35 +83,44 @@ bool ThrusterGate::hears_stranger(Utime now) const {
   return armed_ && stranger_ && seconds_between(*stranger_, now) <= kPause;
 }
 
-std::string_view ThrusterGate::objection(const Operator& order, Utime now) const {
-  if (token_.empty()) return "no token is configured";
-  if (order.token != token_) return "wrong token";
-  if (order.sequence <= sequence_) return "heard before";
-  if (std::abs(seconds_between(order.utime, now)) > kOrderAge)
-    return "not of this time: a replayed log or a wrong clock";
-  return {};
+Answer ThrusterGate::answer(Utime now) const {
+  return {.utime = now, .gate = true, .challenge = check_.challenge(), .accepted = check_.accepted(), .armed = armed_};
 }
 
-void ThrusterGate::hear(const Operator& order, Utime now) {
+Answer ThrusterGate::hear(const Operator& order, Utime now) {
+  const auto said = [&](bool done, std::string_view text) {
+    Answer answer = this->answer(now);
+    answer.sequence = order.sequence;
+    answer.done = done;
+    answer.text = text;
+    return answer;
+  };
   if (order.abort) {
     aborted_ = true;
     armed_ = false;
     command_.reset();
     asked_.reset();
     ignores_ = false;
-    return;
+    return said(true, "thrust is zero until it is armed again");
   }
-  if (const std::string_view why = objection(order, now); !why.empty()) {
-    ++refused_;
-    refusal_ = why;
-    return;
+  if (!check_.again(order)) {
+    if (const std::string_view why = check_.objection(order, now); !why.empty()) {
+      ++refused_;
+      refusal_ = why;
+      return said(false, why);
+    }
+    check_.accept(order);
+    if (order.enable) arm(now);
   }
-  sequence_ = order.sequence;
-  if (!order.enable) return;
+  if (!order.enable) return said(true, armed_ ? "heard" : "heard; not armed");
+  return said(armed_, armed_ ? "armed" : "aborted since");
+}
+
+void ThrusterGate::arm(Utime now) {
   // What was asked before is not taken up; and a commander that has died makes room for its successor.
   if (!armed_ || !command_ || seconds_between(heard_, now) > kPause) {
     command_.reset();
-    armed_since_ = order.sequence;
+    armed_since_ = check_.accepted();
   }
   armed_ = true;
   stranger_.reset();

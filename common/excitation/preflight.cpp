@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "common/base/health_words.hpp"
 #include "common/excitation/needs.hpp"
 
 namespace fathom::excitation {
@@ -34,7 +35,7 @@ PreflightLine process_line(const PreflightInput& heard, const std::string& need)
   const bool ended = health.state == "stopped" || health.state == "fault";
   const bool ok = health.state == "running" || (stands_in && !ended);
   const std::string words = first_words(health);
-  return {*spoke, ok, health.state + (words.empty() ? "" : ": " + words)};
+  return {*spoke, ok || words == kNotArmedYet, health.state + (words.empty() ? "" : ": " + words)};
 }
 
 }  // namespace

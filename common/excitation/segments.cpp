@@ -55,4 +55,29 @@ std::optional<Segment> segment_named(const std::string& name, const model::Vehic
   return std::nullopt;
 }
 
+std::optional<model::Manoeuvre> preset_named(const std::string& name) {
+  if (name != "line" && name != "zigzag" && name != "circle") return {};
+  model::Manoeuvre preset = model::manoeuvre_preset(name);
+  preset.rest = 1.0;
+  preset.straight = 3.0;
+  preset.thrust = 0.6;      // share of the largest: what holds the other axes needs the rest
+  preset.difference = 0.4;  // share of the largest
+  preset.duration = name == "line" ? 15.0 : 40.0;
+  return preset;
+}
+
+std::optional<Segment> segment_of(const model::Manoeuvre& preset, const std::string& name,
+                                  const model::Vehicle& vehicle, const Vector6d& largest) {
+  constexpr Eigen::Index kAhead = 0, kYaw = 5;
+  const bool turns = preset.kind != model::ManoeuvreKind::kLine;
+  const auto can = [&](Eigen::Index axis) {
+    return vehicle.dof[static_cast<std::size_t>(axis)] && largest[axis] > 0.0;
+  };
+  if (!can(kAhead) || (turns && !can(kYaw))) return {};
+  Segment segment{.name = name, .duration = preset.duration};
+  segment.step[kAhead] = preset.thrust;
+  if (turns) segment.step[kYaw] = preset.difference;
+  return segment;
+}
+
 }  // namespace fathom::excitation

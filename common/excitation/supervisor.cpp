@@ -56,17 +56,16 @@ const char* name(Phase phase) {
   }
 }
 
-Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle& vehicle, std::string token)
+Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle& vehicle)
     : settings_{settings},
       vehicle_{vehicle},
-      token_{std::move(token)},
+      check_{settings.order_age},
       fence_{settings.fence},
       hold_{settings.hold, settings.largest},
       designer_{settings.design, vehicle, settings.largest, settings.seed},
       signals_(6),
       needs_{settings.needs, settings.silence},
       after_{settings.after_abort, settings.surface} {
-  if (token_.empty()) throw InputError("supervisor: the operator's token is empty; give a --config file with operator");
   if (settings_.schedule.empty()) throw InputError("supervisor: the schedule is empty");
   for (const Mode& mode : settings_.schedule) {
     if (mode.axis >= 0 && !vehicle_.dof[static_cast<std::size_t>(mode.axis)]) {
@@ -77,7 +76,9 @@ Supervisor::Supervisor(const SupervisorSettings& settings, const model::Vehicle&
 
 void Supervisor::reset() {
   const bool interrupted = armed_;
-  *this = Supervisor{SupervisorSettings{settings_}, model::Vehicle{vehicle_}, std::string{token_}};
+  const std::int64_t commands = commands_;  // the thrusters remember
+  *this = Supervisor{SupervisorSettings{settings_}, model::Vehicle{vehicle_}};
+  commands_ = commands;
   if (interrupted) reason_ = "the time of STATE went back: is the attitude sensor's clock right? then arm again";
 }
 
@@ -246,6 +247,12 @@ void Supervisor::judge(double now) {
 
 Vector6d Supervisor::probe(double dt) {
   Vector6d tau = Vector6d::Zero();
+  if (flight_ && flight_->pilot) {
+    const auto [ahead, turning] = flight_->pilot->demand(now() - phase_since_, last_heading_);
+    tau[0] = ahead * settings_.largest[0];
+    tau[5] = turning * settings_.largest[5];
+    return tau;
+  }
   if (flight_) {
     const Segment& segment = flight_->segment;
     return segment.at(std::fmod(now() - phase_since_, segment.duration)).cwiseProduct(settings_.largest);
@@ -276,7 +283,12 @@ bool Supervisor::arrived() const {
 }
 
 void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
-  output_.command = WrenchCommand{.utime = state_.utime, .tau = tau, .life = settings_.life, .armed_by = armed_by_};
+  output_.command = WrenchCommand{.utime = state_.utime,
+                                  .tau = tau,
+                                  .life = settings_.life,
+                                  .armed_by = armed_by_,
+                                  .challenge = armed_challenge_,
+                                  .sequence = ++commands_};
   const bool active = phase_ == Phase::kExcite;
   Excitation said{.utime = state_.utime, .active = active, .reason = reason_, .probe = probe};
   if (!refused_.empty()) said.reason += "; " + refused_;
@@ -332,6 +344,7 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
     if (!stopping || now() > kSayStopped) output_.command.reset();
     return output_;
   }
+  miss_operator();
   const auto trouble = needs_.trouble();
   const bool usable = state.valid && !trouble;
   if (!usable && lost_since_ == 0) lost_since_ = state.utime;
@@ -369,13 +382,20 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   if (phase_ == Phase::kApproach && (anywhere || arrived() || now() - phase_since_ > settings_.approach_time)) {
     phase_ = Phase::kExcite;
     phase_since_ = now();
+    if (flight_ && flight_->pilot) {  // from the heading at which it begins
+      model::Manoeuvre manoeuvre = flight_->pilot->manoeuvre();
+      manoeuvre.heading = last_heading_;
+      flight_->pilot.emplace(manoeuvre);
+      flight_->turned = turned_;
+    }
     reason_ = flight_ ? "flies '" + flight_->segment.name + "' " + flight_->purpose : "settles mode " + mode().name;
   }
   std::array<bool, 6> held{};
   for (std::size_t axis = 0; axis < 6; ++axis) held[axis] = vehicle_.dof[axis];
   Vector6d share = Vector6d::Zero();
   if (phase_ == Phase::kExcite && flight_) {
-    if (now() - phase_since_ >= flight_->duration - kRounding) land("is flown");
+    const bool round = flight_->one_turn && std::abs(turned_ - flight_->turned) >= 2.0 * kHalfTurn;
+    if (round || now() - phase_since_ >= flight_->duration - kRounding) land("is flown");
   } else if (phase_ == Phase::kExcite) {
     dwell_ += dt;
     judge(now());
@@ -385,6 +405,8 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
       if (excites(axis)) held[static_cast<std::size_t>(axis)] = false;
     }
     share = probe(dt);
+  } else if (phase_ == Phase::kManual && seconds_between(manual_at_, state.utime) > settings_.manual_life) {
+    stay("who steers has let go: it stays");  // the dead man
   } else if (phase_ == Phase::kManual) {
     held.fill(false);
     share = manual_;

@@ -16,7 +16,9 @@
 #include "common/excitation/leaving.hpp"
 #include "common/excitation/needs.hpp"
 #include "common/excitation/paper_signal.hpp"
+#include "common/model/manoeuvres.hpp"
 #include "common/model/vehicle.hpp"
+#include "common/orders/order_check.hpp"
 #include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/health.hpp"
@@ -46,17 +48,20 @@ struct SupervisorSettings {
   double least_dwell{10.0};  ///< s in a mode before it may be left
   double most_dwell{120.0};  ///< s after which it is tried again
   int retries{1};
-  double approach_time{15.0};      ///< s at most to the place where a mode begins
-  double closing_time{2.0};        ///< s of holding still at the end
-  double patience{3.0};            ///< s without a valid state after which the operator must arm again
-  double model_patience{0.0};      ///< s of valid states without a MODEL after which nothing is excited; 0: for ever
-  double order_age{5.0};           ///< s that an order may be old
-  int flights{0};                  ///< proposed segments that may be flown at the end without an order
-  double open_range{8.0};          ///< m around the place of arming, where walls, floor and surface are farther
-  std::vector<std::string> needs;  ///< processes that must be well
-  model::AfterAbort after_abort;   ///< of the vehicle file
-  double surface{};                ///< m, z of Bo with the vehicle's top at the water's surface
-  double silence{5.0};             ///< s without HEALTH after which one of them counts as gone, in real time
+  double approach_time{15.0};  ///< s at most to the place where a mode begins
+  double closing_time{2.0};    ///< s of holding still at the end
+  double patience{3.0};        ///< s without a valid state after which the operator must arm again
+  double model_patience{0.0};  ///< s of valid states without a MODEL after which nothing is excited; 0: for ever
+  double order_age{5.0};       ///< s that an order may be old
+  double manual_life{0.5};     ///< s after which an order to steer has aged out: the dead man
+  bool holds_without_operator{false};  ///< it stays where it is when the operator is lost; else it aborts
+  bool wants_operator{false};          ///< who arms must stay, and give signs of life
+  int flights{0};                      ///< proposed segments that may be flown at the end without an order
+  double open_range{8.0};              ///< m around the place of arming, where walls, floor and surface are farther
+  std::vector<std::string> needs;      ///< processes that must be well
+  model::AfterAbort after_abort;       ///< of the vehicle file
+  double surface{};                    ///< m, z of Bo with the vehicle's top at the water's surface
+  double silence{5.0};                 ///< s without HEALTH after which one of them counts as gone, in real time
   HoldSettings hold;
   FenceSettings fence;
   LeavingSettings leaving;
@@ -89,12 +94,15 @@ class Supervisor {
   };
 
   /// InputError when the schedule asks for a motion that the vehicle does not have.
-  Supervisor(const SupervisorSettings& settings, const model::Vehicle& vehicle, std::string token);
+  Supervisor(const SupervisorSettings& settings, const model::Vehicle& vehicle);
 
   /// The reference is good until the next call.
   const Output& step(const StateEstimate& state);
   void hear(const ModelEstimate& model);
-  void hear(const Operator& order);
+  /// What became of it; to be said.
+  Answer hear(const Operator& order);
+  /// Of who moves the thrusters: what orders must quote. Others' answers are none of its business.
+  void hear(const Answer& answer);
   void hear(const Health& health);
   /// A grave condition of the vehicle (a leak, a failsafe, an empty battery) ends a trial at once.
   void hear(const VehicleCondition& vehicle);
@@ -117,13 +125,19 @@ class Supervisor {
     double duration{};    // s
     std::string purpose;  // "to tell ... from ..."
     Phase before{};       // what goes on afterwards; kDone: nothing
+    std::optional<model::ManoeuvrePilot>
+        pilot{};           // of a preset: flies in place of the segment, in shares of the largest
+    bool one_turn{false};  // over when it has come round once: a tether is no coil
+    double turned{};       // rad, at its begin
   };
   struct Proposal {
     std::string segment;
     double duration{};
     std::string purpose;
   };
-  void order(const Operator& order);
+  [[nodiscard]] std::string order(const Operator& order);
+  [[nodiscard]] std::string obey(const Operator& order);
+  void miss_operator();
   [[nodiscard]] bool arm();
   void fly(const Operator& order);
   void refuse(const std::string& why);
@@ -149,7 +163,7 @@ class Supervisor {
 
   SupervisorSettings settings_;
   model::Vehicle vehicle_;
-  std::string token_;
+  orders::OrderCheck check_;
   Fence fence_;
   Hold hold_;
   Designer designer_;
@@ -164,8 +178,12 @@ class Supervisor {
   Phase phase_{Phase::kDisarmed};
   std::string reason_{"waits for the operator to arm"};
   bool armed_{false};
-  std::int64_t last_sequence_{};
-  std::int64_t armed_by_{};  // kept after a stop: the zeros that follow it must be obeyed
+  Answer answered_;                              // to the last order
+  std::int64_t armed_by_{}, armed_challenge_{};  // kept after a stop: the zeros that follow it must be obeyed
+  std::int64_t commands_{};                      // number of the last one
+  double attends_{};                             // s between the operator's signs of life; 0: nobody stays
+  Utime sign_of_life_{};
+  bool operator_is_lost_{false};
   Needs needs_;
   DepthAction after_;
   std::string grave_;                // what speaks against any trial, by the vehicle's own words
@@ -188,6 +206,7 @@ class Supervisor {
   Place place_;
   Eigen::Vector3d middle_{Eigen::Vector3d::Zero()};
   Vector6d manual_{Vector6d::Zero()};
+  Utime manual_at_{};
   std::vector<std::string> frozen_;
   std::vector<Visit> visits_;
   Output output_;

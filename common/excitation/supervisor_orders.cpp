@@ -23,32 +23,97 @@ void Supervisor::hear(const EffectRanking& ranking) {
                .purpose = "to tell " + ranking.candidates.front().name + " from " + ranking.against};
 }
 
-// An abort needs no permission. Everything else must come from somebody who knows the token, once, and now.
-void Supervisor::hear(const Operator& order) {
-  if (order.abort) {
-    stop(Phase::kAborted, "aborted by the operator", Then::kZero);
-    return;
-  }
-  if (order.token != token_ || order.sequence <= last_sequence_) return;
-  if (!has_state_ || std::abs(seconds_between(order.utime, state_.utime)) > settings_.order_age) return;
-  last_sequence_ = order.sequence;
-  if (order.order == "fly") {
-    fly(order);
-  } else if (order.enable && !armed_) {
-    if (arm()) enter(0);
-  } else if (armed_) {
-    this->order(order);
-  }
-  if (armed_ && order.enable) armed_by_ = order.sequence;  // the thrusters may have lost what armed it before
+void Supervisor::hear(const Answer& answer) {
+  if (!answer.gate || !answer.authentic) return;
+  const bool of_now = !has_state_ || std::abs(seconds_between(answer.utime, state_.utime)) <= settings_.order_age;
+  if (of_now) check_.begin(answer.challenge, answer.accepted);
 }
 
-void Supervisor::order(const Operator& order) {
+// An abort needs no permission. Everything else must come from somebody who has the key, once, and now.
+Answer Supervisor::hear(const Operator& order) {
+  Answer answer{.sequence = order.sequence};
+  if (order.abort) {
+    stop(Phase::kAborted, "aborted by the operator", Then::kZero);
+    answer.done = true;
+    answer.text = reason_;
+  } else if (check_.again(order)) {
+    answer = answered_;
+  } else {
+    answer.text = has_state_ ? std::string{check_.objection(order, state_.utime)} : "no STATE has come";
+    if (answer.text.empty()) {
+      check_.accept(order);
+      sign_of_life_ = state_.utime;
+      answer.text = obey(order);
+      answer.done = answer.text.empty();
+      if (answer.done) answer.text = std::string{name(phase_)} + ": " + reason_;
+    }
+  }
+  answer.utime = has_state_ ? state_.utime : order.utime;
+  answer.challenge = check_.challenge();
+  answer.accepted = check_.accepted();
+  answer.armed = armed_;
+  if (!order.abort) answered_ = answer;
+  return answer;
+}
+
+/// Empty when it is done, else why not.
+std::string Supervisor::obey(const Operator& order) {
+  std::string why;
+  const bool flies = order.order == "fly";
+  if (order.enable && settings_.wants_operator && !(order.attends > 0.0)) {
+    why = "not armed: this vehicle's operator must stay (operator_lost: required); fathom arm --attend";
+    if (!armed_) reason_ = why;
+    return why;
+  }
+  const bool was_armed = armed_;
+  if (flies) {
+    fly(order);
+    if (!armed_) why = reason_;
+    if (armed_ && !refused_.empty()) why = refused_;
+  } else if (order.enable && !armed_) {
+    if (!arm()) {
+      why = reason_;
+    } else if (order.order == "manual" || order.order == "hold") {
+      why = this->order(order);
+    } else {
+      enter(0);
+    }
+  } else if (armed_) {
+    why = this->order(order);
+  } else if (!order.order.empty()) {
+    why = "not armed: " + (reason_.starts_with("not armed") ? std::string{"fathom arm first"} : reason_);
+  }
+  if (armed_ && order.enable) {  // the thrusters may have lost what armed it before
+    armed_by_ = order.sequence;
+    armed_challenge_ = order.challenge;
+    if (!was_armed || order.attends > 0.0) attends_ = order.attends;
+  }
+  operator_is_lost_ = operator_is_lost_ && !armed_;
+  return why;
+}
+
+/// By the time of STATE: a replay misses the operator when the trial did.
+void Supervisor::miss_operator() {
+  const double silent = seconds_between(sign_of_life_, state_.utime);
+  if (!(attends_ > 0.0) || silent <= attends_ || operator_is_lost_) return;
+  operator_is_lost_ = true;
+  const std::string why = "the operator is lost: no sign of life for " + std::to_string(std::lround(silent)) + " s";
+  if (settings_.holds_without_operator) {
+    stay(why + "; it stays");
+  } else {
+    stop(Phase::kAborted, why);
+  }
+}
+
+std::string Supervisor::order(const Operator& order) {
+  if (order.order.empty()) return {};
   if (order.order == "hold") {
     stay("the operator wants it to stay");
   } else if (order.order == "manual") {
     flight_.reset();
     phase_ = Phase::kManual;
     manual_ = order.tau;
+    manual_at_ = state_.utime;
     reason_ = "the operator steers";
   } else if (order.order == "identify") {
     if (phase_ == Phase::kHold || phase_ == Phase::kManual || phase_ == Phase::kDone)
@@ -65,7 +130,10 @@ void Supervisor::order(const Operator& order) {
     } else {
       enter(mode_);
     }
+  } else {
+    return "no order '" + order.order + "'; known: hold, identify, manual, skip, retry, fly";
   }
+  return {};
 }
 
 bool Supervisor::arm() {
@@ -91,6 +159,7 @@ bool Supervisor::arm() {
     settings.high[i] = std::min(settings.high[i], state_.p_WB[i] + settings_.open_range);
   }
   fence_ = Fence{settings};
+  operator_is_lost_ = false;
   middle_ = fence_.middle();
   visits_.clear();
   frozen_.clear();
@@ -104,19 +173,25 @@ bool Supervisor::arm() {
 // A vehicle that is not armed arms for the flight alone; one that is goes on afterwards with what it did.
 void Supervisor::fly(const Operator& order) {
   const bool proposed = order.segment.empty();
-  if (!armed_ && !order.enable) return;
+  if (!armed_ && !order.enable) {
+    refuse("fathom arm first");
+    return;
+  }
   if (proposed && !proposal_) {
     refuse("nothing to fly: no segment is proposed");
     return;
   }
   const std::string& name = proposed ? proposal_->segment : order.segment;
-  std::optional<Segment> segment = segment_named(name, vehicle_, settings_.largest);
+  std::optional<model::Manoeuvre> preset = preset_named(name);
+  std::optional<Segment> segment = preset ? segment_of(*preset, name, vehicle_, settings_.largest)
+                                          : segment_named(name, vehicle_, settings_.largest);
   if (!segment) {
     refuse("no segment '" + name + "' for this vehicle; fathom plan names them");
     return;
   }
   const bool alone = !armed_;
   if (alone && !arm()) return;
+  refused_.clear();
   const double once = segment->duration;
   double duration = order.duration > 0.0 ? order.duration : once;
   if (proposed && !(order.duration > 0.0)) duration = proposal_->duration;
@@ -125,6 +200,11 @@ void Supervisor::fly(const Operator& order) {
              .duration = std::min(duration, kLongestFlight),
              .purpose = proposed ? proposal_->purpose : "as the operator wants",
              .before = alone ? Phase::kDone : before};
+  if (preset) {
+    preset->duration = flight_->duration;
+    flight_->pilot.emplace(*preset);
+    flight_->one_turn = preset->kind == model::ManoeuvreKind::kCircle && !(order.duration > 0.0);
+  }
   take_off();
 }
 

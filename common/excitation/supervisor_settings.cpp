@@ -103,6 +103,12 @@ SupervisorSettings SupervisorSettings::from(const Config& config, const model::V
   if (config.has("model_patience")) s.model_patience = config.positive("model_patience", "s");
   if (config.has("flights")) s.flights = std::max(0, config.integer("flights"));
   s.order_age = config.positive("order_age", "s");
+  if (config.has("manual_life")) s.manual_life = config.positive("manual_life", "s");
+  if (config.has("operator_lost")) {
+    const Config lost = config.section("operator_lost");
+    s.holds_without_operator = lost.either("action", "hold", "abort");
+    s.wants_operator = lost.either("required", "yes", "no");
+  }
   s.open_range = config.positive("open_range", "m");
   s.needs = config.has("needs") ? config.texts("needs") : usual_needs();
   s.surface = site.surface + 0.5 * vehicle.hull.z();

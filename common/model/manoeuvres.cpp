@@ -63,13 +63,18 @@ Manoeuvre manoeuvre_preset(const std::string& name) {
   return m;
 }
 
-std::vector<double> ManoeuvrePilot::thrust(double t, double yaw) {
+ManoeuvrePilot::Demand ManoeuvrePilot::demand(double t, double yaw) {
   const Manoeuvre& m = manoeuvre_;
-  if (t < m.rest || t > m.duration) return {0.0, 0.0};
-  if (t < m.rest + m.straight || m.kind == ManoeuvreKind::kLine) return {m.thrust, m.thrust};
-  if (m.kind == ManoeuvreKind::kCircle) return {m.thrust - m.difference, m.thrust + m.difference};
+  if (t < m.rest || t > m.duration) return {};
+  if (t < m.rest + m.straight || m.kind == ManoeuvreKind::kLine) return {m.thrust, 0.0};
+  if (m.kind == ManoeuvreKind::kCircle) return {m.thrust, -m.difference};
   if (side_ * wrap_angle(yaw - m.heading) > m.swing) side_ = -side_;
-  return {m.thrust + side_ * m.difference, m.thrust - side_ * m.difference};
+  return {m.thrust, side_ * m.difference};
+}
+
+std::vector<double> ManoeuvrePilot::thrust(double t, double yaw) {
+  const Demand demand = this->demand(t, yaw);
+  return {demand.ahead + demand.turn, demand.ahead - demand.turn};
 }
 
 HangingRest hanging_rest(const Vehicle& vehicle) {

@@ -36,7 +36,13 @@ struct Manoeuvre {
 class ManoeuvrePilot {
  public:
   explicit ManoeuvrePilot(const Manoeuvre& manoeuvre) : manoeuvre_{manoeuvre} {}
-  /// Port and starboard [N] at `t` [s] from the start, at this yaw [rad]; zero when it is over. Times never fall.
+  /// What both thrusters give, and by how much port gives more and starboard less (to turn to starboard); in the unit
+  /// of the manoeuvre's thrust. At `t` [s] from the start, at this yaw [rad]; zero when it is over. Times never fall.
+  struct Demand {
+    double ahead{}, turn{};
+  };
+  [[nodiscard]] Demand demand(double t, double yaw);
+  /// Port and starboard [N].
   [[nodiscard]] std::vector<double> thrust(double t, double yaw);
   [[nodiscard]] const Manoeuvre& manoeuvre() const { return manoeuvre_; }
 

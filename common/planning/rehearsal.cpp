@@ -16,7 +16,6 @@ constexpr int kSample = 5;               // steps between samples
 constexpr Utime kBegin = 1'000'000'000;  // us: any
 constexpr double kOpen = 3.0;            // m from the one boundary there is
 constexpr double kStrong = 1e3;          // N of a thruster whose file states no limit: the site's limits hold
-constexpr const char* kToken = "rehearsal";
 
 /// The vehicle file's model with thrusters that obey at once.
 class Stage {
@@ -117,7 +116,8 @@ Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& setti
               start_in(settings.supervisor.fence)};
   excitation::SupervisorSettings alone = settings.supervisor;
   alone.needs.clear();  // nobody else is there
-  excitation::Supervisor supervisor{alone, vehicle, kToken};
+  excitation::Supervisor supervisor{alone, vehicle};
+  supervisor.hear(Answer{.gate = true, .challenge = 1, .authentic = true});
   identification::Identifier identifier{settings.identifier, vehicle};
   Rehearsal rehearsal;
   bool ordered = false;
@@ -133,8 +133,12 @@ Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& setti
       if (output.command) stage.push(output.command->tau);
       for (const ModelEstimate& model : identifier.step(stage.thrusters()).models) supervisor.hear(model);
       if (!ordered) {
-        supervisor.hear(Operator{
-            .utime = state.utime, .enable = true, .order = "identify", .token = kToken, .sequence = state.utime});
+        supervisor.hear(Operator{.utime = state.utime,
+                                 .sequence = 1,
+                                 .challenge = 1,
+                                 .enable = true,
+                                 .order = "identify",
+                                 .authentic = true});
         ordered = true;
       } else {
         stage.record();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/base/version.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -152,6 +153,7 @@ std::string to_json(const DiagnosisResult& result) {
 
   Json file;
   file["schema"] = kSchema;
+  file["fathom_version"] = version();
   file["vehicle"] = result.vehicle;
   file["train"] = result.train;
   file["validate"] = result.validate;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/base/version.hpp"
 #include "common/report/live_trial.hpp"
 #include "common/report/text.hpp"
 
@@ -46,6 +47,7 @@ std::string to_json(const LiveTrialResult& result) {
   Json json{{"schema", kSchema},       {"kind", "live trial"},       {"vehicle", result.vehicle},
             {"site", result.site},     {"seconds", result.seconds},  {"phase", result.phase},
             {"reason", result.reason}, {"settled", result.settled()}};
+  json["fathom_version"] = version();
   json["modes"] = Json::array();
   for (const ModeVisit& visit : result.visits) {
     json["modes"].push_back({{"mode", visit.mode},

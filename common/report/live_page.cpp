@@ -279,7 +279,7 @@ std::string to_html(const LiveTrialResult& result, const Recording& recording, c
   page += suspects(result);
   if (result.afterwards) page += afterwards_section(*result.afterwards);
   if (result.truth) page += truth_section(result, recording, album);
-  return album.fill(page + "</main></body></html>\n", gnuplot);
+  return album.fill(page + version_line() + "</main></body></html>\n", gnuplot);
 }
 
 }  // namespace fathom::report

@@ -123,7 +123,7 @@ std::string to_html(const DiagnosisReport& report, const std::string& gnuplot) {
   page += parameter_section(result);
   page += certainty_section(result);
   page += kWords;
-  page += "</main></body></html>\n";
+  page += version_line() + "</main></body></html>\n";
   return album.fill(page, gnuplot);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/base/version.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -39,6 +40,10 @@ std::string Album::fill(const std::string& page, const std::string& gnuplot) con
     done = end + 1;
   }
   return filled + page.substr(done);
+}
+
+std::string version_line() {
+  return "<p class=\"soft\">Written by Fathom " + escape(std::string{version()}) + ".</p>\n";
 }
 
 std::string cell(const std::string& html, const std::string& css) {

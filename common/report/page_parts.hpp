@@ -31,6 +31,8 @@ class Album {
 [[nodiscard]] std::string candidate_section(const DiagnosisResult& result);
 [[nodiscard]] std::string parameter_section(const DiagnosisResult& result);
 [[nodiscard]] std::string certainty_section(const DiagnosisResult& result);
+/// Which build wrote the page: the last line of every page.
+[[nodiscard]] std::string version_line();
 
 /// "<td class=c>text</td>"; the text is HTML already.
 [[nodiscard]] std::string cell(const std::string& html, const std::string& css = "");

@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "common/base/error.hpp"
-#include "common/runtime/finite_options.hpp"
+#include "common/runtime/command_line.hpp"
 
 namespace fathom::runtime {
 namespace {
@@ -18,13 +18,12 @@ std::string default_bus() {
 
 }  // namespace
 
-std::optional<Arguments> Arguments::parse(const std::string& name, int argc, const char* const* argv,
+std::optional<Arguments> Arguments::parse(const Program& program, int argc, const char* const* argv,
                                           const MoreOptions& more) {
   Arguments arguments;
   std::vector<std::string> in;
   std::string out;
-  CLI::App app{"A process of Fathom; docs/messages.md tells what it hears and says.", name};
-  app.set_version_flag("--version", FATHOM_VERSION);
+  CLI::App app{program.sentence + " docs/messages.md tells what it hears and says.", program.name};
   app.add_option("--config", arguments.config, "YAML files: vehicle, site, pipeline");
   app.add_option("--in", in, "udpm://ADDRESS:PORT or file://RUN.lcmlog; several logs are merged by time")
       ->take_all()
@@ -36,9 +35,8 @@ std::optional<Arguments> Arguments::parse(const std::string& name, int argc, con
   app.add_flag("--lockstep", arguments.lockstep,
                "go on only when the simulator says so (it is started with --wait-for)");
   if (more) more(app);
-  expect_finite_numbers(app);
   try {
-    app.parse(argc, argv);
+    runtime::parse(app, argc, argv);
   } catch (const CLI::Success& asked) {
     app.exit(asked);
     return {};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/runtime/bus.hpp"
+#include "common/runtime/process.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): theirs
 class App;
@@ -26,7 +27,7 @@ struct Arguments {
   bool lockstep{false};
 
   /// Nothing when help or version was asked for and printed. InputError for anything else than a good command line.
-  [[nodiscard]] static std::optional<Arguments> parse(const std::string& name, int argc, const char* const* argv,
+  [[nodiscard]] static std::optional<Arguments> parse(const Program& program, int argc, const char* const* argv,
                                                       const MoreOptions& more = {});
 };
 

@@ -1,33 +1,17 @@
-// How a program with subcommands ends. Exit 0: done; 1: bad input, one line says what; 2: bad command line.
+// What the command lines of all programs share: --version, numbers that are finite, and pages about themselves.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <string>
-
-#include "common/runtime/finite_options.hpp"
 
 namespace fathom::runtime {
 
-/// Runs the subcommand that was asked for; the return value of main().
-inline int run_command_line(CLI::App& app, int argc, char** argv) {
-  app.require_subcommand(1);
-  expect_finite_numbers(app);
-  try {
-    const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty())
-      throw CLI::ExtrasError(std::string(argv[1]) + " is no command", CLI::ExitCodes::ExtrasError);
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::Success& asked) {
-    return app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "fathom: %s; see fathom --help\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "fathom: %s\n", error.what());
-    return 1;
-  }
-}
+/// CLI11's parse, with these in addition: `--version` prints the name and fathom::version(); "nan" and "inf", which
+/// CLI11's checks let pass, are refused; a first word `--pages` writes the manual and the table for completion
+/// (command_pages.hpp) of the program as it is installed, `PROGRAM --pages FOLDER fathom-NAME`, and is CLI::Success.
+void parse(CLI::App& app, int argc, const char* const* argv);
+
+/// Runs the subcommand that was asked for; the return value of main(). 0: done; 1: bad input, one line says what;
+/// 2: bad command line.
+int run_command_line(CLI::App& app, int argc, char** argv);
 
 }  // namespace fathom::runtime

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/version.hpp"
 #include "common/runtime/process_state.hpp"
 
 namespace fathom::runtime {
@@ -27,7 +28,7 @@ constexpr char kInfoChannel[] = "PROCESS_INFO";
 /// What a configuration file says. An operator's word is not for the bus, nor for logs.
 std::string content(const std::string& path) {
   const std::string head = "# file " + path;
-  if (Config::load(path).has("operator")) return head + ": not told, since it holds the operator's token\n";
+  if (Config::load(path).has("operator")) return head + ": not told, since it holds the operator's key\n";
   std::ifstream file{path};
   std::string text = head + "\n";
   for (std::string line; std::getline(file, line);) text += line + "\n";
@@ -113,6 +114,7 @@ bool Process::has_config(const std::string& key) const {
 }
 
 bool Process::reads_logs() const { return !state_->arguments.lockstep && !state_->arguments.in.front().live(); }
+bool Process::is_live() const { return !state_->arguments.lockstep && state_->arguments.in.front().live(); }
 
 void Process::send(const std::string& channel, const std::string& type, Utime utime) {
   const auto speech = find_channel(state_->speeches, channel);
@@ -159,7 +161,7 @@ void Process::introduce(Utime utime) {
   fathom_lcm::process_info_t info{};
   info.utime = utime;
   info.process = state_->name;
-  info.version = FATHOM_VERSION;
+  info.version = version();
   for (const std::string& path : state_->arguments.config) info.config += content(path);
   info.channels = interface_text();
   publish(kInfoChannel, info);
@@ -306,16 +308,16 @@ void Process::run_lockstep() {
   }
 }
 
-int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
+int main(const Program& program, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
          const std::function<void(CLI::App&)>& more) {
   try {
-    auto arguments = Arguments::parse(name, argc, argv, more);
+    auto arguments = Arguments::parse(program, argc, argv, more);
     if (!arguments) return 0;
-    Process process{name, std::move(*arguments)};
+    Process process{program.name, std::move(*arguments)};
     setup(process);
     return 0;
   } catch (const std::exception& error) {
-    spdlog::logger logger{name, std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
+    spdlog::logger logger{program.name, std::make_shared<spdlog::sinks::stderr_color_sink_st>()};
     logger.set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
     logger.critical(error.what());
     return 1;

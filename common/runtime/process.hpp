@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/base/config.hpp"
@@ -57,6 +58,8 @@ class Process {
 
   /// The input is recorded: nothing is waited for.
   [[nodiscard]] bool reads_logs() const;
+  /// On a bus in real time: neither from a log nor in lockstep.
+  [[nodiscard]] bool is_live() const;
   /// Counts a message that was decoded but refused; HEALTH shows the counts.
   void reject(const std::string& channel);
 
@@ -138,10 +141,16 @@ class Process {
   std::vector<std::uint8_t> buffer_;  ///< of the message that is being sent
 };
 
+/// A program's name, and the sentence that its --help and its manual page begin with.
+struct Program {
+  Program(const char* program, std::string does = "A process of Fathom.") : name{program}, sentence{std::move(does)} {}
+  std::string name, sentence;
+};
+
 /// The main() of every process: reads the arguments, calls setup (which ends with run()), turns every exception into
 /// one critical line and exit code 1.
 /// `more` adds options of this process alone; what they set is ready when setup is called.
-int main(const std::string& name, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
+int main(const Program& program, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
          const std::function<void(CLI::App&)>& more = {});
 
 }  // namespace fathom::runtime

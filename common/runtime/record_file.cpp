@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::uint64_t kEventHead = 28;  // B: sync word, number, time, length of channel and of data
 
+constexpr std::uint64_t kNotYetThere = 1'000'000;  // B: more than any buffer of stdio holds back
+
 InputError failed(const std::string& path, int number) {
   return InputError{path + ": writing failed (" + std::strerror(number) + "); is the disk full?"};
 }
@@ -37,6 +39,7 @@ void RecordFile::write(const std::string& channel, std::span<std::uint8_t> bytes
   event.datalen = static_cast<std::int32_t>(bytes.size());
   event.data = bytes.data();
   errno = 0;
+  while (since_.size() > 1 && since_.front() + kNotYetThere < size_) since_.pop_front();
   since_.push_back(size_);
   if (log_->writeEvent(&event) != 0) throw failed(path_, errno);
   size_ += kEventHead + channel.size() + bytes.size();
@@ -45,7 +48,6 @@ void RecordFile::write(const std::string& channel, std::span<std::uint8_t> bytes
 void RecordFile::keep() {
   if (std::fflush(log_->getFilePtr()) != 0) throw failed(path_, errno);
   fdatasync(fileno(log_->getFilePtr()));  // not every file system can, and a pipe cannot
-  since_.clear();
 }
 
 void RecordFile::end() noexcept {

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "common/base/time.hpp"
 
@@ -38,8 +38,8 @@ class RecordFile {
  private:
   std::string path_;
   std::unique_ptr<lcm::LogFile> log_;
-  std::uint64_t size_{};              ///< B, of the events that were handed over
-  std::vector<std::uint64_t> since_;  ///< where the events since the last keep() begin
+  std::uint64_t size_{};             ///< B, of the events that were handed over
+  std::deque<std::uint64_t> since_;  ///< where the last events begin, more of them than can be missing on the disk
 };
 
 /// path.00, path.01, ...: one more than the highest that is there, whatever is missing between; as many as there are.

@@ -14,6 +14,7 @@
 #include "common/runtime/bus.hpp"
 #include "common/runtime/live_recorder.hpp"
 #include "common/runtime/lockstep.hpp"
+#include "common/runtime/record_file.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -36,7 +37,7 @@ std::vector<Subscription> subscriptions(const std::vector<std::string>& without)
 
 void run(const Arguments& arguments, const std::string& path, const std::vector<std::string>& without) {
   StopSignal stop;
-  Output log{Url::parse("file://" + path, "--file")};
+  RecordFile log{path};
   Output bus{arguments.out};
   const std::vector<Subscription> heard = subscriptions(without);
   LiveInput live{arguments.in, heard};
@@ -63,7 +64,7 @@ void run(const Arguments& arguments, const std::string& path, const std::vector<
   auto last_hello = std::chrono::steady_clock::now();
   std::int64_t told = -1;
   bool started = false;
-  while (!stop.raised() && !arrangement.ended()) {
+  const auto serve = [&] {
     live.wait(stop.descriptor(), kWaitMs);
     while (auto message = live.next()) {
       health.heard();
@@ -86,8 +87,14 @@ void run(const Arguments& arguments, const std::string& path, const std::vector<
       last_hello = now;
       tell(-1);
     }
+  };
+  try {
+    while (!stop.raised() && !arrangement.ended()) serve();
+    log.keep();
+  } catch (const std::exception& error) {  // a full disk: who watches shall know at once
+    health.end("fault", error.what());
+    throw;
   }
-  log.finish();
   health.end("stopped", "");
 }
 
@@ -159,7 +166,8 @@ int recorder_main(int argc, const char* const* argv) {
     std::string path;
     bool number{false};
     std::vector<std::string> without;
-    const auto arguments = Arguments::parse("recorder", argc, argv, [&](CLI::App& app) {
+    const Program program{"recorder", "Writes all messages of a bus to a log."};
+    const auto arguments = Arguments::parse(program, argc, argv, [&](CLI::App& app) {
       app.add_option("--file", path, "the log to be written");
       app.add_flag("--number", number, "add .00, .01, ... to its name, the next number");
       app.add_option("--without", without, "a channel that is not recorded; more than once if wanted")

@@ -1,4 +1,4 @@
-// What is asked of the vehicle: WRENCH_COMMAND, OPERATOR, EXCITATION.
+// What is asked of the vehicle, and what became of it: WRENCH_COMMAND, OPERATOR, ANSWER, EXCITATION.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,38 @@ struct WrenchCommand {
   double life{};                   ///< s; after utime + life the thruster driver goes to zero
   std::string commander;           ///< who commands, different for every running process
   std::int64_t armed_by{};         ///< sequence of the order that armed the commander; 0: none has
+  std::int64_t challenge{};        ///< of that order
+  std::int64_t sequence{};         ///< rises with every command
+  bool authentic{false};           ///< its signature was right (found on arrival, not carried)
 };
 
 /// What the human wants.
 struct Operator {
-  Utime utime{};
+  Utime utime{};                   ///< the vehicle's time when it was given
+  std::int64_t sequence{};         ///< above that of the last order that was accepted; of an abort any
+  std::int64_t challenge{};        ///< as ANSWER told it
   bool abort{false};               ///< thrust to zero at once
   bool enable{false};              ///< automatic motion is allowed
-  std::string order;               ///< "hold", "identify", "manual", "skip", "retry", "fly"; empty: no change
-  Vector6d tau{Vector6d::Zero()};  ///< N, N m at the body origin, body axes; used under "manual"
-  std::string segment;             ///< what to "fly", by name; empty: what EFFECTS proposes
+  std::string order;               ///< "hold", "identify", "manual", "skip", "retry", "fly"; empty: a sign of life
+  Vector6d tau{Vector6d::Zero()};  ///< N, N m at the body origin, body axes; under "manual": again and again
+  std::string segment;             ///< what to "fly", by name, or a preset's; empty: what EFFECTS proposes
   double duration{};               ///< s of "fly", the segment again and again; 0: as proposed, else once
-  std::string token;               ///< as configured on the vehicle: without it only an abort is obeyed
-  std::int64_t sequence{};         ///< rises with every order: one that was heard before is not obeyed again
+  double attends{};                ///< s between signs of life at most; 0: nobody stays
+  bool authentic{false};           ///< its signature was right (found on arrival, not carried)
+};
+
+/// What became of an order; and what the next one must quote.
+struct Answer {
+  Utime utime{};             ///< the vehicle's time
+  std::string process;       ///< who answers
+  bool gate{false};          ///< who moves the thrusters: challenge and accepted are its own
+  std::int64_t challenge{};  ///< drawn when the gate started
+  std::int64_t accepted{};   ///< highest number of an order that was accepted
+  std::int64_t sequence{};   ///< of the order that is answered; 0: of none
+  bool done{false};          ///< it was accepted and is done
+  bool armed{false};         ///< thrust may be given now
+  std::string text;          ///< what was done, or why not
+  bool authentic{false};     ///< its signature was right (found on arrival, not carried)
 };
 
 /// Excitation::mode of a segment that is flown by its name: no mode of the schedule.

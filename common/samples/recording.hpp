@@ -33,6 +33,7 @@ struct Recording {
   std::vector<LaserRange> laser_range;
   std::vector<WrenchCommand> wrench_command;
   std::vector<Operator> operator_orders;
+  std::vector<Answer> answers;
   std::vector<Excitation> excitation;
   std::vector<ModelEstimate> model;
   std::vector<Residual> residual;

@@ -19,6 +19,7 @@ inline constexpr char kOpticalFlow[] = "OPTICAL_FLOW";
 inline constexpr char kLaserRange[] = "LASER_RANGE";
 inline constexpr char kWrenchCommand[] = "WRENCH_COMMAND";
 inline constexpr char kOperator[] = "OPERATOR";
+inline constexpr char kAnswer[] = "ANSWER";
 inline constexpr char kThrusters[] = "THRUSTERS";
 inline constexpr char kState[] = "STATE";
 inline constexpr char kSmoothed[] = "SMOOTHED";

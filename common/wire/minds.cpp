@@ -1,6 +1,7 @@
 #include "common/wire/minds.hpp"
 
 #include <algorithm>
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/health_t.hpp>
@@ -200,7 +201,9 @@ std::optional<WrenchCommand> decode(const fathom_lcm::wrench_command_t& message)
                        .tau = vector(message.tau),
                        .life = message.life,
                        .commander = message.commander,
-                       .armed_by = message.armed_by};
+                       .armed_by = message.armed_by,
+                       .challenge = message.challenge,
+                       .sequence = message.sequence};
 }
 
 fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
@@ -210,35 +213,65 @@ fathom_lcm::wrench_command_t encode(const WrenchCommand& sample) {
   message.life = sample.life;
   message.commander = sample.commander;
   message.armed_by = sample.armed_by;
+  message.challenge = sample.challenge;
+  message.sequence = sample.sequence;
   return message;
 }
 
 std::optional<Operator> decode(const fathom_lcm::operator_t& message) {
   // An abort must never be refused for a bad number that nobody will use.
-  const bool usable = finite(message.tau) && finite(message.duration);
+  const bool usable = finite(message.tau) && finite(message.duration) && finite(message.attends);
   if (!usable && message.abort == 0) return {};
   return Operator{.utime = message.utime,
+                  .sequence = message.sequence,
+                  .challenge = message.challenge,
                   .abort = message.abort != 0,
                   .enable = message.enable != 0,
                   .order = message.order,
                   .tau = usable ? vector(message.tau) : Vector6d(Vector6d::Zero()),
                   .segment = message.segment,
                   .duration = usable ? message.duration : 0.0,
-                  .token = message.token,
-                  .sequence = message.sequence};
+                  .attends = usable ? message.attends : 0.0};
 }
 
 fathom_lcm::operator_t encode(const Operator& sample) {
   fathom_lcm::operator_t message{};
   message.utime = sample.utime;
+  message.sequence = sample.sequence;
+  message.challenge = sample.challenge;
   message.abort = sample.abort;
   message.enable = sample.enable;
   message.order = sample.order;
   put(sample.tau, message.tau);
   message.segment = sample.segment;
   message.duration = sample.duration;
-  message.token = sample.token;
+  message.attends = sample.attends;
+  return message;
+}
+
+std::optional<Answer> decode(const fathom_lcm::answer_t& message) {
+  return Answer{.utime = message.utime,
+                .process = message.process,
+                .gate = message.gate != 0,
+                .challenge = message.challenge,
+                .accepted = message.accepted,
+                .sequence = message.sequence,
+                .done = message.done != 0,
+                .armed = message.armed != 0,
+                .text = message.text};
+}
+
+fathom_lcm::answer_t encode(const Answer& sample) {
+  fathom_lcm::answer_t message{};
+  message.utime = sample.utime;
+  message.process = sample.process;
+  message.gate = sample.gate;
+  message.challenge = sample.challenge;
+  message.accepted = sample.accepted;
   message.sequence = sample.sequence;
+  message.done = sample.done;
+  message.armed = sample.armed;
+  message.text = sample.text;
   return message;
 }
 

@@ -11,6 +11,7 @@
 namespace fathom_lcm {
 class wrench_command_t;
 class operator_t;
+class answer_t;
 class excitation_t;
 class state_t;
 class smoothed_t;
@@ -27,6 +28,7 @@ namespace fathom::wire {
 /// Nothing when a length is wrong, a number is not finite, or a quaternion is not unit.
 [[nodiscard]] std::optional<WrenchCommand> decode(const fathom_lcm::wrench_command_t& message);
 [[nodiscard]] std::optional<Operator> decode(const fathom_lcm::operator_t& message);
+[[nodiscard]] std::optional<Answer> decode(const fathom_lcm::answer_t& message);
 [[nodiscard]] std::optional<Excitation> decode(const fathom_lcm::excitation_t& message);
 [[nodiscard]] std::optional<StateEstimate> decode(const fathom_lcm::state_t& message);
 [[nodiscard]] std::optional<SmoothedState> decode(const fathom_lcm::smoothed_t& message);
@@ -39,6 +41,7 @@ namespace fathom::wire {
 
 [[nodiscard]] fathom_lcm::wrench_command_t encode(const WrenchCommand& sample);
 [[nodiscard]] fathom_lcm::operator_t encode(const Operator& sample);
+[[nodiscard]] fathom_lcm::answer_t encode(const Answer& sample);
 [[nodiscard]] fathom_lcm::excitation_t encode(const Excitation& sample);
 [[nodiscard]] fathom_lcm::state_t encode(const StateEstimate& sample);
 [[nodiscard]] fathom_lcm::smoothed_t encode(const SmoothedState& sample);

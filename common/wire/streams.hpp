@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fathom_lcm/ahrs_t.hpp>
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
@@ -42,6 +43,7 @@ template <class AnyRecording, class Visit>
 void visit_streams(AnyRecording& recording, Visit&& visit) {
   visit(kProcessInfo, recording.process_info);
   visit(kOperator, recording.operator_orders);
+  visit(kAnswer, recording.answers);
   visit(kExcitation, recording.excitation);
   visit(kWrenchCommand, recording.wrench_command);
   visit(kThrusters, recording.thrusters);

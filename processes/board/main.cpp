@@ -94,8 +94,9 @@ void run(runtime::Process& process, const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
+  const runtime::Program program{"board", "Serves a page that shows a live trial."};
   return runtime::main(
-      "board", argc, argv, [&](runtime::Process& process) { run(process, options); },
+      program, argc, argv, [&](runtime::Process& process) { run(process, options); },
       [&](CLI::App& app) {
         app.add_option("--port", options.port, "of the page (8077); 0: any that is free")->check(CLI::Range(0, 65535));
         app.add_option("--host", options.host, "address to listen at (127.0.0.1: this host alone)");

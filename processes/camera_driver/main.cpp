@@ -29,7 +29,8 @@ void serve(runtime::Process& process, const Settings& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runtime::main("camera_driver", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"camera_driver", "Brings pictures of a camera, a video or a folder to the bus."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     process.publishes<fathom_lcm::camera_t>(wire::kCamera);
     const Config config = process.config();
     if (config.has("device") == config.has("pictures")) {

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/self.hpp"
 #include "processes/deputy/environment.hpp"
 #include "processes/deputy/service.hpp"
@@ -21,8 +22,11 @@ int main(int argc, char** argv) {
   bool leave{false};
   app.add_flag("--leave-with-parent", leave, "stop everything and end when whoever started it is gone");
   app.add_flag("-v,--verbose", options.verbose, "print what the programs print");
-  app.set_version_flag("--version", FATHOM_VERSION);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    runtime::parse(app, argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
   if (leave) prctl(PR_SET_PDEATHSIG, SIGTERM);
   try {
     if (!log.empty() && std::freopen(log.c_str(), "a", stderr) == nullptr) {

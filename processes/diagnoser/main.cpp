@@ -51,7 +51,9 @@ void compare(runtime::Process& process, diagnosis::LiveDiagnoser& diagnoser, con
 int main(int argc, char** argv) {
   // A pass or a look at the sensors needs tens of megabytes for a moment: large blocks go back to the system.
   mallopt(M_MMAP_THRESHOLD, 128 * 1024);
-  return runtime::main("diagnoser", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"diagnoser",
+                                 "Ranks the effects that may explain what the model does not, and what to fly next."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
     const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
     std::optional<model::Site> site;

@@ -168,7 +168,8 @@ void run_kalman(runtime::Process& process, const Config& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runtime::main("estimator", argc, argv, [](runtime::Process& process) {
+  const runtime::Program program{"estimator", "Fuses the sensors into the state of the vehicle."};
+  return runtime::main(program, argc, argv, [](runtime::Process& process) {
     process.publishes<fathom_lcm::state_t>(wire::kState);
     const Config config = process.config();
     const std::string filter = config.has("filter") ? config.text("filter") : "recorded";

@@ -16,7 +16,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/base/operator_token.hpp"
+#include "common/base/operator_key.hpp"
 #include "common/runtime/bus.hpp"
 #include "processes/fathom/doctor.hpp"
 
@@ -224,18 +224,12 @@ std::vector<Finding> check_devices(const std::string& path) {
 
 Finding check_operator(const std::string& file) {
   try {
-    const std::string token = operator_token(file);
-    if (token == "only-for-simulation") {
+    if (operator_keys(file).known_to_all) {
       return {Grade::kRemark, "operator", file + " is the one that everybody knows: for simulations only",
-              "make your own: printf 'operator: {token: %s}\\n' $(openssl rand -hex 16) > operator.yaml; chmod 600 "
-              "operator.yaml"};
+              std::string{"make your own: "} + kMakeKey};
     }
   } catch (const InputError& error) {
     return {Grade::kBad, "operator", error.what(), ""};
-  }
-  const auto rights = fs::status(file).permissions();
-  if ((rights & fs::perms::others_read) != fs::perms::none) {
-    return {Grade::kRemark, "operator", file + " can be read by everybody on this host", "chmod 600 " + file};
   }
   return {Grade::kWell, "operator", file, ""};
 }

@@ -4,7 +4,6 @@
 
 int main(int argc, char** argv) {
   CLI::App app{"Explains from recordings why an underwater vehicle moves as it does.", "fathom"};
-  app.set_version_flag("--version", FATHOM_VERSION);
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
+#include "common/base/version.hpp"
 #include "common/planning/flights.hpp"
 #include "common/planning/foresight.hpp"
 #include "processes/fathom/commands.hpp"
@@ -84,13 +85,9 @@ Json json_of(const std::optional<Answer>& answer) {
 }
 
 void write(const Options& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
-  Json file{{"schema", 1},
-            {"vehicle", options.vehicle},
-            {"site", options.site},
-            {"excitation", options.excitation},
-            {"duration_s", rehearsal.trial.t.back()},
-            {"ends", rehearsal.end},
-            {"effects", Json::array()}};
+  Json file{{"schema", 1},           {"fathom_version", version()},      {"vehicle", options.vehicle},
+            {"site", options.site},  {"excitation", options.excitation}, {"duration_s", rehearsal.trial.t.back()},
+            {"ends", rehearsal.end}, {"effects", Json::array()}};
   for (const Foreseen& one : all) {
     Json size = Json::object(), like = Json::array();
     for (const NamedValue& v : one.size) size[v.name] = {{"value", v.value}, {"unit", v.unit}};

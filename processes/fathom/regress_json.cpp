@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/version.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::tool {
@@ -34,7 +35,7 @@ Json of(const identification::StepwiseResult& result, const identification::Axis
 std::string regression_json(const std::vector<identification::AxisRegression>& axes,
                             std::span<const identification::ManoeuvreRows> runs, const model::Vehicle& vehicle,
                             const identification::RegressionSettings& settings) {
-  Json all{{"schema", "fathom-regression-1"}, {"vehicle", vehicle.name}};
+  Json all{{"schema", "fathom-regression-1"}, {"fathom_version", version()}, {"vehicle", vehicle.name}};
   if (!runs.empty()) all["forces_from"] = runs.front().known_from;
   all["current_north_m_s"] = settings.v_WF.x();
   all["current_east_m_s"] = settings.v_WF.y();

@@ -10,7 +10,7 @@
 
 #include "common/runtime/stop_signal.hpp"
 #include "processes/fathom/commands.hpp"
-#include "processes/fathom/console.hpp"
+#include "processes/fathom/operator/console.hpp"
 
 namespace fathom::tool {
 namespace {

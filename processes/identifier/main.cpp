@@ -177,7 +177,8 @@ int main(int argc, char** argv) {
     });
     process.run();
   };
-  return runtime::main("identifier", argc, argv, setup, [&](CLI::App& app) {
+  const runtime::Program program{"identifier", "Identifies the parameters of the vehicle's model on line."};
+  return runtime::main(program, argc, argv, setup, [&](CLI::App& app) {
     app.add_option("--save", saved, "file to go on from after an interruption; instead of the section's key");
   });
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "common/launch/config.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/sheriff/office.hpp"
 
 namespace {
@@ -48,10 +49,13 @@ int main(int argc, char** argv) {
   app.add_option("--logs", options.logs, "folder that gets what each program prints, NAME.txt");
   app.add_option("-u,--lcmurl", options.url, "bus of the orders (LCM_DEFAULT_URL)");
   app.add_flag("-v,--verbose", options.verbose, "print what the programs print");
-  app.set_version_flag("--version", FATHOM_VERSION);
   script->excludes(status)->excludes(stop)->excludes(checks);
   status->excludes(stop);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    runtime::parse(app, argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
   try {
     launch::LaunchConfig config = launch::LaunchConfig::load(find_config(options.config));
     if (only_check) return check(config);

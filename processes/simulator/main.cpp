@@ -1,15 +1,17 @@
 // simulator: WRENCH_COMMAND, OPERATOR and EXCITATION (to know when a trial is over) in; every instrument's channel,
 // THRUSTERS, and TRUTH for plots out. With --manoeuvre a preset is flown instead of commands. With --bytes the drivers'
 // channels stay silent: their instruments are played.
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
-#include "common/base/operator_token.hpp"
+#include "common/base/operator_key.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
+#include "common/wire/signature.hpp"
 #include "processes/simulator/speech.hpp"
 #include "processes/simulator/stage.hpp"
 #include "processes/simulator/truth_file.hpp"
@@ -21,6 +23,7 @@ namespace {
 void declare(runtime::Process& process) {
   simulator::declare_speech(process);
   process.publishes<fathom_lcm::operator_t>(wire::kOperator);
+  process.publishes<fathom_lcm::answer_t>(wire::kAnswer);
   process.publishes<fathom_lcm::lockstep_t>(runtime::kLockstep);
 }
 
@@ -38,12 +41,14 @@ model::ManoeuvrePilot pilot_of(const std::string& name, const model::Vehicle& ve
 
 int main(int argc, char** argv) {
   simulator::Options options;
+  const runtime::Program program{
+      "simulator", "Stands in for the vehicle: water, thrusters, instruments, and effects hidden in the truth."};
   return runtime::main(
-      "simulator", argc, argv,
+      program, argc, argv,
       [&](runtime::Process& process) {
         options.check();
         options.setup.raw = !options.drivers.empty();
-        options.token = operator_token(process.config_path("operator"));
+        options.keys = operator_keys(process.config_path("operator"));
         const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
         const model::Site site = model::Site::load(process.config_path("site"));
         const Config config = process.config();
@@ -58,7 +63,7 @@ int main(int argc, char** argv) {
         declare(process);
         process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
           stage.count_command();
-          const auto command = wire::decode(message);
+          const auto command = wire::open(message, options.keys.command);
           if (!command) return process.reject(wire::kWrenchCommand);
           stage.hear(*command);
         });
@@ -68,9 +73,12 @@ int main(int argc, char** argv) {
           stage.hear(excitation.value_or(Excitation{}));  // one that cannot be read is counted all the same
         });
         process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
-          const auto order = wire::decode(message);
+          const auto order = wire::open(message, options.keys.order);
           if (!order) return process.reject(wire::kOperator);
           stage.hear(*order);
+        });
+        process.listens_to<fathom_lcm::answer_t>(wire::kAnswer, [&](const auto& message) {
+          if (const auto answer = wire::open(message, options.keys.answer)) stage.hear(*answer);
         });
         process.on<fathom_lcm::lockstep_ack_t>(runtime::kLockstepAck, [&](const auto& ack) { stage.hear(ack); });
         process.on<fathom_lcm::process_info_t>("PROCESS_INFO", [&](const auto& info) { stage.hear(info); });

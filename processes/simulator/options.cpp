@@ -56,8 +56,7 @@ std::vector<Operator> Options::schedule() const {
                         .order = word == "abort"    ? ""
                                  : word == "enable" ? "identify"
                                                     : word,
-                        .token = token,
-                        .sequence = utime_after(setup.origin, seconds)});
+                        .authentic = true});
   }
   std::stable_sort(schedule.begin(), schedule.end(),
                    [](const Operator& a, const Operator& b) { return a.utime < b.utime; });

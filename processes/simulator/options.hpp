@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/operator_key.hpp"
 #include "common/samples/commands.hpp"
 #include "common/simulation/simulator.hpp"
 
@@ -24,10 +25,10 @@ struct Options {
   std::string camera_at;  ///< "tcp:PORT": the camera sends its pictures there, to camera_driver; empty: on CAMERA
   std::string drivers;    ///< file of the drivers that are fed with bytes; empty: their channels are spoken on
   std::string manoeuvre;  ///< preset that is flown here, whatever is commanded; empty: commands are obeyed
-  std::string token{};    ///< with which its own orders and those of others are believed
+  OperatorKeys keys{};    ///< with which its own orders are signed and those of others believed
 
   void add_to(CLI::App& app);
-  /// The operator's orders in the order of their times (their utime). InputError for a bad one.
+  /// The operator's orders in the order of their times (their utime), not numbered yet. InputError for a bad one.
   [[nodiscard]] std::vector<Operator> schedule() const;
   /// InputError for words that do not go together.
   void check() const;

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 
 #include "common/base/error.hpp"
 #include "common/runtime/self.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
+#include "common/wire/signature.hpp"
 #include "processes/simulator/speech.hpp"
 
 namespace fathom::simulator {
@@ -23,6 +25,7 @@ constexpr double kComplain = 5.0;                    // s between two lines abou
 constexpr double kAfterwards = 2.0;                  // s of virtual time after the supervisor's end
 constexpr double kToArm = 5.0;                       // s that a supervisor may take to obey
 constexpr std::chrono::milliseconds kLinesPause{1};  // between two looks at the instruments' lines
+constexpr double kAnswer = 0.5;                      // s between two words about what an order must quote
 constexpr double kTooLate = 0.5;                     // intervals behind the wall's clock that count as late
 
 void poll_for(std::span<const int> descriptors, double seconds) {
@@ -51,7 +54,7 @@ Stage::Stage(runtime::Process& process, simulation::Simulator& simulator, Darkro
       options_{options},
       instruments_{instruments},
       schedule_{options.schedule()},
-      gate_{options.token},
+      gate_{static_cast<std::int64_t>(options.setup.seed % 1'000'000'000U) + 1},  // the same run gives the same log
       pilot_{pilot} {
   if (options.wait_for.empty()) return;
   conductor_.emplace(options.wait_for);
@@ -79,8 +82,28 @@ void Stage::hear(const Operator& order) {
     --own_orders_;
     return;
   }
-  gate_.hear(order, simulator_.now());
+  answers_.push_back(gate_.hear(order, simulator_.now()));
   if (order.abort) schedule_.resize(next_order_);  // nobody's schedule arms again what an operator has stopped
+}
+
+void Stage::hear(const Answer& answer) {
+  if (answer.gate && answer.authentic && answer.process != "simulator") driver_ = answer;
+}
+
+void Stage::say(Answer answer) {
+  answer.process = "simulator";
+  process_.publish(wire::kAnswer, wire::encode_signed(answer, options_.keys.answer));
+}
+
+void Stage::answer() {
+  if (driven()) return answers_.clear();  // its driver answers
+  const Utime now = simulator_.now();
+  if (!answered_ || seconds_between(*answered_, now) >= kAnswer - 1e-9) {
+    answered_ = now;
+    say(gate_.answer(now));
+  }
+  for (Answer& each : answers_) say(std::exchange(each, {}));
+  answers_.clear();
 }
 
 void Stage::hear(const fathom_lcm::lockstep_ack_t& ack) {
@@ -152,10 +175,7 @@ void Stage::begin() {
     simulator_.begin_at(origin);
     darkroom_.begin_at(origin);
     if (instruments_ != nullptr) instruments_->begin_at(origin);
-    for (Operator& order : schedule_) {
-      order.utime += origin - planned;
-      order.sequence += origin - planned;
-    }
+    for (Operator& order : schedule_) order.utime += origin - planned;
   }
   advance();
 }
@@ -230,11 +250,14 @@ void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
 
 void Stage::give_orders() {
   while (next_order_ < schedule_.size() && schedule_[next_order_].utime <= simulator_.now()) {
+    if (driven() && !driver_) return;  // until it has told what an order must quote
     Operator order = schedule_[next_order_++];
     order.utime = schedule_[next_order_ - 1].utime = simulator_.now();
-    gate_.hear(order, simulator_.now());
+    order.challenge = driven() ? driver_->challenge : gate_.challenge();
+    order.sequence = (driven() ? driver_->accepted : gate_.accepted()) + 1;
+    answers_.push_back(gate_.hear(order, simulator_.now()));
     ++own_orders_;
-    process_.publish(wire::kOperator, wire::encode(order));
+    process_.publish(wire::kOperator, wire::encode_signed(order, options_.keys.order));
     process_.log_info("operator: " + (order.abort ? std::string{"abort"} : order.order));
     if (order.abort) schedule_.resize(next_order_);
   }
@@ -259,6 +282,7 @@ void Stage::advance() {
       {.utime = utime, .tau = gate_.wrench(utime), .life = 2.0 * static_cast<double>(simulator_.interval()) * 1e-6});
   const std::vector<simulation::Sample>& samples = simulator_.step();
   said_ = {};
+  answer();
   give_orders();
   if (has_lines()) {
     for (std::size_t i = 0; i < samples.size(); ++i) waiting_.push_back({simulator_.due()[i], samples[i]});
@@ -282,6 +306,7 @@ runtime::Process::Condition Stage::condition() const {
                                  : "zero thrust: ",
                 std::string{reason}.c_str());
   std::string detail = text;
+  if (const std::string forged = gate_.forgeries(); !forged.empty()) detail += ", " + forged;
   if (gate_.hears_stranger(simulator_.now())) detail += std::string(", ") + driver::ThrusterGate::kStranger;
   std::string unhealthy = simulator_.complaint();
   if (unhealthy.empty() && late_ > 0) {
@@ -294,7 +319,8 @@ runtime::Process::Condition Stage::condition() const {
 // A change of what reaches the thrusters is said at once.
 void Stage::tell_changes() {
   const std::string kind = (!commanded() ? "" : std::string{gate_.reason(simulator_.now())}) +
-                           (gate_.hears_stranger(simulator_.now()) ? "|and a stranger|" : "|") + simulator_.complaint();
+                           (gate_.hears_stranger(simulator_.now()) ? "|and a stranger|" : "|") +
+                           (gate_.hears_forgeries(simulator_.now()) ? "forged|" : "|") + simulator_.complaint();
   if (kind == told_) return;
   told_ = kind;
   if (!simulator_.complaint().empty()) process_.log_warning(simulator_.complaint());

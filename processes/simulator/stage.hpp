@@ -35,6 +35,8 @@ class Stage {
   void hear(const WrenchCommand& command);
   void hear(const Excitation& excitation);
   void hear(const Operator& order);
+  /// Of a thruster driver, where one moves the thrusters: what our own orders must quote.
+  void hear(const Answer& answer);
   void hear(const fathom_lcm::lockstep_ack_t& ack);
   /// Another simulator on the same bus is refused: the newcomer goes.
   void hear(const fathom_lcm::process_info_t& info);
@@ -55,6 +57,9 @@ class Stage {
   void conduct(std::span<const int> descriptors, int milliseconds);
   void advance();
   void give_orders();
+  void say(Answer answer);
+  /// Once in a while, and after an order, what became of it: within an interval, where lockstep keeps its place.
+  void answer();
   void tell_changes();
   [[nodiscard]] bool interval_over() const;
   /// Drivers hear it, and stamp what they hear with the wall's time.
@@ -78,6 +83,9 @@ class Stage {
   std::size_t next_order_{};
   int own_orders_{};  ///< said by ourselves and still to come back
   driver::ThrusterGate gate_;
+  std::optional<Answer> driver_;  ///< the thruster driver's last word
+  std::vector<Answer> answers_;   ///< to orders of others, still to be said
+  std::optional<Utime> answered_;
   std::optional<model::ManoeuvrePilot> pilot_;  ///< flies in place of commands
   std::optional<runtime::Conductor> conductor_;
   State state_{State::kLooking};

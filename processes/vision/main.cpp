@@ -43,8 +43,9 @@ Rig rig(const std::string& vehicle, const Config& config) {
 int main(int argc, char** argv) {
   bool debug = false;
   double debug_every = 0.2;  // s between two drawn pictures
+  const runtime::Program program{"vision", "Measures tags, optical flow and laser range in pictures."};
   return runtime::main(
-      "vision", argc, argv,
+      program, argc, argv,
       [&](runtime::Process& process) {
         vision::use_one_core();
         process.publishes<fathom_lcm::tag_pose_t>(wire::kTagPose);

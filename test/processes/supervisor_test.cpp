@@ -1,11 +1,10 @@
 // The supervisor as a process on a bus in real time: whom it misses, and whose clock it does not believe.
 #include <doctest/doctest.h>
 
-#include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 
 #include "common/wire/minds.hpp"
-#include "test/support/bus.hpp"
+#include "test/support/orders.hpp"
 
 namespace fathom {
 namespace {
@@ -26,6 +25,7 @@ struct Beside {
                             test::file("config/sites/tank.yaml") + " --config " +
                             test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
   bool vehicle{true};  // its driver says HEALTH
+  std::int64_t accepted{};
 
   void health(const std::string& process, Utime utime) {
     fathom_lcm::health_t message{};
@@ -35,19 +35,20 @@ struct Beside {
     message.state = "running";
     bus.publish("HEALTH", message);
   }
-  void order(const std::string& token, Utime utime) {
-    fathom_lcm::operator_t message{};
-    message.utime = utime;
-    message.enable = true;
-    message.token = token;
-    message.sequence = utime;
-    bus.publish("OPERATOR", message);
+  void answer() {
+    const Answer gate{.utime = now(), .process = "thruster_driver", .gate = true, .challenge = 7, .accepted = accepted};
+    bus.publish("ANSWER", wire::encode_signed(gate, test::simulated_keys().answer));
+  }
+  void order(Utime utime, const OperatorKeys& keys = test::simulated_keys()) {
+    const Operator arm{.utime = utime, .sequence = ++accepted, .challenge = 7, .enable = true};
+    bus.publish("OPERATOR", wire::encode_signed(arm, keys.order));
   }
   void run(double seconds) {
     for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
       if (i % 20 == 0) {
         for (const char* process : {"estimator", "identifier", "recorder"}) health(process, now());
         if (vehicle) health("thruster_driver", now());
+        answer();
       }
       StateEstimate state{.utime = now(), .valid = true};
       state.p_WB = {0.0, 0.0, 0.75};
@@ -65,20 +66,18 @@ struct Beside {
   [[nodiscard]] bool goes_on() const { return said().starts_with("approach: ") || said().starts_with("excite: "); }
 };
 
-constexpr char kToken[] = "only-for-simulation";
-
 }  // namespace
 
 TEST_CASE("supervisor: messages with another clock's time, and orders that nobody may give, leave a trial as it is") {
   Beside beside;
   beside.run(2.0);
-  beside.order(kToken, now());
+  beside.order(now());
   beside.run(1.0);
   REQUIRE_MESSAGE(beside.goes_on(), beside.said());
   constexpr Utime kMinute = 60'000'000;
   for (int i = 0; i < 5; ++i) {  // a host whose clock is late, and somebody who tries
     beside.health("board", now() - kMinute);
-    beside.order("guess", now() - kMinute);
+    beside.order(now() - kMinute, keys_from(Key{}));
     beside.run(0.2);
     CHECK_MESSAGE(beside.goes_on(), beside.said());
   }
@@ -88,19 +87,19 @@ TEST_CASE(
     "supervisor: a thruster driver that fell silent ends the trial, and it is not armed again before one speaks") {
   Beside beside;
   beside.run(2.0);
-  beside.order(kToken, now());
+  beside.order(now());
   beside.run(1.0);
   REQUIRE_MESSAGE(beside.goes_on(), beside.said());
   beside.vehicle = false;
   beside.run(13.0);
   CHECK_MESSAGE(beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1"), beside.said());
-  beside.order(kToken, now());
+  beside.order(now());
   beside.run(0.5);
   CHECK_MESSAGE(beside.said().find("not armed: thruster_driver is silent: no HEALTH for 1") != std::string::npos,
                 beside.said());
   beside.vehicle = true;
   beside.run(1.0);
-  beside.order(kToken, now());
+  beside.order(now());
   beside.run(0.5);
   CHECK_MESSAGE(beside.goes_on(), beside.said());
 }

@@ -1,12 +1,10 @@
 // The thruster driver as a process: who may arm it, what it obeys, and how fast it lets go.
 #include <doctest/doctest.h>
 
-#include <fathom_lcm/operator_t.hpp>
-#include <fathom_lcm/wrench_command_t.hpp>
 #include <fstream>
 
 #include "common/link/server.hpp"
-#include "test/support/bus.hpp"
+#include "test/support/orders.hpp"
 #include "test/support/wire_data.hpp"
 
 namespace fathom {
@@ -14,25 +12,14 @@ namespace {
 
 using test::Background;
 using test::Bus;
-using test::now;
 using test::program;
 using test::Scratch;
-
-/// The sequence that a commander must name.
-std::int64_t arm(Bus& bus, const std::string& token) {
-  fathom_lcm::operator_t order{};
-  order.utime = now();
-  order.enable = true;
-  order.token = token;
-  order.sequence = order.utime;
-  bus.publish("OPERATOR", order);
-  return order.sequence;
-}
 
 }  // namespace
 
 TEST_CASE(
-    "thruster_driver: arms by token alone, obeys, goes to zero within half a second, hears an abort, and says what was "
+    "thruster_driver: arms by its key alone, obeys, goes to zero within half a second, hears an abort, and says what "
+    "was "
     "applied") {
   for (const std::string protocol : {"text", "motor_test", "rc_override", "dry_run"}) {
     CAPTURE(protocol);
@@ -63,38 +50,33 @@ TEST_CASE(
     CAPTURE(test::read_bytes(scratch.path("driver.text")));
     const auto thrust = [&] { return bus.thrusters.empty() ? -1.0 : bus.thrusters.back().tau[0]; };
     CHECK(thrust() == doctest::Approx(0.0));
-    std::int64_t armed_by = 0;
+    test::Commander commander{bus};
     const auto command = [&](double seconds) {
       for (int i = 0; i < static_cast<int>(20 * seconds); ++i) {
-        fathom_lcm::wrench_command_t message{};
-        message.utime = now();
-        message.tau[0] = 20.0;
-        message.life = 0.5;
-        message.armed_by = armed_by;
-        bus.publish("WRENCH_COMMAND", message);
+        commander.say(test::ahead(20.0));
         bus.listen(0.05);
       }
     };
     command(0.7);
     CHECK(thrust() == doctest::Approx(0.0));  // nobody has armed
-    armed_by = arm(bus, "a guess");
+    commander.obey(test::give(bus, {.enable = true}, keys_from(Key{1, 2, 3})));
     command(0.4);
     CHECK(thrust() == doctest::Approx(0.0));
-    const std::int64_t order = arm(bus, "only-for-simulation");
+    commander.armed_by = 0;
+    const auto order = test::give(bus, {.enable = true});
     command(0.4);
     CHECK(thrust() == doctest::Approx(0.0));  // who was publishing before
-    armed_by = order;
+    commander.obey(order);
     command(1.0);
     CHECK(thrust() == doctest::Approx(20.0).epsilon(0.05));  // the rig rounds to a microsecond
     bus.listen(0.9);                                         // half a second, and the rig's next report
     CHECK(thrust() == doctest::Approx(0.0));
     command(0.7);
     CHECK(thrust() > 15.0);
-    fathom_lcm::operator_t abort{};
-    abort.utime = now();
-    abort.abort = true;
-    bus.publish("OPERATOR", abort);
+    const auto abort = test::give(bus, {.sequence = 77, .abort = true});
     command(0.4);
+    REQUIRE(bus.gate() != nullptr);
+    CHECK(std::ranges::any_of(bus.answers, [&](const auto& each) { return each.sequence == abort.sequence; }));
     CHECK(thrust() == doctest::Approx(0.0));
   }
 }
@@ -112,18 +94,15 @@ TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels,
                               test::file("config/vehicles/bluerov2.yaml") + " --config " +
                               test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
   bus.listen(1.5);
-  const std::int64_t armed_by = arm(bus, "only-for-simulation");
+  test::Commander commander{bus};
+  commander.obey(test::give(bus, {.enable = true}));
   (void)vehicle.wait(0.1);
   std::string bytes;
   for (int i = 0; i < 20; ++i) {
-    fathom_lcm::wrench_command_t message{};
-    message.utime = now();
-    message.tau[0] = 10.0;
-    message.tau[2] = 5.0;   // down
-    message.tau[5] = -0.4;  // to port
-    message.life = 0.5;
-    message.armed_by = armed_by;
-    bus.publish("WRENCH_COMMAND", message);
+    Vector6d tau = test::ahead(10.0);
+    tau[2] = 5.0;   // down
+    tau[5] = -0.4;  // to port
+    commander.say(tau);
     bus.listen(0.05);
     bytes += vehicle.wait(0.0);
   }

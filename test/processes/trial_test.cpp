@@ -116,7 +116,7 @@ TEST_CASE("trial: an abort stops the thrusters at once and for good") {
   CHECK(live.excitation.back().phase == "aborted");
 }
 
-TEST_CASE("trial: a replayed log does not arm, and a token that does not match is told") {
+TEST_CASE("trial: a replayed log does not arm, and its orders are named") {
   if (!private_network()) return;
   const Scratch scratch;
   const auto ran = trial(scratch, "run.lcmlog", "--duration 4 --seed 4 --order 1=identify");
@@ -131,7 +131,7 @@ TEST_CASE("trial: a replayed log does not arm, and a token that does not match i
       program("thruster_driver") + " --config " + config + " --config " + file("config/vehicles/bluerov2.yaml") +
       " --config " + file("config/operators/simulated.yaml") + " & driver=\\$!\nsleep 0.5\nlcm-logplayer --speed=4 " +
       scratch.path("run.lcmlog") + " >/dev/null 2>&1\n" + program("fathom") + " status\nkill \\$driver\nwait\"");
-  CHECK_MESSAGE(replayed.says("orders refused 1 (not of this time"), replayed.text);
+  CHECK_MESSAGE(replayed.says("orders refused 1 (a replay: "), replayed.text);
   CHECK_MESSAGE(replayed.says("zero thrust: not armed"), replayed.text);
 }
 

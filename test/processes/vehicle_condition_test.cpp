@@ -6,10 +6,11 @@
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
+#include <filesystem>
 #include <fstream>
 
 #include "common/wire/minds.hpp"
-#include "test/support/bus.hpp"
+#include "test/support/orders.hpp"
 
 namespace fathom {
 namespace {
@@ -119,19 +120,10 @@ TEST_CASE("vehicle: outputs that stay neutral under a command are told within th
   Behind behind{"--condition 0:obeys=off"};
   behind.bus.listen(2.5);
   (void)behind.complaints();
-  fathom_lcm::operator_t order{};
-  order.utime = now();
-  order.enable = true;
-  order.token = "only-for-simulation";
-  order.sequence = order.utime;
-  behind.bus.publish("OPERATOR", order);
+  test::Commander commander{behind.bus};
+  commander.obey(test::give(behind.bus, {.enable = true}));
   for (int i = 0; i < 60; ++i) {
-    fathom_lcm::wrench_command_t message{};
-    message.utime = now();
-    message.tau[0] = 50.0;
-    message.life = 0.5;
-    message.armed_by = order.sequence;
-    behind.bus.publish("WRENCH_COMMAND", message);
+    commander.say(test::ahead(50.0));
     behind.bus.listen(0.05);
   }
   const std::string told = behind.complaints();
@@ -148,6 +140,7 @@ namespace {
 struct Trial {
   Behind behind;
   bool recorder{true};
+  std::string full{};  ///< what the recorder says of its disk; empty: all is well
   std::string vehicle_file;
   Background supervisor;
 
@@ -161,19 +154,20 @@ struct Trial {
            vehicle_file + " --config " + test::file("config/sites/deep.yaml") + " --config " +
            test::file("config/operators/simulated.yaml") + " --in '" + behind.bus.url + "'";
   }
-  void health(const std::string& process) {
+  void health(const std::string& process, const std::string& trouble = "") {
     fathom_lcm::health_t message{};
     message.utime = now();
     message.process = process;
     message.host = "vehicle";
-    message.state = "running";
+    message.state = trouble.empty() ? "running" : "unhealthy";
+    message.detail = trouble;
     behind.bus.publish("HEALTH", message);
   }
   void run(double seconds) {
     for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
       if (i % 10 == 0) {
         for (const char* process : {"estimator", "identifier"}) health(process);
-        if (recorder) health("recorder");
+        if (recorder) health("recorder", full);
       }
       StateEstimate state{.utime = now(), .valid = true};
       state.p_WB = {0.0, 0.0, 5.0};
@@ -184,6 +178,7 @@ struct Trial {
   /// What `fathom arm` prints, with "code N" at its end.
   std::string arm() {
     const std::string text = behind.scratch.path("arm.text");
+    std::filesystem::remove(text);  // of the arming before
     {
       const Background arms{behind.scratch, "arms",
                             "bash -c \"" + program("fathom") + " arm --operator " +
@@ -244,6 +239,25 @@ TEST_CASE(
   trial.run(0.5);
   CHECK(trial.thrust().tau[2] == doctest::Approx(0.0));
   CHECK(trial.said().starts_with("aborted: aborted by the operator"));
+}
+
+TEST_CASE(
+    "record: a trial whose disk is nearly full has no thrust at once, ends with that reason, and is not armed again") {
+  Trial trial{""};
+  trial.run(4.0);
+  REQUIRE(says(trial.arm(), "code 0"));
+  trial.run(2.0);
+  REQUIRE_FALSE(trial.said().starts_with("aborted"));
+  trial.full = "the disk is nearly full: 20.0 MB free, full in 95 s at 0.2 MB/s; 10 messages written";
+  trial.run(1.5);
+  CHECK(trial.thrust().tau[2] == doctest::Approx(0.0));
+  CHECK(std::abs(trial.thrust().tau[0]) < 1e-9);
+  trial.run(7.0);
+  CHECK_MESSAGE(trial.said().starts_with("aborted: recorder is unhealthy: the disk is nearly full: 20.0 MB free"),
+                trial.said());
+  const std::string again = trial.arm();
+  CHECK_MESSAGE(says(again, "NOT OK  recorder        unhealthy: the disk is nearly full: 20.0 MB free"), again);
+  CHECK(says(again, "code 1"));
 }
 
 }  // namespace fathom

@@ -4,9 +4,12 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
 #include <fathom_lcm/vehicle_condition_t.hpp>
+#include <fathom_lcm/wrench_command_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <string>
 #include <vector>
@@ -25,6 +28,9 @@ class Bus {
     REQUIRE(lcm_.good());
     lcm_.subscribeFunction("HEALTH", &Bus::on_health, this);
     lcm_.subscribeFunction("THRUSTERS", &Bus::on_thrusters, this);
+    lcm_.subscribeFunction("ANSWER", &Bus::on_answer, this);
+    lcm_.subscribeFunction("OPERATOR", &Bus::on_order, this);
+    lcm_.subscribeFunction("WRENCH_COMMAND", &Bus::on_command, this);
     lcm_.subscribeFunction("VEHICLE", &Bus::on_vehicle, this);
   }
   void listen(double seconds) {
@@ -38,6 +44,24 @@ class Bus {
   std::string url;
   std::vector<fathom_lcm::health_t> health;
   std::vector<fathom_lcm::thrusters_t> thrusters;
+  std::vector<fathom_lcm::answer_t> answers;
+  std::vector<fathom_lcm::operator_t> orders;
+  std::vector<fathom_lcm::wrench_command_t> commands;
+
+  /// The newest word of who moves the thrusters.
+  [[nodiscard]] const fathom_lcm::answer_t* gate() const {
+    for (auto each = answers.rbegin(); each != answers.rend(); ++each) {
+      if (each->gate != 0) return &*each;
+    }
+    return nullptr;
+  }
+  /// The newest that a process said of itself.
+  [[nodiscard]] std::string said_of(const std::string& process) const {
+    for (auto each = health.rbegin(); each != health.rend(); ++each) {
+      if (each->process == process) return each->state + ": " + each->detail;
+    }
+    return {};
+  }
   std::vector<fathom_lcm::vehicle_condition_t> vehicle;
 
  private:
@@ -49,6 +73,16 @@ class Bus {
   static void on_thrusters(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::thrusters_t* message,
                            Bus* bus) {
     bus->thrusters.push_back(*message);
+  }
+  static void on_answer(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::answer_t* message, Bus* bus) {
+    bus->answers.push_back(*message);
+  }
+  static void on_order(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::operator_t* message, Bus* bus) {
+    bus->orders.push_back(*message);
+  }
+  static void on_command(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::wrench_command_t* message,
+                         Bus* bus) {
+    bus->commands.push_back(*message);
   }
   static void on_vehicle(const lcm::ReceiveBuffer*, const std::string&, const fathom_lcm::vehicle_condition_t* message,
                          Bus* bus) {

@@ -62,9 +62,14 @@ inline void fill(Fill& f, OpticalFlow& s) {
   s = {f.utime(), f.word(), f.number(), f.matrix<Eigen::Vector2d>(), f.number(), f.whole()};
 }
 inline void fill(Fill& f, LaserRange& s) { s = {f.utime(), f.word(), f.matrix<Vector3>(), f.number()}; }
-inline void fill(Fill& f, WrenchCommand& s) { s = {f.utime(), f.matrix<Vector6d>(), f.number(), f.word(), f.whole()}; }
+inline void fill(Fill& f, WrenchCommand& s) {
+  s = {f.utime(), f.matrix<Vector6d>(), f.number(), f.word(), f.whole(), f.whole(), f.whole()};
+}
 inline void fill(Fill& f, Operator& s) {
-  s = {f.utime(), false, true, f.word(), f.matrix<Vector6d>(), f.word(), f.number(), f.word(), f.whole()};
+  s = {f.utime(), f.whole(), f.whole(), false, true, f.word(), f.matrix<Vector6d>(), f.word(), f.number(), f.number()};
+}
+inline void fill(Fill& f, Answer& s) {
+  s = {f.utime(), f.word(), true, f.whole(), f.whole(), f.whole(), true, true, f.word()};
 }
 inline void fill(Fill& f, Excitation& s) {
   s = {f.utime(), true,     f.word(),   f.word(),   f.number(), f.number(), f.matrix<Vector6d>(),

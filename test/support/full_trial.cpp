@@ -90,7 +90,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
             : std::make_unique<joint::LiveIdentifier>(s.identifier, s.vehicle);
   joint::LiveIdentifier& identifier = *mind;
   estimation::Navigator navigator{navigator_settings, places};
-  excitation::Supervisor supervisor{s.supervisor, s.vehicle, "secret"};
+  excitation::Supervisor supervisor{ready(s.supervisor, s.vehicle)};
   std::unique_ptr<diagnosis::LiveDiagnoser> diagnoser;
   if (diagnose)
     diagnoser = std::make_unique<diagnosis::LiveDiagnoser>(diagnosis::LiveSettings::from(pipeline.section("diagnoser")),

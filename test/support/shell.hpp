@@ -33,9 +33,13 @@ inline Ran shell(const std::string& command) {
   return ran;
 }
 
+#ifndef FATHOM_EMULATOR  // what runs programs that were built for another processor
+#define FATHOM_EMULATOR ""
+#endif
+
 /// A program of this build, quoted.
 inline std::string program(const std::string& name) {
-  return std::string{"'"} + FATHOM_BINARY_DIR + "/bin/" + name + "'";
+  return std::string{FATHOM_EMULATOR " '"} + FATHOM_BINARY_DIR + "/bin/" + name + "'";
 }
 /// A file of the repository, quoted.
 inline std::string file(const std::string& path) { return std::string{"'"} + FATHOM_SOURCE_DIR + "/" + path + "'"; }

@@ -125,8 +125,29 @@ class TankPlant {
   std::int64_t steps_{0};
 };
 
-inline Operator order_to_arm(Utime utime, const std::string& token = "secret") {
-  return {.utime = utime, .enable = true, .order = "identify", .token = token, .sequence = utime};
+inline constexpr std::int64_t kChallenge = 4711;  ///< of the thrusters
+
+/// Of the last order, of whatever test.
+inline std::int64_t& last_number() {
+  static std::int64_t number = 0;
+  return number;
+}
+
+/// A supervisor that has heard who moves the thrusters.
+inline excitation::Supervisor ready(const excitation::SupervisorSettings& settings, const model::Vehicle& vehicle) {
+  excitation::Supervisor supervisor{settings, vehicle};
+  supervisor.hear(Answer{.gate = true, .challenge = kChallenge, .accepted = last_number(), .authentic = true});
+  return supervisor;
+}
+
+/// One after the other: each has a number of its own, above those before.
+inline Operator order_to_arm(Utime utime) {
+  return {.utime = utime,
+          .sequence = ++last_number(),
+          .challenge = kChallenge,
+          .enable = true,
+          .order = "identify",
+          .authentic = true};
 }
 
 }  // namespace fathom::test

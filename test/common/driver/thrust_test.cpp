@@ -12,20 +12,30 @@ using namespace fathom::driver;
 namespace {
 
 constexpr Utime kStart = 1'700'000'000'000'000;
-const std::string kToken = "a word that only they know";
+constexpr std::int64_t kChallenge = 4711;  // the driver's challenge
 
 Utime at(double seconds) { return utime_after(kStart, seconds); }
+
+/// An order's number: hundredths of seconds, so that each has its own.
+std::int64_t number(double seconds) { return std::llround(100.0 * seconds); }
 
 /// Of a commander that was armed at kArmed, or at another time.
 constexpr double kArmed = 0.5;
 WrenchCommand surge(double seconds, const std::string& commander = "supervisor", double armed = kArmed) {
-  WrenchCommand command{.utime = at(seconds), .life = 0.5, .commander = commander, .armed_by = at(armed)};
+  WrenchCommand command{.utime = at(seconds),
+                        .life = 0.5,
+                        .commander = commander,
+                        .armed_by = number(armed),
+                        .challenge = kChallenge,
+                        .sequence = std::llround(1e4 * seconds),
+                        .authentic = true};
   command.tau(0) = 10.0;
   return command;
 }
 
-Operator arm(double seconds, const std::string& token = kToken) {
-  return {.utime = at(seconds), .enable = true, .token = token, .sequence = at(seconds)};
+Operator arm(double seconds) {
+  return {
+      .utime = at(seconds), .sequence = number(seconds), .challenge = kChallenge, .enable = true, .authentic = true};
 }
 
 }  // namespace
@@ -33,7 +43,7 @@ Operator arm(double seconds, const std::string& token = kToken) {
 TEST_CASE("gate: who commands before the operator has armed, or without having been armed, is never obeyed") {
   for (const double claimed : {0.0, 1e6, 6.0}) {  // of no order, or of one that never was
     CAPTURE(claimed);
-    ThrusterGate gate{kToken};
+    ThrusterGate gate{kChallenge};
     const auto stray = [&](double now) {
       WrenchCommand command = surge(now, "stray", claimed);
       if (claimed == 0.0) command.armed_by = 0;
@@ -66,7 +76,7 @@ TEST_CASE("gate: who commands before the operator has armed, or without having b
 }
 
 TEST_CASE("gate: an order that the commander did not hear leaves it obeyed, and a new arming does not stop it") {
-  ThrusterGate gate{kToken};
+  ThrusterGate gate{kChallenge};
   gate.hear(arm(kArmed), at(kArmed));
   gate.hear(surge(1.0), at(1.0));
   gate.hear(arm(1.05), at(1.05));  // "identify", said again
@@ -81,7 +91,7 @@ TEST_CASE("gate: an order that the commander did not hear leaves it obeyed, and 
 }
 
 TEST_CASE("gate: a command is obeyed until half a second after the last, or for its life if that is shorter") {
-  ThrusterGate gate{kToken};
+  ThrusterGate gate{kChallenge};
   gate.hear(arm(kArmed), at(kArmed));
   CHECK(gate.reason(at(0.6)) == "no command");
   gate.hear(surge(1.0), at(1.0));
@@ -96,44 +106,96 @@ TEST_CASE("gate: a command is obeyed until half a second after the last, or for 
 }
 
 TEST_CASE("gate: a command of another time and numbers that are none are refused") {
-  ThrusterGate gate{kToken};
+  ThrusterGate gate{kChallenge};
   gate.hear(arm(kArmed), at(kArmed));
   gate.hear(surge(1.0), at(3.0));
   CHECK(gate.reason(at(3.0)) == "commands are not of now");
   gate.hear(surge(3600.0), at(3.1));
   CHECK(gate.wrench(at(3.1)).isZero());
   WrenchCommand command = surge(4.0);
+  command.sequence = number(1e6);
   command.tau(1) = std::nan("");
   gate.hear(command, at(4.0));
   CHECK(gate.wrench(at(4.0)).isZero());
 }
 
-TEST_CASE("gate: an order with a wrong token, heard before or of another time does not arm, and is counted") {
-  ThrusterGate gate{kToken};
+TEST_CASE(
+    "gate: an order that nobody signed, heard before, of another life or of another time does not arm, and is "
+    "counted") {
+  ThrusterGate gate{kChallenge};
   const auto refused = [&](const Operator& order, double now, const char* why) {
     const auto before = gate.refused();
-    gate.hear(order, at(now));
+    const Answer answer = gate.hear(order, at(now));
     CHECK_FALSE(gate.armed());
+    CHECK_FALSE(answer.done);
+    CHECK(answer.sequence == order.sequence);
+    CHECK(answer.text == gate.refusal());
     CHECK(gate.refused() == before + 1);
     CHECK(std::string{gate.refusal()}.find(why) != std::string::npos);
   };
-  refused(arm(1.0, "guess"), 1.0, "token");
-  refused(arm(1.0, ""), 1.0, "token");
-  refused(arm(1.0), 100.0, "replayed");  // a log played back
-  refused(arm(100.0), 1.0, "replayed");  // or from a clock that is ahead
+  Operator guess = arm(1.0);
+  guess.authentic = false;
+  refused(guess, 1.0, "not signed");
+  Operator before = arm(1.0);
+  before.challenge = 4710;
+  refused(before, 1.0, "started again");
+  refused(arm(1.0), 100.0, "not of this time");  // a log played back
+  refused(arm(9.0), 1.0, "not of this time");
   const Operator good = arm(2.0);
-  gate.hear(good, at(2.0));
+  CHECK(gate.hear(good, at(2.0)).done);
   CHECK(gate.armed());
+  CHECK(gate.hear(good, at(2.1)).text == "armed");  // again, since its answer was lost
   gate.hear(Operator{.utime = at(2.5), .abort = true}, at(2.5));
-  refused(good, 3.0, "before");  // the same message again, within its time
-  ThrusterGate open{std::string{}};
-  open.hear(arm(1.0, ""), at(1.0));
-  CHECK_FALSE(open.armed());  // no token is no permission
+  CHECK_FALSE(gate.hear(good, at(3.0)).done);  // the same message again, within its time
+  CHECK_FALSE(gate.armed());
+  Operator other = arm(2.0);
+  other.utime = at(2.01);
+  refused(other, 3.0, "before");
+  ThrusterGate successor{kChallenge + 1};  // of a driver that has died .8 s after it was armed
+  CHECK_FALSE(successor.hear(good, at(2.8)).done);
+  CHECK_FALSE(successor.armed());
+}
+
+TEST_CASE("gate: commands that nobody signed or that are played again move nothing, stop nothing, and are named") {
+  ThrusterGate gate{kChallenge};
+  gate.hear(arm(kArmed), at(kArmed));
+  double t = 1.0;
+  for (int i = 0; i < 100; ++i, t += 0.05) {
+    const WrenchCommand good = surge(t);
+    gate.hear(good, at(t));
+    WrenchCommand forged = good;  // every field copied but the signature
+    forged.tau(0) = 100.0;
+    ++forged.sequence;
+    forged.authentic = false;
+    gate.hear(forged, at(t + 0.01));
+    CHECK(gate.wrench(at(t + 0.01))(0) == 10.0);
+    gate.hear(good, at(t + 0.02));  // the same again, and an old one
+    gate.hear(surge(1.0), at(t + 0.02));
+    CHECK(gate.wrench(at(t + 0.02))(0) == 10.0);
+  }
+  CHECK(gate.hears_forgeries(at(t)));
+  CHECK(gate.forgeries() ==
+        "forged commands refused: 100 not signed with this vehicle's key, 200 replayed, the last in the name of "
+        "'supervisor'");
+  CHECK_FALSE(gate.hears_forgeries(at(t + 1.0)));
+  WrenchCommand rude = surge(t, "\x1b[2J");
+  rude.authentic = false;
+  gate.hear(rude, at(t));
+  CHECK(gate.forgeries().ends_with("'?[2J'"));
+  ThrusterGate alone{kChallenge};  // forged commands to one whom nobody commands
+  alone.hear(arm(kArmed), at(kArmed));
+  for (double now = 1.0; now < 2.0; now += 0.005) {
+    WrenchCommand forged = surge(now);
+    forged.authentic = false;
+    alone.hear(forged, at(now));
+    CHECK(alone.wrench(at(now)).isZero());
+  }
+  CHECK_FALSE(alone.ignores(at(2.0)));  // it stops no trial
 }
 
 TEST_CASE("gate: a log player cannot move the vehicle, not even while it is armed") {
   // Recorded an hour ago: an operator who arms, and commands.
-  ThrusterGate gate{kToken};
+  ThrusterGate gate{kChallenge};
   const auto replay = [&](double now) {
     for (int i = 0; i < 50; ++i) {
       gate.hear(arm(-3600.0 + 0.02 * i), at(now + 0.02 * i));
@@ -147,7 +209,7 @@ TEST_CASE("gate: a log player cannot move the vehicle, not even while it is arme
 }
 
 TEST_CASE("gate: of two that were armed by one order none is obeyed, and the second never takes over") {
-  ThrusterGate gate{kToken};
+  ThrusterGate gate{kChallenge};
   gate.hear(arm(kArmed), at(kArmed));
   for (int i = 0; i < 20; ++i) {
     gate.hear(surge(1.0 + 0.05 * i), at(1.0 + 0.05 * i));
@@ -169,8 +231,8 @@ TEST_CASE("gate: of two that were armed by one order none is obeyed, and the sec
   CHECK(gate.wrench(at(9.6))(0) == 10.0);
 }
 
-TEST_CASE("gate: an abort needs no token, is at once, and holds until it is armed again") {
-  ThrusterGate gate{kToken};
+TEST_CASE("gate: an abort needs no key, is at once, and holds until it is armed again") {
+  ThrusterGate gate{kChallenge};
   gate.hear(arm(kArmed), at(kArmed));
   gate.hear(surge(1.0), at(1.0));
   gate.hear(Operator{.abort = true}, at(1.1));
@@ -188,7 +250,7 @@ TEST_CASE("gate: an abort needs no token, is at once, and holds until it is arme
 }
 
 TEST_CASE("gate: who asks for thrust in vain is told, until it is armed; what is on its way at an abort is not meant") {
-  ThrusterGate successor{kToken};  // of a driver that had been armed
+  ThrusterGate successor{kChallenge};  // of a driver that had been armed
   double t = 1.0;
   for (; t < 1.2; t += 0.05) successor.hear(surge(t), at(t));
   CHECK_FALSE(successor.ignores(at(t)));
@@ -211,7 +273,7 @@ TEST_CASE("gate: who asks for thrust in vain is told, until it is armed; what is
   successor.hear(surge(t + 0.21), at(t + 0.21));
   CHECK_FALSE(successor.ignores(at(t + 0.3)));
 
-  ThrusterGate replayed{kToken};  // commands of another time ask for nothing now
+  ThrusterGate replayed{kChallenge};  // commands of another time ask for nothing now
   for (double s = 0.0; s < 2.0; s += 0.05) replayed.hear(surge(s), at(1000.0 + s));
   CHECK_FALSE(replayed.ignores(at(1002.0)));
 }

@@ -24,7 +24,7 @@ struct RealTime {
     loop.settings.supervisor.needs = {"estimator", "identifier", "thruster_driver or simulator"};
     loop.settings.supervisor.silence = 5.0;
     loop.settings.supervisor.patience = 6.0;
-    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
   }
   void run(double seconds) {
     for (int tenth = 0; tenth < static_cast<int>(std::lround(10.0 * seconds)); ++tenth) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "common/base/health_words.hpp"
+
 namespace fathom::excitation {
 namespace {
 
@@ -53,6 +55,10 @@ TEST_CASE("preflight: each trouble alone refuses, and its line names it") {
   heard.health["recorder"].sample.state = "unhealthy";
   heard.health["recorder"].sample.detail = "the disk is nearly full: 3.0 MB free; make room";
   CHECK(against(heard) == "recorder ");
+  heard = ready();  // what an arming mends does not stand in its way
+  heard.health["thruster_driver"].sample.state = "unhealthy";
+  heard.health["thruster_driver"].sample.detail = std::string{kNotArmedYet} + "; arm again; zero thrust: not armed";
+  CHECK(against(heard).empty());
   heard = ready();
   heard.health["identifier"].age = 4.0;
   CHECK(against(heard) == "identifier ");

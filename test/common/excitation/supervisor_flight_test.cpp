@@ -2,8 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 
+#include "common/base/spatial.hpp"
 #include "test/common/excitation/supervisor_loop.hpp"
 
 namespace fathom::excitation {
@@ -126,6 +129,52 @@ TEST_CASE("supervisor: what is proposed is flown when the operator allows it, ne
   CHECK(loop.said->reason == "flies 'full steps in sway' to tell current from tether_tension");
 }
 
+TEST_CASE("supervisor: line, zigzag and circle are flown on a vehicle, in the open; a circle comes round once") {
+  for (const std::string name : {"line", "zigzag", "circle"}) {
+    CAPTURE(name);
+    Loop loop;
+    loop.settings.supervisor.open_range = 30.0;
+    loop.settings.supervisor.fence.low = {-40.0, -40.0, -5.0};
+    loop.settings.supervisor.fence.high = {40.0, 40.0, 20.0};
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
+    loop.plant.place(loop.settings.supervisor.fence.low * 0.5 + loop.settings.supervisor.fence.high * 0.5);
+    loop.run(0.2);
+    Operator order = flight(loop, name);
+    CHECK(loop.supervisor.hear(order).done);
+    for (int k = 0; k < 300 && !loop.said->active; ++k) loop.run(0.1);
+    REQUIRE(loop.said->signal == name);
+    const auto yaw = [&] { return euler_from_rotation(loop.plant.attitude().toRotationMatrix()).z(); };
+    const Eigen::Vector3d begun = loop.plant.position();
+    const double heading = yaw();
+    double turned = 0.0, last = heading, most = 0.0, least = 0.0, flown = 0.0;
+    for (; loop.said->active && flown < 60.0; flown += 0.1) {
+      loop.run(0.1);
+      turned += wrap_angle(yaw() - last);
+      last = yaw();
+      most = std::max(most, turned);
+      least = std::min(least, turned);
+    }
+    const Eigen::Vector3d way = loop.plant.position() - begun;
+    if (name == "line") {
+      CHECK(flown == doctest::Approx(15.0).epsilon(0.05));
+      CHECK(way.head<2>().norm() > 2.0);
+      CHECK(std::abs(wrap_angle(std::atan2(way.y(), way.x()) - heading)) < 0.1);
+      CHECK(most - least < 0.1);
+    } else if (name == "zigzag") {  // to both sides, beyond the swing of .35 and not far
+      CHECK(flown == doctest::Approx(40.0).epsilon(0.05));
+      CHECK(most > 0.35);
+      CHECK(most < 1.2);
+      CHECK(least < -0.35);
+      CHECK(least > -1.2);
+    } else {
+      CHECK(turned == doctest::Approx(-2.0 * std::numbers::pi).epsilon(0.05));  // to port
+      CHECK(way.norm() < 2.0);
+    }
+    CHECK(std::abs(way.z()) < 0.3);  // the depth is held
+    CHECK(loop.supervisor.reason() == "'" + name + "' is flown");
+  }
+}
+
 TEST_CASE("supervisor: an armed one that cannot fly what is ordered says so and goes on") {
   Loop loop;
   loop.run(0.2);
@@ -146,7 +195,7 @@ TEST_CASE("supervisor: at the end it flies as many proposals as its settings all
     Loop loop;
     loop.settings.supervisor.flights = allowed;
     loop.settings.supervisor.schedule.resize(1);
-    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
     loop.run(0.2);
     loop.supervisor.hear(proposal(kSurge, 3.0));
     loop.arm();

@@ -25,7 +25,7 @@ inline test::TankSettings settings_without_model() {
 struct Loop {
   test::TankSettings settings;
   TankPlant plant{settings.vehicle, {}};
-  Supervisor supervisor{settings.supervisor, settings.vehicle, "secret"};
+  Supervisor supervisor{test::ready(settings.supervisor, settings.vehicle)};
   std::optional<Excitation> said{};
   bool valid{true};
   bool heard{true};  // does STATE come at all?

@@ -35,7 +35,7 @@ TEST_CASE("supervisor: without a model it tries again, gives up, and says what i
   Loop loop;
   loop.settings.supervisor.most_dwell = 16.0;
   loop.settings.supervisor.schedule.resize(1);
-  loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+  loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
   loop.run(0.2);
   loop.arm();
   loop.run(60.0);
@@ -61,7 +61,7 @@ TEST_CASE("supervisor: a mode that lacks information alone, and would have it wi
     loop.settings.supervisor.most_dwell = 16.0;
     loop.settings.supervisor.schedule.resize(1);
     REQUIRE(loop.settings.supervisor.schedule[0].threshold == doctest::Approx(kNeeded));
-    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
     loop.run(0.2);
     loop.arm();
     for (int i = 0; i < 1200 && loop.supervisor.phase() != Phase::kDone; ++i) {
@@ -84,7 +84,7 @@ TEST_CASE("supervisor: a silent identifier stops the excitation, where that is w
     CAPTURE(models);
     Loop loop;
     loop.settings.supervisor.model_patience = 3.0;
-    loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
     loop.run(0.2);
     loop.arm();
     for (int second = 0; second < 30; ++second) {
@@ -100,7 +100,7 @@ TEST_CASE("supervisor: where MODEL stays away since another process fell silent,
   Loop loop;
   loop.settings.supervisor.model_patience = 10.0;
   loop.settings.supervisor.needs = {"identifier", "thruster_driver"};
-  loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle, "secret"};
+  loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
   loop.run(0.2);
   loop.arm();
   Utime wall = 1'700'000'000'000'000;
@@ -128,14 +128,21 @@ TEST_CASE("supervisor: hold stays, manual obeys inside the fence, identify goes 
   steer.enable = false;
   steer.order = "manual";
   steer.tau << 12.0, 0.0, 0.0, 0.0, 0.0, 0.0;
-  loop.supervisor.hear(steer);
   double least = 1e9;
   for (int i = 0; i < 100; ++i) {
+    steer.utime = loop.plant.utime();
+    steer.sequence = order_to_arm(steer.utime).sequence;
+    CHECK(loop.supervisor.hear(steer).done);
     loop.run(0.1);
     least = std::min(least, loop.plant.room(loop.settings.site));
   }
   CHECK(loop.said->phase == "manual");
   CHECK(least > 0.02);
+  loop.run(0.4);
+  CHECK(loop.said->phase == "manual");
+  loop.run(0.3);  // the dead man
+  CHECK(loop.said->phase == "hold");
+  CHECK(loop.said->reason == "who steers has let go: it stays");
   loop.order("identify");
   loop.run(20.0);
   CHECK(loop.said->phase == "excite");
@@ -168,7 +175,7 @@ TEST_CASE("supervisor: it stays near where it was armed, up and down too, howeve
   test::TankSettings settings = loop.settings;
   settings.supervisor.open_range = 0.5;  // m
   settings.supervisor.schedule = {{.name = "total", .axis = -1, .threshold = 0.0}};
-  loop.supervisor = Supervisor{settings.supervisor, settings.vehicle, "secret"};
+  loop.supervisor = test::ready(settings.supervisor, settings.vehicle);
   loop.run(0.5);
   const Eigen::Vector3d start = loop.plant.position();
   loop.arm();

@@ -17,15 +17,23 @@ TEST_CASE("supervisor: nothing is commanded before the operator has armed, and n
   loop.run(2.0);
   CHECK(loop.commands == 0);
   CHECK(loop.said->phase == "disarmed");
-  Operator wrong = order_to_arm(loop.plant.utime(), "guess");
-  loop.supervisor.hear(wrong);
+  Operator wrong = order_to_arm(loop.plant.utime());
+  wrong.authentic = false;
+  CHECK(loop.supervisor.hear(wrong).text == "not signed with this vehicle's key");
+  wrong = order_to_arm(loop.plant.utime());
+  ++wrong.challenge;
+  CHECK_FALSE(loop.supervisor.hear(wrong).done);
   Operator old = order_to_arm(loop.plant.utime() - 60'000'000);
   loop.supervisor.hear(old);
   loop.run(0.5);
   CHECK(loop.commands == 0);
   const Operator good = order_to_arm(loop.plant.utime());
-  loop.supervisor.hear(good);
+  const Answer answer = loop.supervisor.hear(good);
+  CHECK(answer.done);
+  CHECK(answer.armed);
+  CHECK(answer.sequence == good.sequence);
   loop.run(0.5);
+  CHECK(loop.supervisor.hear(good).text == answer.text);  // said again, since its answer was lost
   CHECK(loop.commands > 5);
   loop.supervisor.hear(Operator{.abort = true});
   loop.run(2.0);
@@ -93,6 +101,68 @@ TEST_CASE("supervisor: commands name the order that armed, those after a stop to
   loop.run(1.0);
   CHECK(loop.commands > 0);
   CHECK(loop.armed_by == last.sequence);
+}
+
+TEST_CASE(
+    "supervisor: who has not heard whoever moves the thrusters believes no order, nor answers that nobody signed") {
+  Loop loop;
+  loop.supervisor = Supervisor{loop.settings.supervisor, loop.settings.vehicle};
+  loop.run(0.5);
+  CHECK(loop.supervisor.hear(order_to_arm(loop.plant.utime())).text == "no thruster driver has been heard");
+  Answer gate{
+      .utime = loop.plant.utime(), .gate = true, .challenge = test::kChallenge, .accepted = test::last_number()};
+  loop.supervisor.hear(gate);
+  CHECK_FALSE(loop.supervisor.hear(order_to_arm(loop.plant.utime())).done);
+  gate.authentic = true;
+  const Operator before = order_to_arm(loop.plant.utime());
+  gate.accepted = before.sequence;  // it came late: that order was another's
+  loop.supervisor.hear(gate);
+  CHECK(loop.supervisor.hear(before).text == "heard before");
+  CHECK(loop.supervisor.hear(order_to_arm(loop.plant.utime())).done);
+}
+
+TEST_CASE("supervisor: an operator who promised to stay is missed, and it aborts or stays where it is") {
+  for (const bool holds : {false, true}) {
+    CAPTURE(holds);
+    Loop loop;
+    loop.settings.supervisor.holds_without_operator = holds;
+    loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
+    loop.run(0.2);
+    Operator order = order_to_arm(loop.plant.utime());
+    order.attends = 2.0;
+    loop.supervisor.hear(order);
+    for (int i = 0; i < 10; ++i) {
+      loop.run(1.0);
+      Operator sign = order_to_arm(loop.plant.utime());
+      sign.enable = false;
+      sign.order.clear();
+      if (i < 8) CHECK(loop.supervisor.hear(sign).done);
+      sign = order_to_arm(loop.plant.utime());  // somebody else's
+      sign.authentic = false;
+      loop.supervisor.hear(sign);
+      CHECK(loop.said->phase != "aborted");
+    }
+    CHECK(loop.supervisor.reason().find("the operator is lost") == std::string::npos);
+    loop.run(0.5);
+    CHECK(loop.supervisor.reason().find("the operator is lost: no sign of life for 2 s") != std::string::npos);
+    CHECK(loop.said->phase == (holds ? "hold" : "aborted"));
+  }
+  Loop alone;  // who promised nothing is not missed
+  alone.run(0.2);
+  alone.arm();
+  alone.run(30.0);
+  CHECK(alone.said->phase == "excite");
+}
+
+TEST_CASE("supervisor: where the operator must stay nobody arms who does not") {
+  Loop loop;
+  loop.settings.supervisor.wants_operator = true;
+  loop.supervisor = test::ready(loop.settings.supervisor, loop.settings.vehicle);
+  loop.run(0.2);
+  CHECK(loop.supervisor.hear(order_to_arm(loop.plant.utime())).text.find("must stay") != std::string::npos);
+  Operator order = order_to_arm(loop.plant.utime());
+  order.attends = 5.0;
+  CHECK(loop.supervisor.hear(order).done);
 }
 
 TEST_CASE("supervisor: an abort in every mode stops the thrusters at once") {
@@ -227,13 +297,10 @@ TEST_CASE(
 
 TEST_CASE("supervisor: what cannot work is refused in one line") {
   const auto settings = test::tank_settings();
-  CHECK(test::complaint_of<InputError>([&] {
-          Supervisor none(settings.supervisor, settings.vehicle, "");
-        }).find("token") != std::string::npos);
   auto rolling = settings.supervisor;
   rolling.schedule = {{.name = "roll", .axis = 3, .threshold = 1.0}};
   CHECK(test::complaint_of<InputError>([&] {
-          Supervisor none(rolling, settings.vehicle, "secret");
+          Supervisor none(rolling, settings.vehicle);
         }).find("cannot move in mode roll") != std::string::npos);
 }
 

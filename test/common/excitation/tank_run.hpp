@@ -61,7 +61,7 @@ inline TankRun tank_run(const TankSettings& s, const PlantOptions& options, cons
   TankPlant plant{s.vehicle, options};
   auto supervisor_settings = s.supervisor;
   supervisor_settings.seed = options.seed;
-  excitation::Supervisor supervisor{supervisor_settings, s.vehicle, "secret"};
+  excitation::Supervisor supervisor{ready(supervisor_settings, s.vehicle)};
   identification::Identifier identifier{s.identifier, s.vehicle};
   // The paper's noise and rate: R_tau = 1.3 diag(1, 1, 1, 0.05), 100 Hz, P_0 = 100 I.
   Vector6d noise;

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/version.hpp"
 #include "test/support/diagnosis_fixture.hpp"
 
 using fathom::report::to_json;
@@ -24,9 +25,11 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("result.json holds exactly the promised names") {
   const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
-  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "explained", "not_measured", "parameters",
-                            "residual", "schema", "train", "validate", "vehicle", "verdict"});
+  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "explained", "fathom_version",
+                            "not_measured", "parameters", "residual", "schema", "train", "validate", "vehicle",
+                            "verdict"});
   CHECK(file["schema"] == 1);
+  CHECK(file["fathom_version"] == fathom::version());
   CHECK(file["vehicle"] == "Beluga <test>");
   CHECK(file["verdict"] == "effect");
   CHECK(file["explained"] == 1.0);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
+#include "common/base/version.hpp"
 #include "common/report/report.hpp"
 #include "test/support/diagnosis_fixture.hpp"
 
@@ -42,6 +43,10 @@ const std::string& usual_page() {
 }
 
 }  // namespace
+
+TEST_CASE("The page says which build wrote it") {
+  CHECK(has(usual_page(), "Written by Fathom " + std::string{fathom::version()} + "."));
+}
 
 TEST_CASE("The page loads nothing from anywhere") {
   const std::string& page = usual_page();

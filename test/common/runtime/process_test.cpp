@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/base/version.hpp"
 #include "common/runtime/bus.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/log_reader.hpp"
@@ -106,11 +107,12 @@ TEST_CASE("process: a log in gives a log out, twice the same bytes, stamped with
   CHECK(result.state[3].p_WB.z() == 7.0);
   REQUIRE(result.process_info.size() == 1);
   CHECK(result.process_info[0].utime == 10);
+  CHECK(result.process_info[0].version == version());
   CHECK(result.process_info[0].channels.find("hears DEPTH depth_t\n") != std::string::npos);
   CHECK(result.health.empty());
 }
 
-TEST_CASE("process: PROCESS_INFO tells the configuration, and never the operator's token, however it is written") {
+TEST_CASE("process: PROCESS_INFO tells the configuration, and never the operator's key, however it is written") {
   for (const std::string token :
        {"  token: deep-blue-4711", "  \"token\": deep-blue-4711", "  token:\n    deep-blue-4711"}) {
     CAPTURE(token);

@@ -1,0 +1,85 @@
+// fathom abort: done when the vehicle says so, not when it was said.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/base/error.hpp"
+#include "processes/fathom/operator/orders.hpp"
+
+namespace fathom::tool {
+namespace {
+
+constexpr double kWithin = 2.0;  // s in which it must be confirmed
+constexpr double kAgain = 0.1;   // s between two aborts: any may be lost
+constexpr double kZero = 0.1;    // N, N m: what a pulse width rounded to a microsecond may stand for
+constexpr int kInARow = 3;       // of THRUSTERS, after the answer, so that none of before is counted
+
+Utime wall_clock() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+bool is_zero(const Thrusters& thrusters) {
+  const auto small = [](double value) { return std::abs(value) < kZero; };
+  return std::ranges::all_of(thrusters.force, small) && std::ranges::all_of(thrusters.tau, small);
+}
+
+double strongest(const Thrusters& thrusters) {
+  double most = 0.0;
+  for (const double each : thrusters.force) most = std::max(most, std::abs(each));
+  for (const double each : thrusters.tau) most = std::max(most, std::abs(each));
+  return most;
+}
+
+constexpr char kByHand[] =
+    "By hand, now: 1. the vehicle's kill switch, or its power; 2. disarm it in the ground station; 3. pull it in by "
+    "the "
+    "tether. Then fathom abort again, until it is confirmed.";
+
+}  // namespace
+
+void abort_now(Console& console, bool checked) {
+  console.asked = unforeseeable();
+  console.answers.clear();
+  int in_a_row = 0;
+  std::optional<Thrusters> last;
+  const auto answered = [&]() -> const Answer* {
+    for (const auto& [process, each] : console.answers) {
+      if (each.gate && each.done) return &each;
+    }
+    return nullptr;
+  };
+  console.on_thrusters = [&](const Thrusters& heard) {
+    if (answered() == nullptr) return;
+    last = heard;
+    in_a_row = is_zero(heard) ? in_a_row + 1 : 0;
+  };
+  const auto done = [&] { return in_a_row >= kInARow; };
+  const auto begin = Console::Clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(Console::Clock::now() - begin).count(); };
+  while (passed() < kWithin && !done()) {
+    console.say({.utime = console.vehicle_time().value_or(wall_clock()), .sequence = console.asked, .abort = true});
+    console.listen(kAgain, done);
+  }
+  console.on_thrusters = {};
+  for (const auto& [process, each] : console.answers) std::printf("%-16s %s\n", process.c_str(), each.text.c_str());
+  if (done()) {
+    std::printf("aborted, confirmed after %.1f s: THRUSTERS says zero%s\n", passed(),
+                checked ? "" : " (with --operator the answer's signature is checked, too)");
+    return;
+  }
+  std::string why;
+  if (answered() == nullptr) {
+    why = "no thruster driver answered within 2 s";
+  } else if (!last) {
+    why = "the driver asks for zero, but nothing says on THRUSTERS what the vehicle does";
+  } else {
+    char text[100];
+    std::snprintf(text, sizeof text, "THRUSTERS still says %.3g (N or N m) after 2 s", strongest(*last));
+    why = text;
+  }
+  std::fflush(stdout);
+  throw InputError("abort NOT CONFIRMED: " + why + ". " + kByHand);
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,362 @@
+// What an operator is told is true, and a stranger on the bus moves nothing: real programs on a bus of their own, and
+// the commands arm, abort and steer against them.
+#include "test/support/orders.hpp"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <linux/joystick.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fathom_lcm/state_t.hpp>
+#include <fstream>
+#include <functional>
+#include <memory>
+
+#include "common/link/server.hpp"
+
+namespace fathom {
+namespace {
+
+using test::Background;
+using test::Bus;
+using test::file;
+using test::give;
+using test::now;
+using test::program;
+using test::Ran;
+using test::Scratch;
+
+const std::string kOperator = file("config/operators/simulated.yaml");
+
+/// A thruster driver that moves nothing, and, where a test wants one, a supervisor in the middle of the tank.
+struct Vehicle {
+  Bus bus;
+  Scratch scratch;
+  std::unique_ptr<Background> driver, supervisor;
+  std::function<void()> meanwhile;  ///< every 5 ms
+  std::string identifier{"running"};
+  bool deaf_supervisor{false};  ///< one says HEALTH and hears nothing
+
+  Vehicle() { start_driver(); }
+  void start_driver() {
+    std::ofstream{scratch.path("x.yaml")}
+        << "thruster_driver: {protocol: dry_run, rate: 20 Hz, largest_thrust: 30 N}\n";
+    driver = std::make_unique<Background>(scratch, "driver",
+                                          program("thruster_driver") + " --config " + scratch.path("x.yaml") +
+                                              " --config " + file("config/vehicles/bluerov2.yaml") + " --config " +
+                                              kOperator + " --in '" + bus.url + "'");
+    bus.answers.clear();
+    for (int i = 0; i < 100 && bus.gate() == nullptr; ++i) bus.listen(0.1);
+    REQUIRE_MESSAGE(bus.gate() != nullptr, test::read_bytes(scratch.path("driver.text")));
+  }
+  void start_supervisor() {
+    supervisor = std::make_unique<Background>(
+        scratch, "supervisor",
+        program("supervisor") + " --config " + file("config/pipelines/tank.yaml") + " --config " +
+            file("config/vehicles/bluerov2.yaml") + " --config " + file("config/sites/tank.yaml") + " --config " +
+            kOperator + " --in '" + bus.url + "'");
+    for (int i = 0; i < 100 && bus.said_of("supervisor").empty(); ++i) run(0.1);
+    run(1.0);  // until it has heard its neighbours
+  }
+  /// Estimator and identifier as far as a supervisor sees them.
+  void run(double seconds) {
+    const double end = link::wall_seconds() + seconds;
+    for (int i = 0; link::wall_seconds() < end; ++i) {
+      if (i % 100 == 0) {
+        std::vector<std::string> neighbours{"estimator", "identifier", "recorder"};
+        if (deaf_supervisor) neighbours.emplace_back("supervisor");
+        for (const std::string& process : neighbours) {
+          fathom_lcm::health_t health{};
+          health.utime = now();
+          health.process = process;
+          health.host = "vehicle";
+          health.state = process == "identifier" ? identifier : "running";
+          bus.publish("HEALTH", health);
+        }
+      }
+      if (i % 10 == 0) {
+        StateEstimate state{.utime = now(), .valid = true};
+        state.p_WB = {0.0, 0.0, 0.75};
+        bus.publish("STATE", wire::encode(state));
+      }
+      if (meanwhile) meanwhile();
+      bus.listen(0.005);
+    }
+  }
+  /// A command of the operator's tool, while everything else goes on.
+  Ran tool(const std::string& words, double longest = 8.0) {
+    std::remove(scratch.path("code").c_str());
+    const Background one{scratch, "tool",
+                         "sh -c \"" + program("fathom") + " " + words + " --bus '" + bus.url + "' < /dev/null > " +
+                             scratch.path("said") + " 2>&1; echo \\$? > " + scratch.path("code") + "\""};
+    const double end = link::wall_seconds() + longest;
+    while (link::wall_seconds() < end && test::read_bytes(scratch.path("code")).empty()) run(0.1);
+    const std::string code = test::read_bytes(scratch.path("code"));
+    return {.code = code.empty() ? -1 : std::stoi(code), .text = test::read_bytes(scratch.path("said"))};
+  }
+  [[nodiscard]] double strongest_since(std::size_t first) const {
+    double most = 0.0;
+    for (std::size_t i = first; i < bus.thrusters.size(); ++i) {
+      for (const double each : bus.thrusters[i].tau) most = std::max(most, std::abs(each));
+    }
+    return most;
+  }
+  /// Of the newest command.
+  [[nodiscard]] double commanded_ahead() const { return bus.commands.empty() ? 0.0 : bus.commands.back().tau[0]; }
+};
+
+}  // namespace
+
+TEST_CASE("orders: forged and copied commands at 200 Hz move nothing and are named by driver and supervisor") {
+  Vehicle vehicle;
+  vehicle.start_supervisor();
+  const auto armed = vehicle.tool("arm --operator " + kOperator);
+  REQUIRE_MESSAGE(armed.code == 0, armed.text);
+  vehicle.run(1.0);
+  REQUIRE_FALSE(vehicle.bus.commands.empty());
+  CHECK(vehicle.bus.said_of("supervisor").find("did not send") == std::string::npos);
+  int forged = 0;
+  const std::string mine = vehicle.bus.commands.back().commander;
+  vehicle.meanwhile = [&] {
+    const auto last = std::find_if(vehicle.bus.commands.rbegin(), vehicle.bus.commands.rend(),
+                                   [](const auto& each) { return each.tau[1] != 100.0; });
+    auto copy = *last;  // commander, arming, challenge and signature as they were said
+    copy.utime = now();
+    copy.tau[1] = 100.0;
+    copy.sequence += 1000;
+    vehicle.bus.publish("WRENCH_COMMAND", copy);
+    vehicle.bus.publish("WRENCH_COMMAND", *last);  // and once more as it was
+    ++forged;
+  };
+  const std::size_t first = vehicle.bus.thrusters.size();
+  vehicle.run(3.0);
+  vehicle.meanwhile = {};
+  CHECK(forged > 100);
+  REQUIRE(vehicle.bus.thrusters.size() > first + 20);
+  double sideways = 0.0;
+  for (std::size_t i = first; i < vehicle.bus.thrusters.size(); ++i)
+    sideways = std::max(sideways, std::abs(vehicle.bus.thrusters[i].tau[1]));
+  CHECK(sideways < 15.0);  // what the supervisor itself may ask for: 12 N
+  vehicle.run(1.2);
+  const std::string driver = vehicle.bus.said_of("thruster_driver"), supervisor = vehicle.bus.said_of("supervisor");
+  CHECK_MESSAGE(driver.find("not signed with this vehicle's key") != std::string::npos, driver);
+  CHECK_MESSAGE(driver.find("replayed") != std::string::npos, driver);
+  CHECK_MESSAGE(driver.find(mine) != std::string::npos, driver);
+  CHECK_MESSAGE(supervisor.find("commands that I did not send, the last in my own name") != std::string::npos,
+                supervisor);
+  CHECK_MESSAGE(supervisor.find("lost") == std::string::npos, supervisor);  // the trial goes on
+  // Nothing that was said on the bus holds the key.
+  const std::string key = "0f1e2d3c4b5a6978";
+  for (const char* name : {"driver.text", "supervisor.text", "said"})
+    CHECK(test::read_bytes(vehicle.scratch.path(name)).find(key) == std::string::npos);
+}
+
+TEST_CASE("orders: an order that is played again after the driver was started again arms nothing") {
+  Vehicle vehicle;
+  const auto order = give(vehicle.bus, {.enable = true});
+  vehicle.bus.listen(0.3);
+  REQUIRE(vehicle.bus.gate()->armed != 0);
+  const auto first = vehicle.bus.gate()->challenge;
+  vehicle.driver.reset();
+  vehicle.start_driver();
+  CHECK(vehicle.bus.gate()->challenge != first);
+  test::Commander thief{vehicle.bus};
+  thief.obey(order);
+  for (int i = 0; i < 20; ++i) {
+    vehicle.bus.publish("OPERATOR", order);
+    thief.say(test::ahead(20.0));
+    vehicle.bus.listen(0.05);
+  }
+  CHECK(seconds_between(order.utime, now()) < 15.0);
+  CHECK(vehicle.bus.gate()->armed == 0);
+  CHECK(vehicle.strongest_since(0) == 0.0);
+  const auto refused = std::find_if(vehicle.bus.answers.begin(), vehicle.bus.answers.end(),
+                                    [&](const auto& each) { return each.sequence == order.sequence; });
+  REQUIRE(refused != vehicle.bus.answers.end());
+  CHECK(refused->done == 0);
+  CHECK(refused->text.find("started again") != std::string::npos);
+}
+
+TEST_CASE(
+    "orders: fathom abort says NOT CONFIRMED and fails where nobody hears, and is done where THRUSTERS says zero") {
+  {
+    Bus empty;
+    const auto ran = test::shell(program("fathom") + " abort --bus '" + empty.url + "'");
+    CHECK(ran.code == 1);
+    CHECK_MESSAGE(ran.says("abort NOT CONFIRMED: no thruster driver answered"), ran.text);
+    CHECK(ran.says("kill switch"));
+  }
+  Vehicle vehicle;
+  test::Commander commander{vehicle.bus};
+  commander.obey(give(vehicle.bus, {.enable = true}));
+  vehicle.meanwhile = [&, i = 0]() mutable {
+    if (++i % 10 == 0) commander.say(test::ahead(20.0));
+  };
+  vehicle.run(1.0);
+  REQUIRE(vehicle.bus.thrusters.back().tau[0] > 15.0);
+  const auto ran = vehicle.tool("abort --operator " + kOperator);
+  CHECK_MESSAGE(ran.code == 0, ran.text);
+  CHECK_MESSAGE(ran.says("aborted, confirmed after"), ran.text);
+  CHECK(vehicle.bus.thrusters.back().tau[0] == 0.0);
+  // A vehicle that goes on whatever its driver asks for.
+  vehicle.meanwhile = [&] {
+    fathom_lcm::thrusters_t on{};
+    on.utime = now();
+    on.has_tau = 1;
+    on.tau[0] = 20.0;
+    vehicle.bus.publish("THRUSTERS", on);
+  };
+  const auto other = vehicle.tool("abort");
+  CHECK(other.code == 1);
+  CHECK_MESSAGE(other.says("NOT CONFIRMED: THRUSTERS still says 20"), other.text);
+}
+
+TEST_CASE("orders: fathom arm fails with the reason where it is refused or nobody answers") {
+  {
+    Bus empty;
+    const auto ran = test::shell(program("fathom") + " arm --operator " + kOperator + " --bus '" + empty.url + "'");
+    CHECK(ran.code == 1);
+    CHECK_MESSAGE(ran.says("nobody on this bus moves thrusters"), ran.text);
+  }
+  Vehicle vehicle;
+  const auto alone = vehicle.tool("arm --operator " + kOperator);
+  CHECK(alone.code == 1);
+  CHECK_MESSAGE(alone.says("NOT OK  supervisor"), alone.text);
+  vehicle.deaf_supervisor = true;
+  vehicle.run(1.0);
+  const auto deaf = vehicle.tool("arm --operator " + kOperator);
+  CHECK(deaf.code == 1);
+  CHECK_MESSAGE(deaf.says("NOT CONFIRMED: no supervisor answered"), deaf.text);
+  vehicle.deaf_supervisor = false;
+  CHECK(vehicle.tool("arm --no-supervisor --operator " + kOperator).code == 0);
+  std::ofstream{vehicle.scratch.path("other.yaml")} << "operator: {key: " << std::string(64, 'a')
+                                                    << ", known_to_all: yes}\n";
+  const auto stranger = vehicle.tool("arm --operator " + vehicle.scratch.path("other.yaml"));
+  CHECK(stranger.code == 1);
+  CHECK_MESSAGE(stranger.says("has another key"), stranger.text);
+  vehicle.start_supervisor();
+  vehicle.identifier = "fault";
+  vehicle.run(0.5);
+  const auto listed = vehicle.tool("arm --operator " + kOperator);
+  CHECK(listed.code == 1);
+  CHECK_MESSAGE(listed.says("not armed: see to what is NOT OK"), listed.text);
+  const auto refused = vehicle.tool("arm --needs thruster_driver --operator " + kOperator);
+  CHECK(refused.code == 1);
+  CHECK_MESSAGE(refused.says("refused by supervisor: not armed: identifier is fault"), refused.text);
+  vehicle.identifier = "running";
+  vehicle.run(1.0);
+  const auto armed = vehicle.tool("arm --operator " + kOperator);
+  CHECK_MESSAGE(armed.code == 0, armed.text);
+}
+
+TEST_CASE("orders: number and time come from the vehicle, whatever the operator's clock shows") {
+  Bus bus;
+  const Scratch scratch;
+  const OperatorKeys keys = test::simulated_keys();
+  constexpr Utime kHour = 3'600'000'000;
+  const Background tool{
+      scratch, "tool", program("fathom") + " arm --no-supervisor --operator " + kOperator + " --bus '" + bus.url + "'"};
+  for (int i = 0; i < 60 && bus.orders.empty(); ++i) {  // a vehicle whose clock is an hour behind
+    const Answer gate{
+        .utime = now() - kHour, .process = "thruster_driver", .gate = true, .challenge = 99, .accepted = 41};
+    bus.publish("ANSWER", wire::encode_signed(gate, keys.answer));
+    bus.listen(0.1);
+  }
+  REQUIRE_FALSE(bus.orders.empty());
+  CHECK(bus.orders.front().sequence == 42);
+  CHECK(bus.orders.front().challenge == 99);
+  CHECK(std::abs(seconds_between(bus.orders.front().utime, now() - kHour)) < 1.0);
+  CHECK(wire::authentic(bus.orders.front(), keys.order));
+}
+
+TEST_CASE("orders: what is steered ages out: one order to push is not held") {
+  Vehicle vehicle;
+  vehicle.start_supervisor();
+  give(vehicle.bus, {.enable = true, .order = "hold"});
+  vehicle.run(1.0);
+  CHECK_MESSAGE(vehicle.bus.said_of("supervisor").find("hold: ") != std::string::npos,
+                vehicle.bus.said_of("supervisor"));
+  give(vehicle.bus, {.order = "manual", .tau = test::ahead(10.0)});
+  vehicle.run(0.25);
+  CHECK(vehicle.commanded_ahead() == doctest::Approx(10.0).epsilon(0.1));
+  vehicle.run(1.0);
+  CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);
+  CHECK_MESSAGE(vehicle.bus.said_of("supervisor").find("hold: who steers has let go") != std::string::npos,
+                vehicle.bus.said_of("supervisor"));
+}
+
+TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is held, and ends with thrust at zero") {
+  for (const bool joystick : {false, true}) {
+    CAPTURE(joystick);
+    Vehicle vehicle;
+    vehicle.start_supervisor();
+    const std::string terminal = vehicle.scratch.path("keys"), pad = vehicle.scratch.path("js0");
+    link::Server keys{"pty:" + terminal};
+    if (joystick) test::shell("mkfifo " + pad);
+    const int stick =
+        joystick ? open(pad.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC) : -1;  // both ends: waits for nobody
+    const Background tool{vehicle.scratch, "steer",
+                          "sh -c \"exec " + program("fathom") + " steer --force 8 --operator " + kOperator +
+                              " --bus '" + vehicle.bus.url + "'" + (joystick ? " --joystick " + pad : "") + " < " +
+                              terminal + "\""};
+    const auto event = [&](std::int16_t value, int type, std::uint8_t number) {
+      const js_event e{.time = 0, .value = value, .type = static_cast<std::uint8_t>(type), .number = number};
+      CHECK(write(stick, &e, sizeof e) == static_cast<ssize_t>(sizeof e));
+    };
+    if (joystick) event(0, JS_EVENT_BUTTON | JS_EVENT_INIT, 4);
+    const auto said = [&] { return vehicle.bus.said_of("supervisor"); };
+    for (int i = 0; i < 60 && said().find("hold: ") == std::string::npos; ++i) vehicle.run(0.1);
+    REQUIRE_MESSAGE(said().find("hold: ") != std::string::npos, test::read_bytes(vehicle.scratch.path("steer.text")));
+    if (joystick) {
+      event(-32767, JS_EVENT_AXIS, 1);
+      vehicle.run(0.5);
+      CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);  // nobody holds the button
+      event(1, JS_EVENT_BUTTON, 4);
+    } else {
+      vehicle.meanwhile = [&, i = 0]() mutable {
+        if (++i % 6 == 0) keys.send("w");
+      };
+    }
+    vehicle.run(1.5);
+    CHECK(vehicle.commanded_ahead() == doctest::Approx(8.0).epsilon(0.1));
+    vehicle.meanwhile = {};
+    if (joystick) event(0, JS_EVENT_BUTTON, 4);
+    vehicle.run(1.5);
+    CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);
+    CHECK_MESSAGE(said().find("hold: ") != std::string::npos, said());
+    if (joystick) {
+      close(stick);  // pulled out
+    } else {
+      keys.send(" ");
+    }
+    for (int i = 0; i < 40 && said().find("aborted: ") == std::string::npos; ++i) vehicle.run(0.1);
+    vehicle.run(0.5);
+    CHECK_MESSAGE(
+        test::read_bytes(vehicle.scratch.path("steer.text")).find("aborted, confirmed after") != std::string::npos,
+        test::read_bytes(vehicle.scratch.path("steer.text")));
+    CHECK(vehicle.bus.gate()->armed == 0);
+  }
+}
+
+TEST_CASE("orders: who armed over a link and is gone is missed") {
+  Vehicle vehicle;
+  vehicle.start_supervisor();
+  {
+    const Background tool{
+        vehicle.scratch, "attend",
+        program("fathom") + " arm --attend 1.5 --operator " + kOperator + " --bus '" + vehicle.bus.url + "'"};
+    vehicle.run(6.0);
+    CHECK_MESSAGE(vehicle.bus.said_of("supervisor").find("aborted") == std::string::npos,
+                  vehicle.bus.said_of("supervisor"));
+    test::shell("kill -KILL $(cat " + vehicle.scratch.path("attend.pid") + ")");
+  }
+  vehicle.run(2.5);
+  CHECK_MESSAGE(
+      vehicle.bus.said_of("supervisor").find("aborted: the operator is lost: no sign of life") != std::string::npos,
+      vehicle.bus.said_of("supervisor"));
+}
+
+}  // namespace fathom
