@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/base/entanglement.hpp"
+#include "common/board/standing.hpp"
 
 namespace fathom::board {
 namespace {
@@ -192,7 +193,18 @@ std::string Board::json(double now, std::int64_t number_of_text) const {
   all["bus"] = text(self_.bus);
   all["silence"] = Roll::kSilence;
   all["heard"] = heard_ ? number(std::max(now - *heard_, 0.0)) : Json(nullptr);
-  all["processes"] = list(roll_.entries(now), process);
+  const std::vector<Roll::Entry> entries = roll_.entries(now);
+  all["processes"] = list(entries, process);
+  const Standing stands = standing({.trial = excitation_ ? &excitation_->sample : nullptr,
+                                    .trial_age = excitation_ ? now - excitation_->at : 0.0,
+                                    .heard = heard_ ? std::optional{std::max(now - *heard_, 0.0)} : std::nullopt,
+                                    .processes = entries});
+  const auto badge = [](const Badge& said) { return Json{{"text", text(said.text)}, {"kind", said.kind}}; };
+  all["standing"] = {{"phase", badge(stands.phase)},
+                     {"armed", badge(stands.armed)},
+                     {"alarm", text(stands.alarm)},
+                     {"remark", text(stands.remark)},
+                     {"over", stands.over}};
   all["trial"] = section(excitation_, now, trial);
   all["thrusters"] = section(thrusters_, now, [](const Thrusters& said) {
     return Json{{"force", numbers(said.force)}, {"tau", said.has_tau ? numbers(said.tau) : Json(nullptr)}};

@@ -94,7 +94,14 @@ void Supervisor::hear(const VehicleCondition& vehicle) {
   const auto grave = std::find_if(vehicle.lines.begin(), vehicle.lines.end(),
                                   [](const ConditionLine& line) { return line.grave && !line.ok; });
   grave_ = grave == vehicle.lines.end() ? "" : grave->text;
+  taken_ = vehicle.armed == 0;
   if (armed_ && !grave_.empty()) stop(Phase::kAborted, grave_);
+  // Who has disarmed the vehicle itself may have it in the hands: it does not move again when it is armed there.
+  if (taken_ && after_.active()) {
+    after_.end();
+    reason_ = ended_ + "; zero thrust: the vehicle was disarmed";
+    armed_at_ = state_.utime;
+  }
 }
 
 // Where no STATE comes there is no step either; somebody must say that the trial is over.
@@ -123,7 +130,7 @@ void Supervisor::stop(Phase phase, const std::string& reason, Then then) {
   const bool flies = after_.active();
   if (then == Then::kZero) after_.end();
   if (phase_ == Phase::kAborted && !armed_ && !(flies && then == Then::kZero)) return;
-  if (armed_ && then == Then::kAsTheVehicleFileSays) after_.begin(state_);
+  if (armed_ && then == Then::kAsTheVehicleFileSays && !taken_) after_.begin(state_);
   armed_ = false;
   phase_ = phase;
   reason_ = ended_ = reason;

@@ -188,6 +188,7 @@ class Supervisor {
   DepthAction after_;
   std::string grave_;                // what speaks against any trial, by the vehicle's own words
   std::string ended_;                // why the last trial ended
+  bool taken_{false};                // the vehicle says that it is disarmed
   std::optional<double> watched_{};  // s
   double state_came_{};              // s, as far as watch() has seen
   Utime state_seen_{};

@@ -1,6 +1,7 @@
 #include "common/launch/deputy.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kKillAgain = 1.0;  // s between two SIGKILL to one that does not die
 constexpr double kNever = 1e18;
+constexpr std::int32_t kRefused = 126 << 8;  // wait status of exit(126), a shell's "found, and not to be run"
 
 }  // namespace
 
@@ -20,13 +22,13 @@ void Deputy::say(const Entry& entry, std::string text) {
 
 void Deputy::hear(const LaunchOrders& orders, Utime wall, double now) {
   if (closing_ || orders.deputy != name_) return;
-  if (seconds_between(orders.utime, wall) > kStale) {
+  if (const double age = seconds_between(orders.utime, wall); std::abs(age) > kStale) {
+    const std::string how = age > 0.0 ? " s old" : " s ahead of this clock";
     for (const CommandOrder& each : orders.commands) {
       acts_.push_back({.kind = Act::Kind::kSay,
                        .id = each.command.id,
-                       .text = "ignoring stale orders, " +
-                               std::to_string(static_cast<long long>(seconds_between(orders.utime, wall))) +
-                               " s old: do the clocks of the hosts agree?\n"});
+                       .text = "ignoring stale orders, " + std::to_string(std::llround(std::abs(age))) + how +
+                               ": do the clocks of the hosts agree?\n"});
     }
     return;
   }
@@ -51,8 +53,11 @@ void Deputy::hear(const LaunchOrders& orders, Utime wall, double now) {
 
 void Deputy::obey(Entry& entry, const CommandOrder& order, double now) {
   CommandStatus& status = entry.status;
-  if (!(status.command == order.command)) changed_ = true;
-  status.command = order.command;
+  // What runs, or will be started again, keeps its own command line beside one that may not be run.
+  if (permits(order.command) || !(entry.runs() || entry.respawn)) {
+    if (!(status.command == order.command)) changed_ = true;
+    status.command = order.command;
+  }
   entry.wanted = !order.stop;
   const bool anew = order.run != status.run;
   if (!entry.runs() && entry.wanted && anew) {
@@ -70,6 +75,12 @@ void Deputy::obey(Entry& entry, const CommandOrder& order, double now) {
 
 void Deputy::start(Entry& entry, double now) {
   entry.respawn.reset();
+  if (!permits(entry.status.command)) {
+    entry.wanted = false;
+    entry.status.wait_status = kRefused;
+    changed_ = true;
+    return say(entry, "refused: this command line is not in " + allowed_->files() + " (--allow) on this host");
+  }
   entry.signalled.reset();
   entry.killed.reset();
   entry.health.reset();

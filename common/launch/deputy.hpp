@@ -6,8 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/launch/allow_list.hpp"
 #include "common/launch/backoff.hpp"
 #include "common/samples/launch.hpp"
 
@@ -28,12 +30,15 @@ struct Act {
 
 class Deputy {
  public:
-  static constexpr double kStale = 60.0;   ///< s that an order may be old
+  static constexpr double kStale = 60.0;   ///< s that an order may be old, or ahead of this host's clock
   static constexpr double kSilence = 4.0;  ///< s without HEALTH, and without computing: it hangs
   static constexpr double kBusy = 60.0;    ///< s without HEALTH while it computes: it hangs as well
 
-  explicit Deputy(std::string name) : name_{std::move(name)} {}
+  /// `allowed`: what may be run; without it whatever is ordered.
+  explicit Deputy(std::string name, std::optional<AllowList> allowed = {})
+      : name_{std::move(name)}, allowed_{std::move(allowed)} {}
 
+  [[nodiscard]] const std::optional<AllowList>& allowed() const { return allowed_; }
   /// `wall` is the clock of the orders, `now` a clock that only goes forward [s].
   void hear(const LaunchOrders& orders, Utime wall, double now);
   void started(const std::string& id, std::int32_t pid, double now);
@@ -78,6 +83,7 @@ class Deputy {
     [[nodiscard]] bool runs() const { return status.pid > 0 || starting; }
   };
   void obey(Entry& entry, const CommandOrder& order, double now);
+  [[nodiscard]] bool permits(const LaunchCommand& command) const { return !allowed_ || allowed_->permits(command); }
   void start(Entry& entry, double now);
   void stop(Entry& entry, double now);
   void kill(Entry& entry, double now);
@@ -85,6 +91,7 @@ class Deputy {
   void say(const Entry& entry, std::string text);
 
   std::string name_;
+  std::optional<AllowList> allowed_;
   std::map<std::string, Entry> entries_;
   std::vector<std::string> order_;  ///< ids as they came, for info()
   std::vector<Act> acts_;

@@ -28,7 +28,7 @@ Shown shown_by(const std::vector<RunData>& runs, int axis, double stated) {
   std::vector<double> sensors;
   for (const RunData& run : runs) {
     const Trial& trial = run.trial();
-    const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.25 / trial.dt)));
+    const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kAccelerationSpan / trial.dt)));
     std::vector<double> series;
     for (std::size_t k = 0; k < trial.size(); ++k) {
       if (!run.used(k, static_cast<std::size_t>(axis))) continue;
@@ -86,9 +86,11 @@ Problem make_problem(const model::Vehicle& vehicle, std::span<const Trial> trial
   }
   if (problem.runs.empty()) return problem;
   const double block = problem.runs.front().blocks().empty() ? 0.1 : problem.runs.front().blocks().front().dt;
-  for (const int axis : problem.axes)
-    problem.noise_prior.push_back(
-        prior_of(shown_by(problem.runs, axis, problem.runs.front().trial().nu_sigma[axis]), block));
+  for (const int axis : problem.axes) {
+    const Shown shown = shown_by(problem.runs, axis, problem.runs.front().trial().nu_sigma[axis]);
+    problem.noise_prior.push_back(prior_of(shown, block));
+    problem.acceleration.push_back(shown.acceleration);
+  }
   return problem;
 }
 

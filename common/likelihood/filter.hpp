@@ -16,6 +16,8 @@
 
 namespace fathom::likelihood {
 
+constexpr double kAccelerationSpan = 0.25;  ///< s
+
 /// What stays the same for everything that is compared.
 struct Problem {
   const model::Vehicle* vehicle{};
@@ -26,6 +28,7 @@ struct Problem {
   NumberSettings number_settings{};
   double input_step{}, t_low{}, t_high{};  ///< s
   std::vector<NoisePrior> noise_prior;     ///< per axis
+  std::vector<double> acceleration;        ///< per axis, rms of the motion's over kAccelerationSpan
 
   [[nodiscard]] std::vector<Number> numbers(const Hypothesis& hypothesis) const {
     return numbers_of(hypothesis, number_settings, input_step, t_low, t_high);

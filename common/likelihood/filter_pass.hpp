@@ -11,6 +11,31 @@
 
 namespace fathom::likelihood {
 
+/// out = A s, or out += A s: row by row, so that whole rows run through the processor's vectors.
+template <int N, bool kAdd, typename Left>
+void times(const Left& A, const Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor>& s,
+           Eigen::Matrix<double, N, Eigen::Dynamic, Eigen::RowMajor>& out) {
+  static_assert(N == 4 || N == 6);
+  for (int i = 0; i < N; ++i) {
+    auto row = out.row(i);
+    const auto first = A(i, 0) * s.row(0) + A(i, 1) * s.row(1) + A(i, 2) * s.row(2) + A(i, 3) * s.row(3);
+    if constexpr (N == 4) {
+      if constexpr (kAdd) {
+        row += first;
+      } else {
+        row = first;
+      }
+    } else {
+      const auto all = first + A(i, 4) * s.row(4) + A(i, 5) * s.row(5);
+      if constexpr (kAdd) {
+        row += all;
+      } else {
+        row = all;
+      }
+    }
+  }
+}
+
 /// How a change of accelerations passes through the filter: d x / d number, gain taken as fixed (log det S and K hardly
 /// depend on the numbers).
 template <int N>
@@ -31,28 +56,28 @@ class Response {
   /// Over a block. `acceleration`: N x columns.
   void predict(const Matrix& E, const Matrix& G, const Matrix& Gamma, const Vector& rho, const Vector& rho_colour,
                const Matrix& H, const Wide& acceleration) {
-    before_.noalias() = H.lazyProduct(nu_);
+    times<N, false>(H, nu_, before_);
     before_ += c_;
-    next_.noalias() = E.lazyProduct(nu_);
-    next_.noalias() += G.lazyProduct(d_);
-    next_.noalias() += Gamma.lazyProduct(acceleration);
+    times<N, false>(E, nu_, next_);
+    times<N, true>(G, d_, next_);
+    times<N, true>(Gamma, acceleration, next_);
     nu_.swap(next_);
-    d_.array().colwise() *= rho.array();
-    c_.array().colwise() *= rho_colour.array();
+    for (int i = 0; i < N; ++i) {
+      d_.row(i) *= rho[i];
+      c_.row(i) *= rho_colour[i];
+    }
   }
   /// Change of the block's predicted mean; `lag`: share of the block by which it lies before its end.
   const Wide& shown(const Vector& lag, const Matrix& H) {
-    shown_.noalias() = H.lazyProduct(nu_);
-    shown_ += c_;
-    shown_.array().colwise() *= 1.0 - lag.array();
-    shown_ += lag.asDiagonal() * before_;
+    times<N, false>(H, nu_, shown_);
+    for (int i = 0; i < N; ++i) shown_.row(i) = (1.0 - lag[i]) * (shown_.row(i) + c_.row(i)) + lag[i] * before_.row(i);
     return shown_;
   }
   Wide& shown() { return shown_; }
   void update(const Matrix& K_nu, const Matrix& K_d, const Matrix& K_c) {
-    nu_.noalias() -= K_nu.lazyProduct(shown_);
-    d_.noalias() -= K_d.lazyProduct(shown_);
-    c_.noalias() -= K_c.lazyProduct(shown_);
+    times<N, true>((-K_nu).eval(), shown_, nu_);
+    times<N, true>((-K_d).eval(), shown_, d_);
+    times<N, true>((-K_c).eval(), shown_, c_);
   }
   [[nodiscard]] const Wide& nu() const { return nu_; }
 
@@ -117,6 +142,7 @@ class RunPass {
       nu_columns_.setZero(6, p);
       wrenches_.setZero(6, p);
       B_.setZero(N, p);
+      J_.setZero(N, p);
     }
     if (options_.reduced)
       result.reduced.assign(1, std::vector<std::vector<ReducedBlock>>(N, std::vector<ReducedBlock>(blocks)));
@@ -330,7 +356,7 @@ class RunPass {
     }
     if (options_.derivatives) {
       Wide& J = response_.shown();
-      J_.noalias() = -L_inverse.lazyProduct(J);
+      times<N, false>((-L_inverse).eval(), J, J_);
       if (score) {
         result.gradient.noalias() -= J_.transpose().lazyProduct(score_slope);
         for (int i = 0; i < N; ++i) {

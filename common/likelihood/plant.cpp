@@ -139,6 +139,18 @@ Vector6d Plant::acceleration(const Vector6d& nu) {
   return model::acceleration(model_, motion_);
 }
 
+Vector6d Plant::acceleration_of(const model::Model& other, const Vector6d& nu) {
+  motion_.nu = nu;
+  motion_.v_WF_B.setZero();
+  motion_.a_WF_B.setZero();
+  motion_.w_memory = outside_wrench(nu);
+  motion_.force = force_;
+  feel_hull(other, motion_);
+  const Vector6d nu_dot = model::acceleration(other, motion_);
+  motion_.force = force_;
+  return nu_dot;
+}
+
 Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {
   Matrix6d slope = Matrix6d::Zero();
   Vector6d moved = nu;

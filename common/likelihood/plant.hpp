@@ -28,6 +28,8 @@ class Plant {
   void at_middle(std::size_t block);
   /// nu_dot where the plant is; zero on axes that are not simulated.
   [[nodiscard]] Vector6d acceleration(const Vector6d& nu);
+  /// The same of another model with the same thrust.
+  [[nodiscard]] Vector6d acceleration_of(const model::Model& other, const Vector6d& nu);
   /// d acceleration / d nu, at `nu` where it is `nu_dot`; columns of axes that are not simulated stay zero.
   [[nodiscard]] Matrix6d slope(const Vector6d& nu, const Vector6d& nu_dot);
   /// d acceleration / d wrench: the inverse of the inertia.

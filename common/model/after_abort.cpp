@@ -1,6 +1,7 @@
 #include "common/model/after_abort.hpp"
 
 #include "common/base/config.hpp"
+#include "common/model/bounded.hpp"
 
 namespace fathom::model {
 
@@ -19,13 +20,13 @@ AfterAbort AfterAbort::from(const Config& section) {
     section.fail("action", "no action '" + action + "'; known: zero, hold_depth, surface");
   }
   if (after.action == Action::kZero) return after;
-  after.largest = section.positive("largest", "N");
-  after.duration = section.positive("duration", "s");
+  after.largest = bounded::positive(section, "largest", "N");
+  after.duration = bounded::positive(section, "duration", "s");
   if (after.duration > kLongest) section.fail("duration", "'duration' must not be longer than 3600 s");
   if (after.action == Action::kSurface) {
-    after.speed = section.positive("speed", "m/s");
+    after.speed = bounded::positive(section, "speed", "m/s");
     if (after.speed > kFastest) section.fail("speed", "'speed' must not be above 1 m/s");
-    if (section.has("blind")) after.blind = section.not_negative("blind", "N");
+    if (section.has("blind")) after.blind = bounded::not_negative(section, "blind", "N");
     if (after.blind > after.largest) section.fail("blind", "'blind' must not be above 'largest'");
   }
   return after;

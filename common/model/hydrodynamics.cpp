@@ -3,30 +3,31 @@
 #include <cmath>
 
 #include "common/base/config.hpp"
+#include "common/model/bounded.hpp"
 
 namespace fathom::model {
 namespace {
 
 Umbilical read_umbilical(const Config& config) {
-  return {.p_BU = config.vector3("position", "m"),
-          .diameter = config.positive("diameter", "m"),
-          .paid_out = config.positive("paid_out", "m"),
-          .drag_coefficient = config.positive("drag_coefficient", "")};
+  return {.p_BU = bounded::vector3(config, "position", "m"),
+          .diameter = bounded::positive(config, "diameter", "m"),
+          .paid_out = bounded::positive(config, "paid_out", "m"),
+          .drag_coefficient = bounded::positive(config, "drag_coefficient", "")};
 }
 
 Chain read_chain(const Config& config) {
-  return {.p_BC = config.vector3("position", "m"),
-          .weight = config.positive("weight", "N/m"),
-          .length = config.positive("length", "m"),
-          .friction = config.not_negative("friction", ""),
-          .seabed = config.quantity("seabed", "m")};
+  return {.p_BC = bounded::vector3(config, "position", "m"),
+          .weight = bounded::positive(config, "weight", "N/m"),
+          .length = bounded::positive(config, "length", "m"),
+          .friction = bounded::not_negative(config, "friction", ""),
+          .seabed = bounded::quantity(config, "seabed", "m")};
 }
 
 LoadCell read_cell(const Config& config) {
   LoadCell cell{.name = config.text("name"),
                 .of = config.text("of"),
-                .p_BL = config.vector3("position", "m"),
-                .axis_B = config.vector3("axis", "")};
+                .p_BL = bounded::vector3(config, "position", "m"),
+                .axis_B = bounded::vector3(config, "axis", "")};
   if (cell.of != "thrusters" && cell.of != "umbilical" && cell.of != "chain") {
     config.fail("of", "'of' must be thrusters, umbilical or chain, not '" + cell.of + "'");
   }
@@ -44,10 +45,10 @@ std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config) {
     if (term == nullptr) config.fail(name, "'" + name + "' is no hydrodynamic derivative (docs/model.md lists them)");
     if (config.is_section(name)) {
       const Config both = config.section(name);
-      const double value = both.quantity("value", "");
-      coefficients.push_back({term, value, std::abs(value) * both.not_negative("error", "")});
+      const double value = bounded::quantity(both, "value", "");
+      coefficients.push_back({term, value, std::abs(value) * bounded::not_negative(both, "error", "")});
     } else {
-      coefficients.push_back({term, config.quantity(name, "")});
+      coefficients.push_back({term, bounded::quantity(config, name, "")});
     }
   }
   return coefficients;
@@ -55,10 +56,10 @@ std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config) {
 
 Hydrodynamics Hydrodynamics::from(const Config& config) {
   Hydrodynamics h;
-  h.length = config.positive("length", "m");
-  h.added_mass << config.vector3("added_mass", "kg"), config.vector3("added_inertia", "kg m^2");
+  h.length = bounded::positive(config, "length", "m");
+  h.added_mass << bounded::vector3(config, "added_mass", "kg"), bounded::vector3(config, "added_inertia", "kg m^2");
   if (h.added_mass.minCoeff() < 0.0) config.fail("added_mass", "added mass and inertia must not be negative");
-  if (config.has("centre_of_buoyancy")) h.p_BB = config.vector3("centre_of_buoyancy", "m");
+  if (config.has("centre_of_buoyancy")) h.p_BB = bounded::vector3(config, "centre_of_buoyancy", "m");
   if (config.has("coefficients")) h.coefficients = read_coefficients(config.section("coefficients"));
   if (config.has("reference")) h.reference = read_coefficients(config.section("reference"));
   if (config.has("umbilical")) h.umbilical = read_umbilical(config.section("umbilical"));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/config.hpp"
+#include "common/model/bounded.hpp"
 
 namespace fathom::model {
 namespace {
@@ -13,10 +14,11 @@ namespace {
 constexpr double kThickestIndex = 3.0;  // no window's nor water's index comes near
 
 FlatPort port_from(const Config& config) {
-  FlatPort port{.distance = config.not_negative("distance", "m"), .thickness = config.not_negative("thickness", "m")};
+  FlatPort port{.distance = bounded::not_negative(config, "distance", "m"),
+                .thickness = bounded::not_negative(config, "thickness", "m")};
   const auto index = [&](const char* key, double& to) {
     if (!config.has(key)) return;
-    to = config.positive(key, "");
+    to = bounded::positive(config, key, "");
     if (to < 1.0 || to > kThickestIndex) config.fail(key, std::string{"'"} + key + "' is a refractive index: 1 to 3");
   };
   index("index_window", port.index_window);
@@ -30,7 +32,7 @@ Lens Lens::from(const Config& config) {
   Lens lens{.width = config.integer("width"), .height = config.integer("height")};
   if (lens.width <= 0) config.fail("width", "'width' must be positive");
   if (lens.height <= 0) config.fail("height", "'height' must be positive");
-  const std::vector<double> focal = config.quantities("focal", "");
+  const std::vector<double> focal = bounded::quantities(config, "focal", "");
   if (focal.size() > 2 || *std::min_element(focal.begin(), focal.end()) <= 0.0) {
     config.fail("focal", "'focal' must be one or two positive numbers of pixels: along the picture, and down it");
   }
@@ -39,14 +41,14 @@ Lens Lens::from(const Config& config) {
   lens.cx = 0.5 * (lens.width - 1);
   lens.cy = 0.5 * (lens.height - 1);
   if (config.has("centre")) {
-    const std::vector<double> centre = config.quantities("centre", "");
+    const std::vector<double> centre = bounded::quantities(config, "centre", "");
     if (centre.size() != 2) config.fail("centre", "'centre' must be two numbers of pixels");
     lens.cx = centre[0];
     lens.cy = centre[1];
   }
   if (config.has("lens")) lens.kind = config.either("lens", "fisheye", "pinhole") ? Kind::kFisheye : Kind::kPinhole;
   if (config.has("distortion")) {
-    const std::vector<double> given = config.quantities("distortion", "");
+    const std::vector<double> given = bounded::quantities(config, "distortion", "");
     const std::size_t most = lens.kind == Kind::kFisheye ? 4 : kMostCoefficients;
     if (given.size() > most) {
       config.fail("distortion", lens.kind == Kind::kFisheye ? "a fisheye has at most four coefficients: k1 k2 k3 k4"

@@ -6,6 +6,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/spatial.hpp"
+#include "common/model/bounded.hpp"
 
 namespace fathom::model {
 namespace {
@@ -13,14 +14,14 @@ namespace {
 constexpr double kUnitTolerance = 0.01;  // an axis typed with three digits is still a unit vector
 
 Eigen::Vector3d axis(const Config& config, const std::string& key) {
-  const Eigen::Vector3d given = config.vector3(key, "");
+  const Eigen::Vector3d given = bounded::vector3(config, key, "");
   if (std::abs(given.norm() - 1.0) > kUnitTolerance) config.fail(key, "'" + key + "' must be a unit vector");
   return given.normalized();
 }
 
 Mount mount(const Config& config) {
-  Mount result{.p_BS = config.vector3("position", "m")};
-  if (config.has("rotation")) result.R_BS = rotation_from_euler(config.vector3("rotation", "rad"));
+  Mount result{.p_BS = bounded::vector3(config, "position", "m")};
+  if (config.has("rotation")) result.R_BS = rotation_from_euler(bounded::vector3(config, "rotation", "rad"));
   return result;
 }
 
@@ -45,7 +46,7 @@ Mounts Mounts::from(const Config& config) {
   simple("ranges", mounts.ranges);
   if (config.has("dvl")) {
     const Config dvl = config.section("dvl");
-    mounts.dvl = DvlMount{.mount = mount(dvl), .beam_angle = dvl.positive("beam_angle", "rad")};
+    mounts.dvl = DvlMount{.mount = mount(dvl), .beam_angle = bounded::positive(dvl, "beam_angle", "rad")};
     if (mounts.dvl->beam_angle >= 0.5 * std::numbers::pi) {
       dvl.fail("beam_angle", "'beam_angle' is counted from the instrument's down axis and stays below 90 deg");
     }
@@ -60,7 +61,7 @@ Mounts Mounts::from(const Config& config) {
   if (config.has("laser")) {
     const Config laser = config.section("laser");
     mounts.laser = LaserMount{
-        .camera = laser.text("camera"), .p_CE = laser.vector3("emitter", "m"), .axis_C = axis(laser, "axis")};
+        .camera = laser.text("camera"), .p_CE = bounded::vector3(laser, "emitter", "m"), .axis_C = axis(laser, "axis")};
     if (mounts.camera(mounts.laser->camera) == nullptr) {
       laser.fail("camera", "no camera is called '" + mounts.laser->camera + "'");
     }

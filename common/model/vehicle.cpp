@@ -9,6 +9,7 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/model/after_abort.hpp"
+#include "common/model/bounded.hpp"
 #include "common/model/wide_prior.hpp"
 
 namespace fathom::model {
@@ -30,7 +31,7 @@ std::string number(double value) {
 }
 
 double positive(const Config& config, const std::string& key, const std::string& unit) {
-  const double value = config.quantity(key, unit);
+  const double value = bounded::quantity(config, key, unit);
   if (value <= 0.0) config.fail(key, "'" + key + "' must be positive, not " + number(value) + " " + unit);
   return value;
 }
@@ -57,11 +58,11 @@ void read_body(const Config& config, Vehicle& vehicle) {
   if (config.has("nominal_voltage")) vehicle.nominal_voltage = positive(config, "nominal_voltage", "V");
   if (config.has("largest_thrust")) vehicle.largest_thrust = positive(config, "largest_thrust", "N");
   if (config.has("hull")) {
-    vehicle.hull = config.vector3("hull", "m");
+    vehicle.hull = bounded::vector3(config, "hull", "m");
     if (vehicle.hull.minCoeff() <= 0.0) config.fail("hull", "'hull' must be positive along every axis");
   }
   if (!config.has("inertia")) return;
-  vehicle.inertia = config.vector3("inertia", "kg m^2");
+  vehicle.inertia = bounded::vector3(config, "inertia", "kg m^2");
   const Eigen::Vector3d& inertia = vehicle.inertia;
   if (inertia.minCoeff() <= 0.0) config.fail("inertia", "'inertia' must be positive about every axis");
   if (2.0 * inertia.maxCoeff() > inertia.sum() * (1.0 + kTriangleTolerance)) {
@@ -72,8 +73,8 @@ void read_body(const Config& config, Vehicle& vehicle) {
 ThrustCurve read_curve(const Config& config) {
   ThrustCurve curve;
   curve.neutral_us = positive(config, "neutral", "us");
-  curve.pwm_us = config.quantities("pwm", "us");
-  curve.force = config.quantities("force", "N");
+  curve.pwm_us = bounded::quantities(config, "pwm", "us");
+  curve.force = bounded::quantities(config, "force", "N");
   if (curve.pwm_us.size() != curve.force.size()) {
     config.fail("force", "'pwm' has " + std::to_string(curve.pwm_us.size()) + " numbers and 'force' has " +
                              std::to_string(curve.force.size()));
@@ -93,7 +94,7 @@ ThrustCurve read_curve(const Config& config) {
   }
   if (config.has("voltage")) curve.voltage = positive(config, "voltage", "V");
   if (config.has("voltage_exponent")) {
-    curve.voltage_exponent = config.quantity("voltage_exponent", "");
+    curve.voltage_exponent = bounded::quantity(config, "voltage_exponent", "");
     if (curve.voltage <= 0.0) config.fail("voltage_exponent", "'voltage_exponent' needs the 'voltage' of the curve");
   }
   return curve;
@@ -109,12 +110,12 @@ bool read_thrusters(const Config& config, Vehicle& vehicle) {
       if (other.name == thruster.name) one.fail("name", "two thrusters are called '" + thruster.name + "'");
     }
     if (one.has("pwm_sign")) {
-      thruster.pwm_sign = one.quantity("pwm_sign", "");
+      thruster.pwm_sign = bounded::quantity(one, "pwm_sign", "");
       if (std::abs(thruster.pwm_sign) != 1.0) one.fail("pwm_sign", "'pwm_sign' must be 1 or -1");
     }
     if (one.has("position") || one.has("axis")) {
-      thruster.p_BJ = one.vector3("position", "m");
-      thruster.axis_B = one.vector3("axis", "");
+      thruster.p_BJ = bounded::vector3(one, "position", "m");
+      thruster.axis_B = bounded::vector3(one, "axis", "");
       const double length = thruster.axis_B.norm();
       if (std::abs(length - 1.0) > kUnitTolerance) {
         one.fail("axis", "'axis' must be a unit vector; its length is " + number(length));
@@ -146,7 +147,7 @@ void read_allocation(const Config& config, bool geometry, Vehicle& vehicle) {
   const Config rows = config.section("allocation");
   for (int i = 0; i < 6; ++i) {
     const char* axis = kAxisNames[static_cast<std::size_t>(i)];
-    const std::vector<double> row = rows.quantities(axis, i < 3 ? "" : "m");
+    const std::vector<double> row = bounded::quantities(rows, axis, i < 3 ? "" : "m");
     if (static_cast<Eigen::Index>(row.size()) != count) {
       rows.fail(axis, "row " + std::string(axis) + " has " + std::to_string(row.size()) + " numbers for " +
                           std::to_string(count) + " thrusters");
@@ -186,7 +187,7 @@ void check_moment(const Config& section, const std::string& key, BaseParameter p
 Prior read_prior(const Config& config, const std::string& key, BaseParameter parameter, const Vehicle& vehicle) {
   const std::string wanted{unit(parameter)};
   const Config section = config.section(key);
-  const Prior prior{section.quantity("mean", wanted), section.quantity("sigma", wanted)};
+  const Prior prior{bounded::quantity(section, "mean", wanted), bounded::quantity(section, "sigma", wanted)};
   if (prior.sigma <= 0.0) section.fail("sigma", "'sigma' must be positive");
   if (sign_constraint(parameter) > 0 && prior.mean <= 0.0) {
     section.fail("mean", "'" + key + "' must be positive");

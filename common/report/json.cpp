@@ -112,7 +112,7 @@ Json effects(const std::vector<EffectFound>& found) {
   return array;
 }
 
-Json candidates(const std::vector<CandidateTried>& tried) {
+Json candidates(const std::vector<CandidateTried>& tried, const VerdictGiven& given) {
   Json array = Json::array();
   for (const auto& c : tried) {
     array.push_back({{"name", c.name},
@@ -121,6 +121,24 @@ Json candidates(const std::vector<CandidateTried>& tried) {
                      {"error_reduction", finite(c.error_reduction)},
                      {"aliased_with", c.aliased_with},
                      {"reason", c.reason}});
+    const auto found = given.refusals.find(c.name);
+    if (found == given.refusals.end()) continue;
+    Json refusals = Json::array();
+    for (const auto& refusal : found->second)
+      refusals.push_back(
+          {{"rule", refusal.rule}, {"value", finite(refusal.value)}, {"needed", finite(refusal.needed)}});
+    array.back()["refusals"] = refusals;
+  }
+  return array;
+}
+
+Json causes(const std::vector<CauseGiven>& given) {
+  Json array = Json::array();
+  for (const auto& cause : given) {
+    array.push_back({{"cause", cause.cause},
+                     {"value", finite(cause.value)},
+                     {"threshold", finite(cause.threshold)},
+                     {"of", cause.of}});
   }
   return array;
 }
@@ -146,7 +164,7 @@ Json associations(const std::vector<Association>& left) {
 
 }  // namespace
 
-std::string to_json(const DiagnosisResult& result) {
+std::string to_json(const DiagnosisResult& result, const VerdictGiven& given) {
   Json improvement;
   improvement["value"] = finite(result.improvement.value);
   improvement["ci95"] = Json::array({finite(result.improvement.low), finite(result.improvement.high)});
@@ -159,8 +177,13 @@ std::string to_json(const DiagnosisResult& result) {
   file["validate"] = result.validate;
   file["consistency"] = consistency(result.consistency);
   file["verdict"] = result.verdict;
+  if (!given.core.empty()) {
+    file["core"] = given.core;
+    file["causes"] = causes(given.causes);
+    file["paragraph"] = result.paragraph;
+  }
   file["effects"] = effects(result.effects);
-  file["candidates"] = candidates(result.candidates);
+  file["candidates"] = candidates(result.candidates, given);
   file["not_measured"] = not_measured(result.not_measured);
   file["error"]["before"] = error(result.error_before);
   file["error"]["after"] = error(result.error_after);

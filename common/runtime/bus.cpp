@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/runtime/channel_filter.hpp"
+#include "common/runtime/bus_filter.hpp"
 
 namespace fathom::runtime {
 namespace {
@@ -105,19 +105,17 @@ LiveInput::LiveInput(const std::vector<Url>& urls, const std::vector<Subscriptio
   channels.reserve(subscriptions.size());
   for (const Subscription& each : subscriptions) channels.push_back(each.channel);
   const bool many = std::ranges::any_of(slots_, [](const Slot& slot) { return slot.many; });
+  if (many) channels.clear();  // all of them
   for (const Url& url : urls) {
     buses_.push_back(connect(url));
-    const std::vector<int> before = listening_sockets();
+    const auto socket = listen_filtered(*buses_.back(), url.text);
     for (Slot& slot : slots_) {
       auto* handle = buses_.back()->subscribeFunction(subscriptions[slot.index].channel, &LiveInput::receive, &slot);
       if (handle == nullptr) throw InputError(url.text + ": cannot listen; does multicast come back to this host?");
       handle->setQueueCapacity(std::numeric_limits<int>::max());
     }
-    if (many) continue;
-    // liblcm does not show its socket: it is the one that came with the first subscription.
-    std::vector<int> came = listening_sockets();
-    std::erase_if(came, [&](int each) { return std::ranges::find(before, each) != before.end(); });
-    if (came.size() == 1) hear_only(came.front(), channels);
+    if (socket && !filter(*socket, bus_program(BusAddress::of(url.text), channels)))
+      throw InputError(url.text + ": the kernel refuses the filter of channels");
   }
 }
 

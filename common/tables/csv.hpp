@@ -36,6 +36,10 @@ struct CsvTable {
   [[nodiscard]] std::size_t index(const std::vector<double>* column) const {
     return static_cast<std::size_t>(column - columns.data());
   }
+  /// What a column's cells are; numbers in tables that nobody parsed.
+  [[nodiscard]] Cells cells_of(std::size_t column) const {
+    return column < cells.size() ? cells[column] : Cells::kNumbers;
+  }
   /// "file:line" of a row.
   [[nodiscard]] std::string where(std::size_t row) const;
 };

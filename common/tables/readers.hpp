@@ -14,6 +14,9 @@
 
 namespace fathom::tables {
 
+/// The time of a recording with topics: a clock of its own, of whose unit there is no question.
+inline constexpr const char* kOwnTime = "(time)";
+
 using ColumnData = const std::vector<double>*;
 
 /// Finds columns, remembers which were used, and complains in the words of the map.

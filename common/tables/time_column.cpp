@@ -111,7 +111,7 @@ class TimeColumn {
     }
     for (const Column& column : columns_) data_.push_back(resolve(column));
     for (std::size_t i = 0; i < data_.size(); ++i) {
-      const Cells cells = table.cells[table.index(data_[i])];
+      const Cells cells = table.cells_of(table.index(data_[i]));
       if (cells != Cells::kNumbers) factors_[i] = 1.0;
       clock_only_ = clock_only_ && cells == Cells::kTimesOfDay;
       dates_ = dates_ || cells == Cells::kDates;
@@ -157,7 +157,7 @@ class TimeColumn {
 void compare_clocks(const CsvTable& table, const TimeColumn& time, const Rows& rows, std::vector<std::string>& notes) {
   for (std::size_t c = 0; c < table.names.size(); ++c) {
     const std::string name = lower(table.names[c]);
-    const bool text = table.cells[c] != Cells::kNumbers;
+    const bool text = table.cells_of(c) != Cells::kNumbers;
     const bool named = name == "time" || name == "timestamp" || name == "datetime" || name == "utc" || name == "clock";
     if ((!text && !named) || time.is(table.names[c])) continue;
     std::vector<std::pair<double, double>> both;  // s, unit of the column
@@ -233,7 +233,9 @@ Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map, s
     notes.push_back("time: " + std::to_string(falling) + " rows dropped because time did not rise, first at " +
                     table.where(first_falling));
   }
-  check_step(table, time.first(), time.factor(), report_longest_gap(rows.utime, notes));
+  const double typical = report_longest_gap(rows.utime, notes);
+  if (time.first().name == kOwnTime) return rows;  // a topic's own time is known to be one
+  check_step(table, time.first(), time.factor(), typical);
   compare_clocks(table, time, rows, notes);
   return rows;
 }

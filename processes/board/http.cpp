@@ -1,124 +1,140 @@
 #include "processes/board/http.hpp"
 
-#include <netdb.h>
+#include <arpa/inet.h>
+#include <httplib.h>
+#include <poll.h>
+#include <strings.h>
+#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
-#include "common/base/error.hpp"
 #include "common/board/page.hpp"
-#include "processes/board/connection.hpp"
+#include "common/runtime/self.hpp"
+#include "processes/board/listener.hpp"
 
 namespace fathom::board {
 namespace {
 
-constexpr std::size_t kThreads = 32;
-constexpr int kMostWaiting = 64;  // connections beside them; more are closed at once
+using Clock = std::chrono::steady_clock;
 
-// The library's own set SO_REUSEPORT, by which two boards would share one port, each with half of the clients.
-void socket_options(socket_t socket) {
-  const int yes = 1;
-  setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-}
+constexpr std::chrono::seconds kPatience{3};  // for request and answer together
+constexpr std::size_t kMostBytes = 16'384;    // of a request; browsers send less than one thousand
+constexpr std::size_t kMostClients =
+    512;                     // at a time, half of the descriptors that a process has: then the oldest goes
+constexpr int kSlice = 100;  // ms between two looks at the clock
 
-/// Why this place cannot be listened at; the library only says that.
-std::string objection(const std::string& host, int port) {
-  const std::string number = std::to_string(port);
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_STREAM;
-  wanted.ai_flags = AI_PASSIVE;
-  addrinfo* found = nullptr;
-  if (const int code = getaddrinfo(host.c_str(), number.c_str(), &wanted, &found); code != 0)
-    return "--host " + host + " is not known (" + gai_strerror(code) +
-           "); give an address of this host, 127.0.0.1 for this host alone or 0.0.0.0 for all its networks";
-  int why = EADDRNOTAVAIL;
-  for (const addrinfo* each = found; each != nullptr && why != 0; each = each->ai_next) {
-    const int socket = ::socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, each->ai_protocol);
-    if (socket < 0) continue;
-    socket_options(socket);
-    why = ::bind(socket, each->ai_addr, each->ai_addrlen) == 0 && ::listen(socket, 1) == 0 ? 0 : errno;
-    ::close(socket);
-  }
-  freeaddrinfo(found);
-  switch (why) {
-    case 0:
-      return {};
-    case EADDRINUSE:
-      return "--port " + number + ": another program listens at " + host + ":" + number +
-             " (perhaps a second board); stop it or choose another port";
-    case EACCES:
-      return "--port " + number + ": ports below 1024 need permission; choose one above, such as 8077";
-    case EADDRNOTAVAIL:
-      return "--host " + host + " is no address of this host (ip address lists them); 127.0.0.1 is this host alone";
-    default:
-      return "cannot listen at " + host + ":" + number + ": " + std::strerror(why);
-  }
-}
-
-// Set where a client is only to be told to go.
-thread_local bool full = false;
-
-/// So many wait for a thread and no more: each holds a descriptor.
-class Queue : public httplib::TaskQueue {
+/// One request that is whole, and the answer to it: the library reads and writes memory and never waits.
+class Exchange : public httplib::Stream {
  public:
-  void enqueue(std::function<void()> task) override {
-    if (waiting_ >= kMostWaiting) {
-      full = true;
-      task();
-      full = false;
-      return;
-    }
-    ++waiting_;
-    pool_.enqueue([this, task = std::move(task)] {
-      --waiting_;
-      task();
-    });
+  explicit Exchange(const std::string& request) : request_{request} {}
+  std::string answer;
+
+  [[nodiscard]] bool is_readable() const override { return read_ < request_.size(); }
+  [[nodiscard]] bool is_writable() const override { return true; }
+  ssize_t read(char* to, std::size_t size) override {
+    const std::size_t given = std::min(size, request_.size() - read_);
+    std::memcpy(to, request_.data() + read_, given);
+    read_ += given;
+    return static_cast<ssize_t>(given);
   }
-  void shutdown() override { pool_.shutdown(); }
+  ssize_t write(const char* from, std::size_t size) override {
+    answer.append(from, size);
+    return static_cast<ssize_t>(size);
+  }
+  void get_remote_ip_and_port(std::string& ip, int& port) const override { nowhere(ip, port); }
+  void get_local_ip_and_port(std::string& ip, int& port) const override { nowhere(ip, port); }
+  [[nodiscard]] socket_t socket() const override { return -1; }
 
  private:
-  httplib::ThreadPool pool_{kThreads};
-  std::atomic<int> waiting_{0};
+  static void nowhere(std::string& ip, int& port) {
+    ip.clear();
+    port = 0;
+  }
+  const std::string& request_;
+  std::size_t read_{};
 };
+
+/// "topside:8077" without the port, "[::1]:8077" without brackets.
+std::string host_of(const std::string& header) {
+  if (header.starts_with('[')) return header.substr(1, header.find(']') - 1);
+  return header.substr(0, header.find(':'));
+}
+
+bool is_address(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> unused{};
+  return inet_pton(AF_INET, text.c_str(), unused.data()) == 1 || inet_pton(AF_INET6, text.c_str(), unused.data()) == 1;
+}
 
 }  // namespace
 
 class Server::Http : public httplib::Server {
  public:
-  std::atomic<bool> leaving{false};
+  explicit Http(std::vector<std::string> names) : names_{std::move(names)} {
+    for (const std::string& each : {std::string{"localhost"}, runtime::host_name(), runtime::host_name() + ".local"})
+      names_.push_back(each);
+  }
 
- private:
   // One request each. Ranges and compression are left aside: a request for a thousand ranges would be answered with a
   // thousand copies, and loopback needs no compression.
-  bool process_and_close_socket(socket_t socket) override {
-    if (!full) {
-      Connection connection{socket, leaving};
-      bool closed = false;
-      process_request(connection, true, closed, [](httplib::Request& request) {
-        request.ranges.clear();
-        request.headers.erase("Accept-Encoding");
-      });
-    }
-    ::shutdown(socket, SHUT_RDWR);
-    ::close(socket);
-    return true;
+  [[nodiscard]] std::string answer(const std::string& request) {
+    Exchange exchange{request};
+    bool closed = false;
+    process_request(exchange, true, closed, [](httplib::Request& each) {
+      each.ranges.clear();
+      each.headers.erase("Accept-Encoding");
+    });
+    return std::move(exchange.answer);
   }
+
+  // A page of the wide world can have its own name point to this host, and would then be allowed by the browser to read
+  // what is shown here. What it cannot do is call this host by an address, or by this host's name.
+  [[nodiscard]] bool is_called(const std::string& header) const {
+    const std::string host = host_of(header);
+    return is_address(host) || std::ranges::any_of(names_, [&](const std::string& each) {
+             return strcasecmp(each.c_str(), host.c_str()) == 0;
+           });
+  }
+
+ private:
+  std::vector<std::string> names_;
 };
 
-Server::Server(const std::string& host, int port)
-    : http_{std::make_unique<Http>()}, json_{std::make_shared<const std::string>("{}")} {
-  if (const std::string why = objection(host, port); !why.empty()) throw InputError(why);
-  http_->set_socket_options(socket_options);
-  http_->new_task_queue = [] { return new Queue; };
-  http_->set_payload_max_length(Connection::kMostBytes);
+struct Server::Client {
+  int socket{};
+  Clock::time_point begin{Clock::now()};
+  std::string request{}, answer{};
+  std::size_t sent{};
+  bool answered{false}, done{false};  ///< done: all was sent; the client's end is waited for
+
+  explicit Client(int descriptor) : socket{descriptor} {}
+  ~Client() { ::close(socket); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+};
+
+Server::Server(const std::string& host, int port, const std::vector<std::string>& names)
+    : http_{std::make_unique<Http>(names)}, port_{port}, json_{std::make_shared<const std::string>("{}")} {
+  http_->set_payload_max_length(kMostBytes);
   // Should a name from the bus ever get into the page as a script, the browser would not run it.
   http_->set_default_headers({{"Content-Security-Policy", "default-src 'self'; img-src data:; frame-ancestors 'none'"},
                               {"X-Content-Type-Options", "nosniff"},
                               {"Cache-Control", "no-store"}});
+  http_->set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    if (http_->is_called(request.get_header_value("Host"))) return httplib::Server::HandlerResponse::Unhandled;
+    response.status = 421;  // misdirected
+    response.set_content("this board does not go by that name; call it by an address, or start it with --name\n",
+                         "text/plain");
+    return httplib::Server::HandlerResponse::Handled;
+  });
   const auto give = [&](const char* path, std::string_view text, const char* type) {
     http_->Get(path, [text, type](const httplib::Request&, httplib::Response& response) {
       response.set_content(text.data(), text.size(), type);
@@ -133,21 +149,80 @@ Server::Server(const std::string& host, int port)
   http_->set_error_handler([](const httplib::Request&, httplib::Response& response) {
     if (response.status == 404) response.set_content("there is / and /board.json\n", "text/plain");
   });
-  port_ = port;
-  if (port == 0) {
-    port_ = http_->bind_to_any_port(host);
-  } else if (!http_->bind_to_port(host, port)) {
-    port_ = -1;
-  }
-  if (port_ < 0) throw InputError("cannot listen at " + host + ":" + std::to_string(port));
-  thread_ = std::thread{[this] { http_->listen_after_bind(); }};
-  while (!http_->is_running()) std::this_thread::sleep_for(std::chrono::milliseconds{1});  // stop() would be lost
+  listener_ = listen_at(host, port_);
+  wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  sigset_t all, before;  // signals are for the thread that waits for them
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  thread_ = std::thread{[this] { serve(); }};
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 Server::~Server() {
-  http_->leaving = true;
-  http_->stop();
+  const std::uint64_t one = 1;
+  (void)!::write(wake_, &one, sizeof one);
   thread_.join();
+  ::close(listener_);
+  ::close(wake_);
+}
+
+void Server::accept_clients() {
+  for (;;) {
+    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (socket < 0) return;
+    if (clients_.size() >= kMostClients) clients_.pop_front();
+    clients_.emplace_back(socket);
+  }
+}
+
+bool Server::attend(Client& client, short events) {
+  if ((events & (POLLERR | POLLNVAL)) != 0) return false;
+  if (!client.answered && (events & (POLLIN | POLLHUP)) != 0) {
+    std::array<char, 4096> buffer{};
+    const ssize_t count = ::recv(client.socket, buffer.data(), buffer.size(), MSG_DONTWAIT);
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return false;
+    if (count > 0) client.request.append(buffer.data(), static_cast<std::size_t>(count));
+    if (client.request.find("\r\n\r\n") == std::string::npos) return client.request.size() <= kMostBytes;
+    client.answer = http_->answer(client.request);
+    client.answered = true;
+    events |= POLLOUT;
+  }
+  if (client.answered && !client.done && (events & POLLOUT) != 0) {
+    const ssize_t count = ::send(client.socket, client.answer.data() + client.sent, client.answer.size() - client.sent,
+                                 MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (count < 0) return errno == EAGAIN || errno == EINTR;
+    client.sent += static_cast<std::size_t>(count);
+    if (client.sent < client.answer.size()) return true;
+    client.done = true;
+    ::shutdown(client.socket, SHUT_WR);
+  }
+  if (client.done && (events & (POLLIN | POLLHUP)) != 0) {  // to close before it has read all would take it away
+    std::array<char, 4096> rest{};
+    const ssize_t count = ::recv(client.socket, rest.data(), rest.size(), MSG_DONTWAIT);
+    return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
+  }
+  return true;
+}
+
+void Server::serve() {
+  std::vector<pollfd> watched;
+  for (;;) {
+    watched = {{.fd = wake_, .events = POLLIN, .revents = 0}, {.fd = listener_, .events = POLLIN, .revents = 0}};
+    for (const Client& each : clients_) {
+      const auto wanted = static_cast<short>(each.answered && !each.done ? POLLOUT : POLLIN);
+      watched.push_back({.fd = each.socket, .events = wanted, .revents = 0});
+    }
+    ::poll(watched.data(), watched.size(), clients_.empty() ? -1 : kSlice);
+    if (watched[0].revents != 0) break;
+    const auto now = Clock::now();
+    auto seen = std::next(watched.begin(), 2);
+    for (auto each = clients_.begin(); each != clients_.end(); ++seen) {
+      const bool late = now - each->begin > kPatience;
+      each = !late && (seen->revents == 0 || attend(*each, seen->revents)) ? std::next(each) : clients_.erase(each);
+    }
+    if (watched[1].revents != 0) accept_clients();
+  }
+  clients_.clear();
 }
 
 void Server::show(std::string json) {

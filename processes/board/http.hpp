@@ -1,18 +1,21 @@
-// The board's HTTP side: four texts to whoever asks, in threads of its own, whatever the clients do.
+// The board's HTTP side: four texts to whoever asks. One thread serves all clients, each as far as it has come, so that
+// no number of slow ones keeps another one waiting.
 #pragma once
 
-#include <atomic>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace fathom::board {
 
 class Server {
  public:
-  /// Listens from now on; port 0: any free one. InputError with what to do about it when it cannot.
-  Server(const std::string& host, int port);
+  /// Listens from now on; port 0: any free one. `names`: by which a browser may call this host, beside its addresses,
+  /// its own name and "localhost". InputError with what to do about it when it cannot.
+  Server(const std::string& host, int port, const std::vector<std::string>& names = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -23,12 +26,18 @@ class Server {
 
  private:
   class Http;
+  struct Client;
   [[nodiscard]] std::shared_ptr<const std::string> shown() const;
+  void serve();
+  void accept_clients();
+  /// False when the client has come to its end.
+  [[nodiscard]] bool attend(Client& client, short events);
 
   std::unique_ptr<Http> http_;
-  int port_{};
+  int port_{}, listener_{-1}, wake_{-1};
   mutable std::mutex mutex_;
   std::shared_ptr<const std::string> json_;
+  std::list<Client> clients_;  ///< the oldest first
   std::thread thread_;
 };
 

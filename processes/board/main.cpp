@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fathom_lcm/battery_t.hpp>
@@ -40,6 +41,8 @@ double seconds_now() {
 struct Options {
   std::string host{"127.0.0.1"};
   int port{8077};
+  std::vector<std::string> names;
+  bool serves{true};  ///< not when it is only asked for its --interface
 };
 
 template <class Message>
@@ -73,14 +76,14 @@ void run(runtime::Process& process, const Options& options) {
   std::unique_ptr<board::Server> server;
   double shown = 0.0;
   std::int64_t number = 0;
+  if (options.serves) {
+    server = std::make_unique<board::Server>(options.host, options.port, options.names);
+    // Two people may look on: no board is another one's twin. It has this name from its first word on.
+    process.goes_by("board@" + runtime::host_name() + ":" + std::to_string(server->port()));
+    process.log_info("look at http://" + (options.host == "0.0.0.0" ? runtime::host_name() : options.host) + ":" +
+                     std::to_string(server->port()) + "/");
+  }
   process.waits_with([&](std::span<const int> descriptors, int milliseconds) {
-    if (!server) {  // here, since --interface listens nowhere
-      server = std::make_unique<board::Server>(options.host, options.port);
-      // Two people may look on: no board is another one's twin.
-      process.goes_by("board@" + runtime::host_name() + ":" + std::to_string(server->port()));
-      process.log_info("look at http://" + (options.host == "0.0.0.0" ? runtime::host_name() : options.host) + ":" +
-                       std::to_string(server->port()) + "/");
-    }
     if (const double now = seconds_now(); now - shown >= kPeriod) {
       shown = now;
       server->show(board.json(now, ++number));
@@ -94,11 +97,14 @@ void run(runtime::Process& process, const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
+  options.serves = std::none_of(argv, argv + argc, [](const char* each) { return std::string{each} == "--interface"; });
   const runtime::Program program{"board", "Serves a page that shows a live trial."};
   return runtime::main(
       program, argc, argv, [&](runtime::Process& process) { run(process, options); },
       [&](CLI::App& app) {
         app.add_option("--port", options.port, "of the page (8077); 0: any that is free")->check(CLI::Range(0, 65535));
         app.add_option("--host", options.host, "address to listen at (127.0.0.1: this host alone)");
+        app.add_option("--name", options.names,
+                       "by which browsers call this host, beside its addresses, its own name and localhost");
       });
 }

@@ -14,10 +14,13 @@
 int main(int argc, char** argv) {
   using namespace fathom;
   CLI::App app{"Starts, watches and stops programs on this host as a sheriff orders; procman's protocol.", "deputy"};
-  deputy::Options options{.name = runtime::host_name(), .url = {}};
+  deputy::Options options{.name = runtime::host_name(), .url = {}, .allow = {}};
   std::string log;
   app.add_option("-i,--id", options.name, "this deputy's name in configurations (the host's)");
   app.add_option("-u,--lcmurl", options.url, "bus of the orders (LCM_DEFAULT_URL); programs get LCM_DEFAULT_URL");
+  app.add_option("--allow", options.allow,
+                 "run only the command lines that these procman configurations name for this deputy (FATHOM_ALLOW)")
+      ->envname("FATHOM_ALLOW");
   app.add_option("-l,--log", log, "append what it says to this file");
   bool leave{false};
   app.add_flag("--leave-with-parent", leave, "stop everything and end when whoever started it is gone");

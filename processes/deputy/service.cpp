@@ -35,11 +35,21 @@ void log(const std::string& text) {
   std::fprintf(stderr, "%s deputy: %s\n", clock, text.c_str());
 }
 
+std::optional<launch::AllowList> allow_list(const Options& options) {
+  if (options.allow.empty()) return {};
+  return launch::AllowList::load(options.allow, options.name);
+}
+
+std::string describe(const std::optional<launch::AllowList>& list) {
+  if (!list) return std::string{launch::kAllowed} + "any that is ordered (no --allow)";
+  return launch::kAllowed + std::string{"only the "} + std::to_string(list->size()) + " of " + list->files();
+}
+
 }  // namespace
 
 Service::Service(Options options)
     : options_{std::move(options)},
-      mind_{options_.name},
+      mind_{options_.name, allow_list(options_)},
       children_{[this](const std::string& id, std::string_view text) { print(id, text); },
                 [this](const std::string& id, std::int32_t status) { mind_.died(id, status, steady()); }},
       bus_{options_.url,
@@ -71,7 +81,7 @@ void Service::hear(const DeputyInfo& info) {
 
 void Service::hear(const LaunchDiscovery& discovery) {
   if (!looking_) {
-    tell_now_ = true;
+    tell_now_ = asked_ = true;
     return;
   }
   // Of two that start together the one with the lower number stays.
@@ -138,12 +148,19 @@ void Service::tell() {
   bus_.say(info);
 }
 
+// In procman's words, since its protocol has no place for it: a text of the deputy itself.
+void Service::tell_allowed() {
+  bus_.say(LaunchOutput{
+      .utime = wall_clock(), .deputy = options_.name, .texts = {{.id = "", .text = describe(mind_.allowed()) + "\n"}}});
+}
+
 void Service::flush(double now) {
   auto texts = output_.take(now);
   if (!texts.empty()) bus_.say(LaunchOutput{.utime = wall_clock(), .deputy = options_.name, .texts = std::move(texts)});
 }
 
 void Service::wait(double seconds) {
+  seconds = std::min(seconds, systemd_.alive(steady()));
   std::vector<pollfd> watched{{.fd = signals_.descriptor(), .events = POLLIN, .revents = 0}};
   for (const int each : bus_.descriptors()) watched.push_back({.fd = each, .events = POLLIN, .revents = 0});
   children_.watch(watched);
@@ -169,7 +186,8 @@ int Service::run() {
     if (signals_.stops() > 0) return 0;
   }
   looking_ = false;
-  log(options_.name + " waits for orders on " + options_.url);
+  log(options_.name + " waits for orders on " + options_.url + "; " + describe(mind_.allowed()));
+  systemd_.ready(options_.name + " waits for orders; " + describe(mind_.allowed()));
   jiffies_ = jiffies();
   double next = steady();
   while (signals_.stops() == 0) {
@@ -181,10 +199,12 @@ int Service::run() {
       next = std::max(next + 1.0, now);
       tell_now_ = true;
     }
+    if (std::exchange(asked_, false)) tell_allowed();  // in front: who asks may listen for no longer than to the answer
     if (mind_.take_changed() || std::exchange(tell_now_, false)) tell();
     flush(now);
     wait(std::min(next - now, mind_.idle(now)));
   }
+  systemd_.stopping();
   return leave();
 }
 

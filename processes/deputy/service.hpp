@@ -12,13 +12,15 @@
 #include "processes/deputy/children.hpp"
 #include "processes/deputy/host.hpp"
 #include "processes/deputy/signals.hpp"
+#include "processes/deputy/systemd.hpp"
 
 namespace fathom::deputy {
 
 struct Options {
   std::string name;
-  std::string url;      ///< of procman's channels
-  bool verbose{false};  ///< what programs print goes to stderr too
+  std::string url;                   ///< of procman's channels
+  std::vector<std::string> allow{};  ///< configurations whose command lines alone may be run; none: any
+  bool verbose{false};               ///< what programs print goes to stderr too
 };
 
 class Service {
@@ -36,6 +38,7 @@ class Service {
   void act();
   void measure(double now);
   void tell();
+  void tell_allowed();
   void flush(double now);
   void print(const std::string& id, std::string_view text);
   void wait(double seconds);
@@ -43,6 +46,7 @@ class Service {
 
   Options options_;
   Signals signals_;  // before liblcm starts its thread
+  Systemd systemd_;
   launch::Deputy mind_;
   launch::OutputLimit output_;
   Children children_;
@@ -54,7 +58,7 @@ class Service {
   Jiffies jiffies_{};
   float load_{};
   std::map<std::string, std::int64_t> used_;  ///< jiffies of each program
-  bool tell_now_{false};
+  bool tell_now_{false}, asked_{false};
 };
 
 }  // namespace fathom::deputy

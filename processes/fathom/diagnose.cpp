@@ -26,6 +26,7 @@
 #include "common/model/site.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
+#include "common/verdict/by_likelihood.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/progress.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -35,6 +36,8 @@
 namespace fathom::tool {
 namespace {
 
+constexpr const char* kTrajectories = "trajectories";
+constexpr const char* kLikelihood = "likelihood";
 constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
 constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
 constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
@@ -45,8 +48,20 @@ constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of
 struct Options {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
+  std::vector<std::string> without;
+  std::string core{kTrajectories};
   int threads{2};
 };
+
+void check_names(const std::vector<std::string>& without) {
+  const std::vector<std::string> listed = inference::listed_names();
+  for (const std::string& name : without) {
+    if (std::ranges::find(listed, name) != listed.end()) continue;
+    std::string all;
+    for (const std::string& one : listed) all += (all.empty() ? "" : ", ") + one;
+    throw InputError("--without " + name + ": no effect has this name; listed are " + all);
+  }
+}
 
 void make_folder(const std::string& path) {  // before the long work, so that a bad path costs nothing
   std::error_code error;
@@ -105,6 +120,7 @@ struct Explained {
   std::vector<ConsistencyFinding> gaps;
   identification::FitResult fitted;
   DiagnosisReport report;
+  VerdictGiven given;
 };
 
 /// True when the event begins within the first `share` of the run that it begins in.
@@ -118,11 +134,15 @@ bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double
   return event.t < first + share * (last - first);
 }
 
-DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress) {
+DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress,
+                         VerdictGiven& given) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
   if (!options.site.empty()) room = rehearsal_settings(options.site, options.config, vehicle);
+  check_names(options.without);
+  if (!options.without.empty() && options.core != kLikelihood)
+    throw InputError("--without takes effects out of the list of --core likelihood alone; give that too");
   make_folder(options.out);
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
@@ -177,6 +197,13 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     }
     out.fitting.emplace(train, paths, settings.fit.window);
     out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
+    if (options.core == kLikelihood) {
+      verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
+                                                 {.without = options.without, .threads = options.threads}, show);
+      out.report = std::move(answer.report);
+      out.given = std::move(answer.given);
+      return;
+    }
     out.report =
         diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, show, &out.fitted);
   };
@@ -208,7 +235,8 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   }
   DiagnosisReport& report = explained.report;
   const Stretches &fitting = *explained.fitting, &judging = *explained.judging;
-  if (room) separate(vehicle, *room, fitting.trials(), explained.fitted, report.result);
+  if (room && options.core == kTrajectories)
+    separate(vehicle, *room, fitting.trials(), explained.fitted, report.result);
   report.result.consistency = std::move(consistency.findings);
   report.result.consistency.insert(report.result.consistency.end(), explained.gaps.begin(), explained.gaps.end());
   diagnosis::adopt_sensor_faults(report.result);
@@ -219,19 +247,21 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     report.result.paragraph += estimation::text(
         " %.0f %% of the recordings was left out: what drove the vehicle was not recorded there.", 100.0 * left_out);
   }
+  given = std::move(explained.given);
   return std::move(explained.report);
 }
 
 void run(const Options& options) {
   std::vector<std::string> notes;
   DiagnosisReport report;
+  VerdictGiven given;
   report::Written written;
   double elapsed = 0.0;
   {
     ProgressLine progress;
-    report = diagnose(options, notes, progress);
+    report = diagnose(options, notes, progress, given);
     progress.show("drawing the report", kFitShare);
-    written = report::write(report, options.out);
+    written = report::write(report, options.out, given);
     elapsed = progress.elapsed();
   }
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
@@ -254,6 +284,12 @@ void add_diagnose(CLI::App& app) {
                       "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "
                       "compared with the tags of its map");
   command->add_option("--config", options->config, "with --site: pipeline file (its namesake in ../pipelines/)");
+  command
+      ->add_option("--core", options->core,
+                   "trajectories: windows of open-loop rollouts; likelihood: an innovations filter over whole runs")
+      ->check(CLI::IsMember({kTrajectories, kLikelihood}));
+  command->add_option("--without", options->without,
+                      "with --core likelihood: effects to take out of the list, by name");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->check(CLI::Range(1, 64));

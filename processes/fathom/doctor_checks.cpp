@@ -18,6 +18,7 @@
 #include "common/base/error.hpp"
 #include "common/base/operator_key.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/bus_filter.hpp"
 #include "processes/fathom/doctor.hpp"
 
 namespace fathom::tool {
@@ -42,21 +43,49 @@ long kernel_number(const std::string& path) {
   return value;
 }
 
-/// A message of our own that comes back to us over the multicast address, on a port that nobody else uses.
-std::string round_trip() {
-  const std::string port = std::to_string(20000 + getpid() % 20000);
-  const runtime::Url url = runtime::Url::parse("udpm://239.255.76.67:" + port + "?ttl=0", "--bus");
-  runtime::LiveInput input{{url}, {{"DOCTOR", 1}}};
-  runtime::Output output{url};
-  std::vector<std::uint8_t> bytes(100, 1);
-  output.write("DOCTOR", bytes, 0);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{2};
-  while (std::chrono::steady_clock::now() < end) {
-    input.wait(-1, 50);
-    if (input.next()) return {};
+/// A bus on a port that nobody else uses, with one message of our own to listen for.
+class OwnBus {
+ public:
+  OwnBus()
+      : url_{runtime::Url::parse("udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0",
+                                 "--bus")},
+        input_{{url_}, {{kChannel, 1}}},
+        output_{url_} {}
+
+  /// Over the multicast address: it comes back to us.
+  [[nodiscard]] bool comes_back() {
+    std::vector<std::uint8_t> bytes(100, 1);
+    output_.write(kChannel, bytes, 0);
+    return heard(2.0);
   }
-  return "what is sent does not come back";
-}
+  /// To this host alone, as any other host could send it.
+  [[nodiscard]] bool believes_what_is_sent_past_it() {
+    const std::string packet = std::string("LC02\0\0\0\1", 8) + kChannel + std::string(1, '\0') + std::string(100, 'x');
+    const int from = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_port = htons(runtime::BusAddress::of(url_.text).port);
+    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const auto sent =
+        sendto(from, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&here), sizeof here);
+    close(from);
+    return sent < 0 || heard(0.3);  // over lo it is there at once
+  }
+
+ private:
+  static constexpr char kChannel[] = "DOCTOR";
+  [[nodiscard]] bool heard(double seconds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (std::chrono::steady_clock::now() < end) {
+      input_.wait(-1, 50);
+      if (input_.next()) return true;
+    }
+    return false;
+  }
+  runtime::Url url_;
+  runtime::LiveInput input_;
+  runtime::Output output_;
+};
 
 Finding check_camera(const std::string& device) {
   if (device.find("://") != std::string::npos) return {Grade::kWell, "camera", device + " (not tried)", ""};
@@ -124,11 +153,19 @@ std::vector<Finding> check_network(const std::string& url) {
   close(probe);
   if (!route) {
     return {{Grade::kBad, "network", "no route to LCM's multicast address",
-             "sudo ip link set lo up; sudo ip route add 224.0.0.0/4 dev lo"}};
+             "sudo ip link set lo up; sudo ip route add 224.0.0.0/4 dev lo src 127.0.0.1"}};
   }
   std::string trouble;
   try {
-    trouble = round_trip();
+    OwnBus bus;
+    if (!bus.comes_back()) {
+      trouble = "what is sent does not come back";
+    } else if (bus.believes_what_is_sent_past_it()) {
+      all.push_back({Grade::kBad, "strangers", "what is sent to this host past the bus is believed, from any host",
+                     "keep it out by a firewall: docs/operations.md, Who is believed"});
+    } else {
+      all.push_back({Grade::kWell, "strangers", "what is sent to this host past the bus is refused", ""});
+    }
   } catch (const std::exception& error) {
     trouble = error.what();
   }

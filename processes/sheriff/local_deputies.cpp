@@ -13,13 +13,13 @@
 
 namespace fathom::sheriff {
 
-void LocalDeputies::start(const std::string& name, const std::string& url) {
+void LocalDeputies::start(const std::string& name, const std::string& url, const std::string& config) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   const fs::path folder = fs::read_symlink("/proc/self/exe", ignored).parent_path();
   const fs::path installed = folder / "fathom-deputy";
   std::string program = fs::exists(installed, ignored) ? installed.string() : (folder / "deputy").string();
-  std::vector<std::string> words{program, "--id", name, "--lcmurl", url, "--leave-with-parent"};
+  std::vector<std::string> words{program, "--id", name, "--lcmurl", url, "--allow", config, "--leave-with-parent"};
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& each : words) arguments.push_back(each.data());

@@ -15,8 +15,9 @@ class LocalDeputies {
   LocalDeputies(const LocalDeputies&) = delete;
   LocalDeputies& operator=(const LocalDeputies&) = delete;
 
-  /// The program `deputy` of the sheriff's own folder. InputError when it cannot be run.
-  void start(const std::string& name, const std::string& url);
+  /// The program `deputy` of the sheriff's own folder; it runs the command lines of this configuration alone.
+  /// InputError when it cannot be run.
+  void start(const std::string& name, const std::string& url, const std::string& config);
   /// Asks them to go, and waits until they and all their programs have gone.
   void stop();
   [[nodiscard]] bool any() const { return !pids_.empty(); }

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/launch/allow_list.hpp"
 #include "common/runtime/self.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/launch.hpp"
@@ -82,8 +83,12 @@ void Office::hear() {
         words += each.text;
         if (words.size() > kLastWords) words.erase(0, words.size() - kLastWords);
         keep(each.id.empty() ? output->deputy : each.id, each.text);
-        if (options_.verbose || each.id.empty())
-          screen_.say((each.id.empty() ? output->deputy : each.id) + ": " + each.text);
+        // What a deputy may run is of interest to who asks for the state, once.
+        const bool allowed = each.id.empty() && each.text.starts_with(launch::kAllowed);
+        if (allowed && (!options_.status || std::exchange(allowed_[output->deputy], each.text) == each.text)) continue;
+        if (!options_.verbose && !each.id.empty()) continue;
+        const std::string said = each.text.substr(0, each.text.find_last_not_of("\r\n") + 1);
+        screen_.say((each.id.empty() ? output->deputy : each.id) + ": " + said);
       }
     }
   }
@@ -145,7 +150,8 @@ void Office::gather() {
   const double listen = options_.local ? kListenHere : kListen;
   for (const double end = steady() + listen; steady() < end && !everybody_heard() && !interrupt_.raised();) round();
   if (!options_.local) return;
-  for (const std::string& each : mind_.unheard_deputies(steady())) local_.start(each, options_.url);
+  for (const std::string& each : mind_.unheard_deputies(steady()))
+    local_.start(each, options_.url, mind_.config().path);
   for (const double end = steady() + kLocalPatience; steady() < end && !everybody_heard() && !interrupt_.raised();) {
     round();
   }

@@ -56,6 +56,7 @@ class Office {
   std::string doing_;
   std::map<std::string, std::string> printed_;  ///< last words of each command
   std::string rival_told_;
+  std::map<std::string, std::string> allowed_;  ///< of each deputy, as it says
 };
 
 }  // namespace fathom::sheriff

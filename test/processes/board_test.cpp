@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/runtime/self.hpp"
 #include "test/support/bus.hpp"
 #include "test/support/channels.hpp"
 #include "test/support/private_network.hpp"
@@ -71,6 +72,8 @@ fathom_lcm::health_t health(const std::string& name, int pid) {
   message.host = "vehicle";
   message.pid = pid;
   message.state = "running";
+  static std::int64_t words = 0;  // each is a new one
+  message.sequence = ++words;
   return message;
 }
 
@@ -221,6 +224,55 @@ TEST_CASE(
   for (const int each : bad) ::close(each);
 }
 
+TEST_CASE("board: it has one name from its first word on, and does not call itself silent") {
+  Bus bus;
+  const Running board{bus};
+  for (int i = 0; i < 45; ++i) bus.listen(0.1);  // longer than silence is waited for
+  const Json shown = board.json();
+  REQUIRE(shown["processes"].size() == 1);
+  CHECK(is_board(shown["processes"][0]));
+  CHECK(shown["processes"][0]["state"] == "running");
+  CHECK(shown["standing"]["alarm"].get<std::string>().starts_with("nothing heard on this bus yet"));
+}
+
+TEST_CASE("board: three hundred slow clients keep nobody waiting") {
+  Bus bus;
+  const Running board{bus};
+  std::vector<int> slow;
+  for (int i = 0; i < 300; ++i) {
+    slow.push_back(connected(board.port));
+    const std::string half = i % 2 == 0 ? "GET /boa" : "GET /board.json HTTP/1.1\r\nHost: ";
+    (void)::send(slow.back(), half.data(), half.size(), MSG_NOSIGNAL);
+  }
+  for (int i = 0; i < 5; ++i) {
+    const double begin = link::wall_seconds();
+    CHECK(board.json()["number"] > 0);
+    CHECK(link::wall_seconds() - begin < 1.0);
+  }
+  for (const int each : slow) ::close(each);
+}
+
+TEST_CASE("board: a page of the wide world that calls this host by its own name is refused") {
+  Bus bus;
+  const Running board{bus};
+  const auto status = [&](const std::string& host) {
+    httplib::Client client{kHost, board.port};
+    const auto answer = client.Get("/board.json", {{"Host", host}});
+    REQUIRE(answer);
+    return answer->status;
+  };
+  const std::string port = ":" + std::to_string(board.port);
+  for (const std::string& good : {"127.0.0.1" + port, "localhost" + port, "LOCALHOST" + port, "[::1]" + port,
+                                  std::string{"192.168.2.1"}, runtime::host_name() + port}) {
+    CAPTURE(good);
+    CHECK(status(good) == 200);
+  }
+  for (const std::string bad : {"evil.example:8077", "127.0.0.1.evil.example", "localhost.evil.example", "[evil", ""}) {
+    CAPTURE(bad);
+    CHECK(status(bad) == 421);
+  }
+}
+
 TEST_CASE("board: two on one bus are both well, and a true twin of one is still told") {
   Bus bus;
   const Running one{bus}, two{bus};
@@ -243,9 +295,10 @@ TEST_CASE("board: two on one bus are both well, and a true twin of one is still 
     }
   }
   CHECK(boards(one.json())[0]["name"] != boards(one.json())[1]["name"]);
-  fathom_lcm::health_t twin = health(boards(one.json())[0]["name"], 7);
-  twin.host = "elsewhere";
+  const std::string name = boards(one.json())[0]["name"];
   for (int i = 0; i < 20; ++i) {
+    fathom_lcm::health_t twin = health(name, 7);
+    twin.host = "elsewhere";
     bus.publish("HEALTH", twin);
     bus.listen(0.1);
   }

@@ -186,31 +186,22 @@ function draw(all) {
   for (const name of ["trial", "processes", "state", "model", "thrusters", "effects"]) {
     const heard = all[source[name]], age = heard && is(heard.age) ? heard.age : null;
     const old = age !== null && (silent || age > kOld * (slow[name] || 1));
-    byId(name).className = old ? "old" : "";
+    byId(name).className = old ? (all.standing.over ? "old over" : "old") : "";
     byId(name).querySelector("h2 i").textContent = old ? `last heard ${ago(age)} ago` : "";
     const fresh = el("div", {}, [sections[name](all)].flat());
     morph(byId(name).querySelector("h2 + div"), fresh);
   }
-  const t = all.trial, fresh = t && t.age < kOld;
-  const kind = { excite: "go", approach: "go", done: "good", aborted: "bad", lost: "bad" };
-  byId("phase").textContent = !t ? "no EXCITATION" : fresh ? t.phase : `was ${t.phase}`;
-  byId("phase").className = "badge " + (!t ? "" : fresh ? kind[t.phase] || "" : "bad");
-  byId("armed").textContent = !t ? "" : !fresh ? "armed? not known" : t.armed ? "armed" : "not armed";
-  byId("armed").className = "badge " + (!t ? "" : !fresh ? "bad" : t.armed ? "warn" : "");
-  byId("armed").hidden = !t;
+  const stands = all.standing;
+  for (const name of ["phase", "armed"]) {
+    byId(name).textContent = stands[name].text;
+    byId(name).className = `badge ${stands[name].kind}`;
+    byId(name).hidden = !stands[name].text;
+  }
   byId("bus").textContent = all.bus;
   byId("heard").textContent = silent ? "" : `heard ${ago(all.heard)} ago`;
-  if (all.heard === null) return alarm("nothing heard on this bus yet: do processes run, and on the same LCM_DEFAULT_URL?");
-  if (silent) return alarm(`nothing heard for ${ago(all.heard)}: all below is of then`);
-  const why = (p) => (p.state === "silent" || !p.detail ? "" : ": " + p.detail.split("; ")[0]);
-  const sick = all.processes.filter((p) => !p.healthy && p.state !== "stopped").map((p) => (p.second ? `${p.name} is there twice` : `${p.name} ${p.state}${why(p)}`));
-  if (t && fresh && t.phase === "aborted") sick.unshift(`aborted: ${t.reason}`);
-  alarm([...new Set(sick)].join("; "));
-}
-
-function alarm(text) {
-  byId("alarm").hidden = !text;
-  byId("alarm").textContent = text;
+  byId("alarm").hidden = !(stands.alarm || stands.remark);
+  byId("alarm").className = stands.alarm ? "" : "calm";
+  byId("alarm").textContent = stands.alarm || stands.remark;
 }
 
 let number = null, moved = performance.now();

@@ -166,4 +166,27 @@ TEST_CASE(
   CHECK(trial.loop.said->phase == "approach");
 }
 
+TEST_CASE("after an abort: a vehicle that is disarmed by other hands is not moved, nor when it is armed again there") {
+  VehicleCondition disarmed{.armed = 0};
+  disarmed.lines = {{"armed", false, false, "the vehicle is disarmed"}};
+  const VehicleCondition armed{.armed = 1};
+  Trial trial{surface()};
+  trial.leak();
+  trial.loop.run(1.0);
+  REQUIRE(trial.loop.thrust());
+  trial.loop.supervisor.hear(disarmed);
+  trial.loop.supervisor.hear(armed);
+  trial.loop.run(5.0);
+  CHECK(trial.loop.largest_command == 0.0);
+  CHECK(trial.says("zero thrust: the vehicle was disarmed"));
+
+  Trial before{surface()};  // disarmed first, then the trial ends by it
+  disarmed.lines[0].grave = true;
+  before.loop.supervisor.hear(disarmed);
+  CHECK(before.loop.supervisor.phase() == Phase::kAborted);
+  before.loop.supervisor.hear(armed);
+  before.loop.run(5.0);
+  CHECK(before.loop.largest_command == 0.0);
+}
+
 }  // namespace fathom::excitation

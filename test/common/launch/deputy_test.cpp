@@ -4,6 +4,10 @@
 #include <doctest/doctest.h>
 
 #include <csignal>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "test/support/scratch.hpp"
 
 namespace fathom::launch {
 namespace {
@@ -139,11 +143,9 @@ TEST_CASE("deputy: orders for others, old ones and empty names change nothing") 
   host.order(1, false, false, "vehicle", 61.0);
   CHECK(host.starts == 0);
   CHECK(host.said.find("a: ignoring stale orders, 61 s old") != std::string::npos);
-  host.order(1, false, false, "vehicle", -300.0);
-  CHECK(host.starts == 1);  // from the future: obeyed, as procman does
   host.deputy.hear({.utime = kWall, .deputy = "vehicle", .sheriff = "s", .commands = {{{}, 1, false}}}, kWall,
                    host.now);
-  CHECK(host.starts == 1);
+  CHECK(host.starts == 0);
 }
 
 TEST_CASE("deputy: a command that the order does not list is stopped and forgotten") {
@@ -286,6 +288,100 @@ TEST_CASE("deputy: a program that cannot be run counts as one that ended with 25
   CHECK(host.status().pid == 0);
   CHECK(host.status().wait_status == 65280);
   CHECK(host.said == "a: exit 255\n");
+}
+
+TEST_CASE("deputy: orders from ahead of its clock are as stale as old ones") {
+  constexpr double kThirtyYears = 30.0 * 365.25 * 86400.0;
+  for (const double age : {-61.0, -kThirtyYears, 61.0}) {
+    CAPTURE(age);
+    Host host;
+    host.order(1, false, false, "vehicle", age);
+    CHECK(host.starts == 0);
+    CHECK(host.said.find(age < 0.0 ? "ahead of this clock" : "61 s old") != std::string::npos);
+  }
+  Host host;
+  host.order(1, false, false, "vehicle", -59.0);
+  CHECK(host.starts == 1);
+}
+
+namespace {
+
+AllowList allowed() {
+  const test::Scratch scratch;
+  test::write_bytes(scratch.path("allow.cfg"),
+                    "cmd \"a\" { exec = \"prog\"; deputy = \"vehicle\"; }\n"
+                    "cmd \"b\" { exec = \"other $X\"; deputy = \"vehicle\"; }\n"
+                    "cmd \"c\" { exec = \"far\"; deputy = \"topside\"; }\n");
+  return AllowList::load({scratch.path("allow.cfg")}, "vehicle");
+}
+
+}  // namespace
+
+TEST_CASE("deputy: with an allow-list it runs the named command lines and no other, whatever is ordered") {
+  const auto order = [](Host& host, const std::string& id, const std::string& exec, std::int32_t run) {
+    host.deputy.hear({.utime = kWall,
+                      .deputy = "vehicle",
+                      .sheriff = "s",
+                      .commands = {{{.id = id, .exec = exec, .group = "", .auto_respawn = true}, run, false}}},
+                     kWall, host.now);
+    host.act();
+  };
+  Host host;
+  host.deputy = Deputy{"vehicle", allowed()};
+  // A shell, another's line, a line with more behind it, the right line under another name, another deputy's.
+  const std::pair<const char*, const char*> refused[] = {{"a", "bash -c id"}, {"a", "other $X"}, {"a", "prog -x"},
+                                                         {"z", "prog"},       {"c", "far"},      {"a", ""}};
+  std::int32_t run = 0;
+  for (const auto& [id, exec] : refused) {
+    CAPTURE(exec);
+    host.said.clear();
+    order(host, id, exec, ++run);
+    CHECK(host.starts == 0);
+    CHECK(host.said.find("refused: this command line is not in") != std::string::npos);
+    CHECK(host.status().wait_status == 126 * 256);  // to its sheriff it has failed
+    host.said.clear();
+    order(host, id, exec, run);
+    CHECK(host.said.empty());  // told once
+    host.wait(5.0);
+    CHECK(host.starts == 0);  // and not started again by itself
+  }
+  order(host, "a", "prog", ++run);
+  CHECK(host.starts == 1);
+}
+
+TEST_CASE("deputy: a command line that is not allowed does not slip in behind one that is") {
+  Host host;
+  host.deputy = Deputy{"vehicle", allowed()};
+  host.order(1, false, true);
+  REQUIRE(host.starts == 1);
+  const auto other = [&](std::int32_t run) {
+    host.deputy.hear({.utime = kWall,
+                      .deputy = "vehicle",
+                      .sheriff = "s",
+                      .commands = {{{.id = "a", .exec = "bash", .group = "", .auto_respawn = true}, run, false}}},
+                     kWall, host.now);
+    host.act();
+  };
+  other(1);  // the same run, while it runs
+  CHECK(host.status().command.exec == "prog");
+  host.die(kSegmentation);
+  other(1);  // and while it waits to be started again
+  host.wait(5.0);
+  CHECK(host.starts == 2);
+  CHECK(host.status().command.exec == "prog");
+  other(2);  // anew: what ran is stopped, as by any order, and nothing is started
+  host.die(0);
+  other(2);
+  host.wait(5.0);
+  CHECK(host.starts == 2);
+}
+
+TEST_CASE("deputy: a list without a command for it is refused with what to look at") {
+  const test::Scratch scratch;
+  test::write_bytes(scratch.path("x.cfg"), "cmd \"c\" { exec = \"far\"; deputy = \"topside\"; }\n");
+  const std::string said =
+      test::complaint_of<InputError>([&] { (void)AllowList::load({scratch.path("x.cfg")}, "vehicle"); });
+  CHECK_MESSAGE(said.find("no command for deputy 'vehicle'") != std::string::npos, said);
 }
 
 }  // namespace fathom::launch

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <regex>
+#include <stdexcept>
 #include <string>
 
 #include "common/base/error.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/parameters.hpp"
+#include "common/model/physical_bounds.hpp"
 #include "common/tables/import.hpp"
 
 using fathom::InputError;
@@ -67,6 +70,60 @@ TEST_CASE("vehicle: a free axis without thrust of its own is accepted and named"
   CHECK(undriven_note(boat).starts_with("Box: sway moves freely, without thrust of its own"));
   CHECK(undriven_note(parse(kHead + "dof: [surge, yaw]\n" + pair)).empty());
   CHECK(undriven_note(parse(kHead + "dof: [surge, sway, yaw]\n" + kThrusters)).empty());
+}
+
+TEST_CASE("vehicle: what no vehicle has is refused, with the line, the bound and its reason") {
+  CHECK(complaint("name: Box\ndof: [surge]\nwater_density: 1000 kg/m^3\nmass: 1e300 kg\n") ==
+        "vehicle_test.yaml:4: 'mass' of 1e+300 kg is beyond what there is: at most 1e+09 kg (the largest ship there "
+        "was is "
+        "458 m long and 6.6e8 kg heavy); is the unit right?");
+  const auto refused = [&](const std::string& lines, const std::string& words) {
+    const std::string said = complaint(kHead + "dof: [surge]\n" + kThrusters + lines);
+    CAPTURE(lines);
+    CHECK_MESSAGE(said.find(words) != std::string::npos, said);
+  };
+  refused("hull: 1 1e4 1 m\n", "'hull' of 10000 m is beyond");
+  refused("inertia: 1e20 1e20 1e20 kg m^2\n", "'inertia' of 1e+20 kg m^2");
+  refused("largest_thrust: 1e-9 N\n", "'largest_thrust' of 1e-09 N is below");
+  refused("priors: {X_u: {mean: -1e200 N/(m/s), sigma: 1 N/(m/s)}}\n", "'mean' of -1e+200 N/(m/s)");
+  refused("priors: {X_u: {mean: -1 N/(m/s), sigma: 1e200 N/(m/s)}}\n", "'sigma' of 1e+200 N/(m/s)");
+  refused("sensors: {ahrs: {position: 0 0 1e9 m}}\n", "'position' of 1e+09 m");
+  refused("sensors: {ahrs: {position: 0 0 1 m, rotation: 1e6 0 0 rad}}\n", "'rotation' of 1e+06 rad");
+  // In the file's own unit, too: a gram for a kilogram is caught where it makes a difference that nobody has.
+  CHECK(complaint("name: Box\ndof: [surge]\nwater_density: 1 kg/m^3\nmass: 8 kg\n").find("at least 900 kg/m^3") !=
+        std::string::npos);
+}
+
+TEST_CASE("physical bounds: every row has a reason, a span and a value that it refuses") {
+  namespace model = fathom::model;
+  for (const model::PhysicalBound& row : model::physical_bounds()) {
+    const std::string key{row.key}, unit{row.unit};
+    CAPTURE(key);
+    CAPTURE(unit);
+    CHECK(row.reason.size() > 5);
+    CHECK(row.least < row.most);
+    CHECK(std::ranges::count_if(model::physical_bounds(), [&](const model::PhysicalBound& each) {
+            return each.key == row.key && each.unit == row.unit;
+          }) == 1);
+    for (const double sign : {1.0, -1.0}) {
+      CHECK(model::beyond_physics(key, unit, sign * row.most).empty());
+      CHECK_FALSE(model::beyond_physics(key, unit, 1.01 * sign * row.most).empty());
+    }
+    if (row.least > 0.0) CHECK_FALSE(model::beyond_physics(key, unit, 0.99 * row.least).empty());
+  }
+  CHECK_THROWS_AS((void)model::beyond_physics("mass", "furlong", 1.0), std::logic_error);
+}
+
+TEST_CASE("physical bounds: whatever reads a vehicle file reads its numbers within them") {
+  const std::regex unbounded{R"(\b\w+\.(quantity|quantities|positive|not_negative|vector3)\()"};
+  for (const std::string room : {"vehicle", "mounts", "lens", "hydrodynamics", "after_abort"}) {
+    std::ifstream file{std::string{FATHOM_SOURCE_DIR} + "/common/model/" + room + ".cpp"};
+    REQUIRE(file);
+    for (std::string line; std::getline(file, line);) {
+      CAPTURE(room);
+      CHECK_MESSAGE(!std::regex_search(line, unbounded), line);
+    }
+  }
 }
 
 TEST_CASE("vehicle: thruster columns are axis and position cross axis") {

@@ -135,3 +135,16 @@ TEST_CASE("Text that is not UTF-8 does not stop the file") {
   const json file = json::parse(to_json(result));
   CHECK(file["vehicle"].is_string());
 }
+
+TEST_CASE("result.json holds the causes of a verdict and the refusals of candidates where they are given") {
+  auto result = fathom::test::made_up_report({.samples = 0}).result;
+  result.candidates = {{.name = "wave"}, {.name = "current"}};
+  const fathom::VerdictGiven given{.core = "likelihood",
+                                   .causes = {{"free_force", 12.5, 5.0, "depth in Z"}},
+                                   .refusals = {{"wave", {{"odds", 3.0, 10.0}}}}};
+  const json file = json::parse(to_json(result, given));
+  CHECK(file["core"] == "likelihood");
+  CHECK(file["causes"][0] == json{{"cause", "free_force"}, {"value", 12.5}, {"threshold", 5.0}, {"of", "depth in Z"}});
+  CHECK(file["candidates"][0]["refusals"][0] == json{{"rule", "odds"}, {"value", 3.0}, {"needed", 10.0}});
+  CHECK_FALSE(file["candidates"][1].contains("refusals"));
+}

@@ -67,13 +67,13 @@ TEST_CASE("columns: latitude and longitude become north and east of the first fi
 
 TEST_CASE("columns: pressure is depth by the water's density and the atmosphere") {
   const Imported imported = import_text("t,p\n0,1013.25\n1,2013.25\n",
-                                        "depth: {pressure: {column: p, unit: mbar}, atmosphere: 101325 Pa, "
-                                        "water_density: 1000 kg/m^3}\n");
+                                        "depth: {pressure: {column: p, unit: mbar, surface: 101325 Pa, "
+                                        "density: 1000 kg/m^3}}\n");
   CHECK(std::abs(imported.recording.depth[0].z) < kRounding);
   CHECK(imported.recording.depth[1].z == doctest::Approx(1e5 / 9806.65));
   const Imported relative = import_text("t,p\n0,10\n1,20\n",
-                                        "depth: {pressure: {column: p, unit: dbar}, atmosphere: 0 Pa, "
-                                        "water_density: 1025 kg/m^3}\n");
+                                        "depth: {pressure: {column: p, unit: dbar, surface: 0 Pa, "
+                                        "density: 1025 kg/m^3}}\n");
   CHECK(relative.recording.depth[0].z == doctest::Approx(1e5 / (1025.0 * 9.80665)));
 }
 

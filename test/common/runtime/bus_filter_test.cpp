@@ -1,5 +1,6 @@
-// The filter at a bus's socket: what is heard arrives, what nobody asked for does not, and nothing is lost by it.
-#include "common/runtime/channel_filter.hpp"
+// The filter at a bus's socket: what is heard arrives, what nobody asked for does not, what was sent past the bus does
+// not either, and nothing is lost by it.
+#include "common/runtime/bus_filter.hpp"
 
 #include <arpa/inet.h>
 #include <doctest/doctest.h>
@@ -63,7 +64,7 @@ std::string message(const std::string& channel, const std::string& data, const s
 
 TEST_CASE("channel filter: passes the channels asked for, whole names alone") {
   Socket from, to;
-  hear_only(to.descriptor(), std::vector<std::string>{"STATE", "STATE_OF_ALL", "DVL"});
+  REQUIRE(filter(to.descriptor(), channel_program(std::vector<std::string>{"STATE", "STATE_OF_ALL", "DVL"})));
   const std::string data = "12345678";
   for (const char* heard : {"STATE", "STATE_OF_ALL", "DVL"}) {
     from.send_to(to, message(heard, data));
@@ -82,7 +83,7 @@ TEST_CASE("channel filter: passes the channels asked for, whole names alone") {
 
 TEST_CASE("channel filter: leaves alone what it cannot judge") {
   Socket from, to;
-  hear_only(to.descriptor(), std::vector<std::string>{"STATE"});
+  REQUIRE(filter(to.descriptor(), channel_program(std::vector<std::string>{"STATE"})));
   const std::string part = message("CAMERA", "12345678", "LC03");  // only the first of several names its channel
   from.send_to(to, part);
   CHECK(to.next() == part);
@@ -97,10 +98,70 @@ TEST_CASE("channel filter: too many channels are not filtered") {
   CHECK_FALSE(channel_program(channels).empty());
 }
 
-TEST_CASE("channel filter: a process hears its own channels of a live bus, and is not woken for others") {
-  const Url url = Url::parse(
+namespace {
+
+Url own_bus() {
+  return Url::parse(
       "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0&recv_buf_size=2097152", "--in");
-  const auto before = listening_sockets();
+}
+
+/// Channels that come within a second, or until there are so many.
+std::vector<std::string> heard(LiveInput& input, std::size_t most) {
+  std::vector<std::string> all;
+  const auto last = std::chrono::steady_clock::now() + 1s;
+  while (all.size() < most && std::chrono::steady_clock::now() < last) {
+    input.wait(-1, 50);
+    while (const auto each = input.next()) all.push_back(each->channel);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("bus filter: reads group, port and ttl as liblcm does") {
+  const auto is = [](const char* url, std::uint32_t group, int port, bool one_host) {
+    CAPTURE(url);
+    const BusAddress bus = BusAddress::of(url);
+    CHECK(bus.group == group);
+    CHECK(bus.port == port);
+    CHECK(bus.one_host == one_host);
+  };
+  constexpr std::uint32_t kLcm = 0xefff4c43, kOther = 0xefff4c44;  // 239.255.76.67, .68
+  is("udpm://239.255.76.68:7668?ttl=1", kOther, 7668, false);
+  is("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152", kLcm, 7667, true);
+  is("udpm://239.255.76.67:7667?recv_buf_size=2097152&ttl=2", kLcm, 7667, false);
+  is("udpm://", kLcm, 7667, true);
+  is("udpm://?recv_buf_size=2097152", kLcm, 7667, true);
+  is("udpm://239.255.76.67:7667", kLcm, 7667, true);  // liblcm's own choice
+}
+
+TEST_CASE("bus filter: what is sent to this host past the bus is not believed, for one channel or for all") {
+  for (const char* channels : {"DEPTH", ".*"}) {
+    CAPTURE(channels);
+    const Url url = own_bus();
+    LiveInput input{{url}, {{channels, 100}}};
+    const std::string bytes = message("DEPTH", "12345678");
+    const auto send = [&](const char* address) {
+      const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+      sockaddr_in there{};
+      there.sin_family = AF_INET;
+      there.sin_port = htons(BusAddress::of(url.text).port);
+      inet_pton(AF_INET, address, &there.sin_addr);
+      const auto* to = reinterpret_cast<const sockaddr*>(&there);
+      REQUIRE(sendto(socket, bytes.data(), bytes.size(), 0, to, sizeof there) == static_cast<ssize_t>(bytes.size()));
+      close(socket);
+    };
+    for (int i = 0; i < 5; ++i) send("127.0.0.1");
+    CHECK(heard(input, 1).empty());
+    send("239.255.76.67");
+    CHECK(heard(input, 2).size() == 1);
+  }
+}
+
+TEST_CASE("channel filter: a process hears its own channels of a live bus, and is not woken for others") {
+  const Url url = own_bus();
+  const BusAddress bus = BusAddress::of(url.text);
+  const auto before = listening_sockets(bus.port);
   LiveInput input{{url}, {{"DEPTH", 10}, {"AHRS", 10}}};
   Output output{url};
   for (const char* channel : {"STATE", "DEPTH", "TRUTH", "AHRS"}) {
@@ -114,14 +175,14 @@ TEST_CASE("channel filter: a process hears its own channels of a live bus, and i
     while (const auto each = input.next()) heard.push_back(each->subscription);
   }
   CHECK(heard == std::vector<std::size_t>{0, 1});
-  const auto after = listening_sockets();
+  const auto after = listening_sockets(bus.port);
   REQUIRE(after.size() == before.size() + 1);
   const auto socket =
       std::ranges::find_if(after, [&](int each) { return std::ranges::find(before, each) == before.end(); });
   REQUIRE(socket != after.end());
   socklen_t instructions = 0;  // asked like this, the kernel tells how many there are
   REQUIRE(getsockopt(*socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions) == 0);
-  CHECK(instructions == channel_program(std::vector<std::string>{"DEPTH", "AHRS"}).size());
+  CHECK(instructions == bus_program(bus, std::vector<std::string>{"DEPTH", "AHRS"}).size());
 }
 
 }  // namespace fathom::runtime

@@ -1,0 +1,57 @@
+#include "common/inference/catalogue.hpp"
+
+#include <algorithm>
+
+#include "common/model/effect_size.hpp"
+#include "common/model/onset.hpp"
+
+namespace fathom::inference {
+
+std::vector<std::string> listed_names() {
+  std::vector<std::string> names;
+  for (const model::Effect* effect : model::all_effects()) names.emplace_back(effect->name());
+  return names;
+}
+
+bool forms_matter(const model::ActiveEffect& active) { return active.effect->variants_matter(); }
+
+bool moves(const model::ActiveEffect& active, std::size_t number) {
+  return active.effect->takes_part(active.variant, number);
+}
+
+bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle) {
+  return model::stopped_at_limit(*active.effect, active.variant, active.theta, vehicle);
+}
+
+bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {
+  return a.effect == b.effect && a.effect->rules_out(a.variant, b.variant);
+}
+
+std::vector<Law> catalogue(const model::Scene& scene, const std::vector<std::string>& without) {
+  std::vector<Law> laws;
+  for (const model::Effect* effect : model::all_effects()) {
+    if (std::ranges::find(without, effect->name()) != without.end()) continue;
+    const std::vector<std::string> forms = effect->variants(scene);
+    const std::size_t first = laws.size();
+    for (std::size_t v = 0; v < forms.size(); ++v) {
+      if (forms[v] == "-") continue;
+      const auto variant = static_cast<int>(v);
+      Law law{.name = std::string(effect->name()), .form = forms[v]};
+      law.grid = effect->starts(scene, variant);
+      if (law.grid.empty()) continue;
+      law.seed = {.effect = effect, .variant = variant, .variant_name = forms[v], .theta = law.grid.front()};
+      law.stage = likelihood::stage_of(law.seed);
+      const std::size_t leading =
+          effect->amplitudes() > 0 ? static_cast<std::size_t>(effect->amplitudes()) : effect->parameters().size();
+      for (std::size_t c = 0; c < effect->parameters().size(); ++c) {
+        if (effect->parameters()[c].name == model::kOnset) law.onset = static_cast<int>(c);
+        if (c < leading && effect->takes_part(variant, c)) law.linear.push_back(c);
+      }
+      if (!law.linear.empty()) laws.push_back(std::move(law));
+    }
+    for (std::size_t l = first; l < laws.size(); ++l) laws[l].forms = static_cast<int>(laws.size() - first);
+  }
+  return laws;
+}
+
+}  // namespace fathom::inference

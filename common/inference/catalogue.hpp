@@ -1,0 +1,35 @@
+// What can be asked: every form of every listed effect that the data can show, with the values at which the score test
+// looks. With likelihood/effect_stages.hpp the only place that reads an Effect.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/likelihood/effect_stages.hpp"
+
+namespace fathom::inference {
+
+struct Law {
+  std::string name, form;
+  model::ActiveEffect seed;  ///< with some numbers
+  likelihood::Stage stage{};
+  std::vector<std::vector<double>> grid;  ///< values of all its numbers
+  std::vector<std::size_t> linear;        ///< numbers that get columns of their own; the others shape them
+  int onset{-1};                          ///< place of a time of an event among its numbers; -1: none
+  int forms{1};                           ///< of the same effect, here
+};
+
+/// `without`: names that are left out.
+[[nodiscard]] std::vector<Law> catalogue(const model::Scene& scene, const std::vector<std::string>& without);
+/// The names that are listed, for messages.
+[[nodiscard]] std::vector<std::string> listed_names();
+/// Whether forms of the effect act beside each other (one per thruster), not in place of each other.
+[[nodiscard]] bool forms_matter(const model::ActiveEffect& active);
+/// Whether a fit moves that number in this form.
+[[nodiscard]] bool moves(const model::ActiveEffect& active, std::size_t number);
+/// Whether a search for its numbers was stopped by a limit that says nothing: it has found no effect.
+[[nodiscard]] bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle);
+/// Whether two effects may stand in one model.
+[[nodiscard]] bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b);
+
+}  // namespace fathom::inference

@@ -1,0 +1,143 @@
+#include "common/inference/infer.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/statistics.hpp"
+#include "common/model/rollout.hpp"
+
+namespace fathom::inference {
+namespace {
+
+using likelihood::NumberKind;
+
+/// Share of an Ornstein-Uhlenbeck force's variance that its mean over `span` s keeps.
+double kept_in_mean(double memory, double span) {
+  const double x = span / memory;
+  return 2.0 / x * (1.0 + std::expm1(-x) / x);
+}
+
+/// Of the acceleration over a quarter of a second, what the random force does not have to make up for.
+double explained(const likelihood::Problem& problem, const likelihood::AxisNoise& noise, std::size_t axis) {
+  const double random = noise[likelihood::kForce] * noise[likelihood::kForce] *
+                        kept_in_mean(noise[likelihood::kForceMemory], likelihood::kAccelerationSpan);
+  return 1.0 - random / (problem.acceleration[axis] * problem.acceleration[axis]);
+}
+
+/// In standard deviations, the median over base numbers by which both scores differ.
+double disagreement(const likelihood::Fit& one, const likelihood::Fit& other) {
+  const Eigen::VectorXd sigma = one.sigma();
+  std::vector<double> off;
+  for (std::size_t j = 0; j < one.numbers.size() && j < other.numbers.size(); ++j) {
+    if (one.numbers[j].kind != NumberKind::kBase) continue;
+    const double difference = value(one.hypothesis, one.numbers[j]) - value(other.hypothesis, other.numbers[j]);
+    off.push_back(std::abs(difference) / std::max(sigma[static_cast<Eigen::Index>(j)], 1e-12));
+  }
+  return median(std::move(off));
+}
+
+likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood::Fit& fit, int threads) {
+  likelihood::Fit reported = likelihood::fit(
+      problem, fit.hypothesis, fit.noise,
+      {.noise_rounds = 1, .steps = 6, .fit_noise = false, .horizon = likelihood::Horizon{}, .threads = threads});
+  return reported.finite ? reported : fit;
+}
+
+}  // namespace
+
+void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, Conclusion& conclusion) {
+  const Found& found = conclusion.found;
+  auto& reasons = conclusion.reasons;
+  double length = 0.0;
+  for (const likelihood::RunData& run : problem.runs) length += run.last_time() - run.first_time();
+  if (length < thresholds.shortest) {
+    reasons.push_back({Cause::kTooShort, length, thresholds.shortest, ""});
+    conclusion.verdict = Verdict::not_judged;
+    return;
+  }
+  if (!found.best.fit.finite) {
+    reasons.push_back({Cause::kNotFinite, 0.0, 0.0, ""});
+    conclusion.verdict = Verdict::not_judged;
+    return;
+  }
+
+  const likelihood::Fit& fit = found.best.fit;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
+    const double share = explained(problem, fit.noise[axis], axis);
+    if (share < thresholds.following)
+      reasons.push_back({Cause::kNotFollowing, share, thresholds.following,
+                         model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});
+  }
+  for (const likelihood::Number& number : fit.numbers) {
+    if (number.kind != NumberKind::kBase) continue;
+    const double size = std::abs(value(fit.hypothesis, number)) / (std::abs(number.mean) + number.sigma);
+    const bool pinned = number.low > 0.0 && value(fit.hypothesis, number) <= number.low * (1.0 + 1e-9);
+    if (size > thresholds.absurd || pinned)
+      reasons.push_back({Cause::kAbsurdNumber, size, thresholds.absurd, number.name});
+  }
+  if (!reasons.empty()) {
+    conclusion.verdict = Verdict::no_model;
+    return;
+  }
+
+  if (conclusion.reported.finite) {
+    const double off = disagreement(fit, conclusion.reported);
+    if (off > thresholds.disagreement) reasons.push_back({Cause::kScoresDisagree, off, thresholds.disagreement, ""});
+  }
+  bool unexplained = false;
+  if (found.free_force && found.free_force->log_odds >= thresholds.free_force_odds &&
+      found.free_force->size.share >= thresholds.smallest_size) {
+    std::string of;
+    for (const GroupFound& group : found.free_force->groups) of += (of.empty() ? "" : "; ") + words(group);
+    reasons.push_back({Cause::kFreeForce, found.free_force->log_odds, thresholds.free_force_odds, of});
+    unexplained = true;
+  }
+  for (const RandomForce& force : conclusion.random) {
+    if (force.memory <= thresholds.slow_memory || force.share <= thresholds.smallest_size) continue;
+    reasons.push_back({Cause::kSlowRandomForce, force.memory, thresholds.slow_memory,
+                       model::kAxisNames[static_cast<std::size_t>(force.axis)]});
+    unexplained = true;
+  }
+  const bool any = !found.best.names.empty();
+  if (any) {
+    const double least = *std::ranges::min_element(found.probability);
+    const bool sure = least >= thresholds.name_probability;
+    reasons.push_back({sure ? Cause::kNamed : Cause::kRivals, least, thresholds.name_probability, ""});
+    conclusion.verdict = unexplained ? Verdict::unexplained : sure ? Verdict::effect : Verdict::ambiguous;
+    return;
+  }
+  if (unexplained) {
+    conclusion.verdict = Verdict::unexplained;
+    return;
+  }
+  const double promised = found.refused.empty() ? 0.0 : found.refused.front().promised;
+  reasons.push_back({Cause::kNothingFound, promised, thresholds.name_odds, ""});
+  conclusion.verdict = Verdict::adequate;
+}
+
+Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, const Settings& settings,
+                 const Progress& progress) {
+  const likelihood::Problem problem = likelihood::make_problem(vehicle, trials, settings.runs);
+  const model::Scene scene = model::scene_of(vehicle, trials);
+  Conclusion conclusion;
+  conclusion.found = search(problem, scene, settings.without, settings.thresholds, settings.threads, progress);
+  const Found& found = conclusion.found;
+  if (found.best.fit.finite) {
+    const Seen seen = see(problem, found.best.fit, settings.threads);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
+      const likelihood::AxisNoise& noise = found.best.fit.noise[axis];
+      const int of = problem.axes[axis];
+      conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
+                                   noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
+    }
+    progress("numbers that predict ten seconds", 0.95);
+    conclusion.reported = by_horizon(problem, found.best.fit, settings.threads);
+    conclusion.reported_base =
+        found.best.names.empty() ? conclusion.reported : by_horizon(problem, found.base.fit, settings.threads);
+  }
+  conclude(problem, settings.thresholds, conclusion);
+  return conclusion;
+}
+
+}  // namespace fathom::inference

@@ -1,0 +1,38 @@
+// From runs to a verdict: search, free force, both scores, and the causes as data.
+#pragma once
+
+#include "common/inference/search.hpp"
+
+namespace fathom::inference {
+
+struct Settings {
+  std::vector<std::string> without{};  ///< effects that are not asked
+  int threads{2};
+  Thresholds thresholds{};
+  likelihood::RunSettings runs{};
+};
+
+/// A random force of one axis, as a number with a size.
+struct RandomForce {
+  int axis{};
+  double sigma{};   ///< m/s^2 or rad/s^2
+  double memory{};  ///< s
+  double share{};   ///< of the applied acceleration
+};
+
+struct Conclusion {
+  Verdict verdict{Verdict::not_judged};
+  std::vector<Reason> reasons;
+  Found found;
+  std::vector<RandomForce> random;
+  /// Numbers for reports and exports: by the multi-horizon score, of the base model and of the best.
+  likelihood::Fit reported_base, reported;
+};
+
+[[nodiscard]] Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, const Settings& settings,
+                               const Progress& progress);
+
+/// The rules alone, for what was found.
+void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, Conclusion& conclusion);
+
+}  // namespace fathom::inference

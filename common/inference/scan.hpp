@@ -1,0 +1,88 @@
+// The score test of everything at once: what every candidate, and every pair of the best, promises beside a fitted
+// model, from one filtered pass and without a fit.
+#pragma once
+
+#include "common/inference/catalogue.hpp"
+#include "common/inference/thresholds.hpp"
+#include "common/likelihood/fit.hpp"
+#include "common/likelihood/response.hpp"
+
+namespace fathom::inference {
+
+/// A fitted model seen so that questions can be asked of it.
+struct Seen {
+  likelihood::Fit fit;
+  likelihood::Reference reference;
+  Eigen::MatrixXd covariance;            ///< of the numbers, prior included
+  std::vector<Eigen::MatrixXd> inverse;  ///< per run: inverse inertia of every block, 36 x blocks
+  Vector6d applied{Vector6d::Zero()};    ///< rms of the actuators' acceleration, per axis of the body
+};
+[[nodiscard]] Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads);
+
+/// What a law promises at its best grid point.
+struct Promise {
+  std::size_t law{};
+  std::vector<double> theta;  ///< where a fit begins: the linear solution
+  double gain{};              ///< nats of likelihood
+  double score{};             ///< with the Occam factor of its linear numbers
+};
+struct PairPromise {
+  std::size_t first{}, second{};  ///< of the promises
+  double score{};
+  std::vector<double> theta_first, theta_second;
+};
+struct Scan {
+  std::vector<Promise> promises;   ///< best first; one per law
+  std::vector<PairPromise> pairs;  ///< best first
+};
+
+[[nodiscard]] Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vector<Law>& laws,
+                        const Thresholds& thresholds, int threads);
+
+/// Share of the applied acceleration that an effect of the seen model adds, least squares on the base numbers' columns
+/// taken out, on its worst axis. An effect on the sensors: of the velocity.
+[[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect);
+
+/// Accelerations that an effect adds to the seen model at its filtered velocities: axes x blocks, `shown` likewise.
+class EffectColumns {
+ public:
+  EffectColumns(const likelihood::Problem& problem, const Seen& seen, std::size_t run);
+  /// Columns to come; all must be added before the first block. `theta`: the effect's numbers of the column.
+  void add(const model::ActiveEffect& effect, const std::vector<double>& theta);
+  [[nodiscard]] std::size_t size() const { return columns_.size(); }
+  void at(std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix& shown);
+
+ private:
+  struct Column {
+    model::Model model;
+    likelihood::Stage stage{};
+    Eigen::MatrixXd thrust;                        ///< change of the mean forces, actuators x blocks
+    std::vector<likelihood::MotionMemory> memory;  ///< one at most
+    std::vector<likelihood::SensorStage> sensor;
+  };
+  const likelihood::Problem& problem_;
+  const Seen& seen_;
+  std::size_t run_;
+  std::vector<likelihood::Number> none_;
+  likelihood::Plant plant_;
+  std::vector<Column> columns_;
+};
+
+/// Residual rms of accelerations (axes x blocks per run) after least squares on the base numbers' columns, over the
+/// applied acceleration, on the worst axis (returned too).
+struct Size {
+  double share{};
+  int axis{};
+};
+[[nodiscard]] Size size_of(const likelihood::Problem& problem, const Seen& seen,
+                           const std::vector<Eigen::MatrixXd>& accelerations);
+
+/// 1/2 b' (G + V^-1)^-1 b and the score with its Occam factor. `sigma`: prior deviations of the columns' amplitudes.
+struct Gain {
+  double gain{}, score{};
+  Eigen::VectorXd amplitude;
+};
+[[nodiscard]] Gain linear_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient,
+                               const Eigen::VectorXd& sigma);
+
+}  // namespace fathom::inference

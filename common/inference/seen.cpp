@@ -1,0 +1,108 @@
+// A fitted model made ready for questions, and the size of what an effect does in it.
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "common/inference/scan.hpp"
+
+namespace fathom::inference {
+
+using likelihood::NumberKind;
+
+Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
+  Seen seen{.fit = std::move(fit)};
+  likelihood::refer(problem, seen.fit, seen.reference, threads);
+  const Eigen::Index p = seen.fit.information.rows();
+  seen.covariance = seen.fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  Vector6d square = Vector6d::Zero();
+  double count = 0.0;
+  const std::vector<likelihood::Number> none;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    likelihood::Plant plant{seen.fit.hypothesis, none, problem.runs[r], r, false};
+    const auto blocks = problem.runs[r].blocks().size();
+    Eigen::MatrixXd inverse(36, static_cast<Eigen::Index>(blocks));
+    plant.begin(problem.runs[r].start());
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const auto at = static_cast<Eigen::Index>(b);
+      plant.at_middle(b);
+      const Vector6d nu = seen.reference[r].nu_middle.col(at);
+      const Matrix6d M = plant.inverse_inertia(nu, plant.acceleration(nu));
+      inverse.col(at) = M.reshaped();
+      square += (M * (plant.model().allocation * plant.mean_forces().col(at))).cwiseAbs2();
+      count += 1.0;
+      plant.end_block(b, seen.reference[r].nu_end.col(at));
+    }
+    seen.inverse.push_back(std::move(inverse));
+  }
+  if (count > 0.0) seen.applied = (square / count).cwiseSqrt();
+  return seen;
+}
+
+Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::vector<Eigen::MatrixXd>& accelerations) {
+  constexpr double kRidge = 1e-9;  // of the largest, for numbers that an axis does not know
+  std::vector<Eigen::Index> base;
+  for (std::size_t j = 0; j < seen.fit.numbers.size(); ++j) {
+    const NumberKind kind = seen.fit.numbers[j].kind;
+    if (kind == NumberKind::kBase || kind == NumberKind::kCommandOffset) base.push_back(static_cast<Eigen::Index>(j));
+  }
+  const auto p = static_cast<Eigen::Index>(base.size());
+  Size worst;
+  for (int i = 0; i < problem.simulated; ++i) {
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(p, p);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(p), row(p);
+    double square = 0.0, count = 0.0;
+    for (std::size_t r = 0; r < accelerations.size(); ++r) {
+      const auto& reference = seen.reference[r];
+      for (Eigen::Index k = 0; k < accelerations[r].cols(); ++k) {
+        for (Eigen::Index j = 0; j < p; ++j)
+          row[j] = reference.B(reference.axes * k + i, base[static_cast<std::size_t>(j)]);
+        const double a = accelerations[r](i, k);
+        G.selfadjointView<Eigen::Lower>().rankUpdate(row);
+        b += a * row;
+        square += a * a;
+        count += 1.0;
+      }
+    }
+    if (count == 0.0) continue;
+    const Eigen::VectorXd scale = G.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
+    Eigen::MatrixXd scaled =
+        scale.asDiagonal() * Eigen::MatrixXd{G.selfadjointView<Eigen::Lower>()} * scale.asDiagonal();
+    scaled.diagonal().array() += kRidge;
+    const Eigen::VectorXd of = scale.asDiagonal() * b;
+    const double left = std::max(0.0, square - of.dot(scaled.ldlt().solve(of)));
+    const int axis = problem.axes[static_cast<std::size_t>(i)];
+    const double share = std::sqrt(left / count) / std::max(seen.applied[axis], 1e-9);
+    if (share > worst.share) worst = {share, axis};
+  }
+  return worst;
+}
+
+double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect) {
+  // The model without it, with what it adds as a column.
+  Seen without = seen;
+  const model::ActiveEffect active = seen.fit.hypothesis.model.effects[effect];
+  without.fit.hypothesis.model.effects.erase(without.fit.hypothesis.model.effects.begin() +
+                                             static_cast<std::ptrdiff_t>(effect));
+  std::vector<Eigen::MatrixXd> accelerations;
+  double shown_square = 0.0, moved_square = 0.0;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    EffectColumns columns{problem, without, r};
+    columns.add(active, active.theta);
+    const auto blocks = problem.runs[r].blocks().size();
+    const int axes = seen.reference[r].axes;
+    likelihood::RowMatrix acceleration(axes, 1), shown = likelihood::RowMatrix::Zero(axes, 1);
+    Eigen::MatrixXd all(axes, static_cast<Eigen::Index>(blocks));
+    for (std::size_t b = 0; b < blocks; ++b) {
+      shown.setZero();
+      columns.at(b, acceleration, shown);
+      all.col(static_cast<Eigen::Index>(b)) = acceleration.col(0);
+      shown_square += shown.squaredNorm();
+      moved_square += seen.reference[r].nu_end.col(static_cast<Eigen::Index>(b)).squaredNorm();
+    }
+    accelerations.push_back(std::move(all));
+  }
+  if (likelihood::stage_of(active) == likelihood::Stage::kSensor)
+    return moved_square > 0.0 ? std::sqrt(shown_square / moved_square) : 0.0;
+  return size_of(problem, seen, accelerations).share;
+}
+
+}  // namespace fathom::inference

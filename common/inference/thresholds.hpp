@@ -1,0 +1,33 @@
+// Every number at which the inference decides, with its reason. Nothing else in this room compares with a constant of
+// its own choosing; numerical tolerances stand beside their algorithms.
+#pragma once
+
+namespace fathom::inference {
+
+struct Thresholds {
+  double smallest_size{
+      0.01};  ///< of an effect or a free force, over the applied acceleration on its worst axis: timing of
+              ///< thrust edges inside a sample is worth .003, complete models left at most .009
+  double promised_size{0.7};  ///< of the smallest: what promises less is not fitted
+  double name_odds{10.0};     ///< nats over the model without it: numbers and noise are fitted in turn, exact to a few
+  double name_probability{0.9};  ///< against other names
+  double free_force_odds{5.0};   ///< nats of the free force over the best listed model, after its own prices
+  double pair_gain{8.0};         ///< nats that a pair must promise beyond its best single to be fitted
+  double score_worth{8.0};       ///< nats a score must promise to be fitted: less cannot become a name
+  int fits_per_round{3};         ///< best by score; the true one was among them in every simulated set
+  int pairs_per_round{2};
+  int most_effects{4};     ///< the prior has next to nothing beyond
+  double group_gain{3.0};  ///< nats, after its price, for which a group of features is taken up
+  int most_groups{5};
+  double group_price{2.5};      ///< nats of a variance of unknown order of magnitude
+  double searched_price{10.0};  ///< nats more where a moment or a frequency was sought in the data
+  double large_random{0.03};  ///< random over applied acceleration above which the scan is repeated with a fifth of it
+  double swallowing_memory{2.0};  ///< s: and its memory, above which it may have swallowed what is slow
+  double slow_memory{10.0};       ///< s: a random force that remembers for longer, above the smallest size, is no noise
+  double following{0.0};          ///< least share of an axis' acceleration that the model must explain
+  double absurd{10.0};            ///< times its prior's mean and sigma together: a number that nothing can have
+  double shortest{20.0};          ///< s of data to judge at all: ten blocks for each number of an ordinary model
+  double disagreement{5.0};       ///< median over numbers of the difference of both scores, in standard deviations
+};
+
+}  // namespace fathom::inference

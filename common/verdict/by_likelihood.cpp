@@ -1,0 +1,166 @@
+#include "common/verdict/by_likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/diagnosis/applicability.hpp"
+#include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/traces.hpp"
+#include "common/diagnosis/whiteness.hpp"
+#include "common/identification/sparse.hpp"
+
+namespace fathom::verdict {
+namespace {
+
+using inference::Conclusion;
+using inference::Verdict;
+using likelihood::NumberKind;
+
+constexpr double kStep = 0.04;  // s between the velocities that are predicted: short of it there is only noise
+
+std::vector<std::string> names_of(std::span<const Trial> trials) {
+  std::vector<std::string> names;
+  for (std::size_t r = 0; r < trials.size(); ++r) {
+    if (r == 0 || !same_run(trials[r - 1], trials[r])) names.push_back(trials[r].name);
+  }
+  return names;
+}
+
+std::vector<NamedValue> numbers_of(const likelihood::Fit& fit) {
+  std::vector<NamedValue> values;
+  if (!fit.finite) return values;
+  const Eigen::VectorXd sigma = fit.sigma();
+  for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+    if (fit.numbers[j].kind == NumberKind::kWeight) continue;
+    values.push_back({fit.numbers[j].name, value(fit.hypothesis, fit.numbers[j]), sigma[static_cast<Eigen::Index>(j)],
+                      fit.numbers[j].unit});
+  }
+  return values;
+}
+
+/// The model with the thrust's offset as a delay that straight lines between inputs can carry.
+model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step) {
+  model::Model model = hypothesis.model;
+  double offset = 0.0;
+  for (const likelihood::RunNumbers& run : hypothesis.runs)
+    offset += run.command_offset / static_cast<double>(hypothesis.runs.size());
+  if (input_step > 0.0) model.input_hold = std::clamp(offset / input_step, -0.5, 0.5);
+  return model;
+}
+
+std::vector<std::vector<Vector6d>> residuals_of(const model::Model& model, std::span<const Trial> trials) {
+  std::vector<std::vector<Vector6d>> residuals;
+  for (const Trial& trial : trials) residuals.push_back(diagnosis::wrench_residuals(model, trial));
+  return residuals;
+}
+
+std::map<std::string, double> force_rmse(const model::Vehicle& vehicle,
+                                         const std::vector<std::vector<Vector6d>>& residuals) {
+  std::map<std::string, double> rmse;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!vehicle.dof[axis]) continue;
+    double square = 0.0, count = 0.0;
+    for (const auto& run : residuals) {
+      for (const Vector6d& wrench : run) {
+        const double value = wrench[static_cast<Eigen::Index>(axis)];
+        if (!std::isfinite(value)) continue;
+        square += value * value;
+        count += 1.0;
+      }
+    }
+    if (count > 0.0) rmse[model::kAxisNames[axis]] = std::sqrt(square / count);
+  }
+  return rmse;
+}
+
+void list_effects(const Conclusion& conclusion, DiagnosisResult& result, VerdictGiven& given) {
+  const inference::Found& found = conclusion.found;
+  const auto& effects = found.best.fit.hypothesis.model.effects;
+  const std::vector<NamedValue> numbers = numbers_of(found.best.fit);
+  for (std::size_t e = 0; e < effects.size() && e < found.odds.size(); ++e) {
+    EffectFound effect{.name = std::string(effects[e].effect->name()),
+                       .variant = effects[e].variant_name,
+                       .log_odds = found.odds[e],
+                       .sentence = std::string(effects[e].effect->sentence())};
+    for (std::size_t j = 0; j < found.best.fit.numbers.size(); ++j) {
+      const likelihood::Number& number = found.best.fit.numbers[j];
+      if (number.kind != NumberKind::kEffect || number.index != static_cast<int>(e)) continue;
+      NamedValue named = numbers[j];
+      named.name = named.name.substr(named.name.find('.') + 1);
+      effect.parameters.push_back(std::move(named));
+    }
+    if (!found.rival[e].empty() && found.probability[e] < inference::Thresholds{}.name_probability)
+      effect.alternatives.push_back(
+          {.name = found.rival[e],
+           .log_odds = std::log(found.probability[e] / std::max(1.0 - found.probability[e], 1e-300))});
+    result.candidates.push_back({effect.name, effect.variant, effect.log_odds, 0.0, {}, "accepted"});
+    result.effects.push_back(std::move(effect));
+  }
+  for (const inference::Refused& refused : found.refused) {
+    CandidateTried candidate{.name = refused.name, .variant = refused.form};
+    for (const inference::Refusal& refusal : refused.refusals) {
+      given.refusals[refused.name].push_back({std::string(word(refusal.rule)), refusal.value, refusal.needed});
+      if (refusal.rule == inference::Rule::kOdds) candidate.log_odds = refusal.value;
+      candidate.reason = std::string(word(refusal.rule));
+    }
+    result.candidates.push_back(std::move(candidate));
+  }
+}
+
+}  // namespace
+
+Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
+                const inference::Settings& settings, const inference::Progress& progress) {
+  Answer answer;
+  DiagnosisReport& report = answer.report;
+  DiagnosisResult& result = report.result;
+  answer.given.core = "likelihood";
+  result.vehicle = vehicle.name;
+  result.train = names_of(train);
+  result.validate = names_of(validate);
+  const Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
+  result.verdict = word(conclusion.verdict);
+  result.paragraph = paragraph(conclusion);
+  for (const inference::Reason& reason : conclusion.reasons)
+    answer.given.causes.push_back({std::string(word(reason.cause)), reason.value, reason.threshold, reason.of});
+  list_effects(conclusion, result, answer.given);
+  for (const std::string& name : settings.without)
+    result.candidates.push_back({.name = name, .reason = "taken out of the list"});
+  result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  result.improvement = {kNaN, kNaN, kNaN};
+  if (!conclusion.reported.finite) return answer;
+
+  const bool numbers = conclusion.verdict != Verdict::no_model;
+  if (numbers) {
+    result.parameters_before = numbers_of(conclusion.reported_base);
+    result.parameters_after = numbers_of(conclusion.reported);
+  }
+  std::vector<Trial> unseen;
+  double input_step = 0.0;
+  for (const Trial& trial : validate) {
+    unseen.push_back(identification::sparse(trial, kStep));
+    input_step = std::max(input_step, trial.input_step);
+  }
+  const model::Model before = as_model(conclusion.reported_base.hypothesis, input_step);
+  const model::Model after = as_model(conclusion.reported.hypothesis, input_step);
+  const auto residual_before = residuals_of(before, unseen), residual_after = residuals_of(after, unseen);
+  const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
+  result.error_before.force_rmse = force_rmse(vehicle, residual_before);
+  result.error_after.force_rmse = force_rmse(vehicle, residual_after);
+  if (!windows.empty()) {
+    const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
+                                 by_after = diagnosis::predict(after, windows);
+    result.error_before.prediction = by_before.summary(vehicle);
+    result.error_after.prediction = by_after.summary(vehicle);
+    result.improvement = diagnosis::improvement(by_before, by_after, vehicle);
+  }
+  result.residual_before = diagnosis::whiteness(before, unseen, residual_before);
+  result.residual_after = diagnosis::whiteness(after, unseen, residual_after);
+  report.traces = diagnosis::traces_of(unseen, before, after, residual_before, residual_after);
+  return answer;
+}
+
+}  // namespace fathom::verdict

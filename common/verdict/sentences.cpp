@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/verdict/by_likelihood.hpp"
+
+namespace fathom::verdict {
+namespace {
+
+using inference::Cause;
+using inference::Conclusion;
+using inference::Reason;
+using inference::Verdict;
+
+constexpr double kCertain = 100.0;  // nats beyond which odds are given as "beyond doubt, if the model is right"
+
+template <typename... Arguments>
+std::string text(const char* format, Arguments... arguments) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, format, arguments...);
+  return buffer;
+}
+
+std::string percent(double share) { return text("%.*f %%", share < 0.1 ? 1 : 0, 100.0 * share); }
+
+std::string title(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+std::string names(const Conclusion& conclusion) {
+  std::string all;
+  const auto& effects = conclusion.found.best.fit.hypothesis.model.effects;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const double odds = conclusion.found.odds[e];
+    all += (e > 0 ? ", " : "") + title(std::string(effects[e].effect->name()));
+    if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
+    all += ": " + percent(conclusion.found.size[e]) + " of the applied force";
+    all += odds > kCertain ? ", beyond doubt if the model is right" : text(", log odds %.0f", odds);
+  }
+  return all;
+}
+
+const Reason* reason(const Conclusion& conclusion, Cause cause) {
+  const auto found = std::ranges::find(conclusion.reasons, cause, &Reason::cause);
+  return found != conclusion.reasons.end() ? &*found : nullptr;
+}
+
+std::string random_forces(const Conclusion& conclusion) {
+  std::string sentence = "Random force beside the model, share of the applied force and memory:";
+  for (const inference::RandomForce& force : conclusion.random)
+    sentence += text(" %s %s, %.1f s;", model::kAxisNames[static_cast<std::size_t>(force.axis)],
+                     percent(force.share).c_str(), force.memory);
+  sentence.back() = '.';
+  return sentence;
+}
+
+std::string unexplained(const Conclusion& conclusion) {
+  std::string sentence;
+  if (const Reason* free = reason(conclusion, Cause::kFreeForce)) {
+    sentence += text("Something acts that no listed effect explains: %s of the applied force in %s",
+                     percent(conclusion.found.free_force->size.share).c_str(),
+                     model::kAxisNames[static_cast<std::size_t>(conclusion.found.free_force->size.axis)]) +
+                text(", log odds %.0f. It goes with ", free->value) + free->of +
+                ". These are its arguments, not its cause. ";
+  }
+  if (const Reason* slow = reason(conclusion, Cause::kSlowRandomForce)) {
+    sentence += text("A force in %s remembers itself for %.0f s: that is no noise, and nothing recorded goes with it. ",
+                     slow->of.c_str(), slow->value);
+  }
+  return sentence;
+}
+
+}  // namespace
+
+std::string paragraph(const Conclusion& conclusion) {
+  std::string words;
+  switch (conclusion.verdict) {
+    case Verdict::adequate:
+      words = "Nothing of practical size is missing that this data can show. ";
+      break;
+    case Verdict::effect:
+      words = "Found: " + names(conclusion) + ". ";
+      break;
+    case Verdict::ambiguous: {
+      words = "Something is missing, and more than one name fits it. Likeliest: " + names(conclusion) + ". ";
+      for (const std::string& rival : conclusion.found.rival) {
+        if (!rival.empty()) words += "It may be " + title(rival) + " as well. ";
+      }
+      break;
+    }
+    case Verdict::unexplained:
+      words = unexplained(conclusion);
+      if (!conclusion.found.best.names.empty())
+        words += "Listed effects that take a part of it, as stand-ins or beside it: " + names(conclusion) + ". ";
+      break;
+    case Verdict::no_model:
+      words = "The model does not follow its thrust, so its numbers are withheld: ";
+      for (const Reason& one : conclusion.reasons) {
+        if (one.cause == Cause::kNotFollowing)
+          words += text("along %s it explains %.0f %% of the acceleration; ", one.of.c_str(), 100.0 * one.value);
+        if (one.cause == Cause::kAbsurdNumber) words += one.of + " is no number that this vehicle can have; ";
+      }
+      words += "check wiring, force unit and which axes the thrusters drive. ";
+      break;
+    case Verdict::not_judged: {
+      const Reason* shortness = reason(conclusion, Cause::kTooShort);
+      words = shortness != nullptr ? text("Nothing is judged: %.0f s of data, and %.0f s are needed. ",
+                                          shortness->value, shortness->threshold)
+                                   : std::string("Nothing is judged: the filter did not run through this data. ");
+    }
+  }
+  if (const Reason* off = reason(conclusion, Cause::kScoresDisagree)) {
+    words += text(
+        "Numbers that predict one step best and those that predict ten seconds best differ by %.0f standard "
+        "deviations (median): the model errs in a way that no noise explains. ",
+        off->value);
+  }
+  if (!conclusion.random.empty()) words += random_forces(conclusion) + " ";
+  if (conclusion.verdict == Verdict::effect || conclusion.verdict == Verdict::adequate)
+    words += "Intervals hold only if the model does.";
+  return words;
+}
+
+}  // namespace fathom::verdict

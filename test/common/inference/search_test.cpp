@@ -1,0 +1,123 @@
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "common/inference/infer.hpp"
+#include "common/model/rollout.hpp"
+#include "test/common/likelihood/noisy_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::inference;
+
+namespace {
+
+Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::string>& without = {}) {
+  static const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, settings);
+  const auto begin = std::chrono::steady_clock::now();
+  const Conclusion conclusion =
+      infer(vehicle, {&dive.trial, 1}, {.without = without}, [&](const std::string& what, double) {
+        if (std::getenv("FATHOM_SHOW") != nullptr)
+          std::printf("%6.2f %s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                      what.c_str());
+      });
+  if (std::getenv("FATHOM_SHOW") != nullptr) {
+    std::printf("%6.2f verdict %s, fits %zu\n",
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                std::string(word(conclusion.verdict)).c_str(), conclusion.found.fits);
+    for (const Reason& reason : conclusion.reasons)
+      std::printf("  %s %.3g (%.3g) %s\n", std::string(word(reason.cause)).c_str(), reason.value, reason.threshold,
+                  reason.of.c_str());
+    for (std::size_t e = 0; e < conclusion.found.odds.size(); ++e) {
+      const auto& active = conclusion.found.best.fit.hypothesis.model.effects[e];
+      std::printf("  effect %s %s odds %.1f size %.4f p %.3f rival %s:", std::string(active.effect->name()).c_str(),
+                  active.variant_name.c_str(), conclusion.found.odds[e], conclusion.found.size[e],
+                  conclusion.found.probability[e], conclusion.found.rival[e].c_str());
+      for (double x : active.theta) std::printf(" %.4g", x);
+      std::printf("\n");
+    }
+    for (std::size_t k = 0; k < std::min<std::size_t>(5, conclusion.found.refused.size()); ++k)
+      std::printf("  refused %s %s promised %.1f: %s %.2f\n", conclusion.found.refused[k].name.c_str(),
+                  conclusion.found.refused[k].form.c_str(), conclusion.found.refused[k].promised,
+                  std::string(word(conclusion.found.refused[k].refusals[0].rule)).c_str(),
+                  conclusion.found.refused[k].refusals[0].value);
+    if (conclusion.found.free_force) {
+      std::printf("  free force %.1f (fixed noise %.1f) size %.4f axis %d:", conclusion.found.free_force->log_odds,
+                  conclusion.found.free_force->at_fixed_noise, conclusion.found.free_force->size.share,
+                  conclusion.found.free_force->size.axis);
+      for (const auto& g : conclusion.found.free_force->groups) std::printf(" [%s %.1f]", words(g).c_str(), g.gain);
+      std::printf("\n");
+    }
+    for (const RandomForce& force : conclusion.random)
+      std::printf("  random %d sigma %.4f memory %.2f share %.4f\n", force.axis, force.sigma, force.memory,
+                  force.share);
+  }
+  return conclusion;
+}
+
+}  // namespace
+
+TEST_CASE("search: nothing is found where only a random force acts") {
+  CHECK(inferred({.duration = 90.0, .seed = 3, .force = 0.05}).verdict == Verdict::adequate);
+}
+
+TEST_CASE("search: one effect beside a random force is named") {
+  const Conclusion current =
+      inferred({.duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}});
+  CHECK(current.verdict == Verdict::effect);
+  CHECK(current.found.best.names == std::vector<std::string>{"current"});
+}
+
+TEST_CASE("free force: it finds what no list holds, says what it goes with, and nothing where nothing is") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto found_in = [&](const test::NoisyDive& settings) {
+    const auto dive = test::fly(vehicle, settings);
+    const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
+    const likelihood::Fit base = likelihood::fit(problem, likelihood::nominal_hypothesis(problem),
+                                                 likelihood::prior_noise(problem), {.noise_rounds = 4});
+    return find_free_force(problem, see(problem, base, 1), model::scene_of(vehicle, {&dive.trial, 1}), {}, 1);
+  };
+  const FreeForceFound nothing = found_in({.duration = 60.0, .seed = 3, .force = 0.05});
+  CHECK(nothing.log_odds < Thresholds{}.free_force_odds);
+  const FreeForceFound law =
+      found_in({.duration = 60.0, .seed = 3, .force = 0.05, .outside = [](double, const Vector6d& nu) {
+                  return Vector6d{0.0, 1.5 * nu[0] * std::abs(nu[0]), 0.0, 0.0, 0.0, 0.0};
+                }});
+  CHECK(law.log_odds > Thresholds{}.free_force_odds);
+  CHECK(law.size.share > Thresholds{}.smallest_size);
+  CHECK(words(law.groups.front()) == "velocity in Y");
+}
+
+TEST_CASE("scan: what the score test promises is what a full fit gains") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(
+      vehicle, {.duration = 60.0, .seed = 6, .force = 0.05, .effects = {test::active("current", {0.03, 0.0})}});
+  const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
+  const likelihood::Fit base =
+      likelihood::fit(problem, likelihood::nominal_hypothesis(problem), likelihood::prior_noise(problem), {});
+  const Seen seen = see(problem, base, 1);
+  const std::vector<Law> laws = catalogue(model::scene_of(vehicle, {&dive.trial, 1}), {});
+  const Scan found = scan(problem, seen, laws, {}, 1);
+  REQUIRE(laws[found.promises.front().law].name == "current");
+  likelihood::Hypothesis with = base.hypothesis;
+  model::ActiveEffect active = laws[found.promises.front().law].seed;
+  active.theta = found.promises.front().theta;
+  CHECK(active.theta[0] == doctest::Approx(0.03).epsilon(0.2));
+  with.model.add(active);
+  // Noise as the base model has it: the score knows no other.
+  const likelihood::Fit full =
+      likelihood::fit(problem, with, base.noise, {.noise_rounds = 1, .steps = 6, .fit_noise = false});
+  CHECK(full.log_evidence - base.log_evidence == doctest::Approx(found.promises.front().score).epsilon(0.15));
+}
+
+TEST_CASE("search: spikes, heavy tails and a scale that varies give no name") {
+  const Conclusion noisy =
+      inferred({.duration = 90.0, .seed = 8, .force = 0.03, .sensor_factor = [](double t, std::mt19937& random) {
+                  const double tail = std::sqrt(3.0 / std::chi_squared_distribution<double>{3.0}(random));
+                  const double spike = std::uniform_real_distribution<double>{}(random) < 0.003 ? 50.0 : 1.0;
+                  return tail * spike * (std::fmod(t, 30.0) < 10.0 ? 3.0 : 1.0);
+                }});
+  CHECK(noisy.verdict == Verdict::adequate);
+  CHECK(noisy.found.best.names.empty());
+}

@@ -1,0 +1,64 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "common/likelihood/fit.hpp"
+#include "common/likelihood/response.hpp"
+#include "test/common/likelihood/noisy_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::likelihood;
+
+TEST_CASE("evidence: Laplace's method is the integral, where one number is free") {
+  model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 30.0, .force = 0.05});
+  vehicle.parameters = {"X_u"};
+  vehicle.priors = {{.mean = dive.truth.theta[model::index(model::BaseParameter::X_u)] - 1.0, .sigma = 2.0}};
+  Problem problem = make_problem(vehicle, {&dive.trial, 1});
+  problem.number_settings.command_offset = false;
+  Hypothesis hypothesis = nominal_hypothesis(problem);
+  hypothesis.model.theta = dive.truth.theta;
+  const Noise noise = prior_noise(problem);
+  const Fit found =
+      fit(problem, hypothesis, noise, {.noise_rounds = 1, .steps = 10, .enough = 1e-4, .fit_noise = false});
+  REQUIRE(found.numbers.size() == 1);
+  const double best = value(found.hypothesis, found.numbers[0]), sigma = found.sigma()[0];
+  double integral = 0.0;
+  const double step = 0.25 * sigma;
+  for (int k = -24; k <= 24; ++k) {
+    Hypothesis there = found.hypothesis;
+    at(there, found.numbers[0]) = best + k * step;
+    const double log_likelihood = pass(problem, there, found.numbers, noise, {.derivatives = false}).log_likelihood;
+    integral +=
+        step * std::exp(log_likelihood + log_prior(found.numbers, values(there, found.numbers)) - found.log_likelihood);
+  }
+  const double laplaces =
+      laplace(found.numbers, values(found.hypothesis, found.numbers), found.log_likelihood, found.information);
+  // The gain held fixed in the derivative, and what is not Gaussian about the posterior.
+  CHECK(laplaces == doctest::Approx(found.log_likelihood + std::log(integral)).epsilon(0.1 / std::abs(laplaces)));
+}
+
+TEST_CASE("response: the score of a column is its inner product with the adjoint") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 20.0, .force = 0.05});
+  const Problem problem = make_problem(vehicle, {&dive.trial, 1});
+  Fit base{.hypothesis = nominal_hypothesis(problem), .noise = prior_noise(problem)};
+  base.numbers = problem.numbers(base.hypothesis);
+  Reference reference;
+  refer(problem, base, reference, 1);
+  const Eigen::MatrixXd slope = adjoint(problem, reference[0], 0);
+  const auto column = [](std::size_t block, int axis) { return std::sin(0.1 * static_cast<double>(block) + axis); };
+  ResponseSums sums;
+  respond(
+      problem, reference[0], 0, 1, {},
+      [&](std::size_t block, RowMatrix& acceleration, RowMatrix&) {
+        for (int i = 0; i < acceleration.rows(); ++i)
+          acceleration(i, 0) = i < problem.simulated ? column(block, i) : 0.0;
+      },
+      sums);
+  double product = 0.0;
+  for (Eigen::Index b = 0; b < slope.cols(); ++b) {
+    for (int i = 0; i < problem.simulated; ++i) product += slope(i, b) * column(static_cast<std::size_t>(b), i);
+  }
+  CHECK(sums.gradient[0] == doctest::Approx(product).epsilon(1e-9));
+}
