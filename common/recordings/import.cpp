@@ -142,7 +142,6 @@ std::optional<ImportedRun> import_run(Content& content, const std::vector<tables
     if (map.time.columns.empty()) map.time.columns = {{tables::kOwnTime, ""}};
     try {
       tables::Imported imported = tables::import_table(table, std::move(map), simulated);
-      for (Depth& depth : imported.recording.depth) depth.z += streams[s].offset;
       append(run.recording, std::move(imported.recording));
       for (const std::string& note : imported.notes) {
         if (!note.starts_with("columns not used")) run.notes.push_back(own.topic + ": " + note);

@@ -14,7 +14,6 @@ struct MappedStream {
   std::string where;  ///< "map.yaml:12"
   ColumnMap map;
   std::vector<std::string> columns;  ///< all that the stream names, "topic.field"
-  double offset{};                   ///< m, added to a depth: the pressure at the surface
 };
 
 /// Reads a map whose streams may be lists (rates from one topic, attitude from another) and may have a 'time' of their

@@ -13,17 +13,18 @@
 
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
+#include "common/consistency/dead_axes.hpp"
+#include "common/consistency/flow_check.hpp"
+#include "common/consistency/thruster_clock.hpp"
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/diagnosis/force_unit.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
-#include "common/estimation/dead_axes.hpp"
-#include "common/estimation/flow_check.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/estimation/state_as_measured.hpp"
-#include "common/estimation/thruster_clock.hpp"
 #include "common/estimation/wording.hpp"
+#include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
@@ -143,6 +144,7 @@ bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double
 DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
                          VerdictGiven& given) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
   if (!options.site.empty()) room = rehearsal_settings(options.site, options.config, vehicle);
   check_names(options.without);
@@ -169,12 +171,12 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
 
   progress.done(kReading, runs);
   progress.begin(kSensors, "comparing the sensors with each other");
-  const std::vector<ConsistencyFinding> dead = estimation::set_aside_dead_axes(recordings, vehicle.dof);
-  estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);
+  const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
+  consistency::ConsistencyResult consistency = consistency::check_consistency(recordings);
   consistency.findings.insert(consistency.findings.begin(), dead.begin(), dead.end());
-  estimation::check_thrusters(recordings, vehicle, consistency);
+  consistency::check_thrusters(recordings, vehicle, consistency);
   if (!options.site.empty()) {
-    estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
+    consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
   }
 
   progress.done(kSensors);
@@ -236,7 +238,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   Explained explained;
   explain(trials_of_recordings(), explained, estimation::Kept::kLast);
   if (diagnosis::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
-    estimation::put_thrusters_on_pose_clock(consistency);
+    consistency::put_thrusters_on_pose_clock(consistency);
     explain(trials_of_recordings(), explained, estimation::Kept::kLast);
   }
   if (options.validate.empty() && explained.report.unseen_event) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/model/driven_axes.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/recordings/merge.hpp"
 #include "common/recordings/worth.hpp"
@@ -77,7 +78,11 @@ void write_each(const std::vector<Recording>& runs, const std::string& out) {
 
 void run_import(const ImportOptions& options) {
   std::optional<tables::SimulatedAxes> simulated;
-  if (!options.vehicle.empty()) simulated = model::Vehicle::load(options.vehicle).dof;
+  if (!options.vehicle.empty()) {
+    const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+    simulated = vehicle.dof;
+    if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
+  }
   const std::vector<Source> sources = sources_of(options.data);
   if (options.describe) {
     for (const Source& source : sources) std::printf("%s", describe_source(source, simulated).c_str());
