@@ -17,8 +17,8 @@ namespace {
 constexpr double kSecond = 1.0;         // s between poses that are compared
 constexpr std::size_t kFewest = 50;     // samples of a stream: fewer may well say the same
 constexpr double kGrows = 1.5;          // motion over two seconds to that over one: noise of the pose does not grow
-constexpr double kTurning = 0.03;       // rad/s (RMS): slower than that, a coarse gyro may say nothing
-constexpr double kMoving = 0.02;        // m/s
+constexpr double kTurningShown = 0.03;  // rad/s (RMS): slower than that, a coarse gyro may say nothing
+constexpr double kMovingShown = 0.02;   // m/s
 constexpr double kLongestPause = 0.25;  // of the time between the poses, that a pause may add
 
 struct Pose {
@@ -105,7 +105,7 @@ std::vector<ConsistencyFinding> set_aside_dead_axes(std::span<Recording> recordi
     std::array<bool, 2> dead{};  // velocities, rates
     for (std::size_t i = 0; i < 6; ++i) {
       const double shown = speed[static_cast<Eigen::Index>(i)];
-      if (!dof[i] || !axes[i].dead() || shown < (i < 3 ? kMoving : kTurning)) continue;
+      if (!dof[i] || !axes[i].dead() || shown < (i < 3 ? kMovingShown : kTurningShown)) continue;
       dead[i / 3] = true;
       findings.push_back({.run = recording.name,
                           .signal = kNames[i],
