@@ -72,8 +72,6 @@ fathom_lcm::health_t health(const std::string& name, int pid) {
   message.host = "vehicle";
   message.pid = pid;
   message.state = "running";
-  static std::int64_t words = 0;  // each is a new one
-  message.sequence = ++words;
   return message;
 }
 
