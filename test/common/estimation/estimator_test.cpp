@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/base/config.hpp"
+#include "common/consistency/consistency.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/beluga_csv.hpp"
 #include "test/support/feed_estimator.hpp"
