@@ -14,7 +14,7 @@ constexpr double kScaleFloor = 0.02;
 constexpr double kDelayFloor = 0.05;   // s: depth changes slowly
 constexpr double kLongestDelay = 1.0;  // s
 constexpr double kDelayStep = 0.02;    // s
-constexpr double kDelayGain = 12.0;  // nats by which a delay must explain the depth better; one number a second counts
+constexpr double kDelayGain = 20.0;  // nats by which a delay must explain the depth better; one number a second counts
 constexpr double kBlocks = 12;
 constexpr double kLeastMotion = 8.0;  // depth must move by this many sigmas of the misfit
 
