@@ -14,6 +14,7 @@ constexpr double kScaleFloor = 0.02;
 constexpr double kDelayFloor = 0.05;   // s: depth changes slowly
 constexpr double kLongestDelay = 1.0;  // s
 constexpr double kDelayStep = 0.02;    // s
+constexpr double kDelayGain = 20.0;  // nats by which a delay must explain the depth better; one number a second counts
 constexpr double kBlocks = 12;
 constexpr double kLeastMotion = 8.0;  // depth must move by this many sigmas of the misfit
 
@@ -61,10 +62,11 @@ std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseS
     return pairs;
   };
   Line best;
-  double delay = 0.0;
+  double delay = 0.0, misfit_without = std::numeric_limits<double>::infinity();
   for (double trial = -kLongestDelay; trial <= kLongestDelay + 1e-9; trial += kDelayStep) {
     const auto pairs = pairs_at(trial);
     const Line line = pairs.size() < 100 ? Line{} : fit_line(pairs, -1);
+    if (std::abs(trial) < 0.5 * kDelayStep) misfit_without = line.misfit;
     if (line.misfit < 0.98 * best.misfit || (line.misfit < 1.02 * best.misfit && std::abs(trial) < std::abs(delay))) {
       best = line;
       delay = trial;
@@ -95,7 +97,8 @@ std::vector<ConsistencyFinding> compare_depth(const RunSignals& run, const PoseS
   const double size = std::abs(best.scale);
   if (std::abs(size - 1.0) > std::max(kScaleFloor, 6.0 * sigma))
     report(size < 0.4 || size > 2.5 ? "unit" : "scale", size, "");
-  if (std::abs(delay) > kDelayFloor) report("delay", delay, "s");
+  const double gain = (pose.t.back() - pose.t.front()) * std::log(misfit_without / best.misfit);
+  if (std::abs(delay) > kDelayFloor && gain > kDelayGain) report("delay", delay, "s");
   return findings;
 }
 
