@@ -24,12 +24,14 @@ template <class Unsigned>
 }
 
 struct Header {
+  std::uint64_t number{};
   Utime time{};
   std::uint32_t channel_length{};
   std::uint32_t data_length{};
 
   explicit Header(std::span<const std::uint8_t, kHeaderSize> bytes)
-      : time{static_cast<Utime>(big_endian<std::uint64_t>(bytes.subspan<12>()))},
+      : number{big_endian<std::uint64_t>(bytes.subspan<4>())},
+        time{static_cast<Utime>(big_endian<std::uint64_t>(bytes.subspan<12>()))},
         channel_length{big_endian<std::uint32_t>(bytes.subspan<20>())},
         data_length{big_endian<std::uint32_t>(bytes.subspan<24>())} {}
   [[nodiscard]] bool plausible() const {
@@ -37,5 +39,12 @@ struct Header {
   }
   [[nodiscard]] std::uint64_t body() const { return std::uint64_t{channel_length} + data_length; }
 };
+
+/// Whether another recording begins with `next`: a logger counts its events and never logs into the past. Files that
+/// were joined with `cat` hold several.
+[[nodiscard]] inline bool begins_anew(const Header& before, const Header& next) {
+  constexpr Utime kBack = 1'000'000;  // us: a clock that is set by a network steps back by less
+  return next.number < before.number || (next.number == before.number && next.time < before.time - kBack);
+}
 
 }  // namespace fathom::event_format

@@ -66,8 +66,10 @@ std::optional<LogEvent> EventLog::next() {
   const std::span<const std::uint8_t> body{body_};
   LogEvent event{.time = header.time,
                  .offset = offset_,
+                 .begins_anew = before_ && event_format::begins_anew(*before_, header),
                  .channel = {reinterpret_cast<const char*>(body.data()), header.channel_length},
                  .data = body.subspan(header.channel_length)};
+  before_ = header;
   offset_ += kHeaderSize + header.body();
   ++events_;
   return event;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/event_format.hpp"
 #include "common/base/time.hpp"
 
 namespace fathom {
@@ -18,6 +19,7 @@ namespace fathom {
 struct LogEvent {
   Utime time{};            ///< when it was logged
   std::uint64_t offset{};  ///< byte in the file where the event begins
+  bool begins_anew{};      ///< another recording begins here: the file was joined of several
   std::string_view channel;
   std::span<const std::uint8_t> data;
 };
@@ -46,6 +48,7 @@ class EventLog {
   std::uint64_t size_{};    ///< of the file, when opened
   std::uint64_t offset_{};  ///< of the next event
   std::uint64_t events_{};
+  std::optional<event_format::Header> before_;
   std::vector<std::uint8_t> body_;  ///< channel, then data
   std::string warning_;
 };

@@ -64,6 +64,10 @@ class Search {
     return {reinterpret_cast<const char*>(log_.data() + at + kHeaderSize), header_at(at).channel_length};
   }
 
+  [[nodiscard]] bool begins_anew(std::uint64_t before, std::uint64_t at) const {
+    return event_format::begins_anew(header_at(before), header_at(at));
+  }
+
  private:
   [[nodiscard]] bool sync_at(std::uint64_t at) const {
     return at + kSync.size() <= log_.size() && std::equal(kSync.begin(), kSync.end(), log_.data() + at);
@@ -109,13 +113,17 @@ std::uint64_t Salvage::lost() const {
   return sum;
 }
 
-Salvage salvage(Bytes log, const std::function<void(Bytes)>& keep) {
+Salvage salvage(Bytes log, const std::function<void(Bytes, std::size_t)>& keep) {
   const Search search{log};
   Salvage result;
+  std::uint64_t before = kNowhere;
   for (std::uint64_t at = 0; at < log.size();) {
     if (search.whole(at)) {
       const std::uint64_t end = search.end_of(at);
-      keep(log.subspan(at, end - at));
+      if (before == kNowhere || search.begins_anew(before, at))
+        result.parts.push_back({.begin = at, .events_before = result.events});
+      before = at;
+      keep(log.subspan(at, end - at), result.parts.size() - 1);
       ++result.channels[search.channel_at(at)];
       ++result.events;
       result.bytes += end - at;
@@ -131,22 +139,73 @@ Salvage salvage(Bytes log, const std::function<void(Bytes)>& keep) {
   return result;
 }
 
+namespace {
+
+/// The recordings' files; a lone one has the name that was asked for.
+class Parts {
+ public:
+  explicit Parts(std::string to) : to_{std::move(to)} {}
+  void write(Bytes event, std::size_t part) {
+    if (part == paths_.size()) begin();
+    file_.write(reinterpret_cast<const char*>(event.data()), static_cast<std::streamsize>(event.size()));
+  }
+  /// False when something could not be written.
+  [[nodiscard]] bool finish() {
+    file_.close();
+    return sound_ && file_.good();
+  }
+  void remove() const {
+    std::error_code ignored;
+    for (const std::string& path : paths_) std::filesystem::remove(path, ignored);
+  }
+  [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
+
+ private:
+  void begin() {
+    if (paths_.size() == 1) {  // a second one: the first gets its number too
+      const std::string first = numbered(1);
+      refuse_existing(first);
+      std::filesystem::rename(to_, first);
+      paths_.front() = first;
+    }
+    if (file_.is_open()) {
+      file_.close();
+      sound_ = sound_ && file_.good();
+    }
+    const std::string path = paths_.empty() ? to_ : numbered(paths_.size() + 1);
+    refuse_existing(path);
+    file_.open(path, std::ios::binary);
+    if (!file_) throw InputError(path + ": cannot be written; check that the folder exists and is yours");
+    paths_.push_back(path);
+  }
+  static void refuse_existing(const std::string& path) {
+    if (std::filesystem::exists(path)) throw InputError(path + ": exists already; name another file");
+  }
+  [[nodiscard]] std::string numbered(std::size_t number) const {
+    const std::filesystem::path whole{to_};
+    return (whole.parent_path() / (whole.stem().string() + "-" + std::to_string(number))).string() +
+           whole.extension().string();
+  }
+
+  std::string to_;
+  std::ofstream file_;
+  std::vector<std::string> paths_;
+  bool sound_{true};
+};
+
+}  // namespace
+
 Salvage salvage(const std::string& from, const std::string& to) {
   const Mapped log{from};
   if (std::filesystem::exists(to)) throw InputError(to + ": exists already; name another file");
-  std::ofstream out{to, std::ios::binary};
-  if (!out) throw InputError(to + ": cannot be written; check that the folder exists and is yours");
-  Salvage result = salvage(log.bytes(), [&](Bytes event) {
-    out.write(reinterpret_cast<const char*>(event.data()), static_cast<std::streamsize>(event.size()));
-  });
-  out.close();
-  const bool empty = result.events == 0;
-  if (!out || empty) {
-    std::error_code ignored;
-    std::filesystem::remove(to, ignored);
+  Parts parts{to};
+  Salvage result = salvage(log.bytes(), [&](Bytes event, std::size_t part) { parts.write(event, part); });
+  if (result.events == 0) throw InputError(from + ": holds no whole event of an LCM log");
+  if (!parts.finish()) {
+    parts.remove();
+    throw InputError(to + ": writing failed; is the disk full?");
   }
-  if (empty) throw InputError(from + ": holds no whole event of an LCM log");
-  if (!out) throw InputError(to + ": writing failed; is the disk full?");
+  for (std::size_t i = 0; i < result.parts.size(); ++i) result.parts[i].path = parts.paths()[i];
   return result;
 }
 

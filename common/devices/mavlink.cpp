@@ -6,6 +6,7 @@
 
 #include "common/devices/checksum.hpp"
 #include "common/devices/emulation.hpp"
+#include "common/devices/mavlink/definitions.hpp"
 
 namespace fathom::devices {
 namespace mavlink {
@@ -30,38 +31,6 @@ constexpr std::array kMessages{
     Message{173, "RANGEFINDER", 83, "ff"},
     Message{178, "AHRS2", 47, "ffffii"},
     Message{253, "STATUSTEXT", 83, "B"},  // and fifty letters
-    // What ArduSub and its ground station say besides: only to be told from damage. The bytes are those of a recorded
-    // vehicle.
-    Message{2, "SYSTEM_TIME", 137, ""},
-    Message{21, "PARAM_REQUEST_LIST", 159, ""},
-    Message{22, "PARAM_VALUE", 220, ""},
-    Message{24, "GPS_RAW_INT", 24, ""},
-    Message{33, "GLOBAL_POSITION_INT", 104, ""},
-    Message{42, "MISSION_CURRENT", 28, ""},
-    Message{43, "MISSION_REQUEST_LIST", 132, ""},
-    Message{44, "MISSION_COUNT", 221, ""},
-    Message{47, "MISSION_ACK", 153, ""},
-    Message{49, "GPS_GLOBAL_ORIGIN", 39, ""},
-    Message{62, "NAV_CONTROLLER_OUTPUT", 183, ""},
-    Message{66, "REQUEST_DATA_STREAM", 148, ""},
-    Message{69, "MANUAL_CONTROL", 243, ""},
-    Message{111, "TIMESYNC", 34, ""},
-    Message{125, "POWER_STATUS", 203, ""},
-    Message{148, "AUTOPILOT_VERSION", 178, ""},
-    Message{150, "SENSOR_OFFSETS", 134, ""},
-    Message{152, "MEMINFO", 208, ""},
-    Message{158, "MOUNT_STATUS", 134, ""},
-    Message{163, "AHRS", 127, ""},
-    Message{165, "HWSTATUS", 21, ""},
-    Message{193, "EKF_STATUS_REPORT", 71, ""},
-    Message{232, "GPS_INPUT", 151, ""},
-    Message{241, "VIBRATION", 90, ""},
-    Message{242, "HOME_POSITION", 104, ""},
-    Message{251, "NAMED_VALUE_FLOAT", 170, ""},
-    Message{261, "STORAGE_INFORMATION", 179, ""},
-    Message{270, "VIDEO_STREAM_STATUS", 59, ""},
-    Message{321, "PARAM_EXT_REQUEST_LIST", 88, ""},
-    Message{322, "PARAM_EXT_VALUE", 243, ""},
 };
 
 void put(std::string& out, std::uint64_t value, std::size_t bytes) {
@@ -77,7 +46,14 @@ const Message* message(std::uint32_t id) {
   for (const Message& each : kMessages) {
     if (each.id == id) return &each;
   }
-  return nullptr;
+  // The others are only to be told from damage: name and checksum, no fields.
+  static const std::vector<Message> others = [] {
+    std::vector<Message> all;
+    for (const Definition& each : definitions()) all.push_back({each.id, each.name, each.crc_extra, ""});
+    return all;
+  }();
+  const auto found = std::ranges::lower_bound(others, id, {}, &Message::id);
+  return found == others.end() || found->id != id ? nullptr : &*found;
 }
 
 std::string Writer::packet(std::uint32_t id, std::string payload) {
@@ -145,26 +121,22 @@ namespace {
 
 constexpr std::uint8_t kMagic1 = 0xFE, kMagic2 = 0xFD;
 constexpr std::size_t kSignature = 13;
-constexpr std::size_t kLongest = 10 + 255 + 2 + kSignature;
+constexpr std::size_t kLongest = 8 + 10 + 255 + 2 + kSignature;  // with the stamp of a telemetry log
 constexpr std::uint32_t kSysStatus = 1, kServoOutput = 36, kBatteryStatus = 147;
 constexpr double kExact = 9e15;      // whole numbers below are whole in a double
 constexpr double kNoCell = 65535.0;  // mV: there is no such cell
 
-std::size_t size_of(char kind) {
-  switch (kind) {
-    case 'Q':
-      return 8;
-    case 'I':
-    case 'i':
-    case 'f':
-      return 4;
-    case 'H':
-    case 'h':
-      return 2;
-    default:
-      return 1;
-  }
+// In a telemetry log each frame stands behind the time of its receipt: eight bytes, the greatest first, us since 1970.
+constexpr std::size_t kStamp = 8;
+constexpr std::uint64_t kEarliestStamp = 946'684'800'000'000, kLatestStamp = 4'102'444'800'000'000;  // 2000, 2100
+
+std::uint64_t stamp_of(Bytes bytes) {
+  std::uint64_t stamp = 0;
+  for (std::size_t i = 0; i < kStamp; ++i) stamp = stamp << 8U | bytes[i];
+  return stamp;
 }
+
+bool is_stamp(std::uint64_t stamp) { return stamp >= kEarliestStamp && stamp <= kLatestStamp; }
 
 }  // namespace
 
@@ -179,8 +151,20 @@ Mavlink::Header Mavlink::header(Bytes bytes) {
 }
 
 Parser::Look Mavlink::look(Bytes bytes) const {
+  if (bytes[0] == 0 && (bytes.size() < 2 || (bytes[1] >= 3 && bytes[1] <= 14))) {
+    if (bytes.size() < kStamp + 1) return kMore;
+    const std::uint8_t magic = bytes[kStamp];
+    if (is_stamp(stamp_of(bytes)) && (magic == kMagic1 || magic == kMagic2)) {
+      const Look frame = look(bytes.subspan(kStamp));
+      if (frame.verdict == Look::Verdict::kFrame) return whole_frame(kStamp + frame.length);
+      return frame.verdict == Look::Verdict::kMore ? kMore : skip(1);  // what is wrong with it is counted at its magic
+    }
+  }
   if (bytes[0] != kMagic1 && bytes[0] != kMagic2) {
     const auto found = std::find_if(bytes.begin(), bytes.end(), [](auto b) { return b == kMagic1 || b == kMagic2; });
+    // What stands before a magic may be a stamp.
+    const auto zero = std::find(bytes.begin() + 1, found, std::uint8_t{0});
+    if (zero != found) return skip(static_cast<std::size_t>(zero - bytes.begin()));
     return skip(static_cast<std::size_t>(found - bytes.begin()));
   }
   if (bytes.size() < (bytes[0] == kMagic1 ? 6U : 10U)) return kMore;
@@ -200,7 +184,7 @@ int Mavlink::component() const { return bytes_[0] == kMagic1 ? bytes_[4] : bytes
 
 double Mavlink::value(std::size_t field) const {
   std::size_t at = 0;
-  for (std::size_t i = 0; i < field; ++i) at += size_of(message_->fields[i]);
+  for (std::size_t i = 0; i < field; ++i) at += mavlink::size_of(message_->fields[i]);
   const Bytes b{payload_};
   switch (message_->fields[field]) {
     case 'Q':
@@ -233,6 +217,11 @@ std::string Mavlink::text() const {
 
 void Mavlink::take(Frame& frame) {
   bytes_ = frame.bytes;
+  const bool stamped = bytes_[0] != kMagic1 && bytes_[0] != kMagic2;
+  if (stamped) {
+    frame.device_time = 1e-6 * static_cast<double>(stamp_of(bytes_));
+    bytes_ = bytes_.subspan(kStamp);
+  }
   const Header head = header(bytes_);
   id_ = head.id;
   message_ = mavlink::message(id_);
@@ -253,7 +242,7 @@ void Mavlink::take(Frame& frame) {
     for (std::size_t i = 0; i < motors_; ++i) {
       thrusters_.pwm_us[i] = i < 8 ? value(1 + i) : little<std::uint16_t>(wire, 21 + 2 * (i - 8));
     }
-    frame.device_time = 1e-6 * value(0);
+    if (!stamped) frame.device_time = 1e-6 * value(0);
     const bool all =
         std::all_of(thrusters_.pwm_us.begin(), thrusters_.pwm_us.end(), [](double pwm) { return pwm > 0.0; });
     if (all) frame.sample = &thrusters_;  // zero: the output gives no pulse

@@ -44,8 +44,8 @@ LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle&
         for (Eigen::Index i = 0; i < mean.size(); ++i) mean[i] = vehicle.priors[static_cast<std::size_t>(i)].mean;
         return mean;
       }()},
-      sensors_{corrections, site == nullptr ? std::optional<estimation::FlowWitnesses>{}
-                                            : estimation::FlowWitnesses{vehicle.mounts, *site}} {}
+      sensors_{corrections, site == nullptr ? std::optional<consistency::FlowWitnesses>{}
+                                            : consistency::FlowWitnesses{vehicle.mounts, *site}} {}
 
 identification::IntegralSettings LiveDiagnoser::integral_settings() const {
   identification::IntegralSettings s;

@@ -38,7 +38,7 @@ std::vector<double> numbers_of(const EffectFound& fault, const NamedValue& numbe
 
 }  // namespace
 
-LiveSensorCheck::LiveSensorCheck(estimation::Corrections corrections, std::optional<estimation::FlowWitnesses> flow)
+LiveSensorCheck::LiveSensorCheck(estimation::Corrections corrections, std::optional<consistency::FlowWitnesses> flow)
     : corrections_{std::move(corrections)}, flow_{std::move(flow)} {}
 
 void LiveSensorCheck::hear(const Ahrs& ahrs) {
@@ -79,7 +79,7 @@ void LiveSensorCheck::step(const StateEstimate& state) {
     states_.clear();
     first_.reset();
   }
-  states_.push_back(estimation::motion_of(state));
+  states_.push_back(consistency::motion_of(state));
   while (seconds_between(states_.front().utime, state.utime) > kKept + kMargin) states_.pop_front();
   if (flow_) flow_->forget_before(utime_after(state.utime, -(kKept + kMargin)));
   if (!first_) {
@@ -110,7 +110,7 @@ LiveSensorCheck::Seen LiveSensorCheck::until(Utime now) const {
   recording.pose_capture.reserve(states_.size());
   recording.ahrs.reserve(rates_.size());
   recording.dvl.reserve(velocities_.size());
-  for (const estimation::MotionAt& at : states_) {
+  for (const consistency::MotionAt& at : states_) {
     if (!within(at)) continue;
     recording.pose_capture.push_back({.utime = at.utime, .p_WB = at.p_WB, .q_WB = at.q_WB, .valid = at.valid});
   }
@@ -134,9 +134,9 @@ LiveSensorCheck::Seen LiveSensorCheck::until(Utime now) const {
 
 /// STATE stands for the motion capture; what the estimator makes of all sensors is none of them, and is not named.
 LiveSensorCheck::Found LiveSensorCheck::look(const Seen& seen) {
-  auto checked = estimation::check_consistency(std::span(&seen.sensors, 1));
+  auto checked = consistency::check_consistency(std::span(&seen.sensors, 1));
   if (!seen.pictures.dvl.empty()) {
-    estimation::PairResult flow = estimation::compare_flow(std::span(&seen.pictures, 1), *seen.site);
+    consistency::PairResult flow = consistency::compare_flow(std::span(&seen.pictures, 1), *seen.site);
     std::ranges::move(flow.findings, std::back_inserter(checked.findings));
     checked.pairs.emplace("optical_flow", std::move(flow));
   }
@@ -145,7 +145,7 @@ LiveSensorCheck::Found LiveSensorCheck::look(const Seen& seen) {
     if (pair.checked) found.judged.push_back(signal);
   }
   const auto turn = [&](const std::string& signal) -> Eigen::Matrix3d {
-    const estimation::PairResult& pair = checked.pairs.at(signal);
+    const consistency::PairResult& pair = checked.pairs.at(signal);
     return pair.checked ? pair.faults.front().rotation : Eigen::Matrix3d::Identity();
   };
   found.turns = {.gyro = turn("gyro"), .dvl = turn("dvl")};

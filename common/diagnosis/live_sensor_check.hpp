@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "common/estimation/consistency.hpp"
-#include "common/estimation/flow_check.hpp"
+#include "common/consistency/consistency.hpp"
+#include "common/consistency/flow_check.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/recording.hpp"
 #include "common/samples/sensors.hpp"
@@ -24,7 +24,7 @@ class LiveSensorCheck {
   /// `corrections`: those that STATE is made with; what they mend is no finding.
   /// `flow`: where the camera and the tags are, if they are known: only then TAG_POSE and OPTICAL_FLOW are compared.
   explicit LiveSensorCheck(estimation::Corrections corrections = {},
-                           std::optional<estimation::FlowWitnesses> flow = {});
+                           std::optional<consistency::FlowWitnesses> flow = {});
 
   void hear(const Ahrs& ahrs);
   void hear(const Dvl& dvl);
@@ -73,8 +73,8 @@ class LiveSensorCheck {
 
   estimation::Corrections corrections_;
   std::deque<Sample> rates_, velocities_;
-  std::deque<estimation::MotionAt> states_;
-  std::optional<estimation::FlowWitnesses> flow_;
+  std::deque<consistency::MotionAt> states_;
+  std::optional<consistency::FlowWitnesses> flow_;
   std::optional<Utime> first_;
   double next_look_{};  // s of the trial
   Utime due_{};

@@ -1,8 +1,9 @@
 #include "common/diagnosis/product_sums.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "common/base/least_squares.hpp"
 
 namespace fathom::diagnosis {
 
@@ -39,10 +40,7 @@ void standardise(std::vector<Eigen::MatrixXd>& runs) {
 
 Eigen::VectorXd taken_up(const Eigen::MatrixXd& products, const Indices& free, const Eigen::VectorXd& right) {
   constexpr double kCollinear = 1e-9;  // relative pivot
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
-  solver.setThreshold(kCollinear);
-  solver.compute(products(free, free));
-  return solver.solve(Eigen::VectorXd(right(free)));
+  return least_squares(products(free, free), right(free), kCollinear).x;
 }
 
 double square_left(const Eigen::MatrixXd& products, const Indices& free, const Indices& held,

@@ -185,8 +185,7 @@ class ThrusterDriver final : public devices::Output {
       unhealthy = watch_->unhealthy(now, silent ? "" : trouble, parser_->complaint());
     }
     if (unhealthy.empty()) unhealthy = lacking_;
-    if (unhealthy.empty() && gate_.ignores(utime))
-      unhealthy = std::string{kNotArmedYet} + "; arm again";
+    if (unhealthy.empty() && gate_.ignores(utime)) unhealthy = std::string{kNotArmedYet} + "; arm again";
     const std::string_view reason = gate_.reason(utime);
     std::string detail = reason.empty() ? "thrust as commanded" : "zero thrust: " + std::string{reason};
     if (gate_.refused() > 0) {

@@ -1,7 +1,7 @@
 // A recording after the corrections of the sensor check, stream by stream: for estimators that know nothing of them.
 #pragma once
 
-#include "common/estimation/consistency.hpp"
+#include "common/estimation/corrections.hpp"
 #include "common/samples/recording.hpp"
 
 namespace fathom::estimation {

@@ -7,11 +7,13 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/spatial.hpp"
 
 namespace fathom::estimation {
 namespace {
 
 constexpr std::array<const char*, 4> kForms{"as_read", "inverse", "scalar_last", "scalar_last_inverse"};
+constexpr std::array<const char*, 3> kSenses{"as_read", "from_east", "anticlockwise"};
 
 std::string number(double value) {
   std::array<char, 32> buffer{};
@@ -65,6 +67,8 @@ std::string to_yaml(const Corrections& c) {
       "# What is done to the sensors' signals before they are used. Written by fathom check; matrices row by row.\n"
       "corrections:\n  pose_capture:\n    quaternion: ";
   text += kForms[static_cast<std::size_t>(c.quaternion)];
+  text += std::string("\n    heading_sense: ") + kSenses[static_cast<std::size_t>(c.heading_sense)] +
+          "\n    attitude_world: " + numbers(c.attitude_world, "");
   text += "\n    heading: " + number(c.heading) + " rad\n    attitude_axes: " + numbers(c.attitude_axes, "") +
           "\n    position_axes: " + numbers(c.position_axes, "") + "\n    position_scale: " + number(c.position_scale) +
           "\n    shift: " + number(c.pose_shift) + " s\n";
@@ -87,6 +91,14 @@ Corrections corrections_from(const Config& section) {
                 "quaternion is '" + form + "'; write as_read, inverse, scalar_last or scalar_last_inverse");
     }
     c.quaternion = static_cast<QuaternionForm>(i);
+    if (pose.has("heading_sense")) {
+      const std::string sense = pose.text("heading_sense");
+      const auto found = std::ranges::find(kSenses, sense);
+      if (found == kSenses.end())
+        pose.fail("heading_sense", "heading_sense is '" + sense + "'; write as_read, from_east or anticlockwise");
+      c.heading_sense = static_cast<HeadingSense>(found - kSenses.begin());
+    }
+    if (pose.has("attitude_world")) c.attitude_world = matrix(pose, "attitude_world", "");
     c.heading = pose.quantity("heading", "rad");
     c.attitude_axes = matrix(pose, "attitude_axes", "");
     c.position_axes = matrix(pose, "position_axes", "");

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "common/estimation/consistency.hpp"
+#include "common/estimation/corrections.hpp"
 
 namespace fathom {
 class Config;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/estimation/complementary_filter.hpp"
-#include "common/estimation/consistency.hpp"
+#include "common/estimation/corrections.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/sensors.hpp"
 

@@ -1,6 +1,7 @@
 #include "common/estimation/process_tuning.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -53,10 +54,24 @@ double score(const Recording& recording, const KalmanSettings& settings) {
 
 }  // namespace
 
-KalmanSettings tune_process(const Recording& recording, KalmanSettings settings, double longest) {
+KalmanSettings tune_process(const Recording& recording, KalmanSettings settings, double longest,
+                            const Progress& progress) {
   const Recording part = beginning(recording, longest);
   std::vector<double*> tuned{&settings.process.jerk, &settings.process.angular_jerk};
   if (settings.model == KinematicModel::kPrinted) tuned.push_back(&settings.process.velocity);
+  constexpr const char* kTuning = "tuning";
+  constexpr std::array kFirst{1.0, 0.2, 5.0, 25.0};
+  constexpr std::array kFactors{3.0, 1.5, 1.2};
+  const double fewest = kFirst.size() + 2.0 * static_cast<double>(tuned.size() * kFactors.size());
+  double tried = 0.0;
+  progress.begin(kTuning, "tuning the process noise");
+  const auto score_of = [&] {
+    progress.expect(kTuning, std::max(1.5 * fewest - tried, 1.0));  // half as many again find something better
+    const double now = score(part, settings);
+    progress.done(kTuning);
+    tried += 1.0;
+    return now;
+  };
   // A first look from sluggish to lively: a filter that is far too slow loses the run, and no small step mends that.
   double best = -std::numeric_limits<double>::infinity(), liveliest = 1.0;
   const ProcessNoise given = settings.process;
@@ -65,21 +80,21 @@ KalmanSettings tune_process(const Recording& recording, KalmanSettings settings,
     settings.process.angular_jerk = factor * given.angular_jerk;
     settings.process.velocity = given.velocity;
   };
-  for (const double factor : {1.0, 0.2, 5.0, 25.0}) {
+  for (const double factor : kFirst) {
     scaled(factor);
-    const double now = score(part, settings);
+    const double now = score_of();
     if (now <= best) continue;
     best = now;
     liveliest = factor;
   }
   scaled(liveliest);
-  for (const double factor : {3.0, 1.5, 1.2}) {
+  for (const double factor : kFactors) {
     for (double* one : tuned) {
       for (const double way : {factor, 1.0 / factor}) {
         for (;;) {
           const double kept = *one;
           *one *= way;
-          const double now = *one > 1e-7 && *one < 1e3 ? score(part, settings) : best;
+          const double now = *one > 1e-7 && *one < 1e3 ? score_of() : best;
           if (now <= best) {
             *one = kept;
             break;
@@ -89,6 +104,7 @@ KalmanSettings tune_process(const Recording& recording, KalmanSettings settings,
       }
     }
   }
+  progress.expect(kTuning, 0);
   return settings;
 }
 

@@ -7,6 +7,7 @@
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
 #include "common/estimation/pose_derivatives.hpp"
+#include "common/estimation/run_signals.hpp"
 #include "common/estimation/steady_attitude.hpp"
 #include "common/estimation/trial_input.hpp"
 #include "common/estimation/wording.hpp"
@@ -157,13 +158,15 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
   PoseDerivatives derived = differentiate(pose);
 
   Source gyro{.series = block_average(run.gyro, kHighestRate)};
+  shift(gyro.series.t, corrections.gyro_shift);
+  to_body(corrections.rates_frame, corrections.rates_world, pose, gyro.series);
   const Eigen::Matrix3d gyro_matrix = corrections.gyro.matrix();
   for (Eigen::Vector3d& x : gyro.series.x) x = gyro_matrix * x + corrections.gyro.bias;
-  shift(gyro.series.t, corrections.gyro_shift);
   measure_noise(gyro);
 
   Source dvl{.series = block_average(run.dvl, kHighestRate)};
   shift(dvl.series.t, corrections.dvl_shift);
+  to_body(corrections.velocity_frame, corrections.velocity_world, pose, dvl.series);
   const Spline rates(gyro.exists() ? gyro.series : derived.rates.series);
   const Eigen::Matrix3d dvl_matrix = corrections.dvl.matrix();
   const Eigen::Matrix3d from_rates = skew(corrections.dvl.lever) + corrections.dvl.coupling;

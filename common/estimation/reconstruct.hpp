@@ -1,7 +1,7 @@
 // One recording, corrected, on one clock and one uniform grid: the reference that models are fitted to and judged by.
 #pragma once
 
-#include "common/estimation/consistency.hpp"
+#include "common/estimation/corrections.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/recording.hpp"
 #include "common/samples/trial.hpp"

@@ -250,6 +250,10 @@ RunSignals read_signals(const Recording& recording, std::vector<ConsistencyFindi
   return Reader(recording, findings).read();
 }
 
+const PoseSeries& reference_pose(const RunSignals& run) {
+  return run.pose.has_attitude || run.attitude.empty() ? run.pose : run.attitude;
+}
+
 Utime first_stamp(const Recording& recording) {
   Utime first = std::numeric_limits<Utime>::max();
   const auto earliest = [&](const auto& stream) {

@@ -21,6 +21,8 @@ struct RunSignals {
   Series depth;           ///< (0, 0, z) m
 };
 
+/// The attitude that rates are compared with: motion capture, else AHRS.
+[[nodiscard]] const PoseSeries& reference_pose(const RunSignals& run);
 /// Of the streams that make a trial; zero when all are empty.
 [[nodiscard]] Utime first_stamp(const Recording& recording);
 /// Reads all streams; appends what it refuses to believe to `findings`.

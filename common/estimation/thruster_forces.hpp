@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/estimation/consistency.hpp"
+#include "common/estimation/corrections.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/samples/sensors.hpp"
 

@@ -12,6 +12,7 @@ namespace {
 
 namespace at = model::at;
 
+constexpr const char *kForward = "filter", *kBackward = "way back";  // phases of the work
 constexpr std::size_t kStretch = 400;  // instants whose record is kept at a time: it stays in the cache
 constexpr double kUneven = 1.5;        // usual steps: longer ones are told of
 
@@ -104,8 +105,13 @@ class Run {
     estimator_.start(events_.empty() ? 0 : events_.front().utime, start_of(name_, events_, settings));
   }
 
-  void forward(SmoothedTrial* trial) {
+  void forward(SmoothedTrial* trial, const Progress& progress = {}) {
+    const auto stretches = static_cast<double>(instants_.size() / kStretch + 1);
+    progress.expect(kForward, stretches);
+    progress.expect(kBackward, stretches, 3.0);  // the filter again, and the way back
+    progress.begin(kForward, "filtering " + name_);
     for (std::size_t k = 0; k + 1 < instants_.size(); ++k) {
+      if (k % kStretch == 0 && k > 0) progress.done(kForward);
       if (k % kStretch == 0 && trial != nullptr) checkpoints_.push_back(estimator_);
       pass_instant<N>(events_, instants_[k], instants_[k + 1], estimator_, nullptr);
       if (trial == nullptr || !output(k)) continue;
@@ -119,7 +125,9 @@ class Run {
     if (!estimator_.filter().state().allFinite()) throw InputError(name_ + ": the filter diverged; check the noises");
   }
 
-  void backward(SmoothedTrial& trial, const SmoothedVisit& visit) {
+  void backward(SmoothedTrial& trial, const SmoothedVisit& visit, const Progress& progress) {
+    progress.expect(kForward, 0);
+    progress.begin(kBackward, "smoothing " + name_);
     FilterRecord<N> record;
     Smoother<N> smoother;
     std::vector<Utime> utimes;  // of the record's instants; 0: a step inside a gap
@@ -142,6 +150,7 @@ class Run {
         trial.smoothed.push_back(
             motion_of(utimes[i], widen<N>(x), widen<N>(smoothed.variance()), smoothed.reference()));
       });
+      progress.done(kBackward);
     }
     std::reverse(trial.smoothed.begin(), trial.smoothed.end());
   }
@@ -186,14 +195,15 @@ std::optional<std::string> uneven(const std::string& name, const std::vector<Smo
 }
 
 template <int N>
-SmoothedTrial smooth_as(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit) {
+SmoothedTrial smooth_as(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit,
+                        const Progress& progress) {
   SmoothedTrial trial;
   Run<N> run{recording, settings};
   trial.filtered.reserve(std::max(recording.ahrs.size(), recording.pose_capture.size()));
-  run.forward(&trial);
+  run.forward(&trial, progress);
   trial.statistics = run.estimator().statistics();
   trial.likelihood = run.estimator().likelihood();
-  run.backward(trial, visit);
+  run.backward(trial, visit, progress);
   if (const auto note = uneven(recording.name, trial.smoothed)) trial.notes.push_back(*note);
   return trial;
 }
@@ -212,9 +222,10 @@ std::vector<InnovationStatistics> innovations(const Recording& recording, const 
                          : statistics_as<model::kKinematicStates>(recording, settings);
 }
 
-SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit) {
-  return settings.biases ? smooth_as<model::kMostStates>(recording, settings, visit)
-                         : smooth_as<model::kKinematicStates>(recording, settings, visit);
+SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit,
+                     const Progress& progress) {
+  return settings.biases ? smooth_as<model::kMostStates>(recording, settings, visit, progress)
+                         : smooth_as<model::kKinematicStates>(recording, settings, visit, progress);
 }
 
 double likelihood(const Recording& recording, const KalmanSettings& settings) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/progress.hpp"
 #include "common/estimation/kinematic_estimator.hpp"
 #include "common/samples/recording.hpp"
 
@@ -25,7 +26,7 @@ using SmoothedVisit = std::function<void(Utime, const Eigen::VectorXd& x, const 
 /// Estimates at the times of the inertial package (of the pose capture without one). InputError in one line when the
 /// run cannot begin, holds nothing to estimate from, or dives too steeply for Euler angles.
 [[nodiscard]] SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings,
-                                   const SmoothedVisit& visit = nullptr);
+                                   const SmoothedVisit& visit = nullptr, const Progress& progress = {});
 
 /// The filter alone: how every instrument fared.
 [[nodiscard]] std::vector<InnovationStatistics> innovations(const Recording& recording, const KalmanSettings& settings);

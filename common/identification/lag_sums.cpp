@@ -1,9 +1,10 @@
 #include "common/identification/lag_sums.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "common/base/least_squares.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -82,11 +83,10 @@ ColouredFit fit_coloured(const LagSums& sums, const std::vector<Eigen::Index>& c
     const Eigen::MatrixXd gram = sums.whitened(fit.phi, chosen);
     const Eigen::VectorXd scale =
         gram.diagonal().head(p).unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver;
-    solver.setThreshold(kCollinear);
-    solver.compute(scale.asDiagonal() * gram.topLeftCorner(p, p) * scale.asDiagonal());
-    fit.rank = static_cast<int>(solver.rank());
-    fit.x = scale.cwiseProduct(solver.solve(scale.cwiseProduct(gram.col(p).head(p))));
+    const LeastSquares solved = least_squares(scale.asDiagonal() * gram.topLeftCorner(p, p) * scale.asDiagonal(),
+                                              scale.cwiseProduct(gram.col(p).head(p)), kCollinear);
+    fit.rank = static_cast<int>(solved.rank);
+    fit.x = scale.cwiseProduct(solved.x);
     Eigen::VectorXd combination(p + 1);
     combination << -fit.x, 1.0;
     fit.sse = std::max(combination.dot(gram * combination), 0.0);

@@ -1,10 +1,10 @@
 #include "common/identification/pressed_bounds.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/base/least_squares.hpp"
 #include "common/identification/box_step.hpp"
 #include "common/identification/outlier.hpp"
 
@@ -23,9 +23,7 @@ NormalEquations of_window(const Evaluations::One& at, const WindowResidual& wind
   const Eigen::MatrixXd initial = weight.asDiagonal() * at.by_initial;
   Eigen::MatrixXd jacobian = weight.asDiagonal() * at.by_parameter;
   Eigen::VectorXd residual = at.residual.cwiseProduct(weight);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};
-  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(initial.rows(), qr.rank());
-  basis.applyOnTheLeft(qr.householderQ());
+  const Eigen::MatrixXd basis = range_basis(initial);
   jacobian -= basis * (basis.transpose() * jacobian).eval();
   residual -= basis * (basis.transpose() * residual).eval();
   return {jacobian.transpose() * jacobian, jacobian.transpose() * residual};

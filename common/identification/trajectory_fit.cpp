@@ -1,7 +1,6 @@
 #include "common/identification/trajectory_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
+#include "common/base/least_squares.hpp"
 #include "common/base/parallel.hpp"
 #include "common/identification/fit_costs.hpp"
 #include "common/identification/outlier.hpp"
@@ -247,9 +247,7 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
     out.residual.array() *= out.weight.array();
     out.jacobian.array().colwise() *= out.weight.array();
     initial.array().colwise() *= out.weight.array();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr{initial};
-    out.initial_basis = Eigen::MatrixXd::Identity(window.rows(), qr.rank());
-    out.initial_basis.applyOnTheLeft(qr.householderQ());
+    out.initial_basis = range_basis(initial);
     out.residual -= out.initial_basis * (out.initial_basis.transpose() * out.residual);
     out.jacobian -= out.initial_basis * (out.initial_basis.transpose() * out.jacobian);
   });

@@ -44,13 +44,18 @@ likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood:
   return reported.finite ? reported : fit;
 }
 
+double length_of(const likelihood::Problem& problem) {
+  double length = 0.0;
+  for (const likelihood::RunData& run : problem.runs) length += run.last_time() - run.first_time();
+  return length;
+}
+
 }  // namespace
 
 void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, Conclusion& conclusion) {
   const Found& found = conclusion.found;
   auto& reasons = conclusion.reasons;
-  double length = 0.0;
-  for (const likelihood::RunData& run : problem.runs) length += run.last_time() - run.first_time();
+  const double length = length_of(problem);
   if (length < thresholds.shortest) {
     reasons.push_back({Cause::kTooShort, length, thresholds.shortest, ""});
     conclusion.verdict = Verdict::not_judged;
@@ -121,6 +126,10 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
   const likelihood::Problem problem = likelihood::make_problem(vehicle, trials, settings.runs);
   const model::Scene scene = model::scene_of(vehicle, trials);
   Conclusion conclusion;
+  if (length_of(problem) < settings.thresholds.shortest) {
+    conclude(problem, settings.thresholds, conclusion);
+    return conclusion;
+  }
   conclusion.found = search(problem, scene, settings.without, settings.thresholds, settings.threads, progress);
   const Found& found = conclusion.found;
   if (found.best.fit.finite) {

@@ -17,8 +17,8 @@ namespace fathom::model::boundary {
 
 /// Variants of an effect: what is felt, and by which law it fades.
 enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag, kSuction };
-constexpr std::array kStrengthUnits{"N m^2", "m^2", "N", "",
-                                    "N m^4/(m/s)^2"};  // by form; of drag: times the hull's own
+inline constexpr std::array kStrengthUnits{"N m^2", "m^2", "N", "",
+                                           "N m^4/(m/s)^2"};  // by form; of drag: times the hull's own
 [[nodiscard]] inline bool multiplies(int form) { return form == kDrag || form == kExponentialDrag; }
 [[nodiscard]] inline bool exponential(int form) { return form == kExponentialForce || form == kExponentialDrag; }
 /// Forms whose strength has one sign: what takes drag away, or drives off what passes by, is no boundary.

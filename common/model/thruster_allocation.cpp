@@ -1,12 +1,15 @@
 #include "common/model/thruster_allocation.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <string_view>
 
 #include "common/base/error.hpp"
+#include "common/base/least_squares.hpp"
+#include "common/model/driven_axes.hpp"
 
 namespace fathom::model {
 namespace {
@@ -26,22 +29,29 @@ ThrusterAllocation::ThrusterAllocation(const Vehicle& vehicle, double largest) :
   if (!vehicle.has_thrusters()) {
     throw InputError("vehicle " + vehicle.name + ": 'thrusters' are needed to drive it; add them to its file");
   }
+  // Free motions that the thrusters do not drive are left alone like those outside `dof`.
+  vehicle_.dof = driven_axes(vehicle);
+  if (std::ranges::none_of(vehicle_.dof, std::identity{})) {
+    throw InputError("vehicle " + vehicle.name +
+                     ": its thrusters produce none of the motions in 'dof' by itself; "
+                     "correct their positions and axes");
+  }
   // Degrees of freedom that the vehicle does not control are left alone, not forced to zero.
   Eigen::MatrixXd rows = vehicle.allocation;
   for (Eigen::Index i = 0; i < 6; ++i) {
-    if (!vehicle.dof[static_cast<std::size_t>(i)]) rows.row(i).setZero();
+    if (!vehicle_.dof[static_cast<std::size_t>(i)]) rows.row(i).setZero();
   }
-  inverse_ = rows.completeOrthogonalDecomposition().pseudoInverse();
+  inverse_ = pseudo_inverse(rows);
   double farthest = 0.0;  // m
   for (const Thruster& thruster : vehicle.thrusters) farthest = std::max(farthest, thruster.p_BJ.norm());
   for (Eigen::Index i = 0; i < 6; ++i) {
-    if (!vehicle.dof[static_cast<std::size_t>(i)]) {
+    if (!vehicle_.dof[static_cast<std::size_t>(i)]) {
       inverse_.col(i).setZero();
     } else if ((rows * inverse_.col(i) - Vector6d::Unit(i)).norm() > kReachTolerance) {
       throw InputError("vehicle " + vehicle.name + ": its thrusters cannot produce " + std::string{motion_name(i)} +
                        " by itself; correct their positions and axes, or leave it out of 'dof'");
     }
-    if (!vehicle.dof[static_cast<std::size_t>(i)]) continue;
+    if (!vehicle_.dof[static_cast<std::size_t>(i)]) continue;
     // With the strongest thruster at 1 N the others do what keeps it to this axis.
     const double reach = 1.0 / inverse_.col(i).cwiseAbs().maxCoeff();
     if (reach < kHardly * (i < 3 ? 1.0 : farthest)) {

@@ -7,8 +7,8 @@
 namespace fathom::model {
 namespace {
 
-constexpr double kGravity = 9.81;        // m/s^2
-constexpr double kReferenceSpeed = 0.5;  // m/s and rad/s: where linear and quadratic drag are taken as equally large
+constexpr double kNominalGravity = 9.81;  // m/s^2
+constexpr double kReferenceSpeed = 0.5;   // m/s and rad/s: where linear and quadratic drag are taken as equally large
 
 // Quadratic drag of a plate of side L with drag coefficient 1: broadside, and turning about its middle line,
 // 1/2 rho L 2 integral_0^{L/2} r^3 dr = 1/2 rho L^5 / 32.
@@ -49,9 +49,9 @@ Prior wide_prior(BaseParameter parameter, const Vehicle& vehicle) {
   // An open frame is about twice as long as the cube of water that weighs as much.
   const double length = 2.0 * std::cbrt(mass / vehicle.water_density);
   if (parameter == BaseParameter::W_B) {
-    return {vehicle.buoyancy > 0.0 ? mass * kGravity - vehicle.buoyancy : 0.0, 0.1 * mass * kGravity};
+    return {vehicle.buoyancy > 0.0 ? mass * kNominalGravity - vehicle.buoyancy : 0.0, 0.1 * mass * kNominalGravity};
   }
-  if (index(parameter) >= index(BaseParameter::G_x)) return {0.0, 0.1 * mass * kGravity * length};
+  if (index(parameter) >= index(BaseParameter::G_x)) return {0.0, 0.1 * mass * kNominalGravity * length};
   const bool turning = axis(parameter) >= 3;
   if (sign_constraint(parameter) > 0) {
     const double stated = turning ? vehicle.inertia[axis(parameter) - 3] : mass;

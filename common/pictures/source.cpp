@@ -80,6 +80,7 @@ class Folder final : public Source {
     return frame;
   }
   [[nodiscard]] double rate() const override { return rate_; }
+  [[nodiscard]] double to_come() const override { return static_cast<double>(files_.size() - at_); }
 
  private:
   std::vector<fs::path> files_;
@@ -111,6 +112,10 @@ class Video final : public Source {
     return frame;
   }
   [[nodiscard]] double rate() const override { return rate_; }
+  [[nodiscard]] double to_come() const override {
+    const double stated = capture_.get(cv::CAP_PROP_FRAME_COUNT);
+    return stated < 1e8 ? std::max(stated - static_cast<double>(count_), 0.0) : 0.0;
+  }
   [[nodiscard]] std::string remark() const override {
     constexpr double kSure = 0.95;  // lengths are estimates where the rate varies
     const double stated = capture_.get(cv::CAP_PROP_FRAME_COUNT);

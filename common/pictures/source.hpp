@@ -29,6 +29,8 @@ class Source {
   /// Nothing: the end.
   virtual std::optional<Frame> next() = 0;
   [[nodiscard]] virtual double rate() const = 0;  ///< Hz
+  /// Pictures that are still to come, as far as that is known; for telling how long it will take.
+  [[nodiscard]] virtual double to_come() const { return 0.0; }
   /// What was odd of all of it, known at its end; one line, mostly empty.
   [[nodiscard]] virtual std::string remark() const { return {}; }
 };

@@ -5,13 +5,17 @@
 namespace fathom::planning {
 
 Flights::Flights(const model::Vehicle& vehicle, const View& data, const RehearsalSettings& settings,
-                 const std::function<void(const std::string& segment)>& tell) {
+                 const Progress& progress) {
+  constexpr const char* kFlights = "flights";
   const bool by_wrench = data.trials().front().input_is_wrench;
-  for (const excitation::Segment& segment : excitation::segments(vehicle, settings.supervisor.largest)) {
-    tell(segment.name);
+  const auto segments = excitation::segments(vehicle, settings.supervisor.largest);
+  progress.expect(kFlights, static_cast<double>(segments.size()));
+  for (const excitation::Segment& segment : segments) {
+    progress.begin(kFlights, "flying " + segment.name);
     std::vector<Trial> flown{fly(vehicle, data.model(), by_wrench, settings, segment, segment.duration)};
     views_.push_back(std::make_unique<View>(vehicle, std::move(flown), data.model(), data.sigma(), data.window()));
     extras_.push_back({segment.name, segment.duration, views_.back().get()});
+    progress.done(kFlights);
   }
 }
 

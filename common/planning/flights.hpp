@@ -1,10 +1,10 @@
 // Every segment that a plan chooses from, flown by the model that views the data.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
+#include "common/base/progress.hpp"
 #include "common/planning/energies.hpp"
 #include "common/planning/rehearsal.hpp"
 
@@ -12,10 +12,9 @@ namespace fathom::planning {
 
 class Flights {
  public:
-  /// `data` lends its model, its noise and its windows. `tell` hears the name of each segment before it is flown.
-  Flights(
-      const model::Vehicle& vehicle, const View& data, const RehearsalSettings& settings,
-      const std::function<void(const std::string& segment)>& tell = [](const std::string&) {});
+  /// `data` lends its model, its noise and its windows.
+  Flights(const model::Vehicle& vehicle, const View& data, const RehearsalSettings& settings,
+          const Progress& progress = {});
 
   [[nodiscard]] std::span<const Extra> extras() const { return extras_; }
 

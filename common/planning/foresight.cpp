@@ -1,10 +1,8 @@
 #include "common/planning/foresight.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "common/base/parallel.hpp"
 #include "common/diagnosis/evidence.hpp"
@@ -139,20 +137,19 @@ void say_corruption(const View& view, const Suspect& suspect, Foreseen& out) {
 }  // namespace
 
 std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitation, std::span<const Extra> extras,
-                              const diagnosis::Settings& settings, const std::function<void(double)>& progress) {
+                              const diagnosis::Settings& settings, const Progress& progress) {
   const model::Scene scene = scene_for(vehicle, excitation);
   const std::vector<diagnosis::Candidate> candidates = diagnosis::all_candidates(scene);
   const View* alone = &excitation;
   const Base base{excitation.model(), std::span{&alone, 1}};
   const Judge judge{excitation, settings, static_cast<int>(candidates.size())};
   std::vector<Suspect> forms(candidates.size());
-  std::atomic<std::size_t> done{0};
-  std::mutex telling;
+  constexpr const char* kEffects = "effects";
+  progress.expect(kEffects, static_cast<double>(candidates.size()));
+  progress.begin(kEffects, "asking every effect");
   for_each_index(candidates.size(), settings.threads, [&](std::size_t i) {
     forms[i] = typical(excitation, base, judge, candidates[i], scene);
-    const double share = static_cast<double>(++done) / static_cast<double>(candidates.size());
-    const std::scoped_lock lock{telling};
-    progress(share);
+    progress.done(kEffects);
   });
 
   // Of each effect one form stands for all: of things that can act at once the one that is easiest to find, of laws of

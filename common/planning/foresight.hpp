@@ -2,11 +2,11 @@
 // which of them it would falsify, the smallest size that would be found, and the segment that would find it soonest.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/base/progress.hpp"
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/planning/energies.hpp"
 
@@ -29,9 +29,8 @@ struct Foreseen {
   std::vector<LookAlike> like;    ///< effects that explain the same as well, whose odds would stay open
 };
 
-/// `progress` hears the share that is done.
 [[nodiscard]] std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitation,
                                             std::span<const Extra> extras, const diagnosis::Settings& settings,
-                                            const std::function<void(double)>& progress);
+                                            const Progress& progress);
 
 }  // namespace fathom::planning

@@ -117,7 +117,7 @@ Rehearsal rehearse(const model::Vehicle& vehicle, const RehearsalSettings& setti
   excitation::SupervisorSettings alone = settings.supervisor;
   alone.needs.clear();  // nobody else is there
   excitation::Supervisor supervisor{alone, vehicle};
-  supervisor.hear(Answer{.gate = true, .challenge = 1, .authentic = true});
+  supervisor.hear(fathom::Answer{.gate = true, .challenge = 1, .authentic = true});
   identification::Identifier identifier{settings.identifier, vehicle};
   Rehearsal rehearsal;
   bool ordered = false;

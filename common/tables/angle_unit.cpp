@@ -15,6 +15,8 @@ constexpr double kStretch = 1.0;  // s of track against which velocities are hel
 // that is off must not look like another unit to a vehicle that holds its heading. The wrong unit turns it many times.
 constexpr double kNotAsRead = 0.6, kAsMeant = 0.95;
 constexpr std::size_t kFewestStretches = 20;
+constexpr double kClearlyBetter = 0.5;  // of what velocities along the world's axes leave: angles 57 times too small
+                                        // are nearly zero, and would pass for a heading that is not used at all
 
 struct Columns {
   Group position, velocity, angles;
@@ -60,7 +62,8 @@ void check_angle_unit(Resolver& resolve, const ColumnMap& map, const Rows& rows,
   if (map.pose_capture && map.pose_capture->attitude) attitude = &*map.pose_capture->attitude;
   if (attitude == nullptr && map.ahrs && map.ahrs->attitude) attitude = &*map.ahrs->attitude;
   if (attitude == nullptr || !attitude->euler || attitude->group.columns[2].absent) return;
-  if (!map.pose_capture || !map.pose_capture->position || !map.dvl) return;
+  if (!map.pose_capture || !map.pose_capture->position || map.pose_capture->geodetic) return;
+  if (!map.dvl || map.dvl->in_world || attitude->heading_sign < 0.0) return;
   const ColumnGroup &position = *map.pose_capture->position, &velocity = map.dvl->velocity;
   for (const auto* turn :
        {&attitude->world_to_house, &attitude->body_to_house, &position.to_house, &velocity.to_house}) {
@@ -69,9 +72,10 @@ void check_angle_unit(Resolver& resolve, const ColumnMap& map, const Rows& rows,
   const Columns columns{Group(resolve, position), Group(resolve, velocity), Group(resolve, attitude->group)};
   const double as_read = explained(columns, rows, 1.0);
   if (as_read > kNotAsRead) return;
+  const double in_world = explained(columns, rows, 0.0);
   for (const auto& [unit, read, meant] : {std::tuple{kDegree, "rad", "deg"}, std::tuple{1.0 / kDegree, "deg", "rad"}}) {
     const double otherwise = explained(columns, rows, unit);
-    if (otherwise < kAsMeant) continue;
+    if (otherwise < kAsMeant || 1.0 - otherwise > kClearlyBetter * (1.0 - in_world)) continue;
     throw InputError(table.path + ": column '" + attitude->group.columns[2].name + "' is read as " + read +
                      ", but the velocities follow the track only with headings in " + meant + " (" +
                      std::to_string(std::lround(100.0 * otherwise)) + " % of it, as read " +

@@ -144,11 +144,15 @@ ColumnMap canonical_map(const CsvTable& table) {
   ColumnMap map;
   const auto time = shelf.take({"t"});
   if (!time) {
-    throw InputError(table.path + ":1: column 't' (time in seconds) is missing" +
+    throw InputError(table.path + ":1: column 't' (time in seconds, or as a date) is missing" +
                      (table.find("T") != nullptr ? " (is it 'T'?)" : "") +
                      "; describe other columns with a map (--map)");
   }
   map.time = *time;
+  // A depth alone, as gliders and torpedoes have it, is often called z.
+  const bool z_alone = table.find("z") != nullptr && table.find("x") == nullptr && table.find("y") == nullptr &&
+                       table.find("depth") == nullptr;
+  const auto z_as_depth = z_alone ? shelf.take({"z"}) : std::nullopt;
   const auto position = shelf.take_some({"x", "y", "z"});
   const auto attitude = as_euler(shelf.take_some({"phi", "theta", "psi"}));
   // With a position the attitude belongs to the pose; alone it is what an attitude sensor says.
@@ -167,6 +171,7 @@ ColumnMap canonical_map(const CsvTable& table) {
     thrusters.wrench_moment = ColumnGroup{{wrench->columns.begin() + 3, wrench->columns.end()}};
   }
   if (thrusters.pwm || thrusters.force || thrusters.wrench_force) map.thrusters = thrusters;
+  if (z_as_depth) map.depth = ScalarColumn{*z_as_depth, {}};
   if (const auto depth = shelf.take({"depth"})) map.depth = ScalarColumn{*depth, {}};
   if (const auto voltage = shelf.take({"voltage"})) map.battery = ScalarColumn{*voltage, {}};
   shelf.check_strangers();

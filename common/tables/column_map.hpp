@@ -14,6 +14,7 @@ struct Column {
   std::string name;
   std::string where;  ///< "map.yaml:12", or empty when no map was used
   bool absent{};      ///< there is no such column: zero
+  bool negated{};     ///< of a flag: set where the column is zero
 };
 
 /// Columns with one factor to SI; `to_house` turns a vector's frame into W (NED) or B (forward-right-down). A map may
@@ -30,6 +31,8 @@ struct AttitudeColumns {
   bool euler{false};
   Eigen::Matrix3d world_to_house{Eigen::Matrix3d::Identity()};
   Eigen::Matrix3d body_to_house{Eigen::Matrix3d::Identity()};
+  double heading_sign{1.0}, heading_offset{};  ///< heading := sign * logged + offset [rad], after all turns of axes
+  bool world_to_body{};                        ///< the quaternion turns the world's vectors into the body's
 };
 
 /// Rows in which a stream says nothing: a flag column is not zero, or (detect) the values repeat those of the row
@@ -44,6 +47,7 @@ struct PoseColumns {
   std::optional<AttitudeColumns> attitude;
   HeldRule held;
   std::vector<Column> invalid_where;
+  bool geodetic{};  ///< `position` holds latitude, longitude [factor to rad] and height [m, up; may be absent]
 };
 
 struct AhrsColumns {
@@ -51,6 +55,8 @@ struct AhrsColumns {
   std::optional<ColumnGroup> specific_force;
   std::optional<AttitudeColumns> attitude;
   std::vector<Column> invalid_where;
+  bool euler_rates{};     ///< rates of roll, pitch and yaw angle
+  bool rates_in_world{};  ///< about the world's axes; `rates->to_house` turns them to NED
 };
 
 struct DvlColumns {
@@ -58,6 +64,8 @@ struct DvlColumns {
   std::optional<ColumnGroup> altitude;  ///< one column
   HeldRule held;
   std::vector<Column> invalid_where;
+  bool in_world{};         ///< along the world's axes; `velocity.to_house` turns them to NED
+  double course_factor{};  ///< not 0: `velocity` holds course over ground (this factor to rad) and speed
 };
 
 struct ThrusterColumns {
@@ -71,12 +79,14 @@ struct ThrusterColumns {
 struct ScalarColumn {
   ColumnGroup group;  ///< one column; the sign of its direction is in the factor
   std::vector<Column> invalid_where;
+  double offset{};  ///< added: of a pressure, the atmosphere's part
 };
 
 struct ColumnMap {
   std::string source;   ///< where the data come from
   std::string licence;  ///< under which terms
-  ColumnGroup time;     ///< one column, factor to s
+  ColumnGroup time;     ///< one column, or several that are added (seconds and nanoseconds, a date and a time of day)
+  std::vector<double> time_factors;  ///< per column, to s; 1 for dates
   std::optional<PoseColumns> pose_capture;
   std::optional<AhrsColumns> ahrs;
   std::optional<DvlColumns> dvl;

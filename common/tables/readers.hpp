@@ -14,6 +14,9 @@
 
 namespace fathom::tables {
 
+/// The time of a recording with topics: a clock of its own, of whose unit there is no question.
+inline constexpr const char* kOwnTime = "(time)";
+
 using ColumnData = const std::vector<double>*;
 
 /// Finds columns, remembers which were used, and complains in the words of the map.
@@ -36,6 +39,8 @@ class Group {
  public:
   Group(Resolver& resolve, const ColumnGroup& group);
   [[nodiscard]] bool complete(std::size_t row) const;
+  /// Not one number: the row belongs to other streams.
+  [[nodiscard]] bool empty(std::size_t row) const;
   [[nodiscard]] bool repeats(std::size_t row, std::size_t before) const;
   [[nodiscard]] double raw(std::size_t i, std::size_t row) const {
     return data_[i] == nullptr ? 0.0 : (*data_[i])[row];
@@ -65,15 +70,18 @@ class AttitudeReader {
   double factor_;
   Eigen::Quaterniond world_;
   Eigen::Quaterniond body_;
+  double heading_sign_, heading_offset_;
+  bool world_to_body_;
 };
 
 class Flags {
  public:
-  Flags(Resolver& resolve, const std::vector<Column>& columns) : data_(resolve(columns)) {}
-  /// True when any flag is set, or cannot be read.
+  Flags(Resolver& resolve, const std::vector<Column>& columns) : columns_(columns), data_(resolve(columns)) {}
+  /// True when any flag is set (a negated one: is zero), or cannot be read.
   [[nodiscard]] bool set(std::size_t row) const;
 
  private:
+  std::vector<Column> columns_;
   std::vector<ColumnData> data_;
 };
 
@@ -95,9 +103,9 @@ struct Rows {
   std::vector<Utime> utime;
 };
 
-/// Drops rows without a rising time, counts them and names the longest gap in `notes`. InputError when rows are so far
-/// apart that the unit must be another.
-[[nodiscard]] Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnGroup& column,
+/// Reads the time (time_column.cpp) and drops rows in which it does not rise, counts them and names the longest gap in
+/// `notes`. InputError when rows are so far apart that the unit must be another.
+[[nodiscard]] Rows read_time(const CsvTable& table, Resolver& resolve, const ColumnMap& map,
                              std::vector<std::string>& notes);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);

@@ -69,6 +69,11 @@ LogContents read_log(const std::string& path) {
   EventLog log{path};
   bool known = false;
   while (const auto event = log.next()) {
+    if (event->begins_anew) {
+      throw InputError(path + ": holds several recordings joined together: another one begins at event " +
+                       std::to_string(log.events()) + " (byte " + std::to_string(event->offset) +
+                       "). Part them with: fathom repair-log LOG --out PART.lcmlog");
+    }
     known = known || event->channel == kCamera;
     const auto found = streams.find(event->channel);
     if (found == streams.end()) {

@@ -31,7 +31,8 @@ struct LogContents {
   LogReport report;
 };
 
-/// InputError when the file is damaged, is not an LCM log, or holds no channel that Fathom knows.
+/// InputError when the file is damaged, is not an LCM log, holds no channel that Fathom knows, or several recordings
+/// that were joined: sorted into one another they would be two vehicles at once.
 [[nodiscard]] LogContents read_log(const std::string& path);
 
 /// Up to `most` pictures of a channel, evenly from the first to the last; what cannot be decoded is left out.

@@ -35,7 +35,7 @@ struct Actions {
   Actions& operator=(const Actions&) = delete;
 };
 
-std::optional<std::string> variable(const std::string& name) {
+std::optional<std::string> environment_variable(const std::string& name) {
   const char* value = std::getenv(name.c_str());
   if (value == nullptr) return {};
   return value;
@@ -96,7 +96,7 @@ Children::~Children() {
 }
 
 std::int32_t Children::start(const std::string& id, const std::string& exec) {
-  launch::ExecLine line = launch::parse_exec(exec, variable);
+  launch::ExecLine line = launch::parse_exec(exec, environment_variable);
   const auto complain = [&](const std::string& what) {
     print_(id, "cannot be run: " + exec + "\r\n" + what + "\r\n");
     return 0;

@@ -35,7 +35,7 @@ constexpr std::size_t kPingSize = 200;  // B, as most messages
 constexpr double kPingPeriod = 0.1;     // s
 constexpr std::size_t kRemembered = 5000;
 
-struct Options {
+struct BusOptions {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
   double seconds{0.0};
 };
@@ -73,7 +73,7 @@ struct Figures {
 
 class Listener {
  public:
-  explicit Listener(const Options& options)
+  explicit Listener(const BusOptions& options)
       : url_{runtime::Url::parse(options.url, "--bus")},
         packets_{options.url},
         input_{{url_},
@@ -169,7 +169,7 @@ class Listener {
   std::map<std::string, Figures> processes_;
 };
 
-void run(const Options& options) {
+void run_bus(const BusOptions& options) {
   runtime::StopSignal stop;
   const pid_t parent = getpid(), child = fork();
   if (child == 0) echo(runtime::Url::parse(options.url, "--bus"), parent);
@@ -183,12 +183,12 @@ void run(const Options& options) {
 }  // namespace
 
 void add_bus(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BusOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   CLI::App* command = app.add_subcommand("bus", "what a live bus loses and how long it takes: a table, at Ctrl-C");
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
   command->add_option("--seconds", options->seconds, "end after so long");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_bus(*options); });
 }
 
 }  // namespace fathom::tool

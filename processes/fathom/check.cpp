@@ -7,22 +7,25 @@
 #include <memory>
 
 #include "common/base/error.hpp"
-#include "common/estimation/consistency.hpp"
+#include "common/consistency/consistency.hpp"
+#include "common/consistency/dead_axes.hpp"
+#include "common/consistency/flow_check.hpp"
+#include "common/consistency/summary.hpp"
 #include "common/estimation/corrections_file.hpp"
-#include "common/estimation/dead_axes.hpp"
-#include "common/estimation/flow_check.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
+#include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/mended_map.hpp"
 #include "processes/fathom/recordings.hpp"
 
 namespace fathom::tool {
 namespace {
 
-struct Options {
-  std::string vehicle, site, map, write;
+struct CheckOptions {
+  std::string vehicle, site, map, write, write_map;
   std::vector<std::string> runs;
 };
 
@@ -37,17 +40,18 @@ void print(const std::vector<ConsistencyFinding>& findings) {
   }
 }
 
-void run(const Options& options) {
+void run_check(const CheckOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
+  if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
-  const std::vector<ConsistencyFinding> dead = estimation::set_aside_dead_axes(recordings, vehicle.dof);
-  estimation::ConsistencyResult result = estimation::check_consistency(recordings);
+  const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
+  consistency::ConsistencyResult result = consistency::check_consistency(recordings);
   result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
-  estimation::check_thrusters(recordings, vehicle, result);
+  consistency::check_thrusters(recordings, vehicle, result);
   if (!options.site.empty()) {
-    estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), result);
+    consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), result);
   }
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     if (recordings[i].thrusters.empty()) continue;  // sensors alone can be compared too
@@ -58,12 +62,27 @@ void run(const Options& options) {
       std::fprintf(stderr, "not looked for gaps: %s\n", error.what());
     }
   }
+  consistency::keep_axes(result, vehicle.dof);
+  for (const std::string& line : consistency::table_of(result)) std::printf("%s\n", line.c_str());
   if (result.findings.empty()) {
-    std::printf("the sensors agree with each other\n");
+    std::printf("%s\n", consistency::conclusion_of(result).c_str());
   } else {
     print(result.findings);
   }
+  if (!options.write_map.empty()) {
+    for (const std::string& note : write_mended_map(options.write_map, options.map, options.runs, result.corrections))
+      std::printf("%s: %s\n", options.write_map.c_str(), note.c_str());
+    std::printf("%s: the map as it should be\n", options.write_map.c_str());
+  }
   if (options.write.empty()) return;
+  for (const estimation::Corrections& one : result.corrections) {
+    if (one.velocity_frame == estimation::VectorFrame::kBody && one.rates_frame == estimation::VectorFrame::kBody &&
+        one.position_late == 0.0)
+      continue;
+    throw InputError(
+        "--write: vectors along the world's axes, and a position that is late by itself, cannot be corrected "
+        "live; mend their driver or map first (--write-map)");
+  }
   const estimation::Shared shared = estimation::most_shared(result.corrections);
   tables::write_file(options.write, estimation::to_yaml(shared.corrections));
   std::printf("%s: corrections of %zu of %zu recordings\n", options.write.c_str(), shared.count, recordings.size());
@@ -72,15 +91,17 @@ void run(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site,
                       "site file (YAML): optical flow is compared with the tags of its map, too");
   command->add_option("runs", options->runs, ".lcmlog or .csv files")->required();
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
+  command->add_option("--write-map", options->write_map,
+                      "write the map of the tables as it should be to this file: conventions, heading, unit");
   command->add_option("--write", options->write, "write the corrections for live processes to this file");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_check(*options); });
 }
 
 }  // namespace fathom::tool

@@ -13,7 +13,7 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string first, second, manoeuvre, plot;
   bool intervals{false};
 };
@@ -44,7 +44,7 @@ void compare_intervals(const ModelEstimate& a, const ModelEstimate& b) {
   if (apart > 0) throw InputError("the two models do not agree within their intervals");
 }
 
-void run(const Options& options) {
+void run_compare(const CompareOptions& options) {
   if (!options.manoeuvre.empty()) {
     compare_manoeuvre(options.first, options.second, options.manoeuvre, options.plot);
     return;
@@ -69,7 +69,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_compare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "do two logs end with the same MODEL, or do two vehicles fly a manoeuvre alike?");
   command->add_option("first", options->first, "LCM log; with --manoeuvre a vehicle file")->required();
@@ -78,7 +78,7 @@ void add_compare(CLI::App& app) {
   command->add_flag("--intervals", options->intervals, "not the same bits: do the parameters' 95 % intervals meet?");
   command->add_option("--manoeuvre", options->manoeuvre, "line, zigzag or circle: fly both and compare");
   command->add_option("--plot", options->plot, "write the two tracks of the manoeuvre to this SVG file");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_compare(*options); });
 }
 
 }  // namespace fathom::tool

@@ -13,7 +13,7 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct DecodeOptions {
   std::string protocol, file, csv, config;
 };
 
@@ -65,7 +65,7 @@ class Table final : public devices::Output, private devices::Fields {
   std::string line_, header_;
 };
 
-void run(const Options& options) {
+void run_decode(const DecodeOptions& options) {
   const devices::Protocol& protocol = devices::protocol(options.protocol, "fathom decode");
   devices::Settings settings;
   settings.checksum_required = options.config.empty() ? false : settings.checksum_required;
@@ -107,7 +107,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_decode(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DecodeOptions>();
   CLI::App* command = app.add_subcommand("decode", "recorded bytes of an instrument to a table");
   std::string known = "one of:";
   for (const devices::Protocol& each : devices::protocols()) {
@@ -117,7 +117,7 @@ void add_decode(CLI::App& app) {
   command->add_option("file", options->file, "recorded bytes, bare or by a driver's 'record'")->required();
   command->add_option("--csv", options->csv, "the table: a row per frame")->required();
   command->add_option("--config", options->config, "driver's configuration: mounting and the like; left out: none");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_decode(*options); });
 }
 
 }  // namespace fathom::tool

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -11,25 +12,27 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
+#include "common/consistency/dead_axes.hpp"
+#include "common/consistency/flow_check.hpp"
+#include "common/consistency/thruster_clock.hpp"
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/diagnosis/force_unit.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
-#include "common/estimation/dead_axes.hpp"
-#include "common/estimation/flow_check.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/estimation/state_as_measured.hpp"
-#include "common/estimation/thruster_clock.hpp"
 #include "common/estimation/wording.hpp"
+#include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
 #include "common/verdict/by_likelihood.hpp"
 #include "processes/fathom/commands.hpp"
-#include "processes/fathom/progress.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/rehearsals.hpp"
+#include "processes/fathom/search_progress.hpp"
 #include "processes/fathom/separations.hpp"
 
 namespace fathom::tool {
@@ -42,9 +45,14 @@ constexpr double kShortest = 2.0;  // s between two gaps: the search looks at wi
 constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
 // Of what judges: what begins later is seen for too short a time if half of it is fitted.
 constexpr double kTooLate = 0.3;
-constexpr double kReadShare = 0.05, kCheckShare = 0.10, kFitShare = 0.93;  // of the work; for the progress line only
 
-struct Options {
+/// Phases of the work beside those of the diagnosis.
+constexpr std::string_view kReading = "reading", kSensors = "sensors", kReconstruction = "reconstruction",
+                           kReport = "report", kDiagnosis = "diagnosis", kLikelihoodSearch = "likelihood";
+constexpr double kLight = 0.03;             // of a fit: reading or reconstructing a run, until it has been timed
+constexpr double kGuessedDiagnosis = 40.0;  // fits, until it says more itself
+
+struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
   std::vector<std::string> without;
@@ -133,9 +141,10 @@ bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double
   return event.t < first + share * (last - first);
 }
 
-DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes, ProgressLine& progress,
+DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
                          VerdictGiven& given) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
   if (!options.site.empty()) room = rehearsal_settings(options.site, options.config, vehicle);
   check_names(options.without);
@@ -144,7 +153,13 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   make_folder(options.out);
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
-  progress.show("reading recordings", 0.0);
+  const auto runs = static_cast<double>(paths.size());
+  progress.expect(kReading, runs, kLight);
+  progress.expect(kSensors, 1, kLight * runs);
+  progress.expect(kReconstruction, runs, kLight);
+  progress.expect(kReport, 1, 1.0);
+  progress.expect(kDiagnosis, 1, kGuessedDiagnosis);
+  progress.begin(kReading, "reading recordings");
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
   const std::size_t fitted_runs = options.train.size();
   sort_by_time(std::span{recordings}.first(fitted_runs), std::span{paths}.first(fitted_runs));
@@ -154,29 +169,30 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
   }
 
-  progress.show("comparing the sensors with each other", kReadShare);
-  const std::vector<ConsistencyFinding> dead = estimation::set_aside_dead_axes(recordings, vehicle.dof);
-  estimation::ConsistencyResult consistency = estimation::check_consistency(recordings);
+  progress.done(kReading, runs);
+  progress.begin(kSensors, "comparing the sensors with each other");
+  const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
+  consistency::ConsistencyResult consistency = consistency::check_consistency(recordings);
   consistency.findings.insert(consistency.findings.begin(), dead.begin(), dead.end());
-  estimation::check_thrusters(recordings, vehicle, consistency);
+  consistency::check_thrusters(recordings, vehicle, consistency);
   if (!options.site.empty()) {
-    estimation::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
+    consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
   }
 
+  progress.done(kSensors);
   const auto trials_of_recordings = [&] {
     std::vector<Trial> trials;
+    progress.expect(kReconstruction, runs, kLight);
     for (std::size_t i = 0; i < recordings.size(); ++i) {
-      progress.show("reconstructing " + recordings[i].name, kCheckShare);
+      progress.begin(kReconstruction, "reconstructing " + recordings[i].name);
       trials.push_back(reconstruct(paths[i], recordings[i], consistency.corrections[i], vehicle));
+      progress.done(kReconstruction);
     }
     return trials;
   };
   diagnosis::Settings settings;
   settings.threads = options.threads;
   if (options.validate.empty()) settings.held_out = kHeldOut;
-  const auto show = [&](const std::string& what, double share) {
-    progress.show(what, kCheckShare + (kFitShare - kCheckShare) * share);
-  };
   bool told = false;
   const auto explain = [&](std::vector<Trial> trials, Explained& out, estimation::Kept kept) {
     const bool one_clock = estimation::share_clock(recordings, trials);
@@ -195,15 +211,26 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
     }
     out.fitting.emplace(train, paths, settings.fit.window);
     out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
+    progress.expect(kDiagnosis, 0);
     if (options.core == kLikelihood) {
+      double share_told = 0.0;  // of its hundred units; it tells its share of the work
+      progress.expect(kLikelihoodSearch, 100.0, kGuessedDiagnosis / 100.0);
+      const auto show = [&](const std::string& what, double share) {
+        progress.done(kLikelihoodSearch, 100.0 * (share - share_told));
+        share_told = std::max(share_told, share);
+        progress.begin(kLikelihoodSearch, what);
+      };
       verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
                                                  {.without = options.without, .threads = options.threads}, show);
+      progress.expect(kLikelihoodSearch, 0);
       out.report = std::move(answer.report);
       out.given = std::move(answer.given);
       return;
     }
-    out.report =
-        diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, show, &out.fitted);
+    SearchProgress search{progress};
+    out.report = diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, std::ref(search),
+                                     &out.fitted);
+    search.end();
   };
   if (options.validate.empty()) {
     notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
@@ -211,7 +238,7 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   Explained explained;
   explain(trials_of_recordings(), explained, estimation::Kept::kLast);
   if (diagnosis::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
-    estimation::put_thrusters_on_pose_clock(consistency);
+    consistency::put_thrusters_on_pose_clock(consistency);
     explain(trials_of_recordings(), explained, estimation::Kept::kLast);
   }
   if (options.validate.empty() && explained.report.unseen_event) {
@@ -249,18 +276,19 @@ DiagnosisReport diagnose(const Options& options, std::vector<std::string>& notes
   return std::move(explained.report);
 }
 
-void run(const Options& options) {
+void run_diagnose(const DiagnoseOptions& options) {
   std::vector<std::string> notes;
   DiagnosisReport report;
   VerdictGiven given;
   report::Written written;
   double elapsed = 0.0;
   {
-    ProgressLine progress;
+    ProgressLine line;
+    const Progress progress = line.progress();
     report = diagnose(options, notes, progress, given);
-    progress.show("drawing the report", kFitShare);
+    progress.begin(kReport, "drawing the report");
     written = report::write(report, options.out, given);
-    elapsed = progress.elapsed();
+    elapsed = line.elapsed();
   }
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   std::printf("%s\nresult %s\nreport %s\ntook   %.1f s\n", report::to_table(report.result).c_str(),
@@ -270,7 +298,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_diagnose(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DiagnoseOptions>();
   CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
@@ -291,7 +319,7 @@ void add_diagnose(CLI::App& app) {
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->check(CLI::Range(1, 64));
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_diagnose(*options); });
 }
 
 }  // namespace fathom::tool

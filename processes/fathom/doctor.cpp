@@ -12,7 +12,7 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct DoctorOptions {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
   std::vector<std::string> config;
   std::string folder{"."}, operator_file;
@@ -23,7 +23,7 @@ const char* word(Finding::Grade grade) {
   return grade == Finding::Grade::kBad ? "BAD" : "note";
 }
 
-void run(const Options& options) {
+void run_doctor(const DoctorOptions& options) {
   std::vector<Finding> all = check_programs();
   const auto add = [&](const std::vector<Finding>& more) { all.insert(all.end(), more.begin(), more.end()); };
   add(check_network(options.url));
@@ -44,7 +44,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_doctor(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DoctorOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   if (const char* run = std::getenv("FATHOM_RUN"); run != nullptr && *run != '\0') options->folder = run;
   if (const char* file = std::getenv("FATHOM_OPERATOR"); file != nullptr) options->operator_file = file;
@@ -54,7 +54,7 @@ void add_doctor(CLI::App& app) {
   command->add_option("--config", options->config, "the drivers' file: are its devices there and ours?");
   command->add_option("--run", options->folder, "folder for the trial's logs (FATHOM_RUN)");
   command->add_option("--operator", options->operator_file, "the operator's file (FATHOM_OPERATOR)");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_doctor(*options); });
 }
 
 }  // namespace fathom::tool

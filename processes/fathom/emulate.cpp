@@ -21,16 +21,16 @@ namespace {
 // s; a driver that opens a line throws away what waits in it, and on a busy machine it takes its time to do so.
 constexpr double kHears = 0.3;
 
-struct Options {
+struct EmulateOptions {
   std::string protocol, to, file, sent;
   double seconds{0.0}, rate{0.0};
   std::vector<std::string> transponders, conditions;
 };
 
 // What an instrument says next: a recording piece by piece, or reports of an emulated motion.
-class Source {
+class PlayedBytes {
  public:
-  Source(const Options& options, const devices::Settings& settings)
+  PlayedBytes(const EmulateOptions& options, const devices::Settings& settings)
       : protocol_{options.protocol}, settings_{settings}, begin_{link::wall_seconds()} {
     period_ = 1.0 / (options.rate > 0.0 ? options.rate : devices::emulated_rate(options.protocol));
     if (options.file.empty()) return;
@@ -69,7 +69,7 @@ class Source {
   Utime first_{};
 };
 
-void run(const Options& options) {
+void run_emulate(const EmulateOptions& options) {
   (void)devices::protocol(options.protocol, "fathom emulate");
   std::signal(SIGPIPE, SIG_IGN);  // a client may go at any time
   devices::Settings settings;
@@ -77,7 +77,7 @@ void run(const Options& options) {
   devices::EmulatedAnswers answers{options.protocol};
   std::vector<devices::PlayedCondition> conditions;
   for (const std::string& each : options.conditions) conditions.push_back(devices::PlayedCondition::parse(each));
-  Source source{options, settings};
+  PlayedBytes source{options, settings};
   std::ofstream sent;
   if (!options.sent.empty()) sent.open(options.sent, std::ios::binary);
   if (!options.sent.empty() && !sent) throw InputError(options.sent + ": cannot be written");
@@ -118,7 +118,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_emulate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EmulateOptions>();
   CLI::App* command = app.add_subcommand("emulate", "play an instrument at a pseudo-terminal or a TCP port");
   command->add_option("protocol", options->protocol, "as for decode")->required();
   command->add_option("--to", options->to, "pty (its name is printed), pty:PATH (a link to it), or tcp:PORT")
@@ -137,7 +137,7 @@ void add_emulate(CLI::App& app) {
       ->take_all()
       ->expected(1);
   command->add_option("--transponders", options->transponders, "names, for range_text");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_emulate(*options); });
 }
 
 }  // namespace fathom::tool

@@ -1,44 +1,149 @@
-// fathom import: a table of numbers to an LCM log, each stream on the channel that a driver would use.
-#include "common/tables/import.hpp"
-
+// fathom import: recordings of others to an LCM log, each stream on the channel that a driver would use.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/model/driven_axes.hpp"
 #include "common/model/vehicle.hpp"
+#include "common/recordings/merge.hpp"
+#include "common/recordings/worth.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
 
 namespace fathom::tool {
 namespace {
 
-struct Options {
-  std::string data, map, vehicle, out;
+struct ImportOptions {
+  std::vector<std::string> data, maps, shifts;
+  std::string vehicle, out;
+  bool describe{};
 };
 
-void run(const Options& options) {
+/// "NAME=SECONDS" to the source that it names.
+std::map<std::string, double> shifts_of(const ImportOptions& options, const std::vector<Source>& sources) {
+  std::map<std::string, double> shifts;
+  for (const std::string& text : options.shifts) {
+    const std::size_t equal = text.rfind('=');
+    std::size_t used = 0;
+    double seconds = 0.0;
+    try {
+      if (equal != std::string::npos) seconds = std::stod(text.substr(equal + 1), &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used == 0 || equal + 1 + used != text.size())
+      throw InputError("--shift " + text + ": must be NAME=SECONDS, NAME being one of the files");
+    const std::string name = text.substr(0, equal);
+    const bool known = std::ranges::any_of(sources, [&](const Source& each) {
+      return each.name == name || each.files.front() == name ||
+             std::filesystem::path(each.files.front()).filename() == name;
+    });
+    if (!known) throw InputError("--shift " + text + ": no file is named " + name);
+    shifts[name] = seconds;
+  }
+  return shifts;
+}
+
+std::optional<double> shift_of(const Source& source, const std::map<std::string, double>& shifts) {
+  for (const std::string& name :
+       {source.name, source.files.front(), std::filesystem::path(source.files.front()).filename().string()}) {
+    if (const auto found = shifts.find(name); found != shifts.end()) return found->second;
+  }
+  return std::nullopt;
+}
+
+void write(const Recording& recording, const std::string& path) {
+  for (const std::string& reason : recordings::against_fitting(recording))
+    std::printf("%s: ! %s\n", path.c_str(), reason.c_str());
+  const std::uint64_t events = wire::write_log(recording, path);
+  std::printf("%s: %llu messages (%s)\n", path.c_str(), static_cast<unsigned long long>(events),
+              counts(recording).c_str());
+}
+
+/// All runs that came, each to a log of its own; `out` with the run's number where there are several.
+void write_each(const std::vector<Recording>& runs, const std::string& out) {
+  const std::filesystem::path path{out};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::filesystem::path own = path;
+    if (runs.size() > 1)
+      own.replace_filename(path.stem().string() + "-" + std::to_string(i + 1) + path.extension().string());
+    write(runs[i], own.string());
+  }
+}
+
+void run_import(const ImportOptions& options) {
   std::optional<tables::SimulatedAxes> simulated;
-  if (!options.vehicle.empty()) simulated = model::Vehicle::load(options.vehicle).dof;
-  const tables::Imported imported = tables::import_csv(options.data, options.map, simulated);
-  for (const std::string& note : imported.notes) std::printf("%s: %s\n", options.data.c_str(), note.c_str());
-  const std::uint64_t events = wire::write_log(imported.recording, options.out);
-  std::printf("%s: %llu messages (%s)\n", options.out.c_str(), static_cast<unsigned long long>(events),
-              counts(imported.recording).c_str());
+  if (!options.vehicle.empty()) {
+    const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+    simulated = vehicle.dof;
+    if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
+  }
+  const std::vector<Source> sources = sources_of(options.data);
+  if (options.describe) {
+    for (const Source& source : sources) std::printf("%s", describe_source(source, simulated).c_str());
+    return;
+  }
+  if (options.out.empty()) throw InputError("--out is missing: the log to write, or a folder for several runs");
+  if (options.maps.size() > 1 && options.maps.size() != sources.size())
+    throw InputError("--map is given " + std::to_string(options.maps.size()) + " times for " +
+                     std::to_string(sources.size()) + " recordings: once for all, or once for each");
+  const bool folder = options.out.ends_with('/') || std::filesystem::is_directory(options.out);
+  const std::map<std::string, double> shifts = shifts_of(options, sources);
+  if (folder && !shifts.empty()) throw InputError("--shift is for files of one run; --out names a folder of several");
+  std::vector<Recording> parts;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::string map = options.maps.empty() ? "" : options.maps[options.maps.size() == 1 ? 0 : i];
+    FromSource read = read_source(sources[i], map, simulated);
+    for (const std::string& note : read.notes) std::printf("%s\n", note.c_str());
+    if (folder) {
+      std::filesystem::create_directories(options.out);
+      write_each(read.runs, (std::filesystem::path(options.out) / (sources[i].name + ".lcmlog")).string());
+    } else if (sources.size() == 1) {
+      if (const auto shift = shift_of(sources[i], shifts)) {
+        for (Recording& each : read.runs) recordings::shift(each, *shift);
+      }
+      write_each(read.runs, options.out);
+    } else if (read.runs.size() > 1) {
+      throw InputError(sources[i].files.front() + ": holds " + std::to_string(read.runs.size()) +
+                       " recordings, one behind the other; import it alone first, then merge what comes of it");
+    } else {
+      parts.push_back(std::move(read.runs.front()));
+      parts.back().name = sources[i].name;
+    }
+  }
+  if (parts.empty()) return;
+  std::vector<std::optional<double>> stated;
+  for (const Source& source : sources) stated.push_back(shift_of(source, shifts));
+  std::vector<std::string> notes;
+  const Recording merged = recordings::merge(std::move(parts), stated, notes);
+  for (const std::string& note : notes) std::printf("%s\n", note.c_str());
+  write(merged, options.out);
 }
 
 }  // namespace
 
 void add_import(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("import", "CSV to an LCM log");
-  command->add_option("data", options->data, "CSV file")->required();
-  command->add_option("--map", options->map, "YAML file that says what each column is; without: canonical columns");
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* command = app.add_subcommand("import", "recordings of others to an LCM log");
+  std::string known = "files, folders or patterns: tables of text";
+  for (const recordings::Format& format : recordings::formats()) known += ", " + std::string{format.title};
+  command->add_option("data", options->data, known)->required();
+  command->add_flag("--describe", options->describe,
+                    "prints what the recording holds and the draft of a map, instead of importing");
+  command->add_option(
+      "--map", options->maps,
+      "YAML file that says what each column is; without: canonical columns, or the draft of --describe");
   command->add_option("--vehicle", options->vehicle,
                       "vehicle file: columns of axes that it does not simulate may lack");
-  command->add_option("--out", options->out, "log to write, RUN.lcmlog")->required();
-  command->callback([options] { run(*options); });
+  command->add_option("--shift", options->shifts, "NAME=SECONDS: added to the times of this file");
+  command->add_option("--out", options->out,
+                      "log to write, RUN.lcmlog: several files become one run; or a folder: each is a run of its own");
+  command->callback([options] { run_import(*options); });
 }
 
 }  // namespace fathom::tool

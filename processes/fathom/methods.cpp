@@ -7,6 +7,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/consistency/consistency.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/estimation/corrected_recording.hpp"
 #include "common/estimation/estimator.hpp"
@@ -24,7 +25,7 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct MethodsOptions {
   std::string vehicle, config, map;
   std::vector<std::string> train, validate;
   bool truth{false};
@@ -123,7 +124,7 @@ void validate(const char* name, const model::Vehicle& vehicle, const std::vector
   }
 }
 
-void run(const Options& options) {
+void run_methods(const MethodsOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const Config config = Config::load(options.config);
   const auto filter_settings = estimation::EstimatorSettings::from(config.section("estimator"));
@@ -138,15 +139,15 @@ void run(const Options& options) {
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
-  auto consistency = estimation::check_consistency(recordings);
-  estimation::check_thrusters(recordings, vehicle, consistency);
+  auto checked = consistency::check_consistency(recordings);
+  consistency::check_thrusters(recordings, vehicle, checked);
 
   identification::Identifier identifier{identifier_settings, vehicle};
   std::vector<identification::BaseRun> runs;
   StateErrors complementary{"complementary filter"}, forward{"Kalman filter"}, smoothed{"Kalman smoother"};
   for (std::size_t i = 0; i < options.train.size(); ++i) {
-    const Recording recording = estimation::corrected(recordings[i], consistency.corrections[i]);
-    const std::vector<Thrusters> inputs = forces(recording, consistency.corrections[i], vehicle);
+    const Recording recording = estimation::corrected(recordings[i], checked.corrections[i]);
+    const std::vector<Thrusters> inputs = forces(recording, checked.corrections[i], vehicle);
     if (i == 0) kalman = estimation::tune_process(recording, kalman);
     auto trial = estimation::smooth(recording, kalman);
     const std::vector<StateEstimate> states = filter(recording, filter_settings);
@@ -200,7 +201,7 @@ void run(const Options& options) {
   if (options.validate.empty()) return;
   std::vector<Trial> trials;
   for (std::size_t i = options.train.size(); i < recordings.size(); ++i) {
-    const Trial run = estimation::reconstruct(recordings[i], consistency.corrections[i], vehicle);
+    const Trial run = estimation::reconstruct(recordings[i], checked.corrections[i], vehicle);
     for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
       trials.push_back(std::move(stretch));
   }
@@ -218,7 +219,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_methods(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MethodsOptions>();
   CLI::App* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--config", options->config, "pipeline file with sections estimator and identifier")->required();
@@ -226,7 +227,7 @@ void add_methods(CLI::App& app) {
   command->add_option("--validate", options->validate, "logs or tables on which predictions are judged");
   command->add_option("--map", options->map, "column map of .csv files");
   command->add_flag("--truth", options->truth, "the vehicle file's means are the truth (simulated logs)");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_methods(*options); });
 }
 
 }  // namespace fathom::tool

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/base/version.hpp"
 #include "common/planning/flights.hpp"
 #include "common/planning/foresight.hpp"
 #include "processes/fathom/commands.hpp"
-#include "processes/fathom/progress.hpp"
 #include "processes/fathom/rehearsals.hpp"
 
 namespace fathom::tool {
@@ -23,12 +23,12 @@ using planning::Foreseen;
 constexpr double kWindow = 10.0;  // s, as in a diagnosis
 constexpr double kTold = 2.0;     // times the excitation: an answer that takes longer is none
 
-struct Options {
+struct PlanOptions {
   std::string vehicle, site, config, excitation{"paper"}, json;
   double velocity_noise{0.005}, rate_noise{0.0035}, rate{100.0}, longest{600.0};
 };
 
-planning::RehearsalSettings settings_from(const Options& options, const model::Vehicle& vehicle) {
+planning::RehearsalSettings settings_from(const PlanOptions& options, const model::Vehicle& vehicle) {
   planning::RehearsalSettings s = rehearsal_settings(options.site, options.config, vehicle);
   s.longest = options.longest;
   s.rate = options.rate;
@@ -84,7 +84,7 @@ Json json_of(const std::optional<Answer>& answer) {
   return {{"segment", answer->segment}, {"seconds", answer->seconds}};
 }
 
-void write(const Options& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
+void write(const PlanOptions& options, const std::vector<Foreseen>& all, const planning::Rehearsal& rehearsal) {
   Json file{{"schema", 1},           {"fathom_version", version()},      {"vehicle", options.vehicle},
             {"site", options.site},  {"excitation", options.excitation}, {"duration_s", rehearsal.trial.t.back()},
             {"ends", rehearsal.end}, {"effects", Json::array()}};
@@ -110,7 +110,7 @@ void write(const Options& options, const std::vector<Foreseen>& all, const plann
   if (!out.flush()) throw InputError(options.json + ": cannot be written; check the free space");
 }
 
-void run(const Options& options) {
+void run_plan(const PlanOptions& options) {
   // Before the work, not after it.
   if (!options.json.empty()) {
     const bool there = std::filesystem::exists(options.json);
@@ -120,16 +120,16 @@ void run(const Options& options) {
   }
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const planning::RehearsalSettings settings = settings_from(options, vehicle);
-  ProgressLine progress;
-  progress.show("rehearsing the " + options.excitation + " excitation", 0.0);
+  ProgressLine line;
+  const Progress progress = line.progress();
+  constexpr const char* kRehearsal = "rehearsal";
+  progress.begin(kRehearsal, "rehearsing the " + options.excitation + " excitation");
   const planning::Rehearsal rehearsal = planning::rehearse(vehicle, settings);
+  progress.done(kRehearsal);
   const double duration = rehearsal.trial.t.back();
   const planning::View excitation{vehicle, rehearsal.trial, kWindow};
-  const planning::Flights flights{vehicle, excitation, settings,
-                                  [&](const std::string& segment) { progress.show("flying " + segment, 0.1); }};
-  const std::vector<Foreseen> all = planning::foresee(vehicle, excitation, flights.extras(), {}, [&](double share) {
-    progress.show("asking every effect", 0.2 + 0.8 * share);
-  });
+  const planning::Flights flights{vehicle, excitation, settings, progress};
+  const std::vector<Foreseen> all = planning::foresee(vehicle, excitation, flights.extras(), {}, progress);
   std::printf("%s excitation of %s: %.0f s, %s\n", options.excitation.c_str(), vehicle.name.c_str(), duration,
               rehearsal.end.c_str());
   print(all, duration);
@@ -139,7 +139,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_plan(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand("plan", "before a trial: what would its excitation tell about every effect?");
   command->add_option("--vehicle", options->vehicle, "vehicle file")->required()->check(CLI::ExistingFile);
   command->add_option("--site", options->site, "site file")->required()->check(CLI::ExistingFile);
@@ -154,7 +154,7 @@ void add_plan(CLI::App& app) {
   command->add_option("--longest", options->longest, "s after which the trial is ended (600)")
       ->check(CLI::PositiveNumber);
   command->add_option("--json", options->json, "write the plan here too");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_plan(*options); });
 }
 
 }  // namespace fathom::tool

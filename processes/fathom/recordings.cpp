@@ -1,18 +1,15 @@
 #include "processes/fathom/recordings.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <set>
-#include <sstream>
 #include <tuple>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/estimation/run_signals.hpp"
-#include "common/tables/import.hpp"
-#include "common/wire/log_reader.hpp"
 #include "common/wire/streams.hpp"
+#include "processes/fathom/inputs.hpp"
 
 namespace fathom::tool {
 
@@ -23,22 +20,14 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
   std::set<std::string> names;
   for (const std::string& path : paths) {
     const std::filesystem::path file{path};
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),  // Windows' names
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".csv") {
-      tables::Imported imported = tables::import_csv(path, map, simulated);
-      for (const std::string& note : imported.notes) notes.push_back(path + ": " + note);
-      recordings.push_back(std::move(imported.recording));
-    } else if (extension == ".lcmlog" || extension == ".lcm") {
-      wire::LogContents contents = wire::read_log(path);
-      std::istringstream lines{wire::complaints(path, contents.report)};
-      for (std::string line; std::getline(lines, line);) notes.push_back(line);
-      recordings.push_back(std::move(contents.recording));
-    } else {
-      throw InputError(path +
-                       ": neither .lcmlog nor .csv; a table's name must end in .csv, whatever parts its columns");
-    }
+    std::vector<Source> found = sources_of({path});
+    if (found.size() != 1) throw InputError(path + ": holds " + std::to_string(found.size()) + " recordings");
+    FromSource read = read_source(found.front(), map, simulated);
+    notes.insert(notes.end(), read.notes.begin(), read.notes.end());
+    if (read.runs.size() != 1)
+      throw InputError(path + ": holds " + std::to_string(read.runs.size()) +
+                       " recordings, one behind the other; 'fathom import' writes each to a log of its own");
+    recordings.push_back(std::move(read.runs.front()));
     Recording& last = recordings.back();
     last.name = file.stem().string();
     if (names.contains(last.name)) last.name = (file.parent_path().filename() / file.stem()).string();  // day2/run.csv

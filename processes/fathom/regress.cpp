@@ -19,7 +19,7 @@ using identification::StepwiseResult;
 
 constexpr std::array<const char*, 6> kTitles{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
-struct Options {
+struct RegressOptions {
   std::string vehicle, write, json;
   std::vector<std::string> runs;
   std::vector<double> current;
@@ -110,7 +110,7 @@ std::string coefficients_of(const std::vector<AxisRegression>& axes) {
   return text;
 }
 
-void run(const Options& options) {
+void run_regress(const RegressOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
   std::vector<identification::ManoeuvreRows> runs;
@@ -154,7 +154,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_regress(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RegressOptions>();
   CLI::App* command = app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
   command->add_option("runs", options->runs, "logs written by fathom smooth, one per manoeuvre")->required();
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML) with hydrodynamics")->required();
@@ -172,7 +172,7 @@ void add_regress(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--json", options->json, "write all that is told to this file");
   command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_regress(*options); });
 }
 
 }  // namespace fathom::tool

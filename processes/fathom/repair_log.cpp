@@ -9,15 +9,22 @@
 namespace fathom::tool {
 namespace {
 
-struct Options {
+struct RepairLogOptions {
   std::string log, out;
 };
 
 unsigned long long number(std::uint64_t value) { return value; }
 
-void run(const Options& options) {
+void run_repair_log(const RepairLogOptions& options) {
   const Salvage result = salvage(options.log, options.out);
   std::printf("%s: kept %llu events, %llu bytes\n", options.out.c_str(), number(result.events), number(result.bytes));
+  if (result.parts.size() > 1) {
+    std::printf("%s: %zu recordings joined together, each to a file of its own:\n", options.log.c_str(),
+                result.parts.size());
+    for (const Salvage::Part& part : result.parts)
+      std::printf("  %s: from byte %llu, after event %llu\n", part.path.c_str(), number(part.begin),
+                  number(part.events_before));
+  }
   for (const auto& [channel, count] : result.channels) std::printf("  %-20s %llu\n", channel.c_str(), number(count));
   if (result.damages.empty()) {
     std::printf("%s: no damage\n", options.log.c_str());
@@ -39,11 +46,11 @@ void run(const Options& options) {
 }  // namespace
 
 void add_repair_log(CLI::App& app) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("repair-log", "take what is whole out of a damaged log");
+  auto options = std::make_shared<RepairLogOptions>();
+  CLI::App* command = app.add_subcommand("repair-log", "take what is whole out of a damaged log, part joined ones");
   command->add_option("log", options->log, "damaged LCM log; it stays as it is")->required();
   command->add_option("--out", options->out, "the new log")->required();
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_repair_log(*options); });
 }
 
 }  // namespace fathom::tool

@@ -4,9 +4,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/estimation/noise_from_rest.hpp"
 #include "common/estimation/process_tuning.hpp"
 #include "common/estimation/transponder_check.hpp"
@@ -19,9 +21,10 @@ namespace fathom::tool {
 namespace {
 
 constexpr double kConverged = 30.0;   // s after which filter and smoother are compared, as Pereira and Duncan did
+constexpr double kTuned = 120.0;      // s of the run, at most, by which the process noise is tuned
 constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
-struct Options {
+struct SmoothOptions {
   std::string run, out, config, model, map;
   bool stated{false};
 };
@@ -68,7 +71,7 @@ StateEstimate estimate_of(const SmoothedState& smoothed) {
           .valid = true};
 }
 
-void run(const Options& options) {
+void run_smooth(const SmoothOptions& options) {
   estimation::KalmanSettings settings;
   bool process_stated = options.stated;
   if (!options.config.empty()) {
@@ -93,16 +96,19 @@ void run(const Options& options) {
   }
   if (!options.stated) settings = estimation::noise_from_rest(recording, settings, notes);
   settings = estimation::without_wrong_transponders(recording, settings, notes);
+  std::optional<ProgressLine> line{std::in_place};
+  const Progress progress = line->progress();
   if (!process_stated) {
-    settings = estimation::tune_process(recording, settings);
+    settings = estimation::tune_process(recording, settings, kTuned, progress);
     char text[160];
     std::snprintf(text, sizeof text,
                   ": most probable process noise: jerk %.3g m/s^2, angular jerk %.3g rad/s^2 per root second",
                   settings.process.jerk, settings.process.angular_jerk);
     notes.push_back(recording.name + text);
   }
-  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
-  estimation::SmoothedTrial trial = estimation::smooth(recording, settings);
+  for (const std::string& note : notes) line->say(note);
+  estimation::SmoothedTrial trial = estimation::smooth(recording, settings, nullptr, progress);
+  line.reset();
   for (const std::string& note : trial.notes) std::fprintf(stderr, "%s\n", note.c_str());
   print(trial);
   recording.state.clear();
@@ -116,7 +122,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_smooth(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SmoothOptions>();
   CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
   command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
@@ -124,7 +130,7 @@ void add_smooth(CLI::App& app) {
   command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
   command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_smooth(*options); });
 }
 
 }  // namespace fathom::tool

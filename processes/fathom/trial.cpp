@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kSheet = 12;  // pictures
 
-struct Options {
+struct TrialOptions {
   std::string log, vehicle, site, pipeline, diagnosis, truth, out;
 };
 
@@ -37,7 +37,7 @@ std::optional<estimation::NavigatorSettings> filters_in(const std::string& pipel
   return estimation::NavigatorSettings::from(config);
 }
 
-void run(const Options& options) {
+void run_trial(const TrialOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const model::Site site = model::Site::load(options.site);
   const auto filters = filters_in(options.pipeline);
@@ -64,7 +64,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_trial(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrialOptions>();
   CLI::App* command = app.add_subcommand("trial", "what a live trial's log holds: modes, parameters, figures");
   command->add_option("log", options->log, "log of the trial (.lcmlog)")->required();
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
@@ -73,7 +73,7 @@ void add_trial(CLI::App& app) {
   command->add_option("--diagnosis", options->diagnosis, "folder that fathom diagnose wrote for the same log");
   command->add_option("--truth", options->truth, "the simulator's truth.json, for a section of its own");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_trial(*options); });
 }
 
 }  // namespace fathom::tool

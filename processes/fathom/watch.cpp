@@ -18,7 +18,7 @@ namespace {
 constexpr double kTerminalPeriod = 0.2;  // s between two looks where a line can be written over
 constexpr double kFilePeriod = 1.0;
 
-struct Options {
+struct WatchOptions {
   std::string url{"udpm://239.255.76.67:7667?ttl=0"};
 };
 
@@ -44,7 +44,7 @@ std::string line(const Excitation& e, double t) {
   return said;
 }
 
-void watch(const Options& options) {
+void watch(const WatchOptions& options) {
   runtime::StopSignal stop;
   const bool terminal = isatty(STDERR_FILENO) != 0;
   Console console{options.url, Console::Hears::kExcitation};
@@ -74,7 +74,7 @@ void watch(const Options& options) {
 }  // namespace
 
 void add_watch(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WatchOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   CLI::App* command = app.add_subcommand("watch", "how far a live trial is, until Ctrl-C");
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/model/site.hpp"
 #include "common/pictures/source.hpp"
 #include "common/vision/calibration.hpp"
@@ -18,7 +20,7 @@
 namespace fathom::pictures {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   std::string source, site, out, picture, vehicle, camera, what{"all"};
   int distortion{2}, every{1}, held_out{0};
   double map_sigma{0.0}, focal{0.0}, focal_sigma{0.1};
@@ -26,15 +28,22 @@ struct Options {
   std::vector<std::string> families, sizes;
 };
 
-std::vector<vision::View> look(const Options& options, model::Site& site) {
+constexpr const char *kPictures = "pictures", *kAdjustment = "adjustment";  // phases of the work
+
+std::vector<vision::View> look(const CalibrateOptions& options, model::Site& site, ProgressLine& line) {
+  const Progress progress = line.progress();
   vision::TagDetector detector{{.families = site.search.families, .decimation = 1.0, .coarser = true}};
   const auto source = open(options.source, 0.0);
   std::vector<vision::View> views;
   int count = 0;
+  progress.expect(kPictures, source->to_come());
+  progress.expect(kAdjustment, 1, 0.2 * source->to_come());
+  progress.begin(kPictures, "finding tags");
   while (auto frame = source->next()) {
+    progress.done(kPictures);
     if (count++ % options.every != 0) continue;
     if (!frame->problem.empty()) {
-      std::fprintf(stderr, "fathom: %s; the picture is left out\n", frame->problem.c_str());
+      line.say("fathom: " + frame->problem + "; the picture is left out");
       continue;
     }
     const cv::Mat grey = in_grey(frame->picture);
@@ -52,13 +61,13 @@ std::vector<vision::View> look(const Options& options, model::Site& site) {
                                   " pixels; the lens is for " + std::to_string(site.lens->width) + " x " +
                                   std::to_string(site.lens->height);
       if (views.empty()) throw InputError(problem);
-      std::fprintf(stderr, "fathom: %s; the picture is left out\n", problem.c_str());
+      line.say("fathom: " + problem + "; the picture is left out");
       continue;
     }
     views.push_back({frame->name, detector.step(grey)});
   }
-  if (const std::string remark = source->remark(); !remark.empty())
-    std::fprintf(stderr, "fathom: %s\n", remark.c_str());
+  progress.expect(kPictures, 0);
+  if (const std::string remark = source->remark(); !remark.empty()) line.say("fathom: " + remark);
   return views;
 }
 
@@ -67,7 +76,7 @@ void print(const char* what, const vision::Reprojection& error) {
               error.high, error.per_view.size());
 }
 
-void run(const Options& options) {
+void run_calibrate(const CalibrateOptions& options) {
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
   if (!options.families.empty()) site.look_for(options.families);
@@ -81,7 +90,8 @@ void run(const Options& options) {
   vision::check_map(site);
   const vision::TagSizes sizes = vision::TagSizes::parse(options.sizes);
   sizes.check_against(site);
-  std::vector<vision::View> views = look(options, site), held;
+  std::optional<ProgressLine> line{std::in_place};
+  std::vector<vision::View> views = look(options, site, *line), held;
   if (options.held_out > 1) {
     std::vector<vision::View> kept;
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -98,7 +108,9 @@ void run(const Options& options) {
                                        .given = site_has_lens,
                                        .focal_sigma = options.focal_sigma,
                                        .sizes = sizes};
+  line->progress().begin(kAdjustment, "adjusting " + options.what);
   const vision::Calibration result = vision::calibrate(site, views, settings);
+  line.reset();
   std::printf("%d pictures, %d corners; %s\n", result.n_views, result.n_corners,
               result.converged ? "converged" : ("not converged: " + result.message).c_str());
   int seen = 0;
@@ -155,7 +167,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand("calibrate", "lens and map of tags from a sequence of pictures");
   command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
   command->add_option("--site", options->site, "what is known: tags or board, a lens to begin with");
@@ -183,7 +195,7 @@ void add_calibrate(CLI::App& app) {
       ->check(CLI::Range(2, 1'000'000));
   command->add_option("--families", options->families, "families of tags in place of the site's");
   command->add_flag("--not-flat", options->not_flat, "the tags do not lie in one plane");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_calibrate(*options); });
 }
 
 }  // namespace fathom::pictures

@@ -20,7 +20,7 @@
 namespace fathom::pictures {
 namespace {
 
-struct Options {
+struct TrackOptions {
   std::string source, site, csv, drawings, vehicle, camera, config;
   double rate{0.0};
   std::vector<std::string> families;
@@ -85,7 +85,7 @@ std::string drawing_name(const std::string& folder, const std::string& frame) {
   return (std::filesystem::path{folder} / (std::filesystem::path{frame}.stem().string() + ".jpg")).string();
 }
 
-void run(const Options& options) {
+void run_track(const TrackOptions& options) {
   vision::use_one_core();
   model::Site site;
   if (!options.site.empty()) site = model::Site::load_for_pictures(options.site);
@@ -157,7 +157,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_track(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrackOptions>();
   CLI::App* command = app.add_subcommand("track", "tags, camera pose, velocity and laser range from recorded pictures");
   command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
   command->add_option("--site", options->site, "tags to look for and where they lie, camera; left out: tag36h11 alone");
@@ -171,7 +171,7 @@ void add_track(CLI::App& app) {
   command->add_option("--camera", options->camera, "which of the vehicle's cameras; left out: the first");
   command->add_option("--families", options->families, "families of tags in place of the site's");
   command->add_option("--config", options->config, "pipeline whose section 'vision' is used");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_track(*options); });
 }
 
 }  // namespace fathom::pictures

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/estimation/consistency.hpp"
+#include "common/consistency/consistency.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/report/page.hpp"
 #include "common/report/report.hpp"
@@ -31,13 +31,13 @@ Recording five_minutes() {
 void consistency(benchmark::State& state) {
   const Recording recording = five_minutes();
   for (auto _ : state)
-    benchmark::DoNotOptimize(estimation::check_consistency(std::span(&recording, 1)).findings.size());
+    benchmark::DoNotOptimize(consistency::check_consistency(std::span(&recording, 1)).findings.size());
 }
 BENCHMARK(consistency)->Unit(benchmark::kMillisecond);
 
 void reconstruct(benchmark::State& state) {
   const Recording recording = five_minutes();
-  const auto checked = estimation::check_consistency(std::span(&recording, 1));
+  const auto checked = consistency::check_consistency(std::span(&recording, 1));
   for (auto _ : state)
     benchmark::DoNotOptimize(estimation::reconstruct(recording, checked.corrections[0], model::Vehicle{}).size());
 }

@@ -13,11 +13,11 @@
 namespace {
 
 const std::map<std::string, int> kFloors{
-    {"base", 0},      {"samples", 1},    {"model", 2},      {"devices", 2},    {"vision", 3},
-    {"tables", 2},    {"launch", 2},     {"orders", 2},     {"link", 3},       {"estimation", 3},
-    {"board", 3},     {"likelihood", 3}, {"excitation", 3}, {"simulation", 3}, {"identification", 3},
-    {"diagnosis", 4}, {"inference", 4},  {"joint", 4},      {"pictures", 4},   {"report", 4},
-    {"planning", 5},  {"verdict", 5},    {"runtime", 5},    {"wire", 5},       {"driver", 6}};
+    {"base", 0},       {"samples", 1},    {"model", 2},          {"devices", 2},    {"vision", 3},    {"tables", 2},
+    {"launch", 2},     {"orders", 2},     {"link", 3},           {"estimation", 3}, {"board", 3},     {"likelihood", 3},
+    {"excitation", 3}, {"simulation", 3}, {"identification", 3}, {"diagnosis", 5},  {"inference", 4}, {"joint", 4},
+    {"pictures", 4},   {"report", 4},     {"planning", 6},       {"verdict", 6},    {"runtime", 5},   {"wire", 5},
+    {"driver", 6},     {"recordings", 3}, {"consistency", 4}};
 
 // Rooms that see less than their floor allows.
 const std::map<std::string, std::set<std::string>> kNarrow{{"wire", {"samples", "base"}}, {"runtime", {"base"}}};
@@ -33,7 +33,13 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kLibraries{
     {"sodium", {"base"}},
     {"spdlog/", {"runtime"}},
     {"httplib.h", {"processes"}},
-    {"asio", {"link"}}};
+    {"asio", {"link"}},
+    {"lz4frame.h", {"recordings"}},
+    {"zstd.h", {"recordings"}},
+    {"bzlib.h", {"recordings"}},
+    {"sqlite3.h", {"recordings"}},
+    {"matio.h", {"recordings"}},
+    {"zip.h", {"recordings"}}};
 
 std::string part(const std::string& path, std::size_t number) {
   std::size_t begin = 0;

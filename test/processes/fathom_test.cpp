@@ -127,6 +127,41 @@ TEST_CASE("fathom: a log cut in its last message is read with a warning, one dam
   one_line(shell(check + scratch.path("bad.lcmlog")), 1, "bad.lcmlog: byte");
 }
 
+TEST_CASE("fathom: logs that were joined are refused with the place, and parted into what they were") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N"));
+  REQUIRE(shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")).code == 0);
+  const std::string one = test::read_bytes(scratch.path("a.lcmlog"));
+  test::write_bytes(scratch.path("joined.lcmlog"), one + one);
+  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
+  one_line(shell(check + scratch.path("joined.lcmlog")), 1, "holds several recordings joined together");
+  const Ran parted =
+      shell(kTool + " repair-log " + scratch.path("joined.lcmlog") + " --out " + scratch.path("p.lcmlog"));
+  CAPTURE(parted.text);
+  CHECK(parted.code == 0);
+  CHECK(parted.says("2 recordings joined together"));
+  CHECK(test::read_bytes(scratch.path("p-1.lcmlog")) == one);
+  CHECK(test::read_bytes(scratch.path("p-2.lcmlog")) == one);
+}
+
+TEST_CASE("fathom: check writes the map as it should be, and with it the tables agree") {
+  const Scratch scratch;
+  const std::string data = test::file("test/data/conventions/enu_position.csv"), fixed = scratch.path("mended.yaml");
+  test::write_bytes(
+      scratch.path("v.yaml"),
+      "name: rov\ndof: [surge, sway, heave, roll, pitch, yaw]\nmass: 12 kg\nwater_density: 1000 kg/m^3\n");
+  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " " + data;
+  const Ran wrong = shell(check + " --write-map " + fixed);
+  CAPTURE(wrong.text);
+  CHECK(wrong.code == 0);
+  CHECK(wrong.says("frame: ENU"));
+  const Ran right = shell(check + " --map " + fixed);
+  CAPTURE(right.text);
+  CHECK(right.code == 0);
+  CHECK_FALSE(right.says("corrected"));
+}
+
 TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a page") {
   const Scratch scratch;
   test::write_bytes(scratch.path("v.yaml"), kVehicle);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "common/base/progress_line.hpp"
 #include "test/sealed/page.hpp"
 #include "test/sealed/tool.hpp"
 #include "test/sealed/writing.hpp"
@@ -72,9 +73,15 @@ std::vector<std::string> command(const Options& options, const Places& where) {
   return words;
 }
 
-void diagnose(const Options& options, const Places& where) {
+/// The set has an answer that is newer than the tool.
+bool answered(const Options& options, const Places& where) {
   const std::string note = where.found + "/run.json";
-  if (fs::exists(note) && fs::last_write_time(note) > fs::last_write_time(options.tool)) return;
+  return fs::exists(note) && fs::last_write_time(note) > fs::last_write_time(options.tool);
+}
+
+void diagnose(const Options& options, const Places& where) {
+  if (answered(options, where)) return;
+  const std::string note = where.found + "/run.json";
   fs::create_directories(where.found);
   fs::remove(where.found + "/result.json");
   const Measured measured = run_tool(command(options, where), where.found + "/log.txt");
@@ -107,12 +114,22 @@ void work(const Options& options) {
   std::atomic<std::uint64_t> next{options.first};
   std::mutex printing;
   std::string trouble;
+  constexpr const char* kSets = "sets";
+  double to_come = 0.0;  // sets that have no answer yet
+  for (std::uint64_t seed = options.first; seed <= options.last; ++seed)
+    to_come += answered(options, places(options.out, seed)) ? 0.0 : 1.0;
+  ProgressLine progress_line;
+  const Progress progress = progress_line.progress();
+  progress.expect(kSets, to_come);
+  progress.begin(kSets, options.draw_only ? "drawing sets" : "diagnosing sets");
   const auto worker = [&] {
     for (std::uint64_t seed = next++; seed <= options.last; seed = next++) {
       try {
         const Places where = places(options.out, seed);
+        const bool there = answered(options, where);
         draw(seed, options, where);
         if (!options.draw_only) diagnose(options, where);
+        if (!there) progress.done(kSets);
         const std::string said = options.draw_only ? where.data : line(score_of(where));
         const std::lock_guard lock(printing);
         std::printf("%s\n", said.c_str());
@@ -120,6 +137,7 @@ void work(const Options& options) {
       } catch (const RunsAway& none) {
         const std::lock_guard lock(printing);
         std::printf("%5llu  %s\n", static_cast<unsigned long long>(seed), none.what());
+        progress.done(kSets);
       } catch (const std::exception& error) {
         const std::lock_guard lock(printing);
         trouble = "set " + std::to_string(seed) + ": " + error.what();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/estimation/consistency.hpp"
+#include "common/consistency/consistency.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/synthetic_recording.hpp"
 
@@ -18,13 +18,13 @@ namespace fathom::test {
 struct Checked {
   SyntheticOptions options;
   Recording recording;
-  estimation::ConsistencyResult result;
+  consistency::ConsistencyResult result;
   [[nodiscard]] const std::vector<ConsistencyFinding>& findings() const { return result.findings; }
 };
 
 inline Checked check(const SyntheticOptions& options) {
   Checked checked{.options = options, .recording = synthetic_recording(options), .result = {}};
-  checked.result = estimation::check_consistency(std::span(&checked.recording, 1));
+  checked.result = consistency::check_consistency(std::span(&checked.recording, 1));
   return checked;
 }
 

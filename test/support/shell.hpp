@@ -39,8 +39,8 @@ inline Ran shell(const std::string& command) {
 
 /// A program of this build, quoted.
 inline std::string program(const std::string& name) {
-  return std::string{sizeof FATHOM_EMULATOR > 1 ? FATHOM_EMULATOR " " : ""} + "'" + FATHOM_BINARY_DIR + "/bin/" + name +
-         "'";
+  const std::string emulator = FATHOM_EMULATOR;
+  return emulator + (emulator.empty() ? "'" : " '") + FATHOM_BINARY_DIR + "/bin/" + name + "'";
 }
 /// A file of the repository, quoted.
 inline std::string file(const std::string& path) { return std::string{"'"} + FATHOM_SOURCE_DIR + "/" + path + "'"; }

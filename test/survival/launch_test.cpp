@@ -216,12 +216,17 @@ TEST_CASE("launch: in real time without a deputy, who brings nobody back, a need
       "--order 4=identify --order 6=identify >simulator.txt 2>&1 &\n"
       "within 20 grep -q 'settles mode\\|goes to where' supervisor.txt; sleep 8; kill -9 $i; kill -0 $i\n"
       "within 20 grep -q 'aborted: identifier is silent' supervisor.txt\n"
-      "arm() { $fathom arm --operator $share/operators/simulated.yaml; }\n"
-      "arm; echo \"armed $?\"; identify; sleep 2; arm; echo \"armed $?\"; kill -INT $r; wait $r; cat supervisor.txt\n",
+      "arm() { $fathom arm --operator $share/operators/simulated.yaml $*; }\n"
+      "arm; echo \"listed $?\"; arm --needs estimator; echo \"refused $?\"; identify; sleep 2; arm; echo \"armed $?\"; "
+      "kill -INT $r; wait $r; cat supervisor.txt\n",
       90);
   CHECK_FALSE(ran.says("not within"));
   CHECK_MESSAGE(ran.says("aborted: identifier is silent: no HEALTH for 1"), ran.text);
-  CHECK(ran.says("not armed: identifier is silent: no HEALTH for 1"));
+  CHECK_MESSAGE(ran.says("NOT OK  identifier"), ran.text);
+  CHECK(ran.says("listed 1"));
+  CHECK(ran.says(
+      "refused by supervisor: not armed: identifier is silent: no HEALTH for "));  // whoever goes past the list
+  CHECK(ran.says("refused 1"));
   CHECK(ran.says("the sheriff's table tells why it does not run; then arm again"));
   CHECK(ran.says("armed 0"));
   const Recording run = wire::read_log(scratch.path("trial.lcmlog")).recording;

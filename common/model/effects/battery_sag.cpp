@@ -14,7 +14,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 4.0}};
+constexpr std::array kBatterySagParameters{EffectParameter{"sensitivity", "", 1.0, -1.0, 4.0}};
 enum Form { kVoltage, kTime };
 constexpr double kTimeScale = 300.0;  // s: the bound then allows a battery that is empty after a minute and a quarter
 constexpr double kSmallestRange = 0.003;  // of the voltage: less says nothing
@@ -25,7 +25,7 @@ class BatterySag final : public Effect {
   std::string_view name() const override { return "battery_sag"; }
   std::string_view sentence() const override { return "Thrust changes as the battery's voltage changes."; }
   std::string_view revealed_by() const override { return "the same manoeuvre on a full and on an emptied battery"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kBatterySagParameters; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const bool useful = scene.voltage && scene.voltage_range > kSmallestRange * scene.mean_voltage;

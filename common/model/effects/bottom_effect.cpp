@@ -20,21 +20,21 @@ namespace {
 
 using namespace boundary;
 
-constexpr std::array kParameters{
+constexpr std::array kBottomEffectParameters{
     EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4}, EffectParameter{"bottom_depth", "m", 20.0},
     EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach, 0.0, false, false, true},
     EffectParameter{"at_depth", "m"}};
 constexpr std::size_t kBottomDepth = 1, kReach = 2, kAtDepth = 3;
-constexpr double kSmallestRange = 0.05;           // m of depth
-constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};  // m below the deepest place
-constexpr std::array kReaches{0.1, 0.3, 0.9};     // of the range of depth
+constexpr double kBottomEffectSmallestRange = 0.05;  // m of depth
+constexpr std::array kGaps{0.15, 0.4, 1.0, 2.5};     // m below the deepest place
+constexpr std::array kReaches{0.1, 0.3, 0.9};        // of the range of depth
 
 class BottomEffect final : public Effect {
  public:
   std::string_view name() const override { return "bottom_effect"; }
   std::string_view sentence() const override { return "The bottom below is felt when it is near."; }
   std::string_view revealed_by() const override { return "hovering and moving at several heights above the floor"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kBottomEffectParameters; }
   int amplitudes() const override { return 1; }
   bool takes_part(int variant, std::size_t number) const override {
     return number == 0 || number == (exponential(variant) ? kReach : kBottomDepth);
@@ -57,11 +57,11 @@ class BottomEffect final : public Effect {
     return {"a layer of denser water below", "going deeper, or to the same depth where the bottom is deeper"};
   }
   std::string_view unit(int variant, std::size_t number) const override {
-    return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
+    return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kBottomEffectParameters[number].unit;
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
-    if (!scene.position || scene.p_high.z() - scene.p_low.z() <= kSmallestRange) return {};
+    if (!scene.position || scene.p_high.z() - scene.p_low.z() <= kBottomEffectSmallestRange) return {};
     const bool moves = dof[0] || dof[1] || dof[2];
     return names(dof[2], moves, dof[0] || dof[1]);
   }

@@ -17,9 +17,9 @@ namespace fathom::model::effects {
 namespace {
 
 // Sought together, as a centre that lies off is off in all directions.
-constexpr std::array kParameters{EffectParameter{"x_G", "m", 0.1, -1.0, 1.0},
-                                 EffectParameter{"y_G", "m", 0.1, -1.0, 1.0},
-                                 EffectParameter{"z_G", "m", 0.1, -1.0, 1.0}};
+constexpr std::array kCentreOfMassParameters{EffectParameter{"x_G", "m", 0.1, -1.0, 1.0},
+                                             EffectParameter{"y_G", "m", 0.1, -1.0, 1.0},
+                                             EffectParameter{"z_G", "m", 0.1, -1.0, 1.0}};
 constexpr double kSmallestSpeed = 0.01;  // m/s, rad/s
 
 /// The pairs of axes that a component couples: translation, rotation.
@@ -33,7 +33,7 @@ class CentreOfMass final : public Effect {
   std::string_view revealed_by() const override {
     return "turning on the spot, thrust along one axis at a time, and turning while moving ahead";
   }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kCentreOfMassParameters; }
   bool takes_part(int variant, std::size_t number) const override { return in_set(variant, number); }
   int amplitudes() const override { return 3; }
   bool feels_motion() const override { return false; }
@@ -53,12 +53,12 @@ class CentreOfMass final : public Effect {
       const bool like_tilt = i == 2 && !scene.attitude;
       if (like_tilt || std::ranges::none_of(kPairs[i], acts)) continue;
       form |= 1 << i;
-      name += (name.empty() ? "" : ", ") + std::string{kParameters[i].name};
+      name += (name.empty() ? "" : ", ") + std::string{kCentreOfMassParameters[i].name};
     }
     return forms_of(form, name);
   }
   std::vector<std::vector<double>> starts(const Scene&, int variant) const override {
-    std::vector<double> start(kParameters.size(), 0.0);
+    std::vector<double> start(kCentreOfMassParameters.size(), 0.0);
     for (std::size_t i = 0; i < start.size(); ++i) start[i] = in_set(variant, i) ? 0.01 : 0.0;
     return {start};
   }

@@ -12,23 +12,24 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"weight_per_depth", "N/m", 2.0, -200.0, 200.0}};
-constexpr double kSmallestRange = 0.05;  // m of depth
+constexpr std::array kCompressibilityParameters{EffectParameter{"weight_per_depth", "N/m", 2.0, -200.0, 200.0}};
+constexpr double kCompressibilitySmallestRange = 0.05;  // m of depth
 
 class Compressibility final : public Effect {
  public:
   std::string_view name() const override { return "compressibility"; }
   std::string_view sentence() const override { return "Buoyancy changes with depth."; }
   std::string_view revealed_by() const override { return "slow dives over the whole depth, with pauses"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kCompressibilityParameters; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {
-    const bool seen = scene.position && scene.vehicle->dof[2] && scene.p_high.z() - scene.p_low.z() > kSmallestRange;
+    const bool seen =
+        scene.position && scene.vehicle->dof[2] && scene.p_high.z() - scene.p_low.z() > kCompressibilitySmallestRange;
     return seen ? std::vector<std::string>{""} : std::vector<std::string>{};
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
-    const double range = std::max(scene.p_high.z() - scene.p_low.z(), kSmallestRange);
+    const double range = std::max(scene.p_high.z() - scene.p_low.z(), kCompressibilitySmallestRange);
     return {{0.1 * std::max(scene.tau_rms[2], 1e-3) / range}};
   }
 

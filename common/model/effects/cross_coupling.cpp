@@ -16,15 +16,15 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)", 1.0}};
+constexpr std::array kCrossCouplingParameters{EffectParameter{"coefficient", "N/(m/s)", 1.0}};
 constexpr std::array<std::array<int, 3>, 2> kPlanes{{{0, 2, 4}, {1, 3, 5}}};
 
-enum class Form { kLinear, kQuadratic, kInertia };
+enum class CrossCouplingForm { kLinear, kQuadratic, kInertia };
 
 struct Term {
   int row;
   int column;
-  Form form;
+  CrossCouplingForm form;
 };
 
 constexpr std::array<std::array<int, 2>, 3> kOneSided{{{5, 0}, {1, 0}, {3, 2}}};
@@ -36,13 +36,13 @@ constexpr std::array<Term, 75> make_terms() {
   std::size_t n = 0;
   const auto add_drag = [&](int row, int column) {
     if (std::exchange(drag[static_cast<std::size_t>(6 * row + column)], true)) return;
-    terms[n++] = {row, column, Form::kLinear};
-    terms[n++] = {row, column, Form::kQuadratic};
+    terms[n++] = {row, column, CrossCouplingForm::kLinear};
+    terms[n++] = {row, column, CrossCouplingForm::kQuadratic};
   };
   const auto add_inertia = [&](int row, int column) {
     const auto [low, high] = std::minmax(row, column);
     if (std::exchange(inertia[static_cast<std::size_t>(6 * low + high)], true)) return;
-    terms[n++] = {low, high, Form::kInertia};
+    terms[n++] = {low, high, CrossCouplingForm::kInertia};
   };
   for (const auto& plane : kPlanes) {
     for (const int row : plane) {
@@ -72,8 +72,8 @@ std::string term_name(const Term& term) {
   const auto column = static_cast<std::size_t>(term.column);
   const std::string v = kVelocityNames[column];
   const std::string base = std::string(kAxisNames[row]) + "_";
-  if (term.form == Form::kLinear) return base + v;
-  if (term.form == Form::kQuadratic) return base + v + "|" + v + "|";
+  if (term.form == CrossCouplingForm::kLinear) return base + v;
+  if (term.form == CrossCouplingForm::kQuadratic) return base + v + "|" + v + "|";
   return base + v + "_dot";
 }
 
@@ -82,21 +82,21 @@ class CrossCoupling final : public Effect {
   std::string_view name() const override { return "cross_coupling"; }
   std::string_view sentence() const override { return "Motion along one axis loads another axis."; }
   std::string_view revealed_by() const override { return "motion along one axis at a time, at several speeds"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kCrossCouplingParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t) const override {
     const Term& term = kTerms[static_cast<std::size_t>(variant)];
-    if (term.form == Form::kInertia) return inertia_unit(term.row, term.column);
-    return drag_unit(term.row, term.column, term.form == Form::kLinear ? 1 : 2);
+    if (term.form == CrossCouplingForm::kInertia) return inertia_unit(term.row, term.column);
+    return drag_unit(term.row, term.column, term.form == CrossCouplingForm::kLinear ? 1 : 2);
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     // Positions in this list are the variant numbers, so a term whose axes stand still keeps its place with no name.
     std::vector<std::string> names;
     for (const Term& term : kTerms) {
       const bool free = scene.vehicle->dof[static_cast<std::size_t>(term.row)];
-      const bool moves = scene.nu_rms[term.column] > 0.0 &&
-                         (term.form != Form::kInertia || scene.vehicle->dof[static_cast<std::size_t>(term.column)]);
+      const bool moves = scene.nu_rms[term.column] > 0.0 && (term.form != CrossCouplingForm::kInertia ||
+                                                             scene.vehicle->dof[static_cast<std::size_t>(term.column)]);
       names.push_back(free && moves ? term_name(term) : "-");
     }
     return names;
@@ -105,8 +105,8 @@ class CrossCoupling final : public Effect {
     const Term& term = kTerms[static_cast<std::size_t>(variant)];
     const double speed = std::max(scene.nu_rms[term.column], 1e-3);
     const double force = 0.02 * std::max(scene.tau_rms[term.row], 1e-3);
-    if (term.form == Form::kLinear) return {{force / speed}};
-    if (term.form == Form::kQuadratic) return {{force / (speed * speed)}};
+    if (term.form == CrossCouplingForm::kLinear) return {{force / speed}};
+    if (term.form == CrossCouplingForm::kQuadratic) return {{force / (speed * speed)}};
     return {{0.2 * force / speed}};
   }
 
@@ -115,9 +115,9 @@ class CrossCoupling final : public Effect {
     if (theta[0] == 0.0) return;
     const Vector6d nu_r = motion.nu_r();
     const double velocity = nu_r[term.column];
-    if (term.form == Form::kLinear) load.wrench[term.row] += theta[0] * velocity;
-    if (term.form == Form::kQuadratic) load.wrench[term.row] += theta[0] * std::abs(velocity) * velocity;
-    if (term.form == Form::kInertia) {
+    if (term.form == CrossCouplingForm::kLinear) load.wrench[term.row] += theta[0] * velocity;
+    if (term.form == CrossCouplingForm::kQuadratic) load.wrench[term.row] += theta[0] * std::abs(velocity) * velocity;
+    if (term.form == CrossCouplingForm::kInertia) {
       load.added_inertia()(term.row, term.column) += theta[0];
       load.added_inertia()(term.column, term.row) += theta[0];
       // Momentum that the pair adds, and what it costs to turn it (Fossen 2011, eq. 6.44); steady water seen from a

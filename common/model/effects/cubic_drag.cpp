@@ -12,14 +12,14 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^3", 50.0, 0.0, 1e5}};
+constexpr std::array kCubicDragParameters{EffectParameter{"coefficient", "N/(m/s)^3", 50.0, 0.0, 1e5}};
 
 class CubicDrag final : public Effect {
  public:
   std::string_view name() const override { return "cubic_drag"; }
   std::string_view sentence() const override { return "Drag grows faster than the square of speed."; }
   std::string_view revealed_by() const override { return "slow, medium and top speed along one axis"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kCubicDragParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t) const override { return drag_unit(variant, variant, 3); }

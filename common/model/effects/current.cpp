@@ -8,15 +8,15 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"v_N", "m/s", 0.1, -3.0, 3.0, 0.0, false, true},
-                                 EffectParameter{"v_E", "m/s", 0.1, -3.0, 3.0, 0.0, false, true}};
+constexpr std::array kCurrentParameters{EffectParameter{"v_N", "m/s", 0.1, -3.0, 3.0, 0.0, false, true},
+                                        EffectParameter{"v_E", "m/s", 0.1, -3.0, 3.0, 0.0, false, true}};
 
 class Current final : public Effect {
  public:
   std::string_view name() const override { return "current"; }
   std::string_view sentence() const override { return "The water itself moves steadily past the site."; }
   std::string_view revealed_by() const override { return "the same motion on opposite and crossing headings"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kCurrentParameters; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const bool seen = scene.attitude && scene.velocity;
     return seen ? std::vector<std::string>{""} : std::vector<std::string>{};

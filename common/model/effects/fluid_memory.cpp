@@ -21,14 +21,14 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient_u", "N/(m/s)", 20.0, -1e4, 1e4},
-                                 EffectParameter{"coefficient_v", "N/(m/s)", 20.0, -1e4, 1e4},
-                                 EffectParameter{"coefficient_w", "N/(m/s)", 20.0, -1e4, 1e4},
-                                 EffectParameter{"coefficient_p", "N m/(rad/s)", 2.0, -1e3, 1e3},
-                                 EffectParameter{"coefficient_q", "N m/(rad/s)", 2.0, -1e3, 1e3},
-                                 EffectParameter{"coefficient_r", "N m/(rad/s)", 2.0, -1e3, 1e3},
-                                 EffectParameter{"time_constant", "s", 3.0, 0.05, 30.0},
-                                 EffectParameter{"natural_frequency", "rad/s", 1.0, 0.0, 6.0}};
+constexpr std::array kFluidMemoryParameters{EffectParameter{"coefficient_u", "N/(m/s)", 20.0, -1e4, 1e4},
+                                            EffectParameter{"coefficient_v", "N/(m/s)", 20.0, -1e4, 1e4},
+                                            EffectParameter{"coefficient_w", "N/(m/s)", 20.0, -1e4, 1e4},
+                                            EffectParameter{"coefficient_p", "N m/(rad/s)", 2.0, -1e3, 1e3},
+                                            EffectParameter{"coefficient_q", "N m/(rad/s)", 2.0, -1e3, 1e3},
+                                            EffectParameter{"coefficient_r", "N m/(rad/s)", 2.0, -1e3, 1e3},
+                                            EffectParameter{"time_constant", "s", 3.0, 0.05, 30.0},
+                                            EffectParameter{"natural_frequency", "rad/s", 1.0, 0.0, 6.0}};
 constexpr int kAxes = 6;  // z, the relative velocity that was felt last, and the imaginary part of z, on all axes
 constexpr std::size_t kTime = kAxes, kFrequency = kTime + 1;
 constexpr int kSwinging = kAxes + 64;  // first of the forms that swing; they follow in the order of the others
@@ -69,7 +69,7 @@ class FluidMemory final : public Effect {
   std::string_view name() const override { return "fluid_memory"; }
   std::string_view sentence() const override { return "The water remembers past motion for a while."; }
   std::string_view revealed_by() const override { return "slow and quick changes between the same speeds"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kFluidMemoryParameters; }
   int amplitudes() const override { return kAxes; }
   bool feels_motion() const override { return false; }
   bool remembers_motion() const override { return true; }

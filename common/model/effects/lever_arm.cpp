@@ -11,9 +11,9 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"r_x", "m", 0.2, -20.0, 20.0},
-                                 EffectParameter{"r_y", "m", 0.2, -20.0, 20.0},
-                                 EffectParameter{"r_z", "m", 0.2, -20.0, 20.0}};
+constexpr std::array kLeverArmParameters{EffectParameter{"r_x", "m", 0.2, -20.0, 20.0},
+                                         EffectParameter{"r_y", "m", 0.2, -20.0, 20.0},
+                                         EffectParameter{"r_z", "m", 0.2, -20.0, 20.0}};
 constexpr double kSmallestTurning = 0.01;  // rad/s
 
 void shift(VelocityView& nu, const Eigen::Vector3d& r) {
@@ -30,7 +30,7 @@ class LeverArm final : public Effect {
     return "The velocity sensor sits away from the origin and feels the turning.";
   }
   std::string_view revealed_by() const override { return "turning on the spot about every axis"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kLeverArmParameters; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;

@@ -15,8 +15,8 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"mass", "kg", 2.0, -1000.0, 1000.0},
-                                 EffectParameter{"weight", "N", 5.0, -1000.0, 1000.0}, kOnsetParameter};
+constexpr std::array kPayloadChangeParameters{EffectParameter{"mass", "kg", 2.0, -1000.0, 1000.0},
+                                              EffectParameter{"weight", "N", 5.0, -1000.0, 1000.0}, kOnsetParameter};
 constexpr int kMoments = 10;
 constexpr double kFallbackMass = 10.0;  // kg
 
@@ -25,7 +25,7 @@ class PayloadChange final : public Effect {
   std::string_view name() const override { return "payload_change"; }
   std::string_view sentence() const override { return "The vehicle gains or loses mass and weight at some moment."; }
   std::string_view revealed_by() const override { return "hovering and the same steps of thrust, early and late"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kPayloadChangeParameters; }
   int amplitudes() const override { return 2; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -14,8 +14,8 @@ namespace fathom::model::effects {
 namespace {
 
 // Components are sought together: what hangs askew is not even nearly described by one of them.
-constexpr std::array kParameters{EffectParameter{"G_x", "N m", 5.0}, EffectParameter{"G_y", "N m", 5.0},
-                                 EffectParameter{"G_z", "N m", 5.0}};
+constexpr std::array kRestoringMomentParameters{EffectParameter{"G_x", "N m", 5.0}, EffectParameter{"G_y", "N m", 5.0},
+                                                EffectParameter{"G_z", "N m", 5.0}};
 constexpr std::array kFarStarts{1.0 / 3.0, 1.0};  // of the G_z that a prior allows: of a vehicle that rights itself
 constexpr double kSmallestTilt = 0.01;            // rad: less and yaw feels nothing
 
@@ -26,7 +26,7 @@ class RestoringMoment final : public Effect {
     return "The centres of gravity and buoyancy lie apart in a way the model does not know.";
   }
   std::string_view revealed_by() const override { return "tilted attitudes, each held for several seconds"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kRestoringMomentParameters; }
   bool takes_part(int variant, std::size_t number) const override { return in_set(variant, number); }
   int amplitudes() const override { return 3; }
   bool feels_motion() const override { return false; }
@@ -38,10 +38,10 @@ class RestoringMoment final : public Effect {
     int form = 0;
     std::string name;
     for (std::size_t i = 0; i < 3; ++i) {
-      const bool in_base = std::find(free.begin(), free.end(), kParameters[i].name) != free.end();
+      const bool in_base = std::find(free.begin(), free.end(), kRestoringMomentParameters[i].name) != free.end();
       if (!acts[i] || in_base) continue;
       form |= 1 << i;
-      name += (name.empty() ? "" : ", ") + std::string{kParameters[i].name};
+      name += (name.empty() ? "" : ", ") + std::string{kRestoringMomentParameters[i].name};
     }
     return forms_of(form, name);
   }

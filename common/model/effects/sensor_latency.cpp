@@ -14,8 +14,8 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"latency", "s", 0.1, 0.0, 1.5, 0.0, true}};
-enum Form { kAll, kVelocity, kRates };
+constexpr std::array kSensorLatencyParameters{EffectParameter{"latency", "s", 0.1, 0.0, 1.5, 0.0, true}};
+enum SensorLatencyForm { kAll, kVelocity, kRates };
 using Sample = Eigen::Matrix<double, 6, 1>;
 
 /// One step of a walk along the trace: writes sample k as it was `back` samples earlier (later when negative). `kept`
@@ -78,7 +78,7 @@ class SensorLatency final : public Effect {
   std::string_view name() const override { return "sensor_latency"; }
   std::string_view sentence() const override { return "A measured velocity is older than its time stamp."; }
   std::string_view revealed_by() const override { return "steps and reversals of thrust while turning"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kSensorLatencyParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -12,7 +12,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"error", "", 0.1, -0.9, 4.0}};
+constexpr std::array kSensorScaleParameters{EffectParameter{"error", "", 0.1, -0.9, 4.0}};
 
 // Products of velocities in each row of C(nu) nu, docs/model.md (2).
 constexpr std::array<std::array<std::array<int, 2>, 2>, 6> kProducts{{{{{4, 2}, {5, 1}}},
@@ -40,7 +40,7 @@ class SensorScale final : public Effect {
   std::string_view name() const override { return "sensor_scale"; }
   std::string_view sentence() const override { return "A sensor shows more or less than there is, in proportion."; }
   std::string_view revealed_by() const override { return "turning while moving: axes coupled by known physics"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kSensorScaleParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -18,13 +18,13 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "N/(m/s)^2/m", 5.0, 0.0, 1e4},
-                                 EffectParameter{"anchor_N", "m", 20.0},
-                                 EffectParameter{"anchor_E", "m", 20.0},
-                                 EffectParameter{"anchor_D", "m", 10.0},
-                                 kAttachment[0],
-                                 kAttachment[1],
-                                 kAttachment[2]};
+constexpr std::array kTetherDragParameters{EffectParameter{"coefficient", "N/(m/s)^2/m", 5.0, 0.0, 1e4},
+                                           EffectParameter{"anchor_N", "m", 20.0},
+                                           EffectParameter{"anchor_E", "m", 20.0},
+                                           EffectParameter{"anchor_D", "m", 10.0},
+                                           kAttachment[0],
+                                           kAttachment[1],
+                                           kAttachment[2]};
 constexpr std::size_t kAttached = 4;  // its first number
 constexpr int kLinear = 8;            // after the sets of an attachment's components: none of these forms has any
 constexpr int kAcross = 16;
@@ -38,7 +38,7 @@ class TetherDrag final : public Effect {
   std::string_view revealed_by() const override {
     return "the same speeds near the tether's fixed end and far from it";
   }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kTetherDragParameters; }
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
@@ -55,7 +55,7 @@ class TetherDrag final : public Effect {
     return forms;
   }
   std::string_view unit(int variant, std::size_t number) const override {
-    return variant == kLinear && number == 0 ? "N/(m/s)/m" : kParameters[number].unit;
+    return variant == kLinear && number == 0 ? "N/(m/s)/m" : kTetherDragParameters[number].unit;
   }
   bool takes_part(int variant, std::size_t number) const override {
     return number < kAttached || in_set(variant, number - kAttached);

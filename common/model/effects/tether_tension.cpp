@@ -13,15 +13,15 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1000.0},
-                                 EffectParameter{"slack_length", "m", 3.0, 0.0, 500.0},
-                                 EffectParameter{"anchor_N", "m", 5.0},
-                                 EffectParameter{"anchor_E", "m", 5.0},
-                                 EffectParameter{"anchor_D", "m", 3.0},
-                                 kAttachment[0],
-                                 kAttachment[1],
-                                 kAttachment[2]};
-constexpr std::size_t kAttached = 5;  // its first number
+constexpr std::array kTetherTensionParameters{EffectParameter{"stiffness", "N/m", 2.0, 0.0, 1000.0},
+                                              EffectParameter{"slack_length", "m", 3.0, 0.0, 500.0},
+                                              EffectParameter{"anchor_N", "m", 5.0},
+                                              EffectParameter{"anchor_E", "m", 5.0},
+                                              EffectParameter{"anchor_D", "m", 3.0},
+                                              kAttachment[0],
+                                              kAttachment[1],
+                                              kAttachment[2]};
+constexpr std::size_t kTetherTensionAttached = 5;  // its first number
 
 constexpr double kStartStiffness = 0.5;  // N/m
 constexpr double kSteady = 10.0;         // times the reach of what was visited: direction and size change by a tenth
@@ -31,7 +31,7 @@ class TetherTension final : public Effect {
   std::string_view name() const override { return "tether_tension"; }
   std::string_view sentence() const override { return "A tether pulls toward its fixed end."; }
   std::string_view revealed_by() const override { return "slow excursions to every side of the site, with pauses"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kTetherTensionParameters; }
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool feels_place() const override { return true; }
@@ -40,7 +40,7 @@ class TetherTension final : public Effect {
     return seen ? attachment_forms(*scene.vehicle) : std::vector<std::string>{};
   }
   bool takes_part(int variant, std::size_t number) const override {
-    return number < kAttached || in_set(variant, number - kAttached);
+    return number < kTetherTensionAttached || in_set(variant, number - kTetherTensionAttached);
   }
   /// Over so little of its length the pull neither turns nor grows.
   Unlisted looks_like(EffectTheta theta, int, const Scene& scene) const override {
@@ -72,7 +72,7 @@ class TetherTension final : public Effect {
   }
 
   void load(const Motion& motion, EffectTheta theta, int variant, Load& load) const override {
-    const Eigen::Vector3d p_BC = components(theta, variant, kAttached);
+    const Eigen::Vector3d p_BC = components(theta, variant, kTetherTensionAttached);
     Eigen::Vector3d to_anchor = Eigen::Vector3d(theta[2], theta[3], theta[4]) - motion.p_WB;
     if (variant != 0) to_anchor -= motion.R_WB * p_BC;
     const double distance = to_anchor.norm();

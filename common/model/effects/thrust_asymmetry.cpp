@@ -9,14 +9,14 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"reverse_change", "", 0.2, -0.95, 3.0}};
+constexpr std::array kThrustAsymmetryParameters{EffectParameter{"reverse_change", "", 0.2, -0.95, 3.0}};
 
 class ThrustAsymmetry final : public Effect {
  public:
   std::string_view name() const override { return "thrust_asymmetry"; }
   std::string_view sentence() const override { return "Thrusters push differently in reverse than ahead."; }
   std::string_view revealed_by() const override { return "equal thrust in both directions, for several seconds each"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrustAsymmetryParameters; }
   bool feels_motion() const override { return false; }
   bool order_matters() const override { return true; }
 

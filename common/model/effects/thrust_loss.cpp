@@ -18,8 +18,8 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"coefficient", "N^(1/2)/(m/s)", 1.0, 0.0, 50.0}};
-enum Form { kShaftSpeed, kThrust, kShaftSpeedOfHull, kThrustOfHull };
+constexpr std::array kThrustLossParameters{EffectParameter{"coefficient", "N^(1/2)/(m/s)", 1.0, 0.0, 50.0}};
+enum ThrustLossForm { kShaftSpeed, kThrust, kShaftSpeedOfHull, kThrustOfHull };
 constexpr Eigen::Index kForces = 3;  // of a wrench: moments have no advance speed
 
 class ThrustLoss final : public Effect {
@@ -27,9 +27,9 @@ class ThrustLoss final : public Effect {
   std::string_view name() const override { return "thrust_loss"; }
   std::string_view sentence() const override { return "Thrust falls as the vehicle moves along with it."; }
   std::string_view revealed_by() const override { return "equal thrust while hovering and at full speed"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrustLossParameters; }
   std::string_view unit(int variant, std::size_t) const override {
-    return by_shaft(variant) ? kParameters[0].unit : "1/(m/s)";
+    return by_shaft(variant) ? kThrustLossParameters[0].unit : "1/(m/s)";
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;

@@ -13,17 +13,17 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.3, 0.0, 0.98},
-                                 EffectParameter{"time_constant", "s", 1.0, 0.05, 10.0}};
+constexpr std::array kThrustOvershootParameters{EffectParameter{"share_lost", "", 0.3, 0.0, 0.98},
+                                                EffectParameter{"time_constant", "s", 1.0, 0.05, 10.0}};
 
-enum Form { kAll, kHorizontal, kVertical };
+enum ThrustOvershootForm { kAll, kHorizontal, kVertical };
 
 class ThrustOvershoot final : public Effect {
  public:
   std::string_view name() const override { return "thrust_overshoot"; }
   std::string_view sentence() const override { return "Thrust peaks after each change of command and then fades."; }
   std::string_view revealed_by() const override { return "steps of thrust held for five seconds and more"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrustOvershootParameters; }
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -13,8 +13,8 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50.0}};
-enum Form { kOffset, kStep, kRounded };
+constexpr std::array kThrusterDeadbandParameters{EffectParameter{"half_width", "N", 0.5, 0.0, 50.0}};
+enum ThrusterDeadbandForm { kOffset, kStep, kRounded };
 constexpr double kFirstStep = 0.04, kLastStep = 1.0;  // of the typical command
 constexpr double kNextStep = 1.15;                    // times the one before: constant commands are often close to it
 constexpr double kFlank = 0.01;                       // of the width, at least: keeps the step differentiable
@@ -32,7 +32,7 @@ class ThrusterDeadband final : public Effect {
   std::string_view name() const override { return "thruster_deadband"; }
   std::string_view sentence() const override { return "Small commands produce no thrust."; }
   std::string_view revealed_by() const override { return "small thrust commands that change sign"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrusterDeadbandParameters; }
   bool feels_motion() const override { return false; }
   bool order_matters() const override { return true; }
   std::vector<std::string> variants(const Scene&) const override { return {"offset", "step", "rounded"}; }

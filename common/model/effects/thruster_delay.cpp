@@ -10,9 +10,9 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"delay", "s", 0.1, 0.0, 1.5, 0.0, true},
-                                 EffectParameter{"vertical_later", "s", 0.1, -1.5, 1.5}};
-enum Form { kAlike, kTwoKinds };
+constexpr std::array kThrusterDelayParameters{EffectParameter{"delay", "s", 0.1, 0.0, 1.5, 0.0, true},
+                                              EffectParameter{"vertical_later", "s", 0.1, -1.5, 1.5}};
+enum ThrusterDelayForm { kAlike, kTwoKinds };
 
 class ThrusterDelay final : public Effect {
  public:
@@ -23,7 +23,7 @@ class ThrusterDelay final : public Effect {
   std::string_view revealed_by() const override {
     return "steps and reversals of thrust, each held for several seconds";
   }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrusterDelayParameters; }
   bool feels_motion() const override { return false; }
   bool takes_part(int variant, std::size_t number) const override { return number == 0 || variant == kTwoKinds; }
   std::vector<std::string> variants(const Scene& scene) const override {

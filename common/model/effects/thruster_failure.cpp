@@ -13,8 +13,8 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"share_lost", "", 0.5, 0.0, 1.2}, kOnsetParameter};
-constexpr int kMoments = 8;
+constexpr std::array kThrusterFailureParameters{EffectParameter{"share_lost", "", 0.5, 0.0, 1.2}, kOnsetParameter};
+constexpr int kThrusterFailureMoments = 8;
 constexpr double kTypicalLoss = 0.3;
 
 class ThrusterFailure final : public Effect {
@@ -22,7 +22,7 @@ class ThrusterFailure final : public Effect {
   std::string_view name() const override { return "thruster_failure"; }
   std::string_view sentence() const override { return "One thruster loses part of its thrust at some moment."; }
   std::string_view revealed_by() const override { return "the same motions in every part of the run"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrusterFailureParameters; }
   int amplitudes() const override { return 1; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
@@ -38,7 +38,7 @@ class ThrusterFailure final : public Effect {
   }
   std::vector<std::vector<double>> starts(const Scene& scene, int) const override {
     std::vector<std::vector<double>> starts;
-    for (const double moment : onset_starts(scene.t_low, scene.t_high, kMoments)) {
+    for (const double moment : onset_starts(scene.t_low, scene.t_high, kThrusterFailureMoments)) {
       starts.push_back({kTypicalLoss, std::max(moment, 0.0)});
     }
     return starts;

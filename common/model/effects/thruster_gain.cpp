@@ -10,7 +10,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"gain_change", "", 0.2, -1.2, 3.0}};
+constexpr std::array kThrusterGainParameters{EffectParameter{"gain_change", "", 0.2, -1.2, 3.0}};
 
 class ThrusterGain final : public Effect {
  public:
@@ -19,7 +19,7 @@ class ThrusterGain final : public Effect {
   std::string_view revealed_by() const override {
     return "sway, surge and yaw at constant thrust: the odd one turns the vehicle";
   }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrusterGainParameters; }
   bool feels_motion() const override { return false; }
   bool variants_matter() const override { return true; }
   std::vector<std::string> variants(const Scene& scene) const override {

@@ -19,9 +19,9 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0, 0.0, true},
-                                 EffectParameter{"vertical_longer", "s", 0.15, -3.0, 3.0}};
-enum Form { kAlike, kTwoKinds, kShaft, kSecondOrder, kTorque };
+constexpr std::array kThrusterLagParameters{EffectParameter{"time_constant", "s", 0.15, 0.0, 3.0, 0.0, true},
+                                            EffectParameter{"vertical_longer", "s", 0.15, -3.0, 3.0}};
+enum ThrusterLagForm { kAlike, kTwoKinds, kShaft, kSecondOrder, kTorque };
 constexpr double kReferenceThrust = 10.0;  // N, where none is stated
 constexpr double kInstant = 1e-6;          // s
 
@@ -57,7 +57,7 @@ class ThrusterLag final : public Effect {
   std::string_view name() const override { return "thruster_lag"; }
   std::string_view sentence() const override { return "Thrust builds up gradually after each change of command."; }
   std::string_view revealed_by() const override { return "steps and a sweep of thrust up to about 2 Hz"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrusterLagParameters; }
   bool feels_motion() const override { return false; }
   bool takes_part(int variant, std::size_t number) const override { return number == 0 || variant == kTwoKinds; }
   std::vector<std::string> variants(const Scene& scene) const override {

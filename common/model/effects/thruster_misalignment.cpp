@@ -18,7 +18,7 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"error", "rad", 0.1, -1.2, 1.2}};
+constexpr std::array kThrusterMisalignmentParameters{EffectParameter{"error", "rad", 0.1, -1.2, 1.2}};
 constexpr int kForms = 6;  // per thruster: turned about x, y, z; shifted along x, y, z
 constexpr std::array<const char*, kForms> kFormNames{"turned about x",  "turned about y",  "turned about z",
                                                      "shifted along x", "shifted along y", "shifted along z"};
@@ -49,7 +49,7 @@ class ThrusterMisalignment final : public Effect {
   std::string_view name() const override { return "thruster_misalignment"; }
   std::string_view sentence() const override { return "One thruster pushes in another direction or at another place."; }
   std::string_view revealed_by() const override { return "each thruster driven by itself, ahead and in reverse"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kThrusterMisalignmentParameters; }
   bool feels_motion() const override { return false; }
   std::string_view unit(int variant, std::size_t) const override { return variant % kForms < 3 ? "rad" : "m"; }
   bool variants_matter() const override { return true; }

@@ -20,16 +20,16 @@ namespace {
 
 using namespace boundary;
 
-constexpr std::array kParameters{
+constexpr std::array kWallEffectParameters{
     EffectParameter{"strength", "N m^2", 5.0, -1e4, 1e4}, EffectParameter{"bearing", "rad", 3.0},
     EffectParameter{"distance", "m", 20.0},
     EffectParameter{"reach", "m", 0.5, kSmallestReach, kLongestReach, 0.0, false, false, true},
     EffectParameter{"at_distance", "m"}};
 constexpr std::size_t kBearing = 1, kDistance = 2, kReach = 3, kAtDistance = 4;
-constexpr int kBearings = 8;
-constexpr std::array kGaps{0.3, 1.0};    // m beyond the box of positions
-constexpr double kReachShare = 0.2;      // of the width of that box, where a search begins
-constexpr double kSmallestRange = 0.05;  // m
+constexpr int kWallEffectBearings = 8;
+constexpr std::array kWallEffectGaps{0.3, 1.0};    // m beyond the box of positions
+constexpr double kReachShare = 0.2;                // of the width of that box, where a search begins
+constexpr double kWallEffectSmallestRange = 0.05;  // m
 
 Eigen::Vector3d toward(EffectTheta theta) { return {std::cos(theta[kBearing]), std::sin(theta[kBearing]), 0.0}; }
 
@@ -38,7 +38,7 @@ class WallEffect final : public Effect {
   std::string_view name() const override { return "wall_effect"; }
   std::string_view sentence() const override { return "A wall beside is felt when it is near."; }
   std::string_view revealed_by() const override { return "moving along and toward every side of the site"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kWallEffectParameters; }
   int amplitudes() const override { return 1; }
   bool takes_part(int variant, std::size_t number) const override {
     return number <= kBearing || number == (exponential(variant) ? kReach : kDistance);
@@ -56,12 +56,12 @@ class WallEffect final : public Effect {
   }
   bool variants_matter() const override { return true; }
   std::string_view unit(int variant, std::size_t number) const override {
-    return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kParameters[number].unit;
+    return number == 0 ? kStrengthUnits[static_cast<std::size_t>(variant)] : kWallEffectParameters[number].unit;
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;
     const double range = (scene.p_high - scene.p_low).head<2>().maxCoeff();
-    if (!scene.position || !scene.attitude || range <= kSmallestRange) return {};
+    if (!scene.position || !scene.attitude || range <= kWallEffectSmallestRange) return {};
     const bool pushed = dof[0] || dof[1], moves = pushed || dof[2];
     return names(pushed, moves, (dof[0] && dof[1]) || (pushed && dof[2]));
   }
@@ -72,15 +72,15 @@ class WallEffect final : public Effect {
     const double size = multiplies(variant) ? kStartShare : force;
     const double speed = scene.nu_rms.head<3>().norm();
     std::vector<std::vector<double>> starts;
-    for (int k = 0; k < kBearings; ++k) {
-      const double bearing = 2.0 * std::numbers::pi * k / kBearings;
+    for (int k = 0; k < kWallEffectBearings; ++k) {
+      const double bearing = 2.0 * std::numbers::pi * k / kWallEffectBearings;
       const Eigen::Vector2d n{std::cos(bearing), std::sin(bearing)};
       const double width = n.cwiseAbs().dot(half), edge = n.dot(middle) + width;
       if (exponential(variant)) {
         starts.push_back({size, bearing, 0.0, std::min(2.0 * kReachShare * width, kTypicalReach), edge});
         continue;
       }
-      for (const double gap : kGaps) {
+      for (const double gap : kWallEffectGaps) {
         const double far = gap + 0.25 * width;  // where it should be worth a tenth of the thrust
         starts.push_back({strength_at(variant, force, far, speed), bearing, edge + gap, 0.0, 0.0});
       }

@@ -18,13 +18,13 @@
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kParameters{EffectParameter{"cosine", "N", 5.0, -1e4, 1e4, 0.0, false, true},
-                                 EffectParameter{"sine", "N", 5.0, -1e4, 1e4, 0.0, false, true},
-                                 EffectParameter{"bearing", "rad", 3.0},
-                                 EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
+constexpr std::array kWaveParameters{EffectParameter{"cosine", "N", 5.0, -1e4, 1e4, 0.0, false, true},
+                                     EffectParameter{"sine", "N", 5.0, -1e4, 1e4, 0.0, false, true},
+                                     EffectParameter{"bearing", "rad", 3.0},
+                                     EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
 constexpr int kAmplitudes = 2;  // the leading numbers
-constexpr std::size_t kBearing = 2;
-enum Form { kForce, kHeave, kOrbital };
+constexpr std::size_t kWaveBearing = 2;
+enum WaveForm { kForce, kHeave, kOrbital };
 constexpr double kGravity = 9.81;          // m/s^2
 constexpr double kMostDecay = 3.0;         // exponents of the decay with depth: the surface need not be at z = 0
 constexpr double kFallbackInertia = 20.0;  // kg
@@ -34,13 +34,15 @@ class Wave final : public Effect {
   std::string_view name() const override { return "wave"; }
   std::string_view sentence() const override { return "Waves push the vehicle to and fro."; }
   std::string_view revealed_by() const override { return "hovering for many periods of the waves"; }
-  std::span<const EffectParameter> parameters() const override { return kParameters; }
+  std::span<const EffectParameter> parameters() const override { return kWaveParameters; }
   int amplitudes() const override { return kAmplitudes; }
   bool feels_place() const override { return true; }
   bool variants_matter() const override { return true; }
-  bool takes_part(int variant, std::size_t number) const override { return variant != kHeave || number != kBearing; }
+  bool takes_part(int variant, std::size_t number) const override {
+    return variant != kHeave || number != kWaveBearing;
+  }
   std::string_view unit(int variant, std::size_t number) const override {
-    return variant == kOrbital && number < std::size_t{kAmplitudes} ? "m/s" : kParameters[number].unit;
+    return variant == kOrbital && number < std::size_t{kAmplitudes} ? "m/s" : kWaveParameters[number].unit;
   }
   std::vector<std::string> variants(const Scene& scene) const override {
     const auto& dof = scene.vehicle->dof;

@@ -57,7 +57,8 @@ void Orders::give(Operator wanted, bool supervisor) {
       console_.listen(kAgain, all);
     }
     const Answer* gate = answer(true);
-    if (gate != nullptr && !gate->done && gate->text == "heard before" && i + 1 < kTries) continue;
+    const auto was_late = [](const Answer* one) { return one != nullptr && !one->done && one->text == "heard before"; };
+    if ((was_late(gate) || (supervisor && was_late(answer(false)))) && i + 1 < kTries) continue;
     for (const auto& [process, each] : console_.answers) {
       std::printf("%-16s %s%s\n", process.c_str(), each.done ? "" : "REFUSED: ", each.text.c_str());
     }

@@ -30,8 +30,9 @@ struct Kept {
   std::string bytes;
   Salvage result;
   explicit Kept(const std::string& log) {
-    result = salvage({reinterpret_cast<const std::uint8_t*>(log.data()), log.size()},
-                     [&](auto event) { bytes.append(reinterpret_cast<const char*>(event.data()), event.size()); });
+    result = salvage({reinterpret_cast<const std::uint8_t*>(log.data()), log.size()}, [&](auto event, std::size_t) {
+      bytes.append(reinterpret_cast<const char*>(event.data()), event.size());
+    });
   }
 };
 
@@ -131,6 +132,26 @@ TEST_CASE("salvage: from file to file; nothing is overwritten and nothing empty 
   test::write_bytes(scratch.path("empty"), "");
   CHECK(refusal("empty", "c").ends_with("holds no whole event of an LCM log"));
   CHECK(test::read_bytes(scratch.path("c")).empty());
+}
+
+TEST_CASE("salvage: recordings that were joined go to files of their own, for a logger's count begins again") {
+  const test::Scratch scratch;
+  test::write_bytes(scratch.path("joined"), kA + kB + kC + kA + kB + kA);
+  const Salvage result = salvage(scratch.path("joined"), scratch.path("part.lcmlog"));
+  REQUIRE(result.parts.size() == 3);
+  CHECK(result.events == 6);
+  CHECK(result.parts[1].begin == (kA + kB + kC).size());
+  CHECK(result.parts[1].events_before == 3);
+  CHECK(test::read_bytes(scratch.path("part-1.lcmlog")) == kA + kB + kC);
+  CHECK(test::read_bytes(scratch.path("part-2.lcmlog")) == kA + kB);
+  CHECK(test::read_bytes(scratch.path("part-3.lcmlog")) == kA);
+  CHECK(test::read_bytes(scratch.path("part.lcmlog")).empty());
+  // Events that are missing are damage, and no other recording.
+  CHECK(Kept{kA + kC}.result.parts.size() == 1);
+  EventLog log{scratch.path("joined")};
+  int begins = 0;
+  while (const auto each = log.next()) begins += each->begins_anew ? 1 : 0;
+  CHECK(begins == 2);
 }
 
 }  // namespace fathom

@@ -212,7 +212,7 @@ TEST_CASE("live sensor check: a flow that reads too small is named while the tri
   for (const double factor : {1.0, 0.87}) {
     CAPTURE(factor);
     const test::Pictures pictures{{.seed = 4, .flow_factor = {1.0, factor}}};
-    LiveSensorCheck check{{}, estimation::FlowWitnesses{pictures.mounts, pictures.site}};
+    LiveSensorCheck check{{}, consistency::FlowWitnesses{pictures.mounts, pictures.site}};
     const Recording& recording = pictures.recording;
     const std::size_t tags = recording.tag_pose.size() / recording.state.size();
     for (int round = 0; round < 2; ++round) {  // the second after a reset
@@ -246,7 +246,7 @@ TEST_CASE("live sensor check: a flow in which turning was left is named with its
   for (const double arm : {0.0, -0.2}) {
     CAPTURE(arm);
     const test::Pictures pictures{{.seed = 4, .flow_arm = {arm, 0.0, 0.0}}};
-    LiveSensorCheck check{{}, estimation::FlowWitnesses{pictures.mounts, pictures.site}};
+    LiveSensorCheck check{{}, consistency::FlowWitnesses{pictures.mounts, pictures.site}};
     const std::size_t tags = pictures.recording.tag_pose.size() / pictures.recording.state.size();
     for (std::size_t k = 0; k < pictures.recording.state.size(); ++k) {
       for (std::size_t i = 0; i < tags; ++i) check.hear(pictures.recording.tag_pose[k * tags + i]);

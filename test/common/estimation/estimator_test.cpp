@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/base/config.hpp"
+#include "common/consistency/consistency.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "test/support/beluga_csv.hpp"
 #include "test/support/feed_estimator.hpp"
@@ -210,11 +211,11 @@ TEST_CASE("estimator: a reset is a new estimator") {
 TEST_CASE("estimator: follows the offline reconstruction of a Beluga run with that run's own configuration") {
   const Recording recording = test::read_beluga("random-1");
   const std::vector<Recording> one{recording};
-  const auto consistency = estimation::check_consistency(one);
+  const auto checked = consistency::check_consistency(one);
   const model::Vehicle vehicle = model::Vehicle::load(std::string(FATHOM_SOURCE_DIR) + "/config/vehicles/beluga.yaml");
-  const Trial trial = estimation::reconstruct(recording, consistency.corrections.front(), vehicle);
+  const Trial trial = estimation::reconstruct(recording, checked.corrections.front(), vehicle);
   const Config pipeline = Config::load(std::string(FATHOM_SOURCE_DIR) + "/config/pipelines/beluga.yaml");
-  Estimator estimator{EstimatorSettings::from(pipeline.section("estimator")), consistency.corrections.front()};
+  Estimator estimator{EstimatorSettings::from(pipeline.section("estimator")), checked.corrections.front()};
   const auto states = test::feed(estimator, recording);
   Vector6d error = Vector6d::Zero(), signal = Vector6d::Zero();
   double n = 0.0, valid = 0.0;

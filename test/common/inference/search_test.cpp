@@ -121,3 +121,11 @@ TEST_CASE("search: spikes, heavy tails and a scale that varies give no name") {
   CHECK(noisy.verdict == Verdict::adequate);
   CHECK(noisy.found.best.names.empty());
 }
+
+TEST_CASE("infer: a run of a few seconds is not judged, and says how much is needed") {
+  const Conclusion brief = inferred({.duration = 5.0});
+  CHECK(brief.verdict == Verdict::not_judged);
+  REQUIRE(brief.reasons.size() == 1);
+  CHECK(brief.reasons[0].cause == Cause::kTooShort);
+  CHECK(brief.reasons[0].threshold == Thresholds{}.shortest);
+}

@@ -123,11 +123,19 @@ TEST_CASE("allocation: an axis that the geometry lacks is named in one line and 
   CHECK(allocation.complaint(allocation.allocate(tau, 16.0)).empty());
 }
 
-TEST_CASE("allocation: thrusters that cannot produce yaw are refused in one line") {
+TEST_CASE("allocation: a free motion that no thruster drives is left alone, and named when it is commanded") {
   Vehicle subject = vehicle("seabotix_lbv150");
   subject.allocation.row(5).setZero();  // both in line with the origin, and the lateral one as well
+  const ThrusterAllocation allocation{subject, 13.0};
+  Vector6d tau = Vector6d::Zero();
+  tau(0) = 5.0;
+  CHECK(allocation.complaint(allocation.allocate(tau, 0.0)).empty());
+  CHECK(allocation.allocate(tau, 0.0).tau(0) == doctest::Approx(5.0));
+  tau(5) = 1.0;
+  CHECK(allocation.complaint(allocation.allocate(tau, 0.0)).find("commanded yaw") != std::string::npos);
+  subject.allocation.setZero();
   const std::string line = test::complaint_of<InputError>([&] { ThrusterAllocation none(subject, 13.0); });
-  CHECK(line.find("its thrusters cannot produce yaw by itself") != std::string::npos);
+  CHECK(line.find("produce none of the motions in 'dof'") != std::string::npos);
 }
 
 TEST_CASE("allocation: arms that no shipyard means are refused, short ones are not") {

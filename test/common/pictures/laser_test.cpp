@@ -108,7 +108,7 @@ TEST_CASE("laser: halved colour makes no dot where there is none") {
   }
 }
 
-// The table of docs/vision.md: build/dev/test/test_common_pictures -tc="laser: the table*" --no-skip
+// The table of docs/vision.md: build/check/test/test_common_pictures -tc="laser: the table*" --no-skip
 TEST_CASE("laser: the table of what compression costs" * doctest::skip()) {
   constexpr int kViews = 600;
   const std::vector<std::tuple<const char*, model::Site, RenderSettings>> places{

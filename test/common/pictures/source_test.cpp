@@ -36,7 +36,9 @@ TEST_CASE("pictures: 10, 12 and 14 bits in 16 have the brightness of 8, all pict
     cv::imwrite(scratch.path("2.png"), ramp(CV_16U, 0.2 * full));  // a dark one
     cv::imwrite(scratch.path("3.png"), ramp(CV_8U, 255.0));
     const auto source = open(scratch.path(""), 0.0);
+    double to_come = 3.0;
     for (const double brightest : {255.0, 51.0, 255.0}) {
+      CHECK(source->to_come() == to_come--);
       const auto frame = source->next();
       REQUIRE(frame);
       CHECK(frame->picture.type() == CV_8UC1);
@@ -45,6 +47,7 @@ TEST_CASE("pictures: 10, 12 and 14 bits in 16 have the brightness of 8, all pict
       CHECK(largest == doctest::Approx(brightest).epsilon(0.01));
     }
     CHECK_FALSE(source->next());
+    CHECK(source->to_come() == 0.0);
   }
 }
 

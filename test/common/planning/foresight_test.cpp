@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "common/diagnosis/search.hpp"
 #include "test/support/timing.hpp"
@@ -52,10 +53,14 @@ TEST_CASE("foresight: promises about sizes are kept, and look-alikes are named")
   const View view{vehicle, clean(vehicle), kWindow};
   const View again{vehicle, clean(vehicle), kWindow};
   const std::vector<Extra> extras{{"the same again", kDuration, &again}};
-  double told = 0.0;
-  const std::vector<Foreseen> all =
-      foresee(vehicle, view, extras, {}, [&](double share) { told = std::max(told, share); });
-  CHECK(told == 1.0);
+  std::atomic<double> expected{0.0}, told{0.0};
+  const Progress progress{[&](const Progress::Event& event) {
+    if (event.kind == Progress::Event::Kind::kExpect) expected = event.units;
+    if (event.kind == Progress::Event::Kind::kDone) told += event.units;
+  }};
+  const std::vector<Foreseen> all = foresee(vehicle, view, extras, {}, progress);
+  CHECK(expected.load() > 10.0);
+  CHECK(told.load() == expected.load());
 
   const Foreseen& current = named(all, "current");
   REQUIRE(current.found);
@@ -85,7 +90,7 @@ TEST_CASE("foresight: what a parameter can imitate hides in that parameter") {
   Trial trial = clean(vehicle);
   for (Eigen::Vector3d& p : trial.p_WB) p.z() = 3.0 + 0.1 * p.z();
   const View view{vehicle, trial, kWindow};
-  const std::vector<Foreseen> all = foresee(vehicle, view, {}, {}, [](double) {});
+  const std::vector<Foreseen> all = foresee(vehicle, view, {}, {}, {});
   const Foreseen& compressibility = named(all, "compressibility");
   REQUIRE(compressibility.found);
   CHECK(compressibility.hidden > 0.8);
@@ -100,7 +105,7 @@ TEST_CASE("foresight: quiet data show a lag shorter than steps of time, and it i
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   Trial trial = clean(vehicle);
   trial.nu_sigma.setConstant(1e-3);
-  const std::vector<Foreseen> all = foresee(vehicle, View{vehicle, trial, kWindow}, {}, {}, [](double) {});
+  const std::vector<Foreseen> all = foresee(vehicle, View{vehicle, trial, kWindow}, {}, {}, {});
   const Foreseen& lag = named(all, "thruster_lag");
   REQUIRE(lag.found);
   CHECK(lag.size[0].value > 1e-3);  // s: a twentieth of the longest step

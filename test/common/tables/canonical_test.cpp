@@ -67,7 +67,7 @@ TEST_CASE("canonical: attitude alone is an attitude sensor, position alone a pos
 
 TEST_CASE("canonical: unknown and incomplete columns are named") {
   CHECK(complaint("time,u,v,w\n0,1,2,3\n") ==
-        "run.csv:1: column 't' (time in seconds) is missing; describe other columns with a map (--map)");
+        "run.csv:1: column 't' (time in seconds, or as a date) is missing; describe other columns with a map (--map)");
   CHECK(complaint("t,u,v\n0,1,2\n") == "run.csv:1: columns 'u', 'v' stand without 'w'; they go together");
   CHECK(complaint("t,u,v,w,foo,Phi,Theta\n0,1,2,3,4,5,6\n")
             .rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?), 'Theta' (did you mean 'theta'?); without a "

@@ -92,6 +92,28 @@ TEST_CASE("csv: what is wrong is said in one line with the file's line") {
   }
 }
 
+TEST_CASE("csv: percent signs begin comments too, and the last one names the columns where no header does") {
+  const CsvTable table = parse_csv("% made by a glider\n% t, u, v\n0, 1, 2\n# more\n1, 3, 4\n", "run.csv");
+  CHECK(table.names == std::vector<std::string>{"t", "u", "v"});
+  CHECK(*table.find("v") == std::vector<double>{2.0, 4.0});
+  CHECK(parse_csv("# a, b\nt,u\n0,1\n", "run.csv").names == std::vector<std::string>{"t", "u"});
+  CHECK(complaint("0,1\n2,3\n").find("the first line holds numbers where the names") != std::string::npos);
+}
+
+TEST_CASE("csv: a unit in brackets behind a name is no part of it") {
+  const CsvTable table = parse_csv("t [ms],u (m/s),\"psi [degrees]\",f(1),x [m],x [ft]\n0,1,2,3,4,5\n", "run.csv");
+  CHECK(table.names == std::vector<std::string>{"t", "u", "psi", "f(1)", "x [m]", "x [ft]"});
+  CHECK(table.units == std::vector<std::string>{"ms", "m/s", "deg", "", "m", "ft"});
+  CHECK(table.find("psi") == table.find("psi [degrees]"));
+}
+
+TEST_CASE("csv: what loggers write for no value is none") {
+  const CsvTable table = parse_csv("t,u\n0,--.--\n1,N/A\n2,null\n3,-\n4,-7\n", "run.csv");
+  for (std::size_t row = 0; row < 4; ++row) CHECK(std::isnan((*table.find("u"))[row]));
+  CHECK((*table.find("u"))[4] == -7.0);
+  CHECK(fault(table, "u").empty());
+}
+
 TEST_CASE("csv: what is no text is refused as such") {
   CHECK_THROWS_WITH_AS(parse_csv(std::string_view("\x89PNG\x0d\x0a\x1a\x0a\0\0\0", 11), "run.csv"),
                        doctest::Contains("run.csv: this is no text"), InputError);

@@ -137,7 +137,8 @@ TEST_CASE("import: rows whose time does not rise are dropped and counted, a gap 
   CHECK(noted(imported, "time: 1 rows dropped (empty or NaN)"));
   CHECK(noted(imported, "time: the longest gap is 17.000 s, after 3.000 s"));
   CHECK(complaint("t,z\n5,1\n4,1\n3,1\n2,1\n", map) ==
-        "run.csv:3: time does not rise here nor in 2 more of 4 rows; is it the time column, and is its unit right?");
+        "run.csv:3: time does not rise here nor in 2 more of 4 rows; is it the time column, and is its unit right? "
+        "Seconds and nanoseconds in two columns: time: {columns: [SECONDS, NANOSECONDS], units: [s, ns]} in the map");
   CHECK(complaint("t,z\n1e18,1\n", map).rfind("run.csv:2: time ", 0) == 0);
 }
 
@@ -154,8 +155,9 @@ TEST_CASE("import: a map that does not fit is refused with its own line") {
         "map.yaml:5: key 'unit' is missing in 'dvl.velocity'");
   CHECK(complaint(csv, dvl("{columns: [u, v], unit: m/s, frame: FLU}")) ==
         "map.yaml:5: 'columns' needs 3 columns, not 2");
-  CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: m/s, frame: NED}")) ==
-        "map.yaml:5: 'NED' is no body frame: FRD (forward, right, down) or FLU (forward, left, up)");
+  CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: m/s, frame: NUE}")) ==
+        "map.yaml:5: 'NUE' is no frame of a vehicle's motion: FRD (forward, right, down) or FLU (forward, left, up) "
+        "along the body, NED, ENU or NWU along the world");
   CHECK(complaint(csv, dvl("{columns: [u, v, w], unit: m/s, fram: FLU}")) ==
         "map.yaml:5: unknown key 'fram' in 'dvl.velocity'; did you mean 'frame'?");
   CHECK(complaint(csv, kAbout + "dvll: 3\n") == "map.yaml:4: unknown key 'dvll'; did you mean 'dvl'?");

@@ -45,7 +45,7 @@ TEST_CASE("flow: dirt on the window, which moves with the camera, is no floor at
   }
 }
 
-// The table of docs/vision.md: build/dev/test/test_common_vision -tc="flow: the table of flights" --no-skip
+// The table of docs/vision.md: build/check/test/test_common_vision -tc="flow: the table of flights" --no-skip
 TEST_CASE("flow: the table of flights" * doctest::skip()) {
   constexpr int kFlights = 8;
   for (const int dirt : {0, 20, 60}) {

@@ -128,7 +128,7 @@ TEST_CASE("flow: the laser's dot and other bright spots do not outshine a bare f
   }
 }
 
-// The table of docs/vision.md: build/dev/test/test_common_vision -tc="laser: the table of rivals*" --no-skip
+// The table of docs/vision.md: build/check/test/test_common_vision -tc="laser: the table of rivals*" --no-skip
 TEST_CASE("laser: the table of rivals of the dot" * doctest::skip()) {
   constexpr int kMany = 10, kLong = 30;
   for (const Rival rival : {Rival::kNone, Rival::kPaint, Rival::kPaintAlone, Rival::kSecondBeam}) {

@@ -16,8 +16,8 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kRounding = 1e-12;
-constexpr double kMidpoint = 2e-3;  // of the largest speed: midpoint steps of 50 ms against an exact solution
+constexpr double kHullRounding = 1e-12;
+constexpr double kHullMidpoint = 2e-3;  // of the largest speed: midpoint steps of 50 ms against an exact solution
 using model::BaseParameter;
 
 /// No drag, no weight, masses of 20 kg and 1 kg m^2: what happens is the effect's doing.
@@ -62,7 +62,7 @@ TEST_CASE("cubic_drag: constant thrust ends at the cube root") {
   Bare bare{{true, false, false, false, false, false}};
   bare.model.add(test::active("cubic_drag", {64.0}, 0));
   const model::VelocityTrace nu = bare.rollout(bare.run(20.0, [](double) { return along(0, 8.0); }));
-  CHECK(nu(0, nu.cols() - 1) == doctest::Approx(0.5).epsilon(kMidpoint));
+  CHECK(nu(0, nu.cols() - 1) == doctest::Approx(0.5).epsilon(kHullMidpoint));
 }
 
 TEST_CASE("asymmetric_drag: all of the drag larger astern is its linear and its quadratic form together") {
@@ -107,9 +107,9 @@ TEST_CASE("restoring_moment: the same motion as with those components in the bas
       moment += (size * Eigen::Vector3d::Unit(component)).cross(down);
       base.theta[model::index(BaseParameter::G_x) + component] = size;
     }
-    CHECK((load.wrench.tail<3>() - moment).norm() < kRounding);
+    CHECK((load.wrench.tail<3>() - moment).norm() < kHullRounding);
     CHECK(load.wrench.head<3>().isZero(0.0));
-    CHECK((model::acceleration(base, motion).tail<3>() - moment).norm() < kRounding);
+    CHECK((model::acceleration(base, motion).tail<3>() - moment).norm() < kHullRounding);
   }
 }
 
@@ -142,7 +142,7 @@ TEST_CASE("compressibility: stiffer than water, a vehicle swings about its neutr
   const Trial trial = bare.run(20.0, [](double) { return along(2, 0.0); });  // starts 1 m deep
   const model::VelocityTrace nu = bare.rollout(trial);
   for (Eigen::Index k = 0; k < nu.cols(); ++k) {
-    CHECK(std::abs(nu(2, k) + 0.5 * std::sin(0.5 * trial.t[static_cast<std::size_t>(k)])) < kMidpoint);
+    CHECK(std::abs(nu(2, k) + 0.5 * std::sin(0.5 * trial.t[static_cast<std::size_t>(k)])) < kHullMidpoint);
   }
 }
 

@@ -13,7 +13,7 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kPlacesRounding = 1e-12;
 
 model::Load load_of(const char* name, const std::vector<double>& theta, int variant, const model::Motion& motion) {
   model::Load load;
@@ -39,7 +39,7 @@ TEST_CASE("bottom_effect: pushes up along the world's vertical as the inverse sq
   motion.p_WB.z() = 3.0;
   motion.R_WB = rotation_from_euler({0.4, -0.3, 2.0});
   const model::Load far = load_of("bottom_effect", {8.0, 5.0}, 0, motion);
-  CHECK((motion.R_WB * far.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, -2.0)).norm() < kRounding);
+  CHECK((motion.R_WB * far.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, -2.0)).norm() < kPlacesRounding);
   motion.p_WB.z() = 4.0;
   CHECK((motion.R_WB * load_of("bottom_effect", {8.0, 5.0}, 0, motion).wrench.head<3>()).z() == doctest::Approx(-8.0));
   // Touching, and below it: as close as it gets, and finite.
@@ -52,7 +52,7 @@ TEST_CASE("bottom_effect: its drag is the hull's own once more for each square o
   motion.p_WB.z() = 4.5;
   motion.nu << 0.6, 0.0, 0.8, 0.1, 0.1, 0.1;
   const model::Load load = load_of("bottom_effect", {2.0, 5.0}, 1, motion);
-  CHECK((load.wrench.head<3>() + 2.0 / 0.25 * 4.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() + 2.0 / 0.25 * 4.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kPlacesRounding);
   CHECK(load.wrench.tail<3>().isZero(0.0));
 }
 
@@ -85,11 +85,11 @@ TEST_CASE("bottom and wall: a hull is drawn toward what it passes by, with the s
   motion.R_WB = rotation_from_euler({0.0, 0.0, 0.5 * std::numbers::pi});  // looking at the wall in the east
   motion.nu << 0.3, 0.4, 0.0, 0.1, 0.1, 0.1;
   const model::Load wall = load_of("wall_effect", {8.0, 0.5 * std::numbers::pi, 5.0, 0.0, 0.0}, kSuction, motion);
-  CHECK((wall.wrench.head<3>() - Eigen::Vector3d(8.0 * 0.16 / 16.0, 0.0, 0.0)).norm() < kRounding);
+  CHECK((wall.wrench.head<3>() - Eigen::Vector3d(8.0 * 0.16 / 16.0, 0.0, 0.0)).norm() < kPlacesRounding);
   const model::Load floor = load_of("bottom_effect", {2.0, 5.0, 0.0, 0.0}, kSuction, motion);
-  CHECK((floor.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, 2.0 * 0.25 * 16.0)).norm() < kRounding);
+  CHECK((floor.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, 2.0 * 0.25 * 16.0)).norm() < kPlacesRounding);
   motion.v_WF_B << 0.3, 0.4, 0.0;  // drifting with the water
-  CHECK(load_of("bottom_effect", {2.0, 5.0, 0.0, 0.0}, kSuction, motion).wrench.isZero(kRounding));
+  CHECK(load_of("bottom_effect", {2.0, 5.0, 0.0, 0.0}, kSuction, motion).wrench.isZero(kPlacesRounding));
   CHECK_FALSE(model::find_effect("bottom_effect")->possible(motion.p_WB, std::vector{-2.0, 5.0, 0.0, 0.0}, kSuction));
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("wall_effect: pushes away from the wall, whatever the heading") {
   const std::vector<double> theta{8.0, 0.5 * std::numbers::pi, 5.0};
   motion.R_WB = rotation_from_euler({0.0, 0.0, 0.5 * std::numbers::pi});  // looking at it
   const model::Load load = load_of("wall_effect", theta, 0, motion);
-  CHECK((load.wrench.head<3>() - Eigen::Vector3d(-2.0, 0.0, 0.0)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(-2.0, 0.0, 0.0)).norm() < kPlacesRounding);
 }
 
 TEST_CASE(
@@ -116,7 +116,8 @@ TEST_CASE(
   motion.nu << 0.6, 0.0, 0.8, 0.0, 0.0, 0.0;
   // Three times the hull's own at the place, which grows with it, and no moment.
   const model::Load drag = load_of("bottom_effect", floor, kDrag, motion);
-  CHECK((drag.wrench.head<3>() + 3.0 / std::numbers::e * 4.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() < kRounding);
+  CHECK((drag.wrench.head<3>() + 3.0 / std::numbers::e * 4.0 * Eigen::Vector3d(0.6, 0.0, 0.8)).norm() <
+        kPlacesRounding);
   CHECK(drag.wrench.tail<3>().isZero(0.0));
   CHECK(drag.drag_share == doctest::Approx(3.0 / std::numbers::e));
   motion.p_WB.z() = 1e3;
@@ -124,7 +125,7 @@ TEST_CASE(
 
   const std::vector<double> wall{-2.0, 0.5 * std::numbers::pi, 0.0, kReach, 1.0 + kReach};  // sucks toward the east
   const model::Load load = load_of("wall_effect", wall, kForce, motion);
-  CHECK((load.wrench.head<3>() - Eigen::Vector3d(0.0, 2.0 / std::numbers::e, 0.0)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(0.0, 2.0 / std::numbers::e, 0.0)).norm() < kPlacesRounding);
 }
 
 TEST_CASE("tether_drag: proportional to the way to the fixed end, and to the square of speed") {
@@ -144,7 +145,7 @@ TEST_CASE("tether_drag: linear, proportional to the way to the fixed end and to 
   motion.p_WB = {3.0, 4.0, 0.0};
   motion.nu << 0.5, -0.1, 0.0, 0.2, 0.1, 0.4;
   const model::Load load = load_of("tether_drag", {2.0, 0.0, 0.0, 0.0, 0.7, 0.7, 0.7}, kLinear, motion);
-  CHECK((load.wrench.head<3>() - Eigen::Vector3d(-5.0, 1.0, 0.0)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(-5.0, 1.0, 0.0)).norm() < kPlacesRounding);
   CHECK(load.wrench.tail<3>().isZero(0.0));  // made fast at the origin
   const model::Effect& effect = *model::find_effect("tether_drag");
   CHECK(effect.numbers(kLinear) == effect.numbers(0));
@@ -162,10 +163,10 @@ TEST_CASE("tether_drag: across its line only what goes across counts, whatever t
     motion.R_WB = rotation_from_euler({0.1, -0.2, heading});
     const Eigen::Vector3d along{0.6, 0.8, 0.0}, across{0.8, -0.6, 0.0};  // in W
     motion.nu.head<3>() = motion.R_WB.transpose() * (0.4 * along);
-    CHECK(load_of("tether_drag", numbers, kAcross, motion).wrench.norm() < kRounding);
+    CHECK(load_of("tether_drag", numbers, kAcross, motion).wrench.norm() < kPlacesRounding);
     motion.nu.head<3>() = motion.R_WB.transpose() * (0.4 * along + 0.5 * across);
     const model::Load load = load_of("tether_drag", numbers, kAcross, motion);
-    CHECK((motion.R_WB * load.wrench.head<3>() + 2.0 * 5.0 * 0.25 * across).norm() < kRounding);
+    CHECK((motion.R_WB * load.wrench.head<3>() + 2.0 * 5.0 * 0.25 * across).norm() < kPlacesRounding);
     CHECK(load.wrench.tail<3>().isZero(0.0));
   }
   motion.p_WB.setZero();  // at the fixed end there is no line
@@ -192,8 +193,8 @@ TEST_CASE("tethers made fast astern: the same pull as at that place of the hull,
     astern.insert(astern.end(), p_BC.begin(), p_BC.end());
     const model::Load load = load_of(names[i], astern, kAstern, motion);
     CHECK(force.norm() > 0.1);
-    CHECK((load.wrench.head<3>() - force).norm() < kRounding);
-    CHECK((load.wrench.tail<3>() - p_BC.cross(force)).norm() < kRounding);
+    CHECK((load.wrench.head<3>() - force).norm() < kPlacesRounding);
+    CHECK((load.wrench.tail<3>() - p_BC.cross(force)).norm() < kPlacesRounding);
     CHECK((load_of(names[i], astern, 0, motion).wrench - load_of(names[i], numbers[i], 0, motion).wrench).isZero(0.0));
   }
   // By hand: a pull to starboard at the stern turns the bow to port; drag that is towed astern resists turning.

@@ -10,7 +10,7 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kSensorsRounding = 1e-12;
 enum Form { kAll, kVelocity, kRates };
 
 model::VelocityTrace sines(Eigen::Index samples, double dt) {
@@ -81,12 +81,12 @@ TEST_CASE("lever_arm: a log ahead of the origin feels the turning as sway; scale
   CHECK(nu(0, 1) == doctest::Approx(0.5 * 0.2));
   CHECK(nu(2, 1) == 0.0);
   arm.unmeasure(view, 0.1, std::vector{0.3, -0.2, 0.1}, 0);
-  CHECK((nu - truth).norm() < kRounding);
+  CHECK((nu - truth).norm() < kSensorsRounding);
   const model::Effect& scale = *model::find_effect("sensor_scale");
   scale.measure(view, 0.1, std::vector{0.1}, 5);
   CHECK(nu(5, 2) == doctest::Approx(0.55));
   scale.unmeasure(view, 0.1, std::vector{0.1}, 5);
-  CHECK((nu - truth).norm() < kRounding);
+  CHECK((nu - truth).norm() < kSensorsRounding);
 }
 
 TEST_CASE("effects of sensors: a rollout says what they say, and a prediction begins at what is") {

@@ -15,7 +15,7 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kThrustersRounding = 1e-12;
 
 struct Fixture {
   model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
@@ -93,15 +93,15 @@ TEST_CASE("thruster_misalignment: a turned thruster pushes along its new axis at
   model::Load load;
   effect.load(fixture.motion, std::vector{kAngle}, kStarboardAboutZ, load);
   const Eigen::Vector3d p{-0.135, 0.0475, 0.0};
-  CHECK((load.wrench.head<3>() - (after - before)).norm() < kRounding);
-  CHECK((load.wrench.tail<3>() - p.cross(after - before)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() - (after - before)).norm() < kThrustersRounding);
+  CHECK((load.wrench.tail<3>() - p.cross(after - before)).norm() < kThrustersRounding);
   // An allocation knows moments, not places: without one, a thruster sits where its arm is shortest.
   for (model::Thruster& thruster : fixture.vehicle.thrusters) thruster.p_BJ.setZero();
   model::Load unplaced;
   effect.load(fixture.motion, std::vector{kAngle}, kStarboardAboutZ, unplaced);
   const Eigen::Vector3d shortest{0.0, 0.0475, 0.0};
-  CHECK((unplaced.wrench.head<3>() - (after - before)).norm() < kRounding);
-  CHECK((unplaced.wrench.tail<3>() - shortest.cross(after - before)).norm() < kRounding);
+  CHECK((unplaced.wrench.head<3>() - (after - before)).norm() < kThrustersRounding);
+  CHECK((unplaced.wrench.tail<3>() - shortest.cross(after - before)).norm() < kThrustersRounding);
 }
 
 TEST_CASE("thruster_misalignment: a shifted thruster turns the vehicle by force times shift") {
@@ -109,7 +109,7 @@ TEST_CASE("thruster_misalignment: a shifted thruster turns the vehicle by force 
   constexpr int kPortAlongY = 4;
   model::Load load;
   model::find_effect("thruster_misalignment")->load(fixture.motion, std::vector{0.02}, kPortAlongY, load);
-  CHECK(load.wrench.head<5>().norm() < kRounding);
+  CHECK(load.wrench.head<5>().norm() < kThrustersRounding);
   CHECK(load.wrench[5] == doctest::Approx(-0.02 * 16.0));  // to starboard of the middle, pushing ahead turns to port
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("thruster_delay: vertical thrusters have a time of their own, and none
   fixture.motion.t = 5.0;
   fixture.motion.force.setConstant(4, 5.0);
   const Eigen::Vector4d apart = fixture.felt("thruster_delay", {0.15, 0.2}, kTwoKinds);  // the third pushes down
-  CHECK((apart - Eigen::Vector4d{4.85, 4.85, 4.65, 4.85}).norm() < kRounding * 10);
+  CHECK((apart - Eigen::Vector4d{4.85, 4.85, 4.65, 4.85}).norm() < kThrustersRounding * 10);
   const Eigen::Vector4d sooner = fixture.felt("thruster_delay", {0.15, -0.15}, kTwoKinds);
   CHECK((sooner - Eigen::Vector4d{4.85, 4.85, 5.0, 4.85}).norm() < 0.004);  // a hundredth of a second, at most
   CHECK(fixture.felt("thruster_delay", {0.15, 0.0}, kTwoKinds) == fixture.felt("thruster_delay", {0.15, 0.0}, 0));

@@ -13,8 +13,8 @@ using namespace fathom;
 
 namespace {
 
-constexpr double kRounding = 1e-12;
-enum Form { kForce, kHeave, kOrbital };
+constexpr double kWaveRounding = 1e-12;
+enum WaveForm { kForce, kHeave, kOrbital };
 
 model::Motion felt(const std::vector<double>& theta, double t, const Eigen::Vector3d& p) {
   model::Motion motion{.t = t, .p_WB = p, .R_WB = rotation_from_euler({0.1, 0.2, 0.7})};
@@ -30,7 +30,7 @@ TEST_CASE("wave: a force along its bearing that swings with time alone") {
   model::Load load;
   model::find_effect("wave")->load(motion, std::vector{2.0, 1.0, 0.0, 0.8}, kForce, load);
   const double north = 2.0 * std::cos(1.6) + std::sin(1.6);
-  CHECK((load.wrench.head<3>() - Eigen::Vector3d(0.0, -north, 0.0)).norm() < kRounding);
+  CHECK((load.wrench.head<3>() - Eigen::Vector3d(0.0, -north, 0.0)).norm() < kWaveRounding);
   model::Load up;
   model::find_effect("wave")->load(motion, std::vector{2.0, 1.0, 0.0, 0.8}, kHeave, up);
   CHECK(up.wrench[2] == doctest::Approx(north));
@@ -129,7 +129,7 @@ TEST_CASE("wave: a search for orbits begins with both ways that the same to and 
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   const Eigen::Vector3d one = felt(starts[0], 0.4, origin).v_WF_B, other = felt(starts[1], 0.4, origin).v_WF_B;
   const Eigen::Matrix3d R_WB = felt(starts[0], 0.4, origin).R_WB;
-  CHECK((R_WB * (one - other)).head<2>().norm() < kRounding);
-  CHECK(std::abs((R_WB * (one + other)).z()) < kRounding);
+  CHECK((R_WB * (one - other)).head<2>().norm() < kWaveRounding);
+  CHECK(std::abs((R_WB * (one + other)).z()) < kWaveRounding);
   CHECK(std::abs((R_WB * one).z()) > 1e-3);
 }

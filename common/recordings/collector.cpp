@@ -1,0 +1,131 @@
+#include "common/recordings/collector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "common/base/time.hpp"
+
+namespace fathom::recordings {
+namespace {
+
+constexpr std::size_t kMostSteps = 4096;  // enough for a median
+
+}  // namespace
+
+double TopicAccount::rate() const {
+  std::vector<std::int64_t> sorted;
+  std::ranges::copy_if(steps, std::back_inserter(sorted), [](std::int64_t step) { return step > 0; });
+  if (sorted.empty()) return 0.0;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return 1e6 / static_cast<double>(*middle);
+}
+
+Collector::Collector(ClockRules clock, std::set<std::string> columns, Take accounts)
+    : wanted_(std::move(columns)),
+      take_(accounts),
+      guard_(
+          clock, [this](const Judged& judged, std::size_t recording) { keep(judged, recording); },
+          [this](const Judged& judged) { ++topics_[judged.topic].refused; }) {}
+
+void Collector::ask(std::size_t topic, std::size_t field) {
+  const std::string name = topics_[topic].topic.name + "." + topics_[topic].topic.fields[field].name;
+  if (!wanted_.contains(name)) return;
+  TopicRows& rows = rows_[topic];
+  slots_[topic].push_back({field, rows.columns.size()});
+  rows.names.push_back(name);
+  rows.columns.emplace_back(rows.stamps.size(), std::nan(""));
+}
+
+bool Collector::topic(std::size_t number, const Topic& topic) {
+  topics_.resize(std::max(topics_.size(), number + 1));
+  rows_.resize(topics_.size());
+  slots_.resize(topics_.size());
+  topics_[number].topic = topic;
+  topics_[number].fields.resize(topic.fields.size());
+  for (std::size_t i = 0; i < topic.fields.size(); ++i) ask(number, i);
+  if (take_ == Take::kEverything || !slots_[number].empty()) return true;
+  // A list that has not come yet may hold what is asked for.
+  const std::string begin = topic.name + ".";
+  const auto after = wanted_.lower_bound(begin);
+  return after != wanted_.end() && after->starts_with(begin);
+}
+
+void Collector::further_field(std::size_t topic, const Field& field) {
+  topics_[topic].topic.fields.push_back(field);
+  topics_[topic].fields.emplace_back();
+  ask(topic, topics_[topic].topic.fields.size() - 1);
+}
+
+void Collector::message(std::size_t topic, Stamp stamp, std::span<const double> values) {
+  if (stamp.log == kNoTime) {
+    ++topics_[topic].untimed;
+    return;
+  }
+  if (!is_time(stamp.measured)) stamp.measured = kNoTime;
+  guard_.push(topic, stamp, values);
+}
+
+void Collector::text(std::size_t topic, std::string_view field, std::string_view words) {
+  if (topics_[topic].words.empty() && !words.empty())
+    topics_[topic].words = std::string{field} + ": " + std::string{words};
+}
+
+void Collector::keep(const Judged& judged, std::size_t recording) {
+  TopicAccount& account = topics_[judged.topic];
+  const std::int64_t time = judged.stamp.log;
+  ++account.messages;
+  if (recording >= recordings_) {
+    recordings_ = static_cast<std::uint32_t>(recording) + 1;
+    for (TopicAccount& each : topics_) each.latest = kNoTime;  // no gap between two recordings
+  }
+  account.first = account.first == kNoTime ? time : std::min(account.first, time);
+  account.last = account.last == kNoTime ? time : std::max(account.last, time);
+  if (account.latest != kNoTime) {
+    const std::int64_t step = time - account.latest;
+    account.longest_gap = std::max(account.longest_gap, step);
+    if (account.steps.size() < kMostSteps) account.steps.push_back(step);
+  }
+  account.latest = time;
+  if (judged.stamp.measured != kNoTime && account.delays.size() < kMostSteps)
+    account.delays.push_back(time - judged.stamp.measured);
+  if (take_ == Take::kEverything) {
+    for (std::size_t i = 0; i < judged.values.size() && i < account.fields.size(); ++i) {
+      const double value = judged.values[i];
+      if (!std::isfinite(value)) continue;
+      FieldAccount& field = account.fields[i];
+      if (field.finite++ == 0) {
+        field.least = field.greatest = field.first = value;
+      } else {
+        field.least = std::min(field.least, value);
+        field.greatest = std::max(field.greatest, value);
+        field.changes += value != field.latest ? 1 : 0;
+      }
+      field.latest = value;
+    }
+  }
+  if (slots_[judged.topic].empty()) return;
+  TopicRows& rows = rows_[judged.topic];
+  rows.stamps.push_back(judged.stamp);
+  rows.recording.push_back(static_cast<std::uint32_t>(recording));
+  for (std::vector<double>& column : rows.columns) column.push_back(std::nan(""));
+  for (const Slot& slot : slots_[judged.topic]) {
+    if (slot.field < judged.values.size()) rows.columns[slot.column].back() = judged.values[slot.field];
+  }
+}
+
+std::uint64_t Collector::messages() const {
+  std::uint64_t sum = 0;
+  for (const TopicAccount& each : topics_) sum += each.messages;
+  return sum;
+}
+
+std::uint64_t Collector::refused() const {
+  std::uint64_t sum = 0;
+  for (const TopicAccount& each : topics_) sum += each.refused;
+  return sum;
+}
+
+}  // namespace fathom::recordings

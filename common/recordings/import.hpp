@@ -1,0 +1,54 @@
+// Recordings of others to a Recording: topics through a map, each stream at the times of its topic.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/recordings/collector.hpp"
+#include "common/recordings/damage.hpp"
+#include "common/recordings/formats.hpp"
+#include "common/samples/recording.hpp"
+#include "common/tables/absent.hpp"
+#include "common/tables/mapped_streams.hpp"
+
+namespace fathom::recordings {
+
+/// A recording of a known format: one file, or the parts of a split one in their order.
+struct Files {
+  std::vector<std::string> paths;
+  const Format* format{};
+};
+
+/// What was read of it.
+struct Content {
+  Files files;
+  std::unique_ptr<Collector> topics;
+  Damage damage;
+
+  [[nodiscard]] const std::string& path() const { return files.paths.front(); }
+};
+
+/// Reads the files once. `columns` are kept; InputError where a file has no beginning.
+[[nodiscard]] Content read_files(const Files& files, std::set<std::string> columns, Collector::Take take);
+
+/// What is to be said of what was read: damage, refused stamps.
+[[nodiscard]] std::vector<std::string> remarks(const Content& content);
+
+struct ImportedRun {
+  Recording recording;
+  std::vector<std::string> notes;
+};
+
+struct ImportedFiles {
+  std::vector<ImportedRun> runs;   ///< one, or as many as clocks started anew in the file
+  std::vector<std::string> notes;  ///< what was lost, whose stamps were refused
+};
+
+/// `strict`: a stream that the files lack is an InputError (someone asked for it), else a note.
+[[nodiscard]] ImportedFiles import_files(const Files& files, const std::vector<tables::MappedStream>& streams,
+                                         const std::optional<tables::SimulatedAxes>& simulated, bool strict);
+
+}  // namespace fathom::recordings

@@ -1,0 +1,198 @@
+#include "common/tables/map_writer.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <span>
+
+#include "common/base/error.hpp"
+#include "common/base/units.hpp"
+
+namespace fathom::tables {
+namespace {
+
+using Names = std::initializer_list<const char*>;
+constexpr double kSameFactor = 1e-6;  // relative
+
+std::string listed(std::span<const Column> columns) {
+  std::string text = "[";
+  for (const Column& column : columns) {
+    const bool plain = column.name.find_first_of(" ,:[]{}#&*!|>'\"%@`") == std::string::npos;
+    text += (text.size() > 1 ? ", " : "") + (column.absent ? "none" : plain ? column.name : "\"" + column.name + "\"");
+  }
+  return text + "]";
+}
+
+std::string unit_of(double factor, const char* si, const Names& others) {
+  if (std::abs(factor - 1.0) < kSameFactor) return si;
+  for (const char* unit : others) {
+    if (std::abs(factor / unit_factor(unit, si) - 1.0) < kSameFactor) return unit;
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%.9g", factor);
+  throw InputError(std::string("no unit of a map makes a factor of ") + text + " to " + si +
+                   "; multiply the columns by it");
+}
+
+const Eigen::Matrix3d kFlip = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+const Eigen::Matrix3d kEnu = (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished();
+
+std::string world_of(const Eigen::Matrix3d& axes) {
+  if (axes.isIdentity(1e-9)) return "NED";
+  if (axes.isApprox(kFlip, 1e-9)) return "NWU";
+  if (axes.isApprox(kEnu, 1e-9)) return "ENU";
+  throw InputError("no name of a map (NED, NWU, ENU) says how these world axes are turned; reorder the columns");
+}
+std::string body_of(const Eigen::Matrix3d& axes) {
+  if (axes.isIdentity(1e-9)) return "FRD";
+  if (axes.isApprox(kFlip, 1e-9)) return "FLU";
+  throw InputError("no name of a map (FRD, FLU) says how these body axes are turned; reorder the columns");
+}
+
+std::string angle(double radians) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.4f deg", radians / kDegree);
+  return text;
+}
+
+std::string vector(const ColumnGroup& group, const std::string& frame, const char* si, const Names& units) {
+  return "{columns: " + listed(group.columns) + ", unit: " + unit_of(group.factor, si, units) + ", frame: " + frame +
+         "}";
+}
+
+std::string scalar(const ColumnGroup& group, const char* si, const Names& units) {
+  const std::string name = listed(group.columns);
+  return "{column: " + name.substr(1, name.size() - 2) + ", unit: " + unit_of(group.factor, si, units) + "}";
+}
+
+const Names kLengths{"mm", "cm", "km", "ft"}, kSpeeds{"mm/s", "cm/s", "km/h", "kn", "ft/s"}, kAngles{"deg", "mrad"},
+    kRates{"deg/s", "mrad/s", "rpm"}, kTimes{"ms", "us", "ns", "min", "h"}, kForces{"kN"}, kVoltages{"mV"};
+
+std::string attitude(const AttitudeColumns& columns, const std::string& indent) {
+  std::string text =
+      indent + (columns.euler ? "euler: " : "quaternion: ") + "{columns: " + listed(columns.group.columns);
+  double offset = columns.heading_offset;
+  if (columns.euler) {
+    text += ", unit: " + unit_of(columns.group.factor, "rad", kAngles);
+    if (columns.heading_sign < 0.0) {
+      const bool east = std::abs(offset - 90.0 * kDegree) < 45.0 * kDegree;
+      text += std::string(", heading: ") + (east ? "from_east" : "anticlockwise");
+      offset -= east ? 90.0 * kDegree : 0.0;
+    }
+  } else {
+    if (columns.heading_sign < 0.0) throw InputError("no key of a map mirrors the heading of a quaternion");
+    text += ", order: wxyz";
+    if (columns.world_to_body) text += ", turns: world_to_body";
+  }
+  if (std::abs(offset) > 1e-9) text += ", heading_offset: " + angle(offset);
+  return text + ", world: " + world_of(columns.world_to_house) + ", body: " + body_of(columns.body_to_house) + "}\n";
+}
+
+std::string flags(const std::vector<Column>& columns, const std::string& indent) {
+  std::vector<Column> invalid, valid;
+  for (const Column& column : columns) (column.negated ? valid : invalid).push_back(column);
+  std::string text;
+  if (!invalid.empty()) text += indent + "invalid_where: " + listed(invalid) + "\n";
+  if (!valid.empty()) text += indent + "valid_where: " + listed(valid) + "\n";
+  return text;
+}
+
+std::string held(const HeldRule& rule, const std::string& indent) {
+  if (rule.detect) return indent + "held: detect\n";
+  if (!rule.flag) return {};
+  const std::string name = listed({&*rule.flag, 1});
+  return indent + "held: {column: " + name.substr(1, name.size() - 2) + "}\n";
+}
+
+std::string thrusters(const ThrusterColumns& columns) {
+  std::string text = "thrusters:\n";
+  if (columns.pwm)
+    text += "  pwm: {columns: " + listed(columns.pwm->columns) +
+            ", unit: " + unit_of(columns.pwm->factor, "us", {"ms", "s"}) + "}\n";
+  if (columns.force)
+    text += "  force: {columns: " + listed(columns.force->columns) +
+            ", unit: " + unit_of(columns.force->factor, "N", kForces) + "}\n";
+  if (columns.wrench_force) {
+    std::vector<Column> all = columns.wrench_force->columns;
+    if (columns.wrench_moment)
+      all.insert(all.end(), columns.wrench_moment->columns.begin(), columns.wrench_moment->columns.end());
+    text += "  wrench: {columns: " + listed(all) +
+            ", force_unit: " + unit_of(columns.wrench_force->factor, "N", kForces) +
+            ", moment_unit: " + unit_of(columns.wrench_moment ? columns.wrench_moment->factor : 1.0, "N m", {}) +
+            ", frame: " + body_of(columns.wrench_force->to_house) + "}\n";
+  }
+  return text + flags(columns.invalid_where, "  ");
+}
+
+}  // namespace
+
+std::string to_yaml(const ColumnMap& map) {
+  std::string text = "source: \"" + (map.source.empty() ? "not stated" : map.source) + "\"\nlicence: \"" +
+                     (map.licence.empty() ? "not stated" : map.licence) + "\"\n";
+  if (map.time.columns.size() > 1) {
+    text += "time: {columns: " + listed(map.time.columns) + ", units: [";
+    for (std::size_t i = 0; i < map.time_factors.size(); ++i)
+      text += (i > 0 ? ", " : "") + unit_of(map.time_factors[i], "s", kTimes);
+    text += "]}\n";
+  } else {
+    ColumnGroup time = map.time;
+    if (!map.time_factors.empty()) time.factor = map.time_factors.front();
+    text += "time: " + scalar(time, "s", kTimes) + "\n";
+  }
+  if (map.pose_capture) {
+    text += "pose_capture:\n";
+    if (map.pose_capture->position && map.pose_capture->geodetic) {
+      text += "  geodetic: {columns: " + listed(map.pose_capture->position->columns) +
+              ", unit: " + unit_of(map.pose_capture->position->factor, "rad", kAngles) + "}\n";
+    } else if (map.pose_capture->position) {
+      const ColumnGroup& position = *map.pose_capture->position;
+      text += "  position: " + vector(position, world_of(position.to_house), "m", kLengths) + "\n";
+    }
+    if (map.pose_capture->attitude) text += attitude(*map.pose_capture->attitude, "  ");
+    text += held(map.pose_capture->held, "  ") + flags(map.pose_capture->invalid_where, "  ");
+  }
+  if (map.ahrs) {
+    text += "ahrs:\n";
+    if (map.ahrs->rates) {
+      const ColumnGroup& rates = *map.ahrs->rates;
+      const std::string frame = map.ahrs->euler_rates      ? "euler"
+                                : map.ahrs->rates_in_world ? world_of(rates.to_house)
+                                                           : body_of(rates.to_house);
+      text += "  rates: " + vector(rates, frame, "rad/s", kRates) + "\n";
+    }
+    if (map.ahrs->specific_force) {
+      const ColumnGroup& force = *map.ahrs->specific_force;
+      text += "  specific_force: " + vector(force, body_of(force.to_house), "m/s^2", {"mm/s^2", "cm/s^2"}) + "\n";
+    }
+    if (map.ahrs->attitude) text += attitude(*map.ahrs->attitude, "  ");
+    text += flags(map.ahrs->invalid_where, "  ");
+  }
+  if (map.dvl) {
+    text += "dvl:\n";
+    const ColumnGroup& velocity = map.dvl->velocity;
+    if (map.dvl->course_factor != 0.0) {
+      ColumnGroup course{{velocity.columns[0]}, map.dvl->course_factor}, speed{{velocity.columns[1]}, velocity.factor};
+      text += "  course: " + scalar(course, "rad", kAngles) + "\n  speed: " + scalar(speed, "m/s", kSpeeds) + "\n";
+    } else {
+      const std::string frame = map.dvl->in_world ? world_of(velocity.to_house) : body_of(velocity.to_house);
+      text += "  velocity: " + vector(velocity, frame, "m/s", kSpeeds) + "\n";
+    }
+    if (map.dvl->altitude) text += "  altitude: " + scalar(*map.dvl->altitude, "m", kLengths) + "\n";
+    text += held(map.dvl->held, "  ") + flags(map.dvl->invalid_where, "  ");
+  }
+  if (map.depth && map.depth->offset == 0.0) {
+    ColumnGroup depth = map.depth->group;
+    const bool up = depth.factor < 0.0;
+    depth.factor = std::abs(depth.factor);
+    std::string inside = scalar(depth, "m", kLengths);
+    inside.pop_back();
+    text += "depth: " + inside + ", direction: " + (up ? "up" : "down") + "}\n";
+  } else if (map.depth) {
+    throw InputError("a depth from a pressure is not written; keep its section of your map");
+  }
+  if (map.thrusters) text += thrusters(*map.thrusters);
+  if (map.battery) text += "battery: " + scalar(map.battery->group, "V", kVoltages) + "\n";
+  return text;
+}
+
+}  // namespace fathom::tables

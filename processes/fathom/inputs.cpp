@@ -1,0 +1,216 @@
+#include "processes/fathom/inputs.hpp"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "common/base/error.hpp"
+#include "common/recordings/draft.hpp"
+#include "common/recordings/import.hpp"
+#include "common/recordings/little.hpp"
+#include "common/recordings/worth.hpp"
+#include "common/tables/import.hpp"
+#include "common/wire/log_reader.hpp"
+
+namespace fathom::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_lcm(const std::string& path) {
+  constexpr std::uint32_t kSync = 0xEDA1DA01;
+  recordings::FileWindow file{path};
+  const recordings::Bytes head = file.at(0, 4);
+  const std::string extension = fs::path(path).extension().string();
+  return (head.size() == 4 && recordings::big<std::uint32_t>(head) == kSync) || extension == ".lcmlog" ||
+         extension == ".lcm";
+}
+
+/// Text, as far as its first bytes tell.
+bool is_text(const std::string& path) {
+  recordings::FileWindow file{path};
+  const recordings::Bytes head = file.at(0, 4096);
+  return std::ranges::none_of(head, [](std::uint8_t byte) { return byte == 0; });
+}
+
+std::string known_formats() {
+  std::string text;
+  for (const recordings::Format& format : recordings::formats()) text += std::string{format.title} + ", ";
+  return text + "an LCM log, or a table of text";
+}
+
+Source source_of(const std::string& path) {
+  if (!fs::exists(path)) throw InputError(path + ": no such file");
+  Source source{.name = fs::path(path).stem().string(), .files = {path}};
+  source.format = recordings::format_of(path);
+  if (source.format != nullptr) return source;
+  source.lcm = is_lcm(path);
+  if (!source.lcm && !is_text(path))
+    throw InputError(path + ": what it holds is not known; known are: " + known_formats());
+  return source;
+}
+
+bool is_bag(const std::string& extension) {
+  return extension == ".db3" || extension == ".mcap" || extension == ".zstd";
+}
+
+void take_folder(const fs::path& folder, std::vector<Source>& sources) {
+  std::vector<fs::path> files;
+  bool bag = fs::exists(folder / "metadata.yaml");
+  bool only_parts = true;
+  for (const auto& entry : fs::directory_iterator{folder}) {
+    if (!entry.is_regular_file() || entry.path().filename().string().starts_with(".")) continue;
+    files.push_back(entry.path());
+    only_parts = only_parts && (entry.path().extension() == ".db3" || entry.path().filename() == "metadata.yaml");
+  }
+  std::ranges::sort(files);
+  bag = bag || (only_parts && !files.empty());
+  Source whole{.name =
+                   fs::path(folder.lexically_normal().string().ends_with('/') ? folder.lexically_normal().parent_path()
+                                                                              : folder.lexically_normal())
+                       .filename()
+                       .string()};
+  std::size_t before = sources.size();
+  for (const fs::path& file : files) {
+    const std::string extension = file.extension().string();
+    if (bag) {
+      if (!is_bag(extension)) continue;
+      const recordings::Format* format = recordings::format_of(file.string());
+      if (format == nullptr) continue;
+      if (whole.format == nullptr) whole.format = format;
+      if (whole.format == format) whole.files.push_back(file.string());
+      continue;
+    }
+    const recordings::Format* format = recordings::format_of(file.string());
+    if (format != nullptr || extension == ".csv" || extension == ".tsv" || extension == ".lcmlog" ||
+        extension == ".lcm")
+      sources.push_back(source_of(file.string()));
+  }
+  if (bag && !whole.files.empty()) sources.push_back(whole);
+  if (sources.size() == before)
+    throw InputError(folder.string() + ": holds no recording; known are: " + known_formats());
+}
+
+std::vector<std::string> matches(const std::string& pattern) {
+  glob_t found{};
+  std::vector<std::string> paths;
+  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
+  }
+  ::globfree(&found);
+  if (paths.empty()) throw InputError(pattern + ": no file matches");
+  return paths;
+}
+
+std::vector<std::string> expanded(const std::vector<std::string>& arguments) {
+  std::vector<std::string> paths;
+  for (const std::string& argument : arguments) {
+    std::error_code unknown;
+    if (!fs::exists(argument, unknown) && argument.find_first_of("*?[") != std::string::npos) {
+      for (const std::string& each : matches(argument)) paths.push_back(each);
+    } else {
+      paths.push_back(argument);
+    }
+  }
+  return paths;
+}
+
+recordings::Content look_at(const Source& source) {
+  recordings::Content content =
+      recordings::read_files({source.files, source.format}, {}, recordings::Collector::Take::kEverything);
+  if (content.topics->messages() == 0) throw InputError(source.files.front() + ": holds no message that can be read");
+  return content;
+}
+
+}  // namespace
+
+std::vector<Source> sources_of(const std::vector<std::string>& arguments) {
+  std::vector<Source> sources;
+  for (const std::string& path : expanded(arguments)) {
+    if (fs::is_directory(path)) {
+      take_folder(path, sources);
+    } else {
+      sources.push_back(source_of(path));
+    }
+  }
+  return sources;
+}
+
+std::vector<std::string> paths_of(const std::vector<std::string>& arguments) {
+  std::vector<std::string> paths;
+  for (const std::string& path : expanded(arguments)) {
+    if (!fs::is_directory(path)) {
+      paths.push_back(path);
+      continue;
+    }
+    std::vector<Source> sources;
+    take_folder(path, sources);
+    for (const Source& each : sources) paths.push_back(each.files.size() > 1 ? path : each.files.front());
+  }
+  return paths;
+}
+
+FromSource read_source(const Source& source, const std::string& map,
+                       const std::optional<tables::SimulatedAxes>& simulated) {
+  FromSource out;
+  const std::string& path = source.files.front();
+  if (source.lcm) {
+    wire::LogContents contents = wire::read_log(path);
+    std::istringstream lines{wire::complaints(path, contents.report)};
+    for (std::string line; std::getline(lines, line);) out.notes.push_back(line);
+    out.runs.push_back(std::move(contents.recording));
+    out.runs.back().name = source.name;
+    return out;
+  }
+  if (source.format == nullptr) {
+    tables::Imported imported = tables::import_csv(path, map, simulated);
+    for (const std::string& note : imported.notes) out.notes.push_back(path + ": " + note);
+    out.runs.push_back(std::move(imported.recording));
+    return out;
+  }
+  std::vector<tables::MappedStream> streams;
+  if (map.empty()) {
+    const std::string draft = recordings::draft_map(look_at(source));
+    if (draft.empty())
+      throw InputError(path +
+                       ": holds no usual topic; 'fathom import --describe' lists what it holds, for a map (--map)");
+    streams = tables::parse_streams(draft, "draft map");
+    out.notes.push_back(path + ": read with the draft of a map, as 'fathom import --describe' prints it");
+  } else {
+    streams = tables::load_streams(map);
+  }
+  recordings::ImportedFiles imported =
+      recordings::import_files({source.files, source.format}, streams, simulated, !map.empty());
+  out.notes.insert(out.notes.end(), imported.notes.begin(), imported.notes.end());
+  for (recordings::ImportedRun& run : imported.runs) {
+    for (const std::string& note : run.notes) out.notes.push_back(path + ": " + note);
+    if (imported.runs.size() == 1) run.recording.name = source.name;
+    out.runs.push_back(std::move(run.recording));
+  }
+  return out;
+}
+
+std::string describe_source(const Source& source, const std::optional<tables::SimulatedAxes>& simulated) {
+  if (source.format == nullptr)
+    throw InputError(source.files.front() + ": --describe is for recordings with topics; " +
+                     (source.lcm ? "an LCM log is read by 'fathom check' and the others as it is"
+                                 : "the columns of a table stand in its first line"));
+  const recordings::Content content = look_at(source);
+  std::string text = recordings::description(content);
+  const std::string draft = recordings::draft_map(content);
+  if (draft.empty())
+    return text + "# None of the topics is a usual one: a map must be written by hand (docs/configuration.md).\n";
+  const recordings::ImportedFiles imported = recordings::import_files(
+      {source.files, source.format}, tables::parse_streams(draft, "draft map"), simulated, false);
+  for (const recordings::ImportedRun& run : imported.runs) {
+    const std::string name = imported.runs.size() > 1 ? run.recording.name + ": " : "";
+    for (const std::string& reason : recordings::against_fitting(run.recording)) text += "# ! " + name + reason + "\n";
+    for (const std::string& note : run.notes) text += "# " + name + note + "\n";
+  }
+  return text + "#\n# A draft of a map, which runs as it is. Remarks say what must be checked.\n" + draft;
+}
+
+}  // namespace fathom::tool

@@ -1,0 +1,120 @@
+// Conventions that were mistaken are named as what they are, one cause for one slip, and no healthy sensor is touched.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "common/base/units.hpp"
+#include "common/consistency/summary.hpp"
+#include "common/tables/import.hpp"
+#include "test/support/consistency.hpp"
+
+namespace fathom {
+namespace {
+
+using consistency::ConsistencyResult;
+using test::find;
+using test::print;
+
+std::string file(const std::string& name) { return std::string(FATHOM_SOURCE_DIR) + "/test/data/conventions/" + name; }
+
+Recording table(const std::string& name, const std::string& map = "",
+                const tables::SimulatedAxes& axes = {true, true, true, true, true, true}) {
+  return tables::import_csv(file(name), map.empty() ? "" : file(map), axes).recording;
+}
+constexpr tables::SimulatedAxes kPlanar{true, true, false, false, false, true};
+
+ConsistencyResult check_tables(const std::vector<Recording>& runs) {
+  ConsistencyResult result = consistency::check_consistency(runs);
+  print(result.findings);
+  return result;
+}
+
+/// Neither of the two sensors that were right is altered.
+bool untouched(const estimation::SensorFault& fault) {
+  return (fault.matrix() - Eigen::Matrix3d::Identity()).norm() < 0.05;
+}
+
+}  // namespace
+
+TEST_CASE("conventions: headings zeroed by each run are corrected by each run's own angle, and the runs disagree") {
+  const ConsistencyResult result = check_tables({table("heading_a.csv"), table("heading_b.csv")});
+  constexpr double kClose = 1.0 * kDegree;  // noise of 5 mrad, 90 s
+  REQUIRE(result.corrections.size() == 2);
+  CHECK(std::abs(std::abs(result.corrections[0].heading) - 27.0 * kDegree) < kClose);
+  CHECK(std::abs(std::abs(result.corrections[1].heading) - 15.0 * kDegree) < 2.0 * kClose);
+  CHECK(result.corrections[0].heading * result.corrections[1].heading < 0.0);
+  const auto told = std::ranges::count(result.findings, "heading_offset", &ConsistencyFinding::finding);
+  CHECK(told == 2);
+  const ConsistencyFinding* one = find(result.findings, "pose_capture.attitude", "heading_offset");
+  REQUIRE(one != nullptr);
+  CHECK(one->evidence.find("the runs disagree") != std::string::npos);
+}
+
+TEST_CASE("conventions: velocities along the world's axes are named and turned, rates too where they are") {
+  for (const auto& [name, map] :
+       {std::pair{"world_velocity.csv", "quaternion_map.yaml"}, {"world_velocity_euler.csv", ""}}) {
+    CAPTURE(name);
+    const ConsistencyResult result = check_tables({table(name, map)});
+    CHECK(find(result.findings, "dvl", "in_world_axes") != nullptr);
+    CHECK(result.findings.size() == 1);
+    CHECK(result.corrections[0].velocity_frame == estimation::VectorFrame::kWorld);
+    CHECK(untouched(result.corrections[0].gyro));
+    CHECK(untouched(result.corrections[0].dvl));
+  }
+  const ConsistencyResult both = check_tables({table("world_twist.csv", "quaternion_map.yaml")});
+  CHECK(find(both.findings, "dvl and gyro", "in_world_axes") != nullptr);
+  CHECK(both.findings.size() == 1);
+  CHECK(both.corrections[0].rates_frame == estimation::VectorFrame::kWorld);
+}
+
+TEST_CASE("conventions: an east-north-up position is one turn, and the velocity log is left alone") {
+  const ConsistencyResult result = check_tables({table("enu_position.csv")});
+  const ConsistencyFinding* one = find(result.findings, "pose_capture.position", "axes");
+  REQUIRE(one != nullptr);
+  CHECK(one->evidence.find("east, north, up") != std::string::npos);
+  CHECK(one->action.find("frame: ENU") != std::string::npos);
+  CHECK(result.findings.size() == 1);
+  CHECK(result.corrections[0].position_axes.determinant() > 0.0);
+  CHECK(untouched(result.corrections[0].dvl));
+  CHECK(untouched(result.corrections[0].gyro));
+}
+
+TEST_CASE("conventions: a heading counted from east is one cause, and gyro and position are left alone") {
+  const ConsistencyResult result = check_tables({table("yaw_from_east.csv")});
+  CHECK(find(result.findings, "pose_capture.attitude", "heading_from_east") != nullptr);
+  CHECK(result.findings.size() == 1);
+  CHECK(result.corrections[0].position_axes.isIdentity());
+  CHECK(untouched(result.corrections[0].gyro));
+  CHECK(untouched(result.corrections[0].dvl));
+}
+
+TEST_CASE("distance: at one speed a position half again too long is never called agreement, and nobody is corrected") {
+  for (const auto& [name, ratio] : {std::pair{"circle_150.csv", 1.5}, {"circle_111.csv", 1.11}}) {
+    CAPTURE(name);
+    const ConsistencyResult result = check_tables({table(name, "", kPlanar)});
+    const ConsistencyFinding* one = find(result.findings, "pose_capture.position", "distance");
+    REQUIRE(one != nullptr);
+    CHECK(one->size == doctest::Approx(ratio).epsilon(0.02));
+    CHECK(one->evidence.find("projection") != std::string::npos);
+    CHECK(result.corrections[0].position_scale == 1.0);
+    CHECK(untouched(result.corrections[0].dvl));
+    CHECK(consistency::conclusion_of(result).empty());
+  }
+}
+
+TEST_CASE("agreement is only said where a fault of practical size would have been seen") {
+  const auto said = [](const test::SyntheticOptions& options) {
+    const auto checked = test::check(options);
+    CHECK(checked.findings().empty());
+    return consistency::conclusion_of(checked.result);
+  };
+  const std::string still = said({.seed = 3, .duration = 60.0, .activity = {0, 0, 0, 0, 0, 0}});
+  CHECK(still.find("agree") == std::string::npos);
+  const std::string planar = said({.seed = 3, .duration = 120.0, .activity = {1, 1, 0, 0, 0, 1}});
+  CHECK(planar.find("nobody can tell") != std::string::npos);
+  CHECK(planar.find("gyro.p axis") != std::string::npos);
+}
+
+}  // namespace fathom

@@ -1,0 +1,186 @@
+// Columns that people have: world-frame velocity and rates, latitude and longitude, pressure, course and speed, flags
+// of what is valid, streams in rows of their own, units in headers, a depth that is called z.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/base/spatial.hpp"
+#include "common/tables/header_units.hpp"
+#include "common/tables/import.hpp"
+#include "common/tables/map_writer.hpp"
+
+using Eigen::Vector3d;
+using namespace fathom;
+using namespace fathom::tables;
+
+namespace {
+
+constexpr double kRounding = 1e-9;
+const std::string kAbout = "source: nobody\nlicence: none\ntime: {column: t, unit: s}\n";
+
+Imported import_text(const std::string& csv, const std::string& map, const std::optional<SimulatedAxes>& axes = {}) {
+  return import_table(parse_csv(csv, "run.csv"), ColumnMap::parse(kAbout + map, "map.yaml"), axes);
+}
+bool noted(const Imported& imported, const std::string& part) {
+  return std::ranges::any_of(imported.notes, [&](const auto& note) { return note.find(part) != std::string::npos; });
+}
+const std::string kYawed = "ahrs:\n  euler: {columns: [a, b, c], unit: deg, world: NED, body: FRD}\n";
+
+}  // namespace
+
+TEST_CASE("columns: velocity along the world's axes is turned into the body's by the attitude of its moment") {
+  // Heading east: what goes north goes to port. Between rows at 80 and 100 deg it is 90.
+  const std::string csv = "t,a,b,c,vn,ve,vd\n0,0,0,80,,,\n0.1,,,,1,2,0.5\n0.2,0,0,100,,,\n";
+  const std::string velocity = "dvl: {velocity: {columns: [vn, ve, vd], unit: m/s, frame: NED}}\n";
+  const Imported ned = import_text(csv, kYawed + velocity);
+  REQUIRE(ned.recording.dvl.size() == 1);
+  CHECK((ned.recording.dvl[0].v_WB_B - Vector3d(2.0, -1.0, 0.5)).norm() < kRounding);
+  const Imported enu = import_text(csv, kYawed + "dvl: {velocity: {columns: [ve, vn, vd], unit: m/s, frame: ENU}}\n");
+  CHECK((enu.recording.dvl[0].v_WB_B - Vector3d(2.0, -1.0, -0.5)).norm() < kRounding);
+  CHECK_THROWS_WITH_AS(import_text(csv, velocity), doctest::Contains("need an attitude"), InputError);
+  const Imported rates = import_text("t,a,b,c,wn,we,wd\n0,0,0,90,1,2,3\n",
+                                     "ahrs:\n  rates: {columns: [wn, we, wd], unit: rad/s, frame: NED}\n"
+                                     "  euler: {columns: [a, b, c], unit: deg, world: NED, body: FRD}\n");
+  CHECK((rates.recording.ahrs[0].w_WB_B - Vector3d(2.0, -1.0, 3.0)).norm() < kRounding);
+}
+
+TEST_CASE("columns: latitude and longitude become north and east of the first fix") {
+  const std::string map = "pose_capture: {geodetic: {columns: [lat, lon, alt], unit: deg}}\n";
+  const Imported imported = import_text("t,lat,lon,alt\n0,,,\n1,60,5,10\n2,60.001,5,10\n3,60,5.001,8\n", map);
+  const auto& pose = imported.recording.pose_capture;
+  REQUIRE(pose.size() == 3);
+  CHECK(pose[0].p_WB.norm() < kRounding);
+  // A degree of latitude at 60 deg is 111.412 km, one of longitude 55.800 km (WGS84, printed tables).
+  CHECK(pose[1].p_WB.x() == doctest::Approx(111.412).epsilon(1e-4));
+  CHECK(pose[2].p_WB.y() == doctest::Approx(55.800).epsilon(1e-4));
+  CHECK(pose[2].p_WB.z() == doctest::Approx(2.0));
+  CHECK(noted(imported, "from the first fix, 60.0000000 deg, 5.0000000 deg"));
+  const Imported boat =
+      import_text("t,lat,lon\n0,60,5\n1,60.001,5\n", "pose_capture: {geodetic: {columns: [lat, lon], unit: deg}}\n",
+                  SimulatedAxes{true, true, false, false, false, true});
+  CHECK(boat.recording.pose_capture[1].p_WB.z() == 0.0);
+}
+
+TEST_CASE("columns: pressure is depth by the water's density and the atmosphere") {
+  const Imported imported = import_text("t,p\n0,1013.25\n1,2013.25\n",
+                                        "depth: {pressure: {column: p, unit: mbar, surface: 101325 Pa, "
+                                        "density: 1000 kg/m^3}}\n");
+  CHECK(std::abs(imported.recording.depth[0].z) < kRounding);
+  CHECK(imported.recording.depth[1].z == doctest::Approx(1e5 / 9806.65));
+  const Imported relative = import_text("t,p\n0,10\n1,20\n",
+                                        "depth: {pressure: {column: p, unit: dbar, surface: 0 Pa, "
+                                        "density: 1025 kg/m^3}}\n");
+  CHECK(relative.recording.depth[0].z == doctest::Approx(1e5 / (1025.0 * 9.80665)));
+}
+
+TEST_CASE("columns: course and speed over ground are a velocity") {
+  const Imported boat =
+      import_text("t,a,b,c,cog,sog\n0,0,0,60,90,2\n1,0,0,60,90,2\n",
+                  kYawed + "dvl: {course: {column: cog, unit: deg}, speed: {column: sog, unit: m/s}}\n",
+                  SimulatedAxes{true, true, false, false, false, true});
+  CHECK((boat.recording.dvl[0].v_WB_B - Vector3d(std::sqrt(3.0), 1.0, 0.0)).norm() < kRounding);
+}
+
+TEST_CASE("columns: valid_where marks what is not valid, beside invalid_where") {
+  const Imported imported = import_text("t,u,v,w,ok,bad\n0,1,1,1,1,0\n1,2,1,1,0,0\n2,3,1,1,1,1\n",
+                                        "dvl:\n  velocity: {columns: [u, v, w], unit: m/s, frame: FRD}\n"
+                                        "  valid_where: [ok]\n  invalid_where: [bad]\n");
+  const auto& dvl = imported.recording.dvl;
+  REQUIRE(dvl.size() == 3);
+  CHECK(dvl[0].valid);
+  CHECK_FALSE(dvl[1].valid);
+  CHECK_FALSE(dvl[2].valid);
+}
+
+TEST_CASE("columns: streams in rows of their own are kept whole, and empty cells of the others refuse nothing") {
+  std::string csv = "t,x,y,z,phi,theta,psi,p,q,r\n";
+  for (int k = 0; k < 100; ++k) {
+    const std::string t = std::to_string(0.01 * k);
+    csv += k % 10 == 5 ? t + ",1,2,3,,,,,,\n" : k % 2 == 0 ? t + ",,,,0,0," + t + ",,,\n" : t + ",,,,,,,1,2,3\n";
+  }
+  const CsvTable table = parse_csv(csv, "run.csv");
+  const Imported imported = import_table(table, canonical_map(table));
+  CHECK(imported.recording.pose_capture.size() == 10);
+  CHECK(euler_from_rotation(imported.recording.pose_capture[0].q_WB.toRotationMatrix()).z() == doctest::Approx(0.05));
+  CHECK(imported.recording.ahrs.size() == 50 + 40);
+  CHECK(std::ranges::is_sorted(imported.recording.ahrs, {}, &Ahrs::utime));
+  CHECK(std::ranges::count_if(imported.recording.ahrs, &Ahrs::has_attitude) == 50);
+  CHECK(std::ranges::count_if(imported.recording.ahrs, &Ahrs::has_rates) == 40);
+  CHECK_FALSE(noted(imported, "refused"));
+}
+
+TEST_CASE("columns: a header's unit is obeyed, another dimension and an unknown one are refused") {
+  CsvTable table = parse_csv("t [ms],psi (deg),u [kn],v [m/s],w,f1 [kN]\n0,180,1,1,1,2\n100,90,1,1,1,2\n", "run.csv");
+  const auto notes = to_si(table);
+  CHECK(notes.size() == 4);
+  CHECK((*table.find("t"))[1] == doctest::Approx(0.1));
+  CHECK((*table.find("psi"))[0] == doctest::Approx(std::numbers::pi));
+  CHECK((*table.find("u"))[0] == doctest::Approx(0.514444).epsilon(1e-5));
+  CHECK((*table.find("f1"))[0] == doctest::Approx(2000.0));
+  CsvTable wrong = parse_csv("t,u [deg]\n0,1\n", "run.csv");
+  CHECK_THROWS_WITH_AS((void)to_si(wrong), doctest::Contains("column 'u' is in deg, where m/s is meant"), InputError);
+  CsvTable unknown = parse_csv("t,u [furlong]\n0,1\n", "run.csv");
+  CHECK_THROWS_WITH_AS((void)to_si(unknown), doctest::Contains("its unit is not known"), InputError);
+}
+
+TEST_CASE("columns: a depth alone is understood where it is called z") {
+  const CsvTable table = parse_csv("t,z,theta,u,w,q\n0,12.2,-0.39,0.33,0.01,0\n1,12.4,-0.39,0.33,0.01,0\n", "run.csv");
+  const Imported imported =
+      import_table(table, canonical_map(table), SimulatedAxes{true, false, true, false, false, false});
+  CHECK(imported.recording.depth.at(1).z == 12.4);
+  CHECK(imported.recording.pose_capture.empty());
+  CHECK(imported.recording.ahrs.at(0).has_attitude);
+  CHECK(noted(imported, "'z' without 'x' and 'y' is read as the column 'depth'"));
+}
+
+TEST_CASE("columns: heading senses, conjugate quaternions, rates of Euler angles and a heading offset, by hand") {
+  const auto heading = [](const std::string& more) {
+    const Imported imported = import_text(
+        "t,a,b,c\n0,0,0,30\n", "ahrs:\n  euler: {columns: [a, b, c], unit: deg, " + more + "world: NED, body: FRD}\n");
+    return euler_from_rotation(imported.recording.ahrs[0].q_WB.toRotationMatrix()).z() * 180.0 / std::numbers::pi;
+  };
+  CHECK(heading("") == doctest::Approx(30.0));
+  CHECK(heading("heading: from_east, ") == doctest::Approx(60.0));
+  CHECK(heading("heading: anticlockwise, ") == doctest::Approx(-30.0));
+  CHECK(heading("heading_offset: 25 deg, ") == doctest::Approx(55.0));
+  const Imported conjugate = import_text("t,w,x,y,z\n0,0.8,0.6,0,0\n",
+                                         "ahrs:\n  quaternion: {columns: [w, x, y, z], order: wxyz, turns: "
+                                         "world_to_body, world: NED, body: FRD}\n");
+  CHECK(conjugate.recording.ahrs[0].q_WB.x() == doctest::Approx(-0.6));
+  // Pitched up by 30 deg a turn in yaw is felt half as roll the other way.
+  const Imported euler = import_text("t,a,b,c,da,db,dc\n0,0,30,0,0,0,2\n",
+                                     "ahrs:\n  rates: {columns: [da, db, dc], unit: rad/s, frame: euler}\n"
+                                     "  euler: {columns: [a, b, c], unit: deg, world: NED, body: FRD}\n");
+  CHECK((euler.recording.ahrs[0].w_WB_B - Vector3d(-1.0, 0.0, std::sqrt(3.0))).norm() < kRounding);
+}
+
+TEST_CASE("columns: a map that is written is read as the same map") {
+  const std::string text = kAbout +
+                           "pose_capture:\n  position: {columns: [x, y, none], unit: mm, frame: ENU}\n"
+                           "  euler: {columns: [none, none, c], unit: deg, heading: from_east, heading_offset: 3 deg, "
+                           "world: NED, body: FRD}\n"
+                           "  held: detect\n  valid_where: [ok]\n"
+                           "ahrs:\n  rates: {columns: [p, q, r], unit: deg/s, frame: NED}\n"
+                           "  specific_force: {columns: [\"a x\", ay, az], unit: m/s^2, frame: FLU}\n"
+                           "dvl:\n  velocity: {columns: [u, v, none], unit: kn, frame: NWU}\n  invalid_where: [bad]\n"
+                           "depth: {column: d, unit: m, direction: up}\n"
+                           "thrusters:\n  wrench: {columns: [X, Y, N], force_unit: N, moment_unit: N m, frame: FRD}\n"
+                           "battery: {column: volts, unit: mV}\n";
+  const ColumnMap map = ColumnMap::parse(text, "map.yaml");
+  const std::string once = to_yaml(map);
+  CHECK(to_yaml(ColumnMap::parse(once, "again.yaml")) == once);
+  const ColumnMap again = ColumnMap::parse(once, "again.yaml");
+  CHECK(again.pose_capture->position->factor == doctest::Approx(1e-3));
+  CHECK(again.pose_capture->position->to_house == map.pose_capture->position->to_house);
+  CHECK(again.pose_capture->attitude->heading_sign == -1.0);
+  CHECK(again.pose_capture->attitude->heading_offset == doctest::Approx(map.pose_capture->attitude->heading_offset));
+  CHECK(again.pose_capture->invalid_where.at(0).negated);
+  CHECK(again.ahrs->rates_in_world);
+  CHECK(again.ahrs->specific_force->columns[0].name == "a x");
+  CHECK(again.dvl->velocity.columns[2].absent);
+  CHECK(again.depth->group.factor == doctest::Approx(-1.0));
+}
