@@ -3,7 +3,6 @@
 #include <httplib.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <fathom_lcm/excitation_t.hpp>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/runtime/self.hpp"
 #include "test/support/bus.hpp"
 #include "test/support/channels.hpp"
 #include "test/support/private_network.hpp"
@@ -73,12 +73,6 @@ fathom_lcm::health_t health(const std::string& name, int pid) {
   message.pid = pid;
   message.state = "running";
   return message;
-}
-
-std::string own_name() {
-  std::array<char, 256> name{};
-  REQUIRE(gethostname(name.data(), name.size() - 1) == 0);
-  return name.data();
 }
 
 bool is_board(const Json& entry) { return entry["name"].get<std::string>().starts_with("board@"); }
@@ -267,7 +261,7 @@ TEST_CASE("board: a page of the wide world that calls this host by its own name 
   };
   const std::string port = ":" + std::to_string(board.port);
   for (const std::string& good : {"127.0.0.1" + port, "localhost" + port, "LOCALHOST" + port, "[::1]" + port,
-                                  std::string{"192.168.2.1"}, own_name() + port}) {
+                                  std::string{"192.168.2.1"}, runtime::host_name() + port}) {
     CAPTURE(good);
     CHECK(status(good) == 200);
   }
