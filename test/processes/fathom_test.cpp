@@ -283,7 +283,7 @@ TEST_CASE("fathom: gaps of whole rows are left out and told of; where they leave
   CAPTURE(many.text);
   CHECK(many.code == 1);
   CHECK(many.says("many.csv: what drove the vehicle is missing for 10 s of 42.1 s"));
-  CHECK(many.lines() == 1);  // how far it had come, and why it goes no further
+  CHECK(many.lines() == 1);  // nothing had been estimated yet
 }
 
 }  // namespace fathom
