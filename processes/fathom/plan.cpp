@@ -17,7 +17,6 @@ namespace fathom::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using planning::Answer;
 using planning::Foreseen;
 
 constexpr double kWindow = 10.0;  // s, as in a diagnosis
@@ -38,7 +37,7 @@ planning::RehearsalSettings settings_from(const PlanOptions& options, const mode
   return s;
 }
 
-std::string said(const Answer& answer) {
+std::string said(const planning::Answer& answer) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f s of ", answer.seconds);
   return text + answer.segment;
@@ -79,7 +78,7 @@ void print(const std::vector<Foreseen>& all, double duration) {
   }
 }
 
-Json json_of(const std::optional<Answer>& answer) {
+Json json_of(const std::optional<planning::Answer>& answer) {
   if (!answer) return nullptr;
   return {{"segment", answer->segment}, {"seconds", answer->seconds}};
 }
