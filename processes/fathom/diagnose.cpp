@@ -1,6 +1,5 @@
 // fathom diagnose: closes the loop on recordings. Sensors are checked, the base model fitted, its residual traced to
 // effects that it lacks, and the error before and after reported on runs that no fit has seen.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -28,6 +27,7 @@
 #include "common/model/site.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/verdict/by_likelihood.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -297,9 +297,9 @@ void run_diagnose(const DiagnoseOptions& options) {
 
 }  // namespace
 
-void add_diagnose(CLI::App& app) {
+void add_diagnose(runtime::CommandLine& app) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
+  runtime::CommandLine* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
   command->add_option(
@@ -313,12 +313,12 @@ void add_diagnose(CLI::App& app) {
   command
       ->add_option("--core", options->core,
                    "trajectories: windows of open-loop rollouts; likelihood: an innovations filter over whole runs")
-      ->check(CLI::IsMember({kTrajectories, kLikelihood}));
+      ->one_of({kTrajectories, kLikelihood});
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
-      ->check(CLI::Range(1, 64));
+      ->within(1, 64);
   command->callback([options] { run_diagnose(*options); });
 }
 

@@ -1,5 +1,4 @@
 // fathom smooth: a recorded run through the Kalman filter and back through the smoother.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "common/estimation/process_tuning.hpp"
 #include "common/estimation/transponder_check.hpp"
 #include "common/estimation/trial_smoother.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -121,14 +121,14 @@ void run_smooth(const SmoothOptions& options) {
 
 }  // namespace
 
-void add_smooth(CLI::App& app) {
+void add_smooth(runtime::CommandLine& app) {
   auto options = std::make_shared<SmoothOptions>();
-  CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
+  runtime::CommandLine* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
   command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
   command->add_option("--config", options->config, "YAML file whose section estimator has `filter: ekf`");
   command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
-  command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
+  command->add_option("--model", options->model, "kinematic model")->one_of({"printed", "coupled"});
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
   command->callback([options] { run_smooth(*options); });
 }
