@@ -38,11 +38,19 @@ Option* Option::positive() { return with(this, option_, CLI::PositiveNumber); }
 Option* Option::not_negative() { return with(this, option_, CLI::NonNegativeNumber); }
 Option* Option::within(int least, int most) { return with(this, option_, CLI::Range(least, most)); }
 Option* Option::within(double least, double most) { return with(this, option_, CLI::Range(least, most)); }
-Option* Option::one_of(const std::vector<std::string>& words) { return with(this, option_, CLI::IsMember(words)); }
-Option* Option::one_of(const std::vector<int>& numbers) { return with(this, option_, CLI::IsMember(numbers)); }
+Option* Option::one_of(std::initializer_list<const char*> words) {
+  return with(this, option_, CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+}
+Option* Option::one_of(std::initializer_list<int> numbers) {
+  return with(this, option_, CLI::IsMember(std::vector<int>{numbers}));
+}
 Option* Option::existing_file() { return with(this, option_, CLI::ExistingFile); }
 Option* Option::expected(int values) { return option_->expected(values), this; }
 Option* Option::take_all() { return option_->take_all(), this; }
+Option* Option::delimiter(char sign) { return option_->delimiter(sign), this; }
+Option* Option::allow_extra_args(bool more) { return option_->allow_extra_args(more), this; }
+Option* Option::type_name(const std::string& name) { return option_->type_name(name), this; }
+Option* Option::each(std::function<void(const std::string&)> look) { return option_->each(std::move(look)), this; }
 Option* Option::needs(const Option* other) { return option_->needs(other->option_), this; }
 Option* Option::excludes(const Option* other) { return option_->excludes(other->option_), this; }
 Option* Option::envname(const std::string& variable) { return option_->envname(variable), this; }

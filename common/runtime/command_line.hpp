@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <iosfwd>
 #include <list>
 #include <memory>
@@ -33,11 +34,15 @@ class Option {
   Option* not_negative();
   Option* within(int least, int most);
   Option* within(double least, double most);
-  Option* one_of(const std::vector<std::string>& words);
-  Option* one_of(const std::vector<int>& numbers);
+  Option* one_of(std::initializer_list<const char*> words);
+  Option* one_of(std::initializer_list<int> numbers);
   Option* existing_file();
-  Option* expected(int values);  // negative: at least so many
-  Option* take_all();            // given twice, it has both values
+  Option* expected(int values);         // negative: at least so many
+  Option* take_all();                   // given twice, it has both values
+  Option* delimiter(char sign);         // between values of one word
+  Option* allow_extra_args(bool more);  // one word behind the name, or all up to the next name
+  Option* type_name(const std::string& name);
+  Option* each(std::function<void(const std::string& word)> look);
   Option* needs(const Option* other);
   Option* excludes(const Option* other);
   Option* envname(const std::string& variable);

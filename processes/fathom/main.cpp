@@ -3,7 +3,7 @@
 #include "processes/fathom/commands.hpp"
 
 int main(int argc, char** argv) {
-  runtime::CommandLine app{"Explains from recordings why an underwater vehicle moves as it does.", "fathom"};
+  fathom::runtime::CommandLine app{"Explains from recordings why an underwater vehicle moves as it does.", "fathom"};
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);

@@ -3,7 +3,7 @@
 #include "processes/pictures/commands.hpp"
 
 int main(int argc, char** argv) {
-  runtime::CommandLine app{"Reads pictures: what `fathom` runs for its subcommands track and calibrate.", "fathom"};
+  fathom::runtime::CommandLine app{"Reads pictures: what `fathom` runs for its subcommands track and calibrate.", "fathom"};
   fathom::pictures::add_track(app);
   fathom::pictures::add_calibrate(app);
   return app.run(argc, argv);
