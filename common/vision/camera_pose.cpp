@@ -137,7 +137,12 @@ Pose mirrored(const Pose& pose, const std::vector<Correspondence>& points, const
   const Eigen::Vector3d p_C = pose.R_WC.transpose() * (middle - pose.p_WC);
   const Eigen::Vector3d sight = p_C.normalized(), normal = pose.R_WC.transpose() * normal_W;
   const Eigen::Vector3d other = 2.0 * normal.dot(sight) * sight - normal;
-  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(normal, other).toRotationMatrix();
+  // The smallest turn from one to the other, by Rodrigues; half a turn where the plane is seen edge on.
+  const Eigen::Matrix3d by = skew(normal.cross(other));
+  const double beside = 1.0 + normal.dot(other);
+  const Eigen::Matrix3d turn = beside > 1e-12
+                                   ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() + by + by * by / beside)
+                                   : Eigen::Matrix3d(2.0 * sight * sight.transpose() - Eigen::Matrix3d::Identity());
   Pose result;
   result.R_WC = pose.R_WC * turn.transpose();
   result.p_WC = middle - result.R_WC * p_C;
