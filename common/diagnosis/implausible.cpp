@@ -30,14 +30,15 @@ std::string number(double value) {
   return text.data();
 }
 
-std::optional<Usual> usual(model::BaseParameter parameter, const model::Vehicle& vehicle) {
+/// `expected`: the mean of the file's prior, which may be another's measurement.
+std::optional<Usual> usual(model::BaseParameter parameter, double expected, const model::Vehicle& vehicle) {
   using enum model::BaseParameter;
   const int axis = model::axis(parameter);
   switch (parameter) {
     case m_X:
     case m_Y:
     case m_Z: {
-      const double low = kLightest * vehicle.mass, high = kHeaviest * vehicle.mass;
+      const double low = kLightest * std::min(vehicle.mass, expected), high = kHeaviest * vehicle.mass;
       return Usual{low, high,
                    "for a craft of " + number(vehicle.mass) + " kg: with the water that it moves " + number(low) +
                        " to " + number(high) + " kg"};
@@ -75,7 +76,10 @@ std::vector<ConsistencyFinding> implausible_numbers(const model::Vehicle& vehicl
   for (const NamedValue& one : parameters) {
     const auto parameter = model::parameter_from_name(one.name);
     if (!parameter) continue;
-    const std::optional<Usual> range = usual(*parameter, vehicle);
+    const auto enabled = std::ranges::find(vehicle.parameters, one.name);
+    const auto place = static_cast<std::size_t>(enabled - vehicle.parameters.begin());
+    const double expected = enabled == vehicle.parameters.end() ? vehicle.mass : vehicle.priors[place].mean;
+    const std::optional<Usual> range = usual(*parameter, expected, vehicle);
     if (!range) continue;
     const double doubt = std::isfinite(one.std) ? kDeviations * one.std : 0.0;
     if (one.value + doubt >= range->low && one.value - doubt <= range->high) continue;

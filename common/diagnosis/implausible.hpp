@@ -10,8 +10,8 @@
 namespace fathom::diagnosis {
 
 /// A finding per parameter that is out of the range of physics by more than two of its standard deviations: a mass with
-/// added water below the craft's own or beyond any hull's, a moment of inertia, quadratic drag. Empty where the file
-/// states no mass.
+/// added water below the craft's own (and what its file expects) or beyond any hull's, a moment of inertia, quadratic
+/// drag. Empty where the file states no mass.
 [[nodiscard]] std::vector<ConsistencyFinding> implausible_numbers(const model::Vehicle& vehicle,
                                                                   std::span<const NamedValue> parameters);
 

@@ -75,6 +75,9 @@ TEST_CASE("implausible: a mass, a moment and a drag that no such craft has are n
   CHECK(found("Y_v|v|", -2000.0, 50.0).size() == 1);
   CHECK(found("Y_v|v|", -120.0, 50.0).empty());
   CHECK(found("Y_v", 30.0, 5.0).empty());  // a linear term beside a quadratic one may have either sign
+  vehicle.parameters = {"m_X"};
+  vehicle.priors = {{.mean = 6.0, .sigma = 1.0}};  // another's measurement of the same craft
+  CHECK(found("m_X", 5.6, 0.05).empty());
   vehicle.mass = 0.0;
   CHECK(found("m_Z", 104.0, 3.0).empty());
 }
