@@ -103,12 +103,12 @@ TEST_CASE("selection: two slips are two causes") {
   Streams both{4};
   const Eigen::Matrix3d enu = (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished();
   for (std::size_t i = 0; i < both.velocity.size(); ++i) {
-    both.velocity.x[i] = both.pose.q_WB[i] * both.velocity.x[i];
+    both.pose.q_WB[i] = both.pose.q_WB[i].conjugate();
     both.pose.p_WB[i] = enu * both.pose.p_WB[i];
   }
   const Selection selection = select_reading(both.evidence());
   REQUIRE(selection.causes.size() == 2);
-  CHECK(selection.reading.velocity_frame == estimation::VectorFrame::kWorld);
+  CHECK(selection.reading.quaternion == estimation::QuaternionForm::kInverse);
   CHECK(selection.reading.position == enu);
 }
 
