@@ -30,5 +30,6 @@ void add_pictures(runtime::CommandLine& app);
 void add_trial(runtime::CommandLine& app);
 void add_watch(runtime::CommandLine& app);
 void add_bus(runtime::CommandLine& app);
+void add_vehicle(runtime::CommandLine& app);
 
 }  // namespace fathom::tool
