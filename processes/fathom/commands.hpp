@@ -30,5 +30,7 @@ void add_pictures(CLI::App& app);
 void add_trial(CLI::App& app);
 void add_watch(CLI::App& app);
 void add_bus(CLI::App& app);
+void add_explain(CLI::App& app);
+void add_export(CLI::App& app);
 
 }  // namespace fathom::tool

@@ -7,6 +7,8 @@ int main(int argc, char** argv) {
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
+  fathom::tool::add_explain(app);
+  fathom::tool::add_export(app);
   fathom::tool::add_compare(app);
   fathom::tool::add_smooth(app);
   fathom::tool::add_regress(app);
