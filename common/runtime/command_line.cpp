@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/near_name.hpp"
 #include "common/base/version.hpp"
 #include "common/runtime/command_pages.hpp"
 
@@ -21,6 +22,17 @@ void expect_finite_numbers(CLI::App& app) {
   const auto takes_real = [](const CLI::Option* option) { return option->get_type_name().starts_with("FLOAT"); };
   for (CLI::Option* option : app.get_options(takes_real)) option->check(refuse);
   for (CLI::App* command : app.get_subcommands({})) expect_finite_numbers(*command);
+}
+
+/// "; did you mean check?"; nothing where no command is near.
+std::string meant(const CLI::App& app, std::string_view word) {
+  std::string near;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string& name = command->get_name();
+    const bool begins = word.size() > 2 && name.starts_with(word);
+    if (begins || looks_like(name, word)) near += (near.empty() ? "" : " or ") + name;
+  }
+  return near.empty() ? "" : "; did you mean " + near + "?";
 }
 
 }  // namespace
@@ -40,7 +52,8 @@ int run_command_line(CLI::App& app, int argc, char** argv) {
   try {
     const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty())
-      throw CLI::ExtrasError(std::string(argv[1]) + " is no command", CLI::ExitCodes::ExtrasError);
+      throw CLI::ExtrasError(std::string(argv[1]) + " is no command" + meant(app, argv[1]),
+                             CLI::ExitCodes::ExtrasError);
     parse(app, argc, argv);
     return 0;
   } catch (const CLI::Success& asked) {
