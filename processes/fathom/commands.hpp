@@ -32,6 +32,7 @@ void add_watch(CLI::App& app);
 void add_bus(CLI::App& app);
 void add_explain(CLI::App& app);
 void add_export(CLI::App& app);
+void add_vehicle(CLI::App& app);
 /// To commands that are there already.
 void add_examples(CLI::App& app);
 

@@ -13,7 +13,8 @@ struct Example {
   const char* words;  // behind the command
 };
 
-constexpr std::array kExamples{Example{"import", "DIVE.csv --out NEW.lcmlog"},
+constexpr std::array kExamples{Example{"vehicle", "bluerov2_heavy"},
+                               Example{"import", "DIVE.csv --out NEW.lcmlog"},
                                Example{"check", "--vehicle V.yaml RUN.lcmlog"},
                                Example{"diagnose", "--vehicle V.yaml --train RUN.lcmlog --out DIAGNOSIS"},
                                Example{"explain", "BEFORE"},

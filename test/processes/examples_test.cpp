@@ -24,7 +24,7 @@ const std::string kTool = test::program("fathom");
 constexpr const char* kBus = "LCM_DEFAULT_URL='udpm://239.255.76.151:7651?ttl=0'";  // nobody else's
 constexpr int kBadLine = 2;                                    // exit code of a command line that is not understood
 const std::set<std::string> kForwarded{"track", "calibrate"};  // another program's commands, with its own --help
-const std::set<std::string> kComplete{"import", "check", "explain", "diff", "info", "export", "emulate"};
+const std::set<std::string> kComplete{"vehicle", "import", "check", "explain", "diff", "info", "export", "emulate"};
 
 std::vector<std::string> commands() {
   std::vector<std::string> names;

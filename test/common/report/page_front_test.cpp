@@ -9,6 +9,7 @@
 
 using fathom::EffectFound;
 using fathom::report::cause_line;
+using fathom::report::to_html;
 
 namespace {
 
