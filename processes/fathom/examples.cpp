@@ -1,8 +1,8 @@
 // The last line of every command's --help and manual page: an example. The tests run each of them.
-#include <CLI/CLI.hpp>
 #include <array>
 #include <string>
 
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -42,10 +42,9 @@ constexpr std::array kExamples{Example{"vehicle", "bluerov2_heavy"},
 
 }  // namespace
 
-void add_examples(CLI::App& app) {
+void add_examples(runtime::CommandLine& app) {
   for (const Example& one : kExamples) {
-    CLI::App* command = app.get_subcommand(one.command);
-    command->footer("Example: fathom " + std::string{one.command} + (*one.words == '\0' ? "" : " ") + one.words);
+    if (runtime::CommandLine* command = app.subcommand(one.command)) command->example(one.words);
   }
 }
 

@@ -1,6 +1,5 @@
 // fathom info, fathom export: what a log holds; its channels for other programs, and an identified model for other
 // simulators.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "common/base/file_hash.hpp"
 #include "common/exports/log_export.hpp"
 #include "common/exports/models/formats.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -102,22 +102,21 @@ void run_info(const ExportOptions& options) {
 
 }  // namespace
 
-void add_export(CLI::App& app) {
+void add_export(runtime::CommandLine& app) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* info = app.add_subcommand("info", "what a log holds: channels, types, rates, gaps, embedded configuration");
+  runtime::CommandLine* info =
+      app.add_subcommand("info", "what a log holds: channels, types, rates, gaps, embedded configuration");
   info->add_option("log", options->input, "LCM log (.lcmlog)")->required();
   info->add_option("--config", options->config, "print the configuration of this process in place of the table");
   info->callback([options] { run_info(*options); });
 
-  std::vector<std::string> formats{"csv", "mcap"};
-  for (const std::string& format : exports::model_formats()) formats.push_back(format);
-  CLI::App* command =
+  runtime::CommandLine* command =
       app.add_subcommand("export", "a log's channels for other programs, or an identified model for other simulators");
   command->add_option("input", options->input, "LCM log (for csv, mcap), or result.json of a diagnosis or its folder")
       ->required();
   command->add_option("--to", options->to, "format; csv and mcap of a log, the others of a diagnosis")
       ->required()
-      ->check(CLI::IsMember(formats));
+      ->one_of({"csv", "mcap", "vehicle", "gz", "uuv", "stonefish", "holoocean", "mss", "json"});
   command->add_option("--out", options->out, "file, or folder for csv; without: named after the input, here");
   command->add_option("--channel", options->channels, "with csv, mcap: these channels alone");
   command->add_option("--vehicle", options->vehicle, "vehicle file; without: the one that the diagnosis read");
