@@ -27,7 +27,7 @@ void expect_finite_numbers(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) expect_finite_numbers(*command);
 }
 
-/// "; did you mean check?"; nothing where no command is near.
+/// ", but check is"; nothing where no command is near.
 std::string meant(const CLI::App& app, std::string_view word) {
   std::string near;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -35,7 +35,7 @@ std::string meant(const CLI::App& app, std::string_view word) {
     const bool begins = word.size() > 2 && name.starts_with(word);
     if (begins || looks_like(name, word)) near += (near.empty() ? "" : " or ") + name;
   }
-  return near.empty() ? "" : "; did you mean " + near + "?";
+  return near.empty() ? "" : ", but " + near + " is";
 }
 
 Option* with(Option* self, CLI::Option* option, const CLI::Validator& rule) {
