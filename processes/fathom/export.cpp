@@ -74,8 +74,11 @@ void run_export(const ExportOptions& options) {
   if (options.to == "csv" || options.to == "mcap") {
     const std::string stem = std::filesystem::path{options.input}.stem().string();
     const std::string out = !options.out.empty() ? options.out : options.to == "csv" ? stem + "_csv" : stem + ".mcap";
-    print_counts(options.to == "csv" ? exports::to_csv(options.input, out, options.channels)
-                                     : exports::to_mcap(options.input, out, options.channels));
+    const exports::Exported exported = options.to == "csv" ? exports::to_csv(options.input, out, options.channels)
+                                                           : exports::to_mcap(options.input, out, options.channels);
+    print_counts(exported);
+    if (exported.written.empty())
+      throw InputError(options.input + ": holds no message of a type that this version has; " + out + " is empty");
     std::printf("%s   %s\n", options.to == "csv" ? "folder" : "file  ", out.c_str());
     return;
   }
