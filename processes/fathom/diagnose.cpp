@@ -57,6 +57,7 @@ struct DiagnoseOptions {
   std::vector<std::string> train, validate;
   std::vector<std::string> without;
   std::string core{kTrajectories};
+  bool no_learning{false};
   int threads{2};
 };
 
@@ -150,6 +151,8 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   check_names(options.without);
   if (!options.without.empty() && options.core != kLikelihood)
     throw InputError("--without takes effects out of the list of --core likelihood alone; give that too");
+  if (options.no_learning && options.core != kLikelihood)
+    throw InputError("--no-learning is about --core likelihood alone; give that too");
   make_folder(options.out);
   std::vector<std::string> paths = options.train;
   paths.insert(paths.end(), options.validate.begin(), options.validate.end());
@@ -221,7 +224,8 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
         progress.begin(kLikelihoodSearch, what);
       };
       verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
-                                                 {.without = options.without, .threads = options.threads}, show);
+                                                 {.without = options.without, .threads = options.threads}, show,
+                                                 {.learn = !options.no_learning});
       progress.expect(kLikelihoodSearch, 0);
       out.report = std::move(answer.report);
       out.given = std::move(answer.given);
@@ -316,6 +320,8 @@ void add_diagnose(CLI::App& app) {
       ->check(CLI::IsMember({kTrajectories, kLikelihood}));
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
+  command->add_flag("--no-learning", options->no_learning,
+                    "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->check(CLI::Range(1, 64));
