@@ -230,6 +230,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   given.carried = !lasting.empty() && passes(carried, limits.carried, limits);
   if (given.carried) learned.elsewhere = made(learned.fit, lasting, visited);
   describe(free->fit, visited, given);
+  given.input_is_wrench = of.front().input_is_wrench;
   for (std::size_t k = 0; k < given.terms.size(); ++k) given.terms[k].weight = learned.fit.hypothesis.force.weights[k];
   for (const inference::RandomForce& random : conclusion.random) {
     const auto i = static_cast<std::size_t>(std::ranges::find(problem.axes, random.axis) - problem.axes.begin());

@@ -71,6 +71,7 @@ Json correction_json(const CorrectionGiven& given) {
   if (!given.adopted) return json;
   json["terms"] = terms;
   json["covariance"] = given.covariance;
+  json["input_is_wrench"] = given.input_is_wrench;
   json["visited"] = {{"nu", given.visited_nu},
                      {"tau", given.visited_tau},
                      {"force", given.visited_force},

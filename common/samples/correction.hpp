@@ -43,7 +43,8 @@ struct CorrectionGiven {
   std::vector<CorrectionTerm> terms;
   std::vector<std::vector<double>> covariance;  ///< of the weights
   std::array<double, 6> visited_nu{}, visited_tau{};
-  std::vector<double> visited_force;
+  std::vector<double> visited_force;  ///< N per thruster, or the wrench
+  bool input_is_wrench{false};
   std::array<double, 3> visited_low{}, visited_high{};  ///< m
   std::vector<CorrectionLeft> left;
 };

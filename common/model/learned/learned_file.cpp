@@ -59,12 +59,15 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
   const Config seen = config.section("visited");
   Visited visited{.nu = six(seen, "nu"), .tau = six(seen, "tau")};
   const std::vector<double> forces = seen.quantities("force", "");
-  const bool wrench = vehicle.thrusters.empty();
-  const auto count = static_cast<std::size_t>(wrench ? 6 : vehicle.allocation.cols());
-  if (forces.size() != count)
-    seen.fail("force", "learned with " + std::to_string(forces.size()) + " inputs; " + vehicle.name + " has " +
-                           std::to_string(count) + ": it was another vehicle, or its wrench was recorded");
-  visited.force = Eigen::Map<const Eigen::VectorXd>{forces.data(), static_cast<Eigen::Index>(forces.size())};
+  const auto count = vehicle.allocation.cols();
+  if (config.flag("input_is_wrench")) {  // no term reads a single thruster
+    visited.force.setZero(count);
+  } else {
+    if (static_cast<Eigen::Index>(forces.size()) != count)
+      seen.fail("force", "learned with " + std::to_string(forces.size()) + " thrusters; " + vehicle.name + " has " +
+                             std::to_string(count));
+    visited.force = Eigen::Map<const Eigen::VectorXd>{forces.data(), count};
+  }
   visited.p_low = seen.vector3("p_low", "");
   visited.p_high = seen.vector3("p_high", "");
   for (const Feature& feature : force.features) {
@@ -75,11 +78,9 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
         config.fail("terms", "a term reads a thruster that " + vehicle.name + " does not have");
     }
   }
-  Allocation allocation = vehicle.allocation;
-  if (wrench) allocation = Matrix6d::Identity();
   FreeForce lasting = without_time(force);  // another run is another time
   if (lasting.empty()) return nullptr;
-  return std::make_shared<const LearnedForce>(std::move(lasting), std::move(visited), std::move(allocation));
+  return std::make_shared<const LearnedForce>(std::move(lasting), std::move(visited), vehicle.allocation);
 }
 
 }  // namespace

@@ -25,10 +25,10 @@ const Factor kU{.quantity = Quantity::kVelocity, .index = 0}, kV{.quantity = Qua
 struct Bench {
   Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   Visited visited{
-      .nu = Vector6d::Constant(0.5), .tau = Vector6d::Constant(20.0), .force = ActuatorForces::Constant(8, 10.0)};
+      .nu = Vector6d::Constant(0.5), .tau = Vector6d::Constant(20.0), .force = ActuatorForces::Constant(6, 10.0)};
 
   Vector6d wrench(const LearnedForce& force, const Vector6d& nu, const Vector6d& drag = Vector6d::Zero()) const {
-    Motion motion{.nu = nu, .force = ActuatorForces::Zero(8)};
+    Motion motion{.nu = nu, .force = ActuatorForces::Zero(6)};
     Load load;
     load.clear();
     load.drag = drag;
@@ -71,8 +71,8 @@ TEST_CASE("learned force: low passes settle, and follow as their time constants 
   const int bank = 1;  // of the velocities
   const LearnedForce force =
       bench.made(one(along(0, {{.quantity = Quantity::kSlowVelocity, .index = 0, .bank = bank}}), 2.0));
-  std::vector<double> z(static_cast<std::size_t>(force.state_size(bench.vehicle, 8)));
-  Motion motion{.nu = Vector6d::Unit(0) * 0.2, .force = ActuatorForces::Zero(8)};
+  std::vector<double> z(static_cast<std::size_t>(force.state_size(bench.vehicle, 6)));
+  Motion motion{.nu = Vector6d::Unit(0) * 0.2, .force = ActuatorForces::Zero(6)};
   force.settle(motion, {}, 0, z);
   force.feel(motion, {}, 0, z);
   CHECK(motion.w_memory[0] == doctest::Approx(0.4));

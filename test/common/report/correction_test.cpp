@@ -27,7 +27,7 @@ DiagnosisResult diagnosed() {
   given.covariance = {{1e-4, 0.0, 0.0}, {0.0, 1e-4, 0.0}, {0.0, 0.0, 1e-2}};
   given.visited_nu.fill(0.8);
   given.visited_tau.fill(30.0);
-  given.visited_force.assign(8, 20.0);
+  given.visited_force.assign(6, 20.0);
   result.correction = given;
   return result;
 }
@@ -52,7 +52,7 @@ TEST_CASE("correction: what result.json holds is read back as the same force, wi
   REQUIRE(read.force != nullptr);
   REQUIRE(read.force->force().features.size() == 2);
   model::Motion motion{
-      .p_WB = {1.0, -2.0, 3.0}, .nu = Vector6d::Unit(0) * 0.4, .force = model::ActuatorForces::Zero(8)};
+      .p_WB = {1.0, -2.0, 3.0}, .nu = Vector6d::Unit(0) * 0.4, .force = model::ActuatorForces::Zero(6)};
   model::Load load;
   load.clear();
   load.drag = Vector6d::Constant(-100.0);
@@ -71,9 +71,9 @@ TEST_CASE("correction: a file of another vehicle, or no result at all, is refuse
                        doctest::Contains("this is a model of Hydrone"), InputError);
   DiagnosisResult short_of_thrusters = diagnosed();
   short_of_thrusters.correction->visited_force.pop_back();
-  const Written seven{report::to_json(short_of_thrusters)};
-  CHECK_THROWS_WITH_AS((void)model::read_learned(seven.path.string(), vehicle),
-                       doctest::Contains("learned with 7 inputs"), InputError);
+  const Written five{report::to_json(short_of_thrusters)};
+  CHECK_THROWS_WITH_AS((void)model::read_learned(five.path.string(), vehicle),
+                       doctest::Contains("learned with 5 thrusters"), InputError);
 }
 
 TEST_CASE("correction: it stands apart from causes, and a refused one says why") {
