@@ -1,4 +1,6 @@
 // fathom import: recordings of others to an LCM log, each stream on the channel that a driver would use.
+#include "common/tables/import.hpp"
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -14,7 +16,6 @@
 #include "common/model/vehicle.hpp"
 #include "common/recordings/merge.hpp"
 #include "common/recordings/worth.hpp"
-#include "common/tables/import.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
