@@ -1,6 +1,5 @@
 // fathom methods: the same recordings identified twice, by complementary filters with recursive least squares (Karras
 // et al.) and by a Kalman smoother with regression under AR(1) (Pereira and Duncan), in one table.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +20,7 @@
 #include "common/estimation/wording.hpp"
 #include "common/identification/base_regression.hpp"
 #include "common/identification/identifier.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -315,9 +315,9 @@ void run_methods(const MethodsOptions& options) {
 
 }  // namespace
 
-void add_methods(CLI::App& app) {
+void add_methods(runtime::CommandLine& app) {
   auto options = std::make_shared<MethodsOptions>();
-  CLI::App* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
+  runtime::CommandLine* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--config", options->config,
                       "pipeline file with sections estimator and identifier; else what the log tells");

@@ -1,13 +1,12 @@
 #include "processes/fathom/trial_files.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 
 namespace fathom::tool {
 
-void add_trial_files(CLI::App& command, TrialFileOptions& options) {
+void add_trial_files(runtime::CommandLine& command, TrialFileOptions& options) {
   command.add_option("--config", options.config,
                      "pipeline file (YAML) with a section estimator, of whichever filter; else what the log tells");
   command.add_option("--vehicle", options.vehicle, "vehicle file (YAML): where instruments sit");
