@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/report/correction.hpp"
 #include "common/report/json_origin.hpp"
 #include "common/report/text.hpp"
 
@@ -205,6 +206,7 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   file["paragraph"] = result.paragraph;
   file["next"] = next(result);
   file["effects"] = effects(result.effects);
+  if (result.correction && result.correction->asked) file["correction"] = correction_json(*result.correction);
   file["candidates"] = candidates(result.candidates, given);
   file["not_measured"] = not_measured(result.not_measured);
   file["error"]["before"] = error(result.error_before);

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "common/report/correction.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/style.hpp"
@@ -51,6 +52,7 @@ std::string to_html(const DiagnosisReport& report, const std::string& gnuplot) {
       escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
   page += front_section(report, album);
   page += kKey;
+  page += folded(correction_section(result));
   page += folded(error_section(result, album));
   page += folded(motion_section(report, album));
   page += folded(candidate_section(result));

@@ -175,6 +175,8 @@ std::string causes(const DiagnosisResult& result) {
              "it is this cause: " + escape(sure(probability_of(effect))) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
   }
+  if (result.correction && result.correction->adopted)
+    items += "<li>A correction, not a cause: " + escape(result.correction->words) + "</li>\n";
   if (items.empty()) {
     for (std::size_t i = 0; i < std::min(result.goes_with.size(), kMostCauses); ++i) {
       const Association& one = result.goes_with[i];
@@ -218,7 +220,8 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +
                      "<div class=\"tiles\">";
-  const bool added = std::ranges::any_of(result.effects, &EffectFound::accepted);
+  const bool added =
+      std::ranges::any_of(result.effects, &EffectFound::accepted) || (result.correction && result.correction->adopted);
   if (std::isfinite(result.improvement.value) && !added) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {

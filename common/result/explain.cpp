@@ -143,6 +143,10 @@ std::string explained(const Stored& stored) {
   evidence(out, stored);
   errors(out, result);
   residual(out, result);
+  if (result.correction)
+    out.line(result.correction->adopted ? "a correction was learned, which is no cause: " + result.correction->words
+                                        : "no correction was learned: " + result.correction->refused,
+             "  ! ");
   out.title("So: " + result.verdict + ", because");
   for (const CauseGiven& cause : stored.given.causes) {
     const CauseWords* words = words_of(cause.cause);

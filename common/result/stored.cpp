@@ -110,6 +110,7 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
     result.consistency.push_back({text(f, "run"), text(f, "signal"), text(f, "reference"), text(f, "finding"),
                                   real(f, "size"), text(f, "unit"), text(f, "evidence"), text(f, "action")});
   }
+  if (file.contains("correction")) result.correction = correction(file.at("correction"));
   for (const Json& e : file.at("effects")) result.effects.push_back(effect(e));
   for (const Json& c : file.at("candidates")) {
     result.candidates.push_back({text(c, "name"), text(c, "variant"), real(c, "log_odds"), real(c, "error_reduction"),
@@ -133,6 +134,18 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
   for (const Json& a : list(file.at("residual"), "goes_with"))
     result.goes_with.push_back(
         {text(a, "axis"), text(a, "with"), real(a, "share"), real(a, "log_odds"), real(a, "of_wrench")});
+}
+
+/// What a learned force says of itself; its terms stay in the file.
+CorrectionGiven correction(const Json& c) {
+  CorrectionGiven given;
+  given.asked = true;
+  given.adopted = c.value("adopted", false);
+  given.refused = text(c, "refused");
+  given.words = text(c, "words");
+  given.log_odds = real(c, "log_odds");
+  given.size = real(c, "size");
+  return given;
 }
 
 void read_given(const Json& file, VerdictGiven& given) {

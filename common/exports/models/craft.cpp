@@ -38,6 +38,8 @@ Vector6d lumped(const result::Stored& stored, const model::Vehicle& vehicle, std
 }
 
 void put_effects(const result::Stored& stored, std::vector<std::string>& notes) {
+  if (stored.result.correction && stored.result.correction->adopted)
+    notes.push_back("not in this file: the learned correction ('correction' in " + stored.path + ")");
   for (const EffectFound& effect : stored.result.effects) {
     if (!effect.accepted) continue;
     std::string note = "not in this file: the effect " + report::effect_title(effect.name, effect.variant);

@@ -197,6 +197,11 @@ TEST_CASE("Every result.json is as its schema says, and a wrong one is not") {
   full.wiring = fathom::WiringFault{{"T1 and T2 exchanged"}, 0.97};
   full.not_measured = {{"attitude", {"current"}, "It is not known."}};
   full.own_in_validation = {"current"};
+  full.correction = fathom::CorrectionGiven{.asked = true, .adopted = true};
+  full.correction->terms = {{"depth", 2, {{"depth_bump", 0, 1, 2.0, 0.5, 0.0}}, 1.5, 0.3, 0.1}};
+  full.correction->covariance = {{0.01}};
+  full.correction->visited_force = {10.0};
+  full.correction->left = {{"Z", 0.02, 0.2}};
   const fathom::VerdictGiven given{.core = "likelihood",
                                    .causes = {{"free_force", 12.5, 5.0, "depth in Z"}},
                                    .refusals = {{full.candidates[3].name, {{"odds", 3.0, 10.0}}}}};
