@@ -99,6 +99,18 @@ EffectFound effect(const Json& e) {
   return found;
 }
 
+/// What a learned force says of itself; its terms stay in the file.
+CorrectionGiven correction(const Json& c) {
+  CorrectionGiven given;
+  given.asked = true;
+  given.adopted = c.value("adopted", false);
+  given.refused = text(c, "refused");
+  given.words = text(c, "words");
+  given.log_odds = real(c, "log_odds");
+  given.size = real(c, "size");
+  return given;
+}
+
 void read_diagnosis(const Json& file, DiagnosisResult& result) {
   result.vehicle = text(file, "vehicle");
   result.train = texts(file, "train");
@@ -134,18 +146,6 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
   for (const Json& a : list(file.at("residual"), "goes_with"))
     result.goes_with.push_back(
         {text(a, "axis"), text(a, "with"), real(a, "share"), real(a, "log_odds"), real(a, "of_wrench")});
-}
-
-/// What a learned force says of itself; its terms stay in the file.
-CorrectionGiven correction(const Json& c) {
-  CorrectionGiven given;
-  given.asked = true;
-  given.adopted = c.value("adopted", false);
-  given.refused = text(c, "refused");
-  given.words = text(c, "words");
-  given.log_odds = real(c, "log_odds");
-  given.size = real(c, "size");
-  return given;
 }
 
 void read_given(const Json& file, VerdictGiven& given) {
