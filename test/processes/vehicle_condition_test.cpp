@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
@@ -101,6 +102,26 @@ TEST_CASE("vehicle: whatever keeps a played ArduSub from moving is told by HEALT
     until(each.end + 0.3);  // the first report after it
     (void)behind.complaints();
   }
+}
+
+TEST_CASE(
+    "vehicle: fathom abort is NOT CONFIRMED where the vehicle behind the driver is silent, whatever was sent to it") {
+  Behind behind{""};
+  behind.bus.listen(2.5);
+  const std::string abort = program("fathom") + " abort --bus '" + behind.bus.url + "'";
+  const auto well = test::shell(abort);
+  CHECK_MESSAGE(well.code == 0, well.text);
+  CHECK_FALSE(well.says("as it was sent"));  // it reports its outputs
+  kill(std::stoi(test::read_bytes(behind.scratch.path("ardusub.pid"))), SIGKILL);
+  behind.bus.listen(2.0);
+  behind.bus.thrusters.clear();
+  const auto gone = test::shell(abort);
+  behind.bus.listen(0.2);
+  REQUIRE_FALSE(behind.bus.thrusters.empty());  // what is sent into nowhere is zero
+  CHECK(behind.bus.thrusters.back().tau[0] == doctest::Approx(0.0));
+  CHECK_MESSAGE(gone.code == 1, gone.text);
+  CHECK_MESSAGE(gone.says("NOT CONFIRMED: zero was sent, but nobody knows what the vehicle does: no heartbeat"),
+                gone.text);
 }
 
 TEST_CASE("vehicle: a rig that tells by the plain text protocol is judged as well") {
