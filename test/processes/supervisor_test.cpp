@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <fathom_lcm/state_t.hpp>
+#include <limits>
 
 #include "common/wire/minds.hpp"
 #include "test/support/orders.hpp"
@@ -79,6 +80,22 @@ TEST_CASE("supervisor: messages with another clock's time, and orders that nobod
     beside.health("board", now() - kMinute);
     beside.order(now() - kMinute, keys_from(Key{}));
     beside.run(0.2);
+    CHECK_MESSAGE(beside.goes_on(), beside.said());
+  }
+}
+
+TEST_CASE("supervisor: a STATE refused for its numbers moves nothing, whatever its time stamp") {
+  Beside beside;
+  beside.run(2.0);
+  beside.order(now());
+  beside.run(1.0);
+  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  constexpr Utime kHour = 3'600'000'000;
+  for (const Utime offset : {-kHour, kHour}) {  // it would start over, and wait to be armed
+    StateEstimate state{.utime = now() + offset, .valid = true};
+    state.p_WB = {0.0, std::numeric_limits<double>::quiet_NaN(), 0.75};
+    beside.bus.publish("STATE", wire::encode(state));
+    beside.run(1.5);
     CHECK_MESSAGE(beside.goes_on(), beside.said());
   }
 }
