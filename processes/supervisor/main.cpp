@@ -15,6 +15,8 @@
 #include "common/excitation/supervisor.hpp"
 #include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
+#include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
@@ -88,10 +90,13 @@ int main(int argc, char** argv) {
         }
       });
     }
-    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&](const auto& message) {
+    // Whether the kernel knows a process is of interest while it lives, not when a log is read.
+    runtime::Speakers speakers{process.reads_logs() ? "" : runtime::host_name(), runtime::Speakers::Home::kFirst};
+    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&, told = false](const auto& message) mutable {
       const auto health = wire::decode(message);
-      if (!health) return process.reject(wire::kHealth);
-      supervisor.hear(*health);
+      if (health && speakers.believes(message)) return supervisor.hear(*health);
+      if (health && !std::exchange(told, true)) process.log_warning(runtime::Speakers::kNotBelieved);
+      process.reject(wire::kHealth);
     });
     process.listens_to<fathom_lcm::vehicle_condition_t>(wire::kVehicle, [&](const auto& message) {
       const auto vehicle_now = wire::decode(message);
