@@ -227,6 +227,8 @@ std::optional<Health> decode(const fathom_lcm::health_t& message) {
                 .process = message.process,
                 .host = message.host,
                 .pid = message.pid,
+                .start = message.start,
+                .sequence = message.sequence,
                 .state = message.state,
                 .received = message.received,
                 .published = message.published,
@@ -245,6 +247,8 @@ fathom_lcm::health_t encode(const Health& sample) {
   message.process = sample.process;
   message.host = sample.host;
   message.pid = sample.pid;
+  message.start = sample.start;
+  message.sequence = sample.sequence;
   message.state = sample.state;
   message.received = sample.received;
   message.published = sample.published;

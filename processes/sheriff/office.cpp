@@ -95,6 +95,7 @@ void Office::hear() {
   }
   while (const auto message = health_input_.next()) {
     const auto decoded = runtime::message_of<fathom_lcm::health_t>(message->bytes);
+    if (decoded && !speakers_.believes(*decoded)) continue;
     if (const auto health = decoded ? wire::decode(*decoded) : std::nullopt) health_.hear(*health, now);
   }
 }

@@ -69,12 +69,7 @@ struct Vehicle {
         std::vector<std::string> neighbours{"estimator", "identifier", "recorder"};
         if (deaf_supervisor) neighbours.emplace_back("supervisor");
         for (const std::string& process : neighbours) {
-          fathom_lcm::health_t health{};
-          health.utime = now();
-          health.process = process;
-          health.host = "vehicle";
-          health.state = process == "identifier" ? identifier : "running";
-          bus.publish("HEALTH", health);
+          bus.publish("HEALTH", test::word_of(process, process == "identifier" ? identifier : "running"));
         }
       }
       if (i % 10 == 0) {

@@ -2,9 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <fathom_lcm/state_t.hpp>
+#include <limits>
 
+#include "common/runtime/self.hpp"
 #include "common/wire/minds.hpp"
 #include "test/support/orders.hpp"
+#include "test/support/sleeper.hpp"
 
 namespace fathom {
 namespace {
@@ -24,15 +27,18 @@ struct Beside {
                             test::file("config/vehicles/seabotix_lbv150.yaml") + " --config " +
                             test::file("config/sites/tank.yaml") + " --config " +
                             test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
-  bool vehicle{true};  // its driver says HEALTH
+  bool vehicle{true};             // its driver says HEALTH
+  const test::Sleeper* driver{};  // of this host, stands for the vehicle's driver; without it, of another host
   std::int64_t accepted{};
 
-  void health(const std::string& process, Utime utime) {
-    fathom_lcm::health_t message{};
+  void health(const std::string& process, Utime utime, const test::Sleeper* here = nullptr) {
+    auto message = test::word_of(process);
     message.utime = utime;
-    message.process = process;
-    message.host = "vehicle";
-    message.state = "running";
+    if (here != nullptr) {
+      message.host = runtime::host_name();
+      message.pid = here->pid;
+      message.start = here->start;
+    }
     bus.publish("HEALTH", message);
   }
   void answer() {
@@ -47,7 +53,7 @@ struct Beside {
     for (int i = 0; i < static_cast<int>(20.0 * seconds); ++i) {
       if (i % 20 == 0) {
         for (const char* process : {"estimator", "identifier", "recorder"}) health(process, now());
-        if (vehicle) health("thruster_driver", now());
+        if (vehicle) health("thruster_driver", now(), driver);
         answer();
       }
       StateEstimate state{.utime = now(), .valid = true};
@@ -81,6 +87,39 @@ TEST_CASE("supervisor: messages with another clock's time, and orders that nobod
     beside.run(0.2);
     CHECK_MESSAGE(beside.goes_on(), beside.said());
   }
+}
+
+TEST_CASE("supervisor: a STATE refused for its numbers moves nothing, whatever its time stamp") {
+  Beside beside;
+  beside.run(2.0);
+  beside.order(now());
+  beside.run(1.0);
+  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  constexpr Utime kHour = 3'600'000'000;
+  for (const Utime offset : {-kHour, kHour}) {  // it would start over, and wait to be armed
+    StateEstimate state{.utime = now() + offset, .valid = true};
+    state.p_WB = {0.0, std::numeric_limits<double>::quiet_NaN(), 0.75};
+    beside.bus.publish("STATE", wire::encode(state));
+    beside.run(1.5);
+    CHECK_MESSAGE(beside.goes_on(), beside.said());
+  }
+}
+
+TEST_CASE("supervisor: HEALTH said in the name of a dead process hides it from nobody") {
+  Beside beside;
+  test::Sleeper driver;
+  REQUIRE(driver.start > 0);
+  beside.driver = &driver;
+  beside.run(2.0);
+  beside.order(now());
+  beside.run(1.0);
+  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  driver.end();
+  for (int i = 0; i < 13; ++i) {  // its words go on, as numbered as ever, from here and from elsewhere
+    beside.run(1.0);
+    beside.health("thruster_driver", now());
+  }
+  CHECK_MESSAGE(beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1"), beside.said());
 }
 
 TEST_CASE(

@@ -176,11 +176,7 @@ struct Trial {
            test::file("config/operators/simulated.yaml") + " --in '" + behind.bus.url + "'";
   }
   void health(const std::string& process, const std::string& trouble = "") {
-    fathom_lcm::health_t message{};
-    message.utime = now();
-    message.process = process;
-    message.host = "vehicle";
-    message.state = trouble.empty() ? "running" : "unhealthy";
+    auto message = test::word_of(process, trouble.empty() ? "running" : "unhealthy");
     message.detail = trouble;
     behind.bus.publish("HEALTH", message);
   }

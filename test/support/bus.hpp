@@ -113,4 +113,16 @@ class Background {
 
 inline Utime now() { return static_cast<Utime>(1e6 * link::wall_seconds()); }
 
+/// HEALTH of a process on a host of its own, numbered as a process numbers its words.
+inline fathom_lcm::health_t word_of(const std::string& process, const std::string& state = "running") {
+  static std::int64_t words = 0;
+  fathom_lcm::health_t message{};
+  message.utime = now();
+  message.process = process;
+  message.host = "vehicle";
+  message.sequence = ++words;
+  message.state = state;
+  return message;
+}
+
 }  // namespace fathom::test

@@ -92,7 +92,7 @@ void Console::hear(const runtime::LiveInput::Message& message) {
   } else if (channel == wire::kHealth) {
     if (const auto one = runtime::message_of<fathom_lcm::health_t>(message.bytes)) {
       const auto heard = wire::decode(*one);
-      if (!heard) return;
+      if (!heard || !speakers_.believes(*one)) return;
       health[heard->process] = *heard;
       health_came_[heard->process] = Clock::now();
     }

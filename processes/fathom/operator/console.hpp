@@ -11,6 +11,8 @@
 #include "common/base/operator_key.hpp"
 #include "common/excitation/preflight.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/health.hpp"
@@ -60,6 +62,7 @@ class Console {
   runtime::LiveInput input_;
   runtime::Output output_;
   std::map<std::string, Clock::time_point> health_came_;
+  runtime::Speakers speakers_{runtime::host_name(), runtime::Speakers::Home::kAnywhere};
   Clock::time_point gate_at_{}, state_came_{}, vehicle_came_{}, excitation_came_{Clock::now()};
 };
 

@@ -170,7 +170,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 6>();
   check_pair<Truth, 7>();
-  check_pair<Health, 14>();
+  check_pair<Health, 16>();
   check_pair<ProcessInfo, 5>();
 }
 
