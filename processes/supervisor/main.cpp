@@ -10,6 +10,7 @@
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/vehicle_condition_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
+#include <utility>
 
 #include "common/base/operator_key.hpp"
 #include "common/excitation/supervisor.hpp"
@@ -92,10 +93,10 @@ int main(int argc, char** argv) {
     }
     // Whether the kernel knows a process is of interest while it lives, not when a log is read.
     runtime::Speakers speakers{process.reads_logs() ? "" : runtime::host_name(), runtime::Speakers::Home::kFirst};
-    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&, told = false](const auto& message) mutable {
+    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&, warned = false](const auto& message) mutable {
       const auto health = wire::decode(message);
       if (health && speakers.believes(message)) return supervisor.hear(*health);
-      if (health && !std::exchange(told, true)) process.log_warning(runtime::Speakers::kNotBelieved);
+      if (health && !std::exchange(warned, true)) process.log_warning(runtime::Speakers::kNotBelieved);
       process.reject(wire::kHealth);
     });
     process.listens_to<fathom_lcm::vehicle_condition_t>(wire::kVehicle, [&](const auto& message) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,7 +16,10 @@ struct Sleeper {
   pid_t pid{fork()};
   std::int64_t start{};  ///< as the kernel says
   Sleeper() {
-    while (pid == 0) pause();
+    if (pid == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // it outlives no test that crashes
+      while (true) pause();
+    }
     start = runtime::process_start(pid).value_or(0);
   }
   ~Sleeper() { end(); }
