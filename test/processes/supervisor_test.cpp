@@ -62,6 +62,19 @@ struct Beside {
       bus.listen(0.05);
     }
   }
+  /// As long as a busy machine may take until `enough`; whether it came to that.
+  template <class Enough>
+  bool until(const Enough& enough, double longest = 30.0) {
+    for (double waited = 0.0; waited < longest && !enough(); waited += 1.0) run(1.0);
+    return enough();
+  }
+  /// Armed, with the trial under way.
+  void begin() {
+    REQUIRE(until([&] { return !said().empty(); }));
+    run(1.0);
+    order(now());
+    REQUIRE_MESSAGE(until([&] { return goes_on(); }), said());
+  }
   /// The newest that the supervisor said of itself.
   [[nodiscard]] std::string said() const {
     for (auto each = bus.health.rbegin(); each != bus.health.rend(); ++each) {
@@ -76,10 +89,7 @@ struct Beside {
 
 TEST_CASE("supervisor: messages with another clock's time, and orders that nobody may give, leave a trial as it is") {
   Beside beside;
-  beside.run(2.0);
-  beside.order(now());
-  beside.run(1.0);
-  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  beside.begin();
   constexpr Utime kMinute = 60'000'000;
   for (int i = 0; i < 5; ++i) {  // a host whose clock is late, and somebody who tries
     beside.health("board", now() - kMinute);
@@ -91,10 +101,7 @@ TEST_CASE("supervisor: messages with another clock's time, and orders that nobod
 
 TEST_CASE("supervisor: a STATE refused for its numbers moves nothing, whatever its time stamp") {
   Beside beside;
-  beside.run(2.0);
-  beside.order(now());
-  beside.run(1.0);
-  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  beside.begin();
   constexpr Utime kHour = 3'600'000'000;
   for (const Utime offset : {-kHour, kHour}) {  // it would start over, and wait to be armed
     StateEstimate state{.utime = now() + offset, .valid = true};
@@ -110,37 +117,30 @@ TEST_CASE("supervisor: HEALTH said in the name of a dead process hides it from n
   test::Sleeper driver;
   REQUIRE(driver.start > 0);
   beside.driver = &driver;
-  beside.run(2.0);
-  beside.order(now());
-  beside.run(1.0);
-  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  beside.begin();
   driver.end();
-  for (int i = 0; i < 13; ++i) {  // its words go on, as numbered as ever, from here and from elsewhere
-    beside.run(1.0);
+  const auto aborted = [&] {  // its words go on, as numbered as ever, from here and from elsewhere
     beside.health("thruster_driver", now());
-  }
-  CHECK_MESSAGE(beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1"), beside.said());
+    return beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1");
+  };
+  CHECK_MESSAGE(beside.until(aborted), beside.said());
 }
 
 TEST_CASE(
     "supervisor: a thruster driver that fell silent ends the trial, and it is not armed again before one speaks") {
   Beside beside;
-  beside.run(2.0);
-  beside.order(now());
-  beside.run(1.0);
-  REQUIRE_MESSAGE(beside.goes_on(), beside.said());
+  beside.begin();
   beside.vehicle = false;
-  beside.run(13.0);
-  CHECK_MESSAGE(beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1"), beside.said());
+  const auto says = [&](const char* words) {
+    return [&beside, words] { return beside.said().find(words) != std::string::npos; };
+  };
+  CHECK_MESSAGE(beside.until(says("aborted: thruster_driver is silent: no HEALTH for 1")), beside.said());
   beside.order(now());
-  beside.run(0.5);
-  CHECK_MESSAGE(beside.said().find("not armed: thruster_driver is silent: no HEALTH for 1") != std::string::npos,
-                beside.said());
+  CHECK_MESSAGE(beside.until(says("not armed: thruster_driver is silent: no HEALTH for 1"), 5.0), beside.said());
   beside.vehicle = true;
   beside.run(1.0);
   beside.order(now());
-  beside.run(0.5);
-  CHECK_MESSAGE(beside.goes_on(), beside.said());
+  CHECK_MESSAGE(beside.until([&] { return beside.goes_on(); }), beside.said());
 }
 
 }  // namespace fathom

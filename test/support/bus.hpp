@@ -37,6 +37,12 @@ class Bus {
     const double end = link::wall_seconds() + seconds;
     while (link::wall_seconds() < end) lcm_.handleTimeout(10);
   }
+  /// Listens until `enough`, for so long [s] at most, since machines are slow at times; whether it came to that.
+  template <class Enough>
+  bool until(const Enough& enough, double longest = 30.0) {
+    for (const double end = link::wall_seconds() + longest; !enough() && link::wall_seconds() < end;) listen(0.02);
+    return enough();
+  }
   template <class Message>
   void publish(const std::string& channel, const Message& message) {
     lcm_.publish(channel, &message);
