@@ -80,6 +80,11 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
   const auto bare =
       shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("x.lcmlog"));
   CHECK_MESSAGE(bare.says("RANGES are not used"), bare.text);
+  CHECK(bare.code == 1);
+  CHECK_MESSAGE(bare.says("nothing that is known tells the position"), bare.text);
+  const auto drifting = shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " +
+                              scratch.path("x.lcmlog") + " --without-position");
+  CHECK_MESSAGE(drifting.code == 0, drifting.text);
   const auto itself =
       shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("zigzag.lcmlog"));
   CHECK(itself.code == 1);
