@@ -85,8 +85,10 @@ struct Vehicle {
   /// As long as a busy machine may take until `enough`; whether it came to that.
   template <class Enough>
   bool until(const Enough& enough, double longest = 30.0) {
-    for (const double end = link::wall_seconds() + longest; !enough() && link::wall_seconds() < end;) run(0.05);
-    return enough();
+    for (const double end = link::wall_seconds() + longest; !enough(); run(0.05)) {
+      if (link::wall_seconds() > end) return false;
+    }
+    return true;
   }
   [[nodiscard]] bool supervisor_says(const std::string& words) const {
     return bus.said_of("supervisor").find(words) != std::string::npos;

@@ -65,8 +65,11 @@ struct Beside {
   /// As long as a busy machine may take until `enough`; whether it came to that.
   template <class Enough>
   bool until(const Enough& enough, double longest = 30.0) {
-    for (double waited = 0.0; waited < longest && !enough(); waited += 1.0) run(1.0);
-    return enough();
+    for (double waited = 0.0; !enough(); waited += 1.0) {
+      if (waited > longest) return false;
+      run(1.0);
+    }
+    return true;
   }
   /// Armed, with the trial under way.
   void begin() {
@@ -82,7 +85,9 @@ struct Beside {
     }
     return {};
   }
-  [[nodiscard]] bool goes_on() const { return said().starts_with("approach: ") || said().starts_with("excite: "); }
+  /// What it said of itself, behind what it has refused.
+  [[nodiscard]] bool says(const std::string& words) const { return said().find(words) != std::string::npos; }
+  [[nodiscard]] bool goes_on() const { return says("approach: ") || says("excite: "); }
 };
 
 }  // namespace
@@ -121,7 +126,7 @@ TEST_CASE("supervisor: HEALTH said in the name of a dead process hides it from n
   driver.end();
   const auto aborted = [&] {  // its words go on, as numbered as ever, from here and from elsewhere
     beside.health("thruster_driver", now());
-    return beside.said().starts_with("aborted: thruster_driver is silent: no HEALTH for 1");
+    return beside.says("aborted: thruster_driver is silent: no HEALTH for 1");
   };
   CHECK_MESSAGE(beside.until(aborted), beside.said());
 }
@@ -131,9 +136,7 @@ TEST_CASE(
   Beside beside;
   beside.begin();
   beside.vehicle = false;
-  const auto says = [&](const char* words) {
-    return [&beside, words] { return beside.said().find(words) != std::string::npos; };
-  };
+  const auto says = [&](const char* words) { return [&beside, words] { return beside.says(words); }; };
   CHECK_MESSAGE(beside.until(says("aborted: thruster_driver is silent: no HEALTH for 1")), beside.said());
   beside.order(now());
   CHECK_MESSAGE(beside.until(says("not armed: thruster_driver is silent: no HEALTH for 1"), 5.0), beside.said());

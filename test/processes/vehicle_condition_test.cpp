@@ -24,17 +24,21 @@ using test::Scratch;
 
 constexpr char kVehicle[] = "config/vehicles/bluerov2.yaml";
 
-/// A played ArduSub (or rig) and the thruster driver before it.
+/// The thruster driver and a played ArduSub (or rig) behind it, which begins when the driver is there: conditions go by
+/// its time, and a driver is slow to start on a busy machine.
 struct Behind {
   Bus bus;
   Scratch scratch;
-  Background ardusub, driver;
+  Background driver, ardusub;
 
   explicit Behind(const std::string& conditions, const std::string& protocol = "motor_test")
-      : ardusub{scratch, "ardusub",
-                program("fathom") + " emulate " + (protocol == "text" ? "thruster_text" : "mavlink") +
-                    " --to pty:" + scratch.path("tty") + " " + conditions},
-        driver{scratch, "driver", command(protocol)} {}
+      : driver{scratch, "driver", command(protocol)}, ardusub{scratch, "ardusub", played(conditions, protocol)} {}
+  [[nodiscard]] std::string played(const std::string& conditions, const std::string& protocol) {
+    CHECK(bus.until([&] { return bus.gate() != nullptr; }));
+    bus.health.clear();
+    return program("fathom") + " emulate " + (protocol == "text" ? "thruster_text" : "mavlink") +
+           " --to pty:" + scratch.path("tty") + " " + conditions;
+  }
   [[nodiscard]] std::string command(const std::string& protocol) const {
     std::ofstream{scratch.path("drivers.yaml")} << "thruster_driver:\n  protocol: " << protocol
                                                 << "\n  rate: 20 Hz\n  largest_thrust: 30 N\n"
@@ -113,7 +117,7 @@ TEST_CASE(
   CHECK_MESSAGE(well.code == 0, well.text);
   CHECK_FALSE(well.says("as it was sent"));  // it reports its outputs
   kill(std::stoi(test::read_bytes(behind.scratch.path("ardusub.pid"))), SIGKILL);
-  REQUIRE(behind.bus.until([&] { return says(behind.complaints(), "no heartbeat of the vehicle"); }));
+  REQUIRE(behind.bus.until([&] { return !behind.is_well(); }));
   behind.bus.thrusters.clear();
   const auto gone = test::shell(abort);
   behind.bus.listen(0.2);
@@ -218,7 +222,7 @@ struct Trial {
 
 TEST_CASE(
     "preflight: fathom arm prints what is so, line by line, and refuses a disarmed vehicle and a missing recorder") {
-  Trial trial{"--condition 9:disarmed"};
+  Trial trial{"--condition 14:disarmed"};
   trial.recorder = false;
   trial.run(4.0);
   const std::string unrecorded = trial.arm();
@@ -226,7 +230,7 @@ TEST_CASE(
   CHECK(says(unrecorded, "ok      armed           armed"));
   CHECK(says(unrecorded, "code 1"));
   trial.recorder = true;
-  trial.run(3.0);
+  for (int i = 0; i < 60 && trial.behind.is_well(); ++i) trial.run(0.5);
   const std::string disarmed = trial.arm();
   CHECK_MESSAGE(says(disarmed, "NOT OK  armed           the vehicle is disarmed: arm it"), disarmed);
   CHECK(says(disarmed, "ok      recorder        running"));
@@ -236,7 +240,7 @@ TEST_CASE(
 
 TEST_CASE(
     "preflight: with all well it arms; a leak then ends the trial at once, and the vehicle goes up as its file says") {
-  Trial trial{"--condition '14:says=2,Leak Detected'",
+  Trial trial{"--condition '20:says=2,Leak Detected'",
               "after_abort: {action: surface, speed: 0.2 m/s, largest: 20 N, duration: 60 s}\n"};
   trial.run(4.0);
   const std::string armed = trial.arm();

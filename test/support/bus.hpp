@@ -40,8 +40,10 @@ class Bus {
   /// Listens until `enough`, for so long [s] at most, since machines are slow at times; whether it came to that.
   template <class Enough>
   bool until(const Enough& enough, double longest = 30.0) {
-    for (const double end = link::wall_seconds() + longest; !enough() && link::wall_seconds() < end;) listen(0.02);
-    return enough();
+    for (const double end = link::wall_seconds() + longest; !enough(); listen(0.02)) {
+      if (link::wall_seconds() > end) return false;
+    }
+    return true;
   }
   template <class Message>
   void publish(const std::string& channel, const Message& message) {
