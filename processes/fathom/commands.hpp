@@ -30,5 +30,6 @@ void add_pictures(CLI::App& app);
 void add_trial(CLI::App& app);
 void add_watch(CLI::App& app);
 void add_bus(CLI::App& app);
+void add_vehicle(CLI::App& app);
 
 }  // namespace fathom::tool

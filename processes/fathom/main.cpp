@@ -21,5 +21,6 @@ int main(int argc, char** argv) {
   fathom::tool::add_watch(app);
   fathom::tool::add_bus(app);
   fathom::tool::add_trial(app);
+  fathom::tool::add_vehicle(app);
   return fathom::runtime::run_command_line(app, argc, argv);
 }

@@ -1,8 +1,10 @@
 // fathom methods: the same recordings identified twice, by complementary filters with recursive least squares (Karras
 // et al.) and by a Kalman smoother with regression under AR(1) (Pereira and Duncan), in one table.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 
 #include "common/base/config.hpp"
@@ -20,6 +22,7 @@
 #include "common/identification/base_regression.hpp"
 #include "common/identification/identifier.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
 
 namespace fathom::tool {
@@ -136,8 +139,9 @@ void run_methods(const MethodsOptions& options) {
   kalman.depth_noise = filter_settings.depth_noise;
   kalman.gyro_noise.setConstant(filter_settings.rate_noise);
   std::vector<std::string> notes;
-  std::vector<std::string> paths = options.train;
-  paths.insert(paths.end(), options.validate.begin(), options.validate.end());
+  std::vector<std::string> paths = paths_of(options.train);
+  const std::size_t fitted_runs = paths.size();
+  std::ranges::move(paths_of(options.validate), std::back_inserter(paths));
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
   auto checked = consistency::check_consistency(recordings);
   consistency::check_thrusters(recordings, vehicle, checked);
@@ -145,7 +149,7 @@ void run_methods(const MethodsOptions& options) {
   identification::Identifier identifier{identifier_settings, vehicle};
   std::vector<identification::BaseRun> runs;
   StateErrors complementary{"complementary filter"}, forward{"Kalman filter"}, smoothed{"Kalman smoother"};
-  for (std::size_t i = 0; i < options.train.size(); ++i) {
+  for (std::size_t i = 0; i < fitted_runs; ++i) {
     const Recording recording = estimation::corrected(recordings[i], checked.corrections[i]);
     const std::vector<Thrusters> inputs = forces(recording, checked.corrections[i], vehicle);
     if (i == 0) kalman = estimation::tune_process(recording, kalman);
@@ -200,7 +204,7 @@ void run_methods(const MethodsOptions& options) {
   }
   if (options.validate.empty()) return;
   std::vector<Trial> trials;
-  for (std::size_t i = options.train.size(); i < recordings.size(); ++i) {
+  for (std::size_t i = fitted_runs; i < recordings.size(); ++i) {
     const Trial run = estimation::reconstruct(recordings[i], checked.corrections[i], vehicle);
     for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
       trials.push_back(std::move(stretch));

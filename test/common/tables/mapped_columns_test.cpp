@@ -167,9 +167,9 @@ TEST_CASE("columns: a map that is written is read as the same map") {
                            "ahrs:\n  rates: {columns: [p, q, r], unit: deg/s, frame: NED}\n"
                            "  specific_force: {columns: [\"a x\", ay, az], unit: m/s^2, frame: FLU}\n"
                            "dvl:\n  velocity: {columns: [u, v, none], unit: kn, frame: NWU}\n  invalid_where: [bad]\n"
-                           "depth: {column: d, unit: m, direction: up}\n"
+                           "depth: {column: d, unit: m, direction: up, invalid_where: [flooded]}\n"
                            "thrusters:\n  wrench: {columns: [X, Y, N], force_unit: N, moment_unit: N m, frame: FRD}\n"
-                           "battery: {column: volts, unit: mV}\n";
+                           "battery: {column: \"volts 'main'\", unit: mV, valid_where: [on]}\n";
   const ColumnMap map = ColumnMap::parse(text, "map.yaml");
   const std::string once = to_yaml(map);
   CHECK(to_yaml(ColumnMap::parse(once, "again.yaml")) == once);
@@ -183,4 +183,39 @@ TEST_CASE("columns: a map that is written is read as the same map") {
   CHECK(again.ahrs->specific_force->columns[0].name == "a x");
   CHECK(again.dvl->velocity.columns[2].absent);
   CHECK(again.depth->group.factor == doctest::Approx(-1.0));
+  CHECK(again.depth->invalid_where.at(0).name == "flooded");
+  CHECK(again.battery->group.columns[0].name == "volts 'main'");
+  CHECK(again.battery->invalid_where.at(0).negated);
+}
+
+TEST_CASE("columns: a depth by its pressure is written as one") {
+  const ColumnMap map = ColumnMap::parse(
+      kAbout + "depth: {pressure: {column: p, unit: mbar, surface: 1013.25 mbar, density: 1025 kg/m^3}}\n", "map.yaml");
+  const ColumnMap again = ColumnMap::parse(to_yaml(map), "again.yaml");
+  CHECK(again.depth->group.factor == doctest::Approx(map.depth->group.factor).epsilon(1e-9));
+  CHECK(again.depth->offset == doctest::Approx(map.depth->offset).epsilon(1e-9));
+  CHECK(to_yaml(map).find("unit: hPa") != std::string::npos);
+}
+
+TEST_CASE("columns: shaft speeds become forces by k n |n|, commands between -1 and 1 become pulses") {
+  const std::string csv = "t,port,starboard,a,b\n0,600,-600,0,1\n0.1,0,300,-0.5,0.25\n";
+  const std::string map =
+      "thrusters:\n  speed: {columns: [port, starboard], unit: rpm, ahead: 0.0111 N/(rad/s)^2, astern: 0.0064 "
+      "N/(rad/s)^2}\n"
+      "  command: {columns: [a, b], neutral: 1500 us, full: 400 us}\n";
+  const Imported imported = import_text(csv, map);
+  REQUIRE(imported.recording.thrusters.size() == 2);
+  const double n = 600.0 * 2.0 * std::numbers::pi / 60.0;  // rad/s
+  CHECK(imported.recording.thrusters[0].force[0] == doctest::Approx(0.0111 * n * n));
+  CHECK(imported.recording.thrusters[0].force[1] == doctest::Approx(-0.0064 * n * n));
+  CHECK(imported.recording.thrusters[1].force[1] == doctest::Approx(0.0111 * n * n / 4.0));
+  CHECK(imported.recording.thrusters[0].pwm_us == std::vector<double>{1500.0, 1900.0});
+  CHECK(imported.recording.thrusters[1].pwm_us == std::vector<double>{1300.0, 1600.0});
+  const ColumnMap parsed = ColumnMap::parse(kAbout + map, "map.yaml");
+  const ColumnMap again = ColumnMap::parse(to_yaml(parsed), "again.yaml");
+  CHECK(again.thrusters->speed->astern == doctest::Approx(0.0064).epsilon(1e-9));
+  CHECK(again.thrusters->command->full == 400.0);
+  CHECK(to_yaml(again) == to_yaml(parsed));
+  CHECK_THROWS_AS((void)ColumnMap::parse(kAbout + map + "  pwm: {columns: [a, b], unit: us}\n", "map.yaml"),
+                  InputError);
 }
