@@ -52,6 +52,8 @@ class Plant {
 
  private:
   void set(const Interval& interval, double t);
+  /// What the free force and the learned features are functions of, of the moment that was set.
+  void show_features();
   [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
   void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
 

@@ -13,8 +13,8 @@
 #include "common/base/config.hpp"
 #include "common/base/time.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
+namespace fathom::runtime {
+class CommandLine;
 }
 
 namespace fathom::runtime {
@@ -164,6 +164,6 @@ struct Program {
 /// one critical line and exit code 1.
 /// `more` adds options of this process alone; what they set is ready when setup is called.
 int main(const Program& program, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
-         const std::function<void(CLI::App&)>& more = {});
+         const std::function<void(CommandLine&)>& more = {});
 
 }  // namespace fathom::runtime

@@ -50,31 +50,6 @@ model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_ste
   return model;
 }
 
-std::vector<std::vector<Vector6d>> residuals_of(const model::Model& model, std::span<const Trial> trials) {
-  std::vector<std::vector<Vector6d>> residuals;
-  for (const Trial& trial : trials) residuals.push_back(diagnosis::wrench_residuals(model, trial));
-  return residuals;
-}
-
-std::map<std::string, double> force_rmse(const model::Vehicle& vehicle,
-                                         const std::vector<std::vector<Vector6d>>& residuals) {
-  std::map<std::string, double> rmse;
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (!vehicle.dof[axis]) continue;
-    double square = 0.0, count = 0.0;
-    for (const auto& run : residuals) {
-      for (const Vector6d& wrench : run) {
-        const double value = wrench[static_cast<Eigen::Index>(axis)];
-        if (!std::isfinite(value)) continue;
-        square += value * value;
-        count += 1.0;
-      }
-    }
-    if (count > 0.0) rmse[model::kAxisNames[axis]] = std::sqrt(square / count);
-  }
-  return rmse;
-}
-
 void list_effects(const Conclusion& conclusion, DiagnosisResult& result, VerdictGiven& given) {
   const inference::Found& found = conclusion.found;
   const auto& effects = found.best.fit.hypothesis.model.effects;
@@ -146,10 +121,11 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   }
   const model::Model before = as_model(conclusion.reported_base.hypothesis, input_step);
   const model::Model after = as_model(conclusion.reported.hypothesis, input_step);
-  const auto residual_before = residuals_of(before, unseen), residual_after = residuals_of(after, unseen);
+  const auto residual_before = diagnosis::wrench_residuals(before, unseen),
+             residual_after = diagnosis::wrench_residuals(after, unseen);
   const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
-  result.error_before.force_rmse = force_rmse(vehicle, residual_before);
-  result.error_after.force_rmse = force_rmse(vehicle, residual_after);
+  result.error_before.force_rmse = diagnosis::force_rmse(vehicle, residual_before);
+  result.error_after.force_rmse = diagnosis::force_rmse(vehicle, residual_after);
   if (!windows.empty()) {
     const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
                                  by_after = diagnosis::predict(after, windows);

@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -21,6 +20,7 @@
 
 #include "common/base/error.hpp"
 #include "common/board/board.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/self.hpp"
 #include "common/runtime/speakers.hpp"
@@ -107,8 +107,8 @@ int main(int argc, char** argv) {
   const runtime::Program program{"board", "Serves a page that shows a live trial."};
   return runtime::main(
       program, argc, argv, [&](runtime::Process& process) { run(process, options); },
-      [&](CLI::App& app) {
-        app.add_option("--port", options.port, "of the page (8077); 0: any that is free")->check(CLI::Range(0, 65535));
+      [&](runtime::CommandLine& app) {
+        app.add_option("--port", options.port, "of the page (8077); 0: any that is free")->within(0, 65535);
         app.add_option("--host", options.host, "address to listen at (127.0.0.1: this host alone)");
         app.add_option("--name", options.names,
                        "by which browsers call this host, beside its addresses, its own name and localhost");

@@ -1,5 +1,4 @@
 // fathom check: do the sensors of these recordings agree with each other? Nothing is fitted.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/recordings/worth.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
@@ -97,9 +97,9 @@ void run_check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app) {
+void add_check(runtime::CommandLine& app) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
+  runtime::CommandLine* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site,
                       "site file (YAML): optical flow is compared with the tags of its map, too");

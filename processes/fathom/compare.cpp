@@ -1,12 +1,12 @@
 // fathom compare: do two logs end with the same model, or with --intervals one that agrees? With --manoeuvre: do two
 // sets of derivatives fly alike?
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/log_reader.hpp"
 #include "processes/fathom/commands.hpp"
 
@@ -68,9 +68,9 @@ void run_compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
+void add_compare(runtime::CommandLine& app) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
+  runtime::CommandLine* command =
       app.add_subcommand("compare", "do two logs end with the same MODEL, or do two vehicles fly a manoeuvre alike?");
   command->add_option("first", options->first, "LCM log; with --manoeuvre a vehicle file")->required();
   command->add_option("second", options->second, "LCM log; with --manoeuvre a vehicle file, or coefficients alone")

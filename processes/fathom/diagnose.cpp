@@ -1,6 +1,5 @@
 // fathom diagnose: closes the loop on recordings. Sensors are checked, the base model fitted, its residual traced to
 // effects that it lacks, and the error before and after reported on runs that no fit has seen.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -31,6 +30,7 @@
 #include "common/report/folds.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/verdict/by_likelihood.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
@@ -329,9 +329,9 @@ void run_diagnose(const DiagnoseOptions& options) {
 
 }  // namespace
 
-void add_diagnose(CLI::App& app) {
+void add_diagnose(runtime::CommandLine& app) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
+  runtime::CommandLine* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--train", options->train, "recordings to fit: files, folders or patterns")->required();
   command->add_option(
@@ -341,7 +341,7 @@ void add_diagnose(CLI::App& app) {
       ->add_option("--folds", options->folds,
                    "judge every recording once, by what is found on the others: in this many parts, each a diagnosis "
                    "in a folder of its own")
-      ->check(CLI::Range(2, 100));
+      ->within(2, 100);
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--site", options->site,
                       "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "
@@ -350,12 +350,12 @@ void add_diagnose(CLI::App& app) {
   command
       ->add_option("--core", options->core,
                    "trajectories: windows of open-loop rollouts; likelihood: an innovations filter over whole runs")
-      ->check(CLI::IsMember({kTrajectories, kLikelihood}));
+      ->one_of({kTrajectories, kLikelihood});
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
-      ->check(CLI::Range(1, 64));
+      ->within(1, 64);
   command->callback([options] { run_diagnose(*options); });
 }
 

@@ -1,5 +1,6 @@
 // fathom import: recordings of others to an LCM log, each stream on the channel that a driver would use.
-#include <CLI/CLI.hpp>
+#include "common/tables/import.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +15,7 @@
 #include "common/model/vehicle.hpp"
 #include "common/recordings/merge.hpp"
 #include "common/recordings/worth.hpp"
-#include "common/tables/import.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
@@ -191,9 +192,9 @@ void run_import(const ImportOptions& options) {
 
 }  // namespace
 
-void add_import(CLI::App& app) {
+void add_import(runtime::CommandLine& app) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand("import", "recordings of others to an LCM log");
+  runtime::CommandLine* command = app.add_subcommand("import", "recordings of others to an LCM log");
   std::string known = "files, folders or patterns: tables of text";
   for (const recordings::Format& format : recordings::formats()) known += ", " + std::string{format.title};
   command->add_option("data", options->data, known)->required();

@@ -1,11 +1,11 @@
 // fathom regress: hydrodynamic derivatives from reconstructed trials, printed as Pereira and Duncan's Tables 1 to 6.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <set>
 
 #include "common/base/error.hpp"
 #include "common/identification/residual_tracing.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -162,27 +162,26 @@ void run_regress(const RegressOptions& options) {
 
 }  // namespace
 
-void add_regress(CLI::App& app) {
+void add_regress(runtime::CommandLine& app) {
   auto options = std::make_shared<RegressOptions>();
-  CLI::App* command = app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
+  runtime::CommandLine* command =
+      app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
   command->add_option("runs", options->runs, "logs written by fathom smooth, one per manoeuvre")->required();
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML) with hydrodynamics")->required();
   command->add_flag("--table", options->table, "the tables alone");
-  command->add_option("--rate", options->rate, "rows per second")->check(CLI::PositiveNumber);
+  command->add_option("--rate", options->rate, "rows per second")->positive();
   command->add_option("--current", options->current, "north and east velocity of the water [m/s]")->expected(2);
   command->add_flag("--estimate-current", options->estimate, "find the water's velocity as well");
   command->add_flag("--plain", options->plain, "plain least squares, as if the residual were white");
   command->add_flag("--trace", options->trace, "whence the residual comes: umbilical and chain, known and not");
   command->add_option("--significance", options->significance, "chance that any term is selected when none acts")
-      ->check(CLI::Range(1e-12, 1.0));
-  command->add_option("--f-in", options->f_in, "F from which a term enters, in place of --significance")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--f-out", options->f_out, "F below which a term leaves; --f-in without it")
-      ->check(CLI::PositiveNumber);
+      ->within(1e-12, 1.0);
+  command->add_option("--f-in", options->f_in, "F from which a term enters, in place of --significance")->positive();
+  command->add_option("--f-out", options->f_out, "F below which a term leaves; --f-in without it")->positive();
   command->add_option("--cell-gain", options->cell_gain, "per cent by which a load cell's gain may be off (std)")
-      ->check(CLI::PositiveNumber);
+      ->positive();
   command->add_option("--thrust-gain", options->thrust_gain, "the same of a thruster's force without a cell")
-      ->check(CLI::PositiveNumber);
+      ->positive();
   command->add_option("--json", options->json, "write all that is told to this file");
   command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
   command->callback([options] { run_regress(*options); });

@@ -1,5 +1,4 @@
 // fathom smooth: a recorded run through the Kalman filter and back through the smoother.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
 #include "common/estimation/state_reconstruction.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -109,14 +109,14 @@ void run_smooth(const SmoothOptions& options) {
 
 }  // namespace
 
-void add_smooth(CLI::App& app) {
+void add_smooth(runtime::CommandLine& app) {
   auto options = std::make_shared<SmoothOptions>();
-  CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
+  runtime::CommandLine* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
   command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
   add_trial_files(*command, options->files);
   command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
-  command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
+  command->add_option("--model", options->model, "kinematic model")->one_of({"printed", "coupled"});
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
   command->add_flag("--without-position", options->without_position,
                     "velocity and attitude alone, where nothing tells the position");

@@ -1,13 +1,12 @@
 #include "processes/fathom/trial_files.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 
 namespace fathom::tool {
 
-void add_trial_files(CLI::App& command, TrialFileOptions& options) {
+void add_trial_files(runtime::CommandLine& command, TrialFileOptions& options) {
   command.add_option("--config", options.config,
                      "pipeline file (YAML) with a section estimator, of whichever filter; else what the log tells");
   command.add_option("--vehicle", options.vehicle, "vehicle file (YAML): where instruments sit");
@@ -32,7 +31,10 @@ estimation::TrialFiles trial_files(const TrialFileOptions& options, const Record
     static_cast<void>(config.section("estimator"));  // a file without one is a mistake
     files.add(config);
   }
-  if (!options.vehicle.empty()) files.mounts = model::Mounts::from(Config::load(options.vehicle).section("sensors"));
+  if (!options.vehicle.empty()) {
+    const Config vehicle = Config::load(options.vehicle);
+    files.mounts = vehicle.is_section("sensors") ? model::Mounts::from(vehicle.section("sensors")) : model::Mounts{};
+  }
   if (!options.site.empty()) files.site = model::Site::load(options.site);
   return files;
 }

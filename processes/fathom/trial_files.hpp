@@ -7,8 +7,8 @@
 
 #include "common/estimation/trial_instruments.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
+namespace fathom::runtime {
+class CommandLine;
 }
 
 namespace fathom::tool {
@@ -18,7 +18,7 @@ struct TrialFileOptions {
 };
 
 /// --config, --vehicle, --site.
-void add_trial_files(CLI::App& command, TrialFileOptions& options);
+void add_trial_files(runtime::CommandLine& command, TrialFileOptions& options);
 
 /// A file that is named takes the place of the log's own of its kind. A note says what the log told.
 [[nodiscard]] estimation::TrialFiles trial_files(const TrialFileOptions& options, const Recording& recording,

@@ -1,7 +1,6 @@
 // fathom vehicle: the vehicle files that come with Fathom, to begin one's own with.
 #include "common/model/vehicle.hpp"
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -82,9 +82,9 @@ void print(const std::string& name) {
 
 }  // namespace
 
-void add_vehicle(CLI::App& app) {
+void add_vehicle(runtime::CommandLine& app) {
   auto name = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("vehicle", "vehicle files to begin with: all of them, or one");
+  runtime::CommandLine* command = app.add_subcommand("vehicle", "vehicle files to begin with: all of them, or one");
   command->add_option("name", *name, "which file to print; without: a list");
   command->callback([name] { name->empty() ? list() : print(*name); });
 }

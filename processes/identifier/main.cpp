@@ -1,6 +1,5 @@
 // identifier: states and thruster commands in, the vehicle's parameters and what they leave unexplained out. With
 // `estimate: joint` it hears the instruments as well, and MODEL has the numbers of a filter on state and parameters.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
@@ -25,6 +24,7 @@
 #include "common/estimation/thruster_forces.hpp"
 #include "common/joint/live_identifier.hpp"
 #include "common/model/site.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/decode.hpp"
@@ -167,7 +167,7 @@ int main(int argc, char** argv) {
     process.run();
   };
   const runtime::Program program{"identifier", "Identifies the parameters of the vehicle's model on line."};
-  return runtime::main(program, argc, argv, setup, [&](CLI::App& app) {
+  return runtime::main(program, argc, argv, setup, [&](runtime::CommandLine& app) {
     app.add_option("--save", saved, "file to go on from after an interruption; instead of the section's key");
   });
 }

@@ -91,5 +91,5 @@ int main(int argc, char** argv) {
         });
         process.run();
       },
-      [&](CLI::App& app) { options.add_to(app); });
+      [&](runtime::CommandLine& app) { options.add_to(app); });
 }

@@ -1,5 +1,4 @@
 // vision: pictures and attitude in; poses of tags, optical flow and the laser's range out.
-#include <CLI/CLI.hpp>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
@@ -10,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/model/mounts.hpp"
 #include "common/model/site.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/vision/threads.hpp"
 #include "common/vision/watch.hpp"
@@ -107,8 +107,8 @@ int main(int argc, char** argv) {
         process.on_end([&] { process.log_info(watch.counts()); });
         process.run();
       },
-      [&](CLI::App& app) {
+      [&](runtime::CommandLine& app) {
         app.add_flag("--debug", debug, "publish pictures with everything drawn in");
-        app.add_option("--debug-every", debug_every, "seconds between two of them (0.2)")->check(CLI::PositiveNumber);
+        app.add_option("--debug-every", debug_every, "seconds between two of them (0.2)")->positive();
       });
 }

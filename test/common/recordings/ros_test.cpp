@@ -205,7 +205,7 @@ TEST_CASE("rosbag 2: usual types without definitions, nothing left beside the fi
         "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);"
         "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);"
         "INSERT INTO topics VALUES(4, '/pressure', 'sensor_msgs/FluidPressure', 'cdr');"
-        "INSERT INTO topics VALUES(5, '/own', 'my_msgs/msg/Own', 'cdr');";
+        "INSERT INTO topics VALUES(5, '/own', 'my_msgs/msg/Own', 'cdr'); BEGIN;";
     REQUIRE(sqlite3_exec(database, tables, nullptr, nullptr, nullptr) == SQLITE_OK);
     for (int i = 0; i < 300; ++i) {
       test::CdrMessage cdr;
@@ -219,6 +219,7 @@ TEST_CASE("rosbag 2: usual types without definitions, nothing left beside the fi
       REQUIRE(sqlite3_step(row) == SQLITE_DONE);
       sqlite3_finalize(row);
     }
+    REQUIRE(sqlite3_exec(database, "COMMIT;", nullptr, nullptr, nullptr) == SQLITE_OK);  // a disk waits once
     sqlite3_close(database);
   };
   make(scratch.path("run_0.db3"), 1000.0);
