@@ -107,6 +107,29 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
   CHECK_MESSAGE(bad.says("'X_uuu' is no hydrodynamic derivative"), bad.text);
 }
 
+TEST_CASE("fathom compare --manoeuvre: the paper's tables are flown, and what diverges says when, where and by what") {
+  const auto set = [](const char* name) { return file(std::string{"config/coefficients/pap104_"} + name + ".yaml"); };
+  const std::string compare = program("fathom") + " compare ";
+  // The reference of the tables, over what the vehicle file assumes: a set that flies.
+  const auto over = shell(compare + kVehicle + " " + set("pmm") + " --over --manoeuvre circle");
+  CHECK_MESSAGE(over.code == 0, over.text);
+  CHECK_MESSAGE(!over.says("diverges"), over.text);
+  // What the line alone identified has no drag at all, and K_vq of another size than the hull's.
+  const auto alone = shell(compare + set("line") + " " + set("pmm") + " --manoeuvre zigzag --vehicle " + kVehicle);
+  CHECK_MESSAGE(alone.code == 0, alone.text);
+  CHECK_MESSAGE(alone.says("pap104_line.yaml diverges at "), alone.text);
+  CHECK_MESSAGE(alone.says(" along p "), alone.text);
+  CHECK_MESSAGE(alone.says("driven by K_vq"), alone.text);
+  for (const char* name : {"circle", "zigzag"}) {
+    const auto flown = shell(compare + kVehicle + " " + set(name) + " --over --manoeuvre " + name);
+    CHECK_MESSAGE(flown.code == 0, flown.text);
+    CHECK_MESSAGE(flown.says("difference, largest"), flown.text);
+  }
+  const auto homeless = shell(compare + set("line") + " " + set("pmm") + " --manoeuvre line");
+  CHECK(homeless.code == 1);
+  CHECK_MESSAGE(homeless.says("coefficients alone; name the vehicle that they are for (--vehicle)"), homeless.text);
+}
+
 TEST_CASE("fathom methods: both methods on the same recording, judged on another") {
   const Scratch scratch;
   std::ifstream from{std::string{FATHOM_SOURCE_DIR} + "/test/data/beluga/surge-1.csv"};
