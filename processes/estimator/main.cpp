@@ -144,7 +144,13 @@ void run_trial(runtime::Process& process, const Config& config) {
 }
 
 void run_kalman(runtime::Process& process, const Config& config) {
-  estimation::KalmanEstimator estimator{estimation::KalmanSettings::from(config)};
+  const auto settings = estimation::KalmanSettings::from(config);
+  // Offline these places may come from a site's file; here nobody else tells them.
+  if (config.has("ranges") && settings.transponders.empty())
+    config.section("ranges").fail("transponders", "key 'transponders' is missing in 'estimator.ranges'");
+  if (config.has("tags") && settings.tags.empty())
+    config.section("tags").fail("known", "key 'known' is missing in 'estimator.tags'");
+  estimation::KalmanEstimator estimator{settings};
   hear<fathom_lcm::pose_capture_t>(process, estimator, wire::kPoseCapture);
   hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
   hear<fathom_lcm::dvl_t>(process, estimator, wire::kDvl);
