@@ -61,6 +61,7 @@ struct DiagnoseOptions {
   std::vector<std::string> train, validate;
   std::vector<std::string> without;
   std::string core{kTrajectories};
+  bool no_learning{false};
   int threads{2};
   int folds{0};
 };
@@ -155,6 +156,8 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   check_names(options.without);
   if (!options.without.empty() && options.core != kLikelihood)
     throw InputError("--without takes effects out of the list of --core likelihood alone; give that too");
+  if (options.no_learning && options.core != kLikelihood)
+    throw InputError("--no-learning is about --core likelihood alone; give that too");
   make_folder(options.out);
   std::vector<std::string> paths = paths_of(options.train);
   const std::size_t fitted_runs = paths.size();
@@ -230,7 +233,8 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
         progress.begin(kLikelihoodSearch, what);
       };
       verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
-                                                 {.without = options.without, .threads = options.threads}, show);
+                                                 {.without = options.without, .threads = options.threads}, show,
+                                                 {.learn = !options.no_learning});
       progress.expect(kLikelihoodSearch, 0);
       out.report = std::move(answer.report);
       out.given = std::move(answer.given);
@@ -353,6 +357,8 @@ void add_diagnose(runtime::CommandLine& app) {
       ->one_of({kTrajectories, kLikelihood});
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
+  command->add_flag("--no-learning", options->no_learning,
+                    "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->within(1, 64);
