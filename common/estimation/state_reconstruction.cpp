@@ -112,7 +112,8 @@ Reconstruction reconstruct_state(const Recording& recording, const TrialFiles& f
   if (options.model) settings.model = *options.model;
   refuse_without_position(recording, settings, options.without_position);
   for (std::string& line : unused_instruments(recording, settings)) notes.push_back(std::move(line));
-  if (!options.stated && !noises_stated) settings = noise_from_rest(recording, settings, notes);
+  if (!options.stated && !options.noises_stated && !noises_stated)
+    settings = noise_from_rest(recording, settings, notes);
   settings = without_wrong_transponders(recording, settings, notes);
   if (!options.stated && !process_stated) {
     settings = tune_process(recording, settings, kTuned, progress);

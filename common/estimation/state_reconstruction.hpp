@@ -14,6 +14,7 @@ namespace fathom::estimation {
 
 struct ReconstructionOptions {
   bool stated{false};            ///< noises of the settings: nothing from rest, nothing tuned
+  bool noises_stated{false};     ///< those of the instruments alone: nothing from rest
   bool without_position{false};  ///< velocity and attitude alone are asked for, position may drift
   bool despite_state{false};     ///< the log's own STATE is known to be the one that is wrong
   std::optional<KinematicModel> model{};

@@ -107,21 +107,24 @@ void add_recorded(const EstimatorSettings& recorded, KalmanSettings& s) {
 
 void TrialFiles::add(const Config& file) {
   if (file.is_section("estimator")) estimator = file.section("estimator");
+  if (file.is_section("identifier")) identifier = file.section("identifier");
   if (file.is_section("sensors")) mounts = model::Mounts::from(file.section("sensors"));
   if (file.has("site") && !file.is_section("site")) site = model::Site::from(file);
 }
 
-TrialFiles files_in(const Recording& recording) {
-  TrialFiles files;
+namespace {
+
+/// What the newest process of a name told of its files.
+void add_told(const Recording& recording, const std::string& process, TrialFiles& files) {
   const auto info = std::find_if(
       recording.process_info.rbegin(), recording.process_info.rend(),
-      [](const ProcessInfo& one) { return one.process == "estimator" || one.process == "fathom-estimator"; });
-  if (info == recording.process_info.rend()) return files;
+      [&](const ProcessInfo& one) { return one.process == process || one.process == "fathom-" + process; });
+  if (info == recording.process_info.rend()) return;
   std::istringstream text{info->config};
   std::string name, body;
   const auto take = [&] {
     if (!name.empty() && name.find(": not told") == std::string::npos)
-      files.add(Config::parse(body, recording.name + ", PROCESS_INFO of the estimator, " + name));
+      files.add(Config::parse(body, recording.name + ", PROCESS_INFO of the " + process + ", " + name));
     body.clear();
   };
   constexpr std::string_view kHead = "# file ";
@@ -134,7 +137,19 @@ TrialFiles files_in(const Recording& recording) {
     }
   }
   take();
-  files.in_the_log = !files.empty();
+}
+
+}  // namespace
+
+TrialFiles files_in(const Recording& recording) {
+  TrialFiles files;
+  add_told(recording, "estimator", files);
+  if (!files.identifier) {
+    TrialFiles others;
+    add_told(recording, "identifier", others);
+    files.identifier = others.identifier;
+  }
+  files.in_the_log = files.estimator || files.mounts || files.site;
   return files;
 }
 

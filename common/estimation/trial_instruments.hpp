@@ -16,7 +16,8 @@
 namespace fathom::estimation {
 
 struct TrialFiles {
-  std::optional<Config> estimator;  ///< the section
+  std::optional<Config> estimator;   ///< the section
+  std::optional<Config> identifier;  ///< the section, which no instrument asks for
   std::optional<model::Mounts> mounts;
   std::optional<model::Site> site;
   bool in_the_log{false};
@@ -26,7 +27,7 @@ struct TrialFiles {
   void add(const Config& file);
 };
 
-/// From PROCESS_INFO of the newest estimator; empty without one.
+/// From PROCESS_INFO of the newest estimator (and identifier, for its section); empty without one.
 [[nodiscard]] TrialFiles files_in(const Recording& recording);
 
 struct TrialInstruments {

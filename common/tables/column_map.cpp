@@ -245,7 +245,23 @@ ThrusterColumns thrusters_of(const Config& config) {
   return thrusters;
 }
 
-constexpr std::array kStreams{"pose_capture", "ahrs", "dvl", "depth", "thrusters", "battery"};
+constexpr std::array kStreams{"pose_capture", "ahrs", "dvl",    "depth", "thrusters",
+                              "battery",      "usbl", "ranges", "loads"};
+
+UsblColumns usbl_of(const Config& config) {
+  UsblColumns usbl;
+  const Config position = config.section("position");
+  usbl.position = vector_of(position, "m");
+  usbl.position.to_house = world_frame(position, "frame");
+  if (config.is_section("sigma")) {
+    usbl.sigma = vector_of(config.section("sigma"), "m");
+    usbl.sigma->to_house = usbl.position.to_house.cwiseAbs();
+  } else {
+    usbl.stated_sigma = config.positive("sigma", "m");
+  }
+  usbl.invalid_where = invalid_of(config);
+  return usbl;
+}
 
 PoseColumns pose_of(const Config& section) {
   PoseColumns pose;
@@ -328,6 +344,9 @@ void read_stream(ColumnMap& map, const std::string& name, const Config& section)
   if (name == "depth") map.depth = depth_of(section);
   if (name == "thrusters") map.thrusters = thrusters_of(section);
   if (name == "battery") map.battery = ScalarColumn{scalar(section, "V"), invalid_of(section)};
+  if (name == "usbl") map.usbl = usbl_of(section);
+  if (name == "ranges") map.ranges = ListColumns{group_of(section, "m"), invalid_of(section)};
+  if (name == "loads") map.loads = ListColumns{group_of(section, "N"), invalid_of(section)};
 }
 
 ColumnMap read(const Config& config) {

@@ -97,6 +97,20 @@ struct ScalarColumn {
   double weight{};  ///< of a pressure: density times gravity [N/m^3], by which it was divided; else 0
 };
 
+/// Fixes of an acoustic positioning system.
+struct UsblColumns {
+  ColumnGroup position;
+  std::optional<ColumnGroup> sigma;  ///< standard deviations along the axes of the position
+  double stated_sigma{};             ///< m, where no column says
+  std::vector<Column> invalid_where;
+};
+
+/// Several numbers of one kind, in the order of the site's transponders or of the vehicle's load cells.
+struct ListColumns {
+  ColumnGroup group;
+  std::vector<Column> invalid_where;
+};
+
 struct ColumnMap {
   std::string source;   ///< where the data come from
   std::string licence;  ///< under which terms
@@ -108,6 +122,9 @@ struct ColumnMap {
   std::optional<ScalarColumn> depth;
   std::optional<ThrusterColumns> thrusters;
   std::optional<ScalarColumn> battery;
+  std::optional<UsblColumns> usbl;
+  std::optional<ListColumns> ranges;
+  std::optional<ListColumns> loads;
 
   /// Reads a map; InputError "file:line: what" for an unknown key, unit or frame.
   [[nodiscard]] static ColumnMap load(const std::string& path);

@@ -8,6 +8,7 @@
 #include "common/tables/angle_unit.hpp"
 #include "common/tables/header_units.hpp"
 #include "common/tables/streams/ahrs_import.hpp"
+#include "common/tables/streams/beside_imports.hpp"
 #include "common/tables/streams/dvl_import.hpp"
 #include "common/tables/streams/plain_imports.hpp"
 #include "common/tables/streams/pose_import.hpp"
@@ -21,6 +22,9 @@ struct TableImport::Streams {
   std::optional<ThrusterImport> thrusters;
   std::optional<ScalarImport<Depth>> depth;
   std::optional<ScalarImport<Battery>> battery;
+  std::optional<UsblImport> usbl;
+  std::optional<RangesImport> ranges;
+  std::optional<LoadsImport> loads;
 
   template <typename Use>
   void each(const Use& use) {
@@ -30,6 +34,9 @@ struct TableImport::Streams {
     if (thrusters) use(*thrusters);
     if (depth) use(*depth);
     if (battery) use(*battery);
+    if (usbl) use(*usbl);
+    if (ranges) use(*ranges);
+    if (loads) use(*loads);
   }
 };
 
@@ -46,6 +53,9 @@ TableImport::TableImport(const CsvTable& table, ColumnMap map, const std::option
     notes_.emplace_back("'z' without 'x' and 'y' is read as the column 'depth' (m, positive down)");
   if (map_.depth) streams_->depth.emplace(resolve_, *map_.depth, &Depth::z, "depth");
   if (map_.battery) streams_->battery.emplace(resolve_, *map_.battery, &Battery::voltage, "battery");
+  if (map_.usbl) streams_->usbl.emplace(resolve_, *map_.usbl);
+  if (map_.ranges) streams_->ranges.emplace(resolve_, *map_.ranges);
+  if (map_.loads) streams_->loads.emplace(resolve_, *map_.loads);
 }
 
 TableImport::~TableImport() = default;
@@ -64,6 +74,9 @@ bool TableImport::next(std::size_t rows, Recording& out) {
   if (streams_->thrusters) streams_->thrusters->take(slice, out);
   if (streams_->depth) streams_->depth->take(slice, out.depth);
   if (streams_->battery) streams_->battery->take(slice, out.battery);
+  if (streams_->usbl) streams_->usbl->take(slice, out);
+  if (streams_->ranges) streams_->ranges->take(slice, out);
+  if (streams_->loads) streams_->loads->take(slice, out);
   return true;
 }
 

@@ -131,10 +131,25 @@ std::string battery(const ScalarColumn& column) {
          "\n  unit: " + unit_of(column.group.factor, "V", kVoltages) + "\n" + flags(column.invalid_where, "  ");
 }
 
+std::string list(const char* name, const ListColumns& columns, const char* si, const Names& units) {
+  return std::string{name} + ":\n  columns: " + listed(columns.group.columns) +
+         "\n  unit: " + unit_of(columns.group.factor, si, units) + "\n" + flags(columns.invalid_where, "  ");
+}
+
 std::string with_unit(double value, const char* unit) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), "%.10g %s", value, unit);
   return text.data();
+}
+
+std::string usbl(const UsblColumns& columns) {
+  std::string text =
+      "usbl:\n  position: " + vector(columns.position, world_of(columns.position.to_house), "m", kLengths) +
+      "\n  sigma: ";
+  text += columns.sigma ? "{columns: " + listed(columns.sigma->columns) +
+                              ", unit: " + unit_of(columns.sigma->factor, "m", kLengths) + "}"
+                        : with_unit(columns.stated_sigma, "m");
+  return text + "\n" + flags(columns.invalid_where, "  ");
 }
 
 std::string thrusters(const ThrusterColumns& columns) {
@@ -235,6 +250,9 @@ std::string to_yaml(const ColumnMap& map) {
   if (map.depth) text += depth(*map.depth);
   if (map.thrusters) text += thrusters(*map.thrusters);
   if (map.battery) text += battery(*map.battery);
+  if (map.usbl) text += usbl(*map.usbl);
+  if (map.ranges) text += list("ranges", *map.ranges, "m", kLengths);
+  if (map.loads) text += list("loads", *map.loads, "N", kForces);
   return text;
 }
 

@@ -40,14 +40,13 @@ std::vector<NamedValue> numbers_of(const likelihood::Fit& fit) {
   return values;
 }
 
-/// The model with the thrust's offset as a delay that straight lines between inputs can carry.
-model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step) {
-  model::Model model = hypothesis.model;
-  double offset = 0.0;
-  for (const likelihood::RunNumbers& run : hypothesis.runs)
-    offset += run.command_offset / static_cast<double>(hypothesis.runs.size());
-  if (input_step > 0.0) model.input_hold = std::clamp(offset / input_step, -0.5, 0.5);
-  return model;
+/// The learned force for runs that judge: whole on stretches of the runs that it was learned from, else what lasts.
+const model::LearnedForce* force_for(const learning::Learned& learned, std::span<const Trial> train,
+                                     std::span<const Trial> validate) {
+  const bool here = std::ranges::all_of(validate, [&](const Trial& judging) {
+    return std::ranges::any_of(train, [&](const Trial& fitted) { return same_run(judging, fitted); });
+  });
+  return here ? learned.here.get() : learned.elsewhere.get();
 }
 
 void list_effects(const Conclusion& conclusion, DiagnosisResult& result, VerdictGiven& given) {
@@ -87,7 +86,8 @@ void list_effects(const Conclusion& conclusion, DiagnosisResult& result, Verdict
 }  // namespace
 
 Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
-                const inference::Settings& settings, const inference::Progress& progress) {
+                const inference::Settings& settings, const inference::Progress& progress,
+                const learning::Settings& learning) {
   Answer answer;
   DiagnosisReport& report = answer.report;
   DiagnosisResult& result = report.result;
@@ -104,6 +104,15 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   for (const std::string& name : settings.without)
     result.candidates.push_back({.name = name, .reason = "taken out of the list"});
   result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
+  learning::Learned learned;
+  if (learning.learn && conclusion.verdict == Verdict::unexplained) {
+    progress("learning what no list holds", 0.97);
+    learned = learning::learn(likelihood::make_problem(vehicle, train, settings.runs), train, conclusion, learning,
+                              settings.threads);
+    result.correction = learned.given;
+  }
+  const model::LearnedForce* force = force_for(learned, train, validate);
+  const likelihood::Fit& best = force != nullptr ? learned.fit : conclusion.reported;
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   result.improvement = {kNaN, kNaN, kNaN};
   if (!conclusion.reported.finite) return answer;
@@ -111,7 +120,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const bool numbers = conclusion.verdict != Verdict::no_model;
   if (numbers) {
     result.parameters_before = numbers_of(conclusion.reported_base);
-    result.parameters_after = numbers_of(conclusion.reported);
+    result.parameters_after = numbers_of(best);
   }
   std::vector<Trial> unseen;
   double input_step = 0.0;
@@ -119,8 +128,8 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
-  const model::Model before = as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = as_model(conclusion.reported.hypothesis, input_step);
+  const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+  const model::Model after = learning::as_model(best.hypothesis, input_step, force);
   const auto residual_before = diagnosis::wrench_residuals(before, unseen),
              residual_after = diagnosis::wrench_residuals(after, unseen);
   const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));

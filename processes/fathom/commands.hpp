@@ -18,9 +18,12 @@ void add_regress(runtime::CommandLine& app);
 void add_methods(runtime::CommandLine& app);
 void add_plan(runtime::CommandLine& app);
 
-/// Two vehicle files flown through one manoeuvre; the second may be a file of coefficients for the first one's vehicle.
-void compare_manoeuvre(const std::string& first, const std::string& second, const std::string& name,
-                       const std::string& plot);
+/// Two vehicle files flown through one manoeuvre, or files of coefficients: for `vehicle`, or for the first one's.
+struct ManoeuvreComparison {
+  std::string first, second, name, plot, vehicle;
+  bool over{false};  ///< coefficients stand over the vehicle's own, which fill the gaps of an incomplete set
+};
+void compare_manoeuvre(const ManoeuvreComparison& asked);
 void add_decode(runtime::CommandLine& app);
 void add_emulate(runtime::CommandLine& app);
 void add_operator(runtime::CommandLine& app);
@@ -31,5 +34,9 @@ void add_trial(runtime::CommandLine& app);
 void add_watch(runtime::CommandLine& app);
 void add_bus(runtime::CommandLine& app);
 void add_vehicle(runtime::CommandLine& app);
+void add_explain(runtime::CommandLine& app);
+void add_export(runtime::CommandLine& app);
+/// To commands that are there already.
+void add_examples(runtime::CommandLine& app);
 
 }  // namespace fathom::tool

@@ -14,8 +14,8 @@ namespace fathom::tool {
 namespace {
 
 struct CompareOptions {
-  std::string first, second, manoeuvre, plot;
-  bool intervals{false};
+  std::string first, second, manoeuvre, plot, vehicle;
+  bool intervals{false}, over{false};
 };
 
 ModelEstimate last_model(const std::string& path) {
@@ -46,7 +46,12 @@ void compare_intervals(const ModelEstimate& a, const ModelEstimate& b) {
 
 void run_compare(const CompareOptions& options) {
   if (!options.manoeuvre.empty()) {
-    compare_manoeuvre(options.first, options.second, options.manoeuvre, options.plot);
+    compare_manoeuvre({.first = options.first,
+                       .second = options.second,
+                       .name = options.manoeuvre,
+                       .plot = options.plot,
+                       .vehicle = options.vehicle,
+                       .over = options.over});
     return;
   }
   const ModelEstimate a = last_model(options.first), b = last_model(options.second);
@@ -77,6 +82,8 @@ void add_compare(runtime::CommandLine& app) {
       ->required();
   command->add_flag("--intervals", options->intervals, "not the same bits: do the parameters' 95 % intervals meet?");
   command->add_option("--manoeuvre", options->manoeuvre, "line, zigzag or circle: fly both and compare");
+  command->add_option("--vehicle", options->vehicle, "of --manoeuvre: whose coefficients both files are");
+  command->add_flag("--over", options->over, "coefficients alone: over the vehicle's own, which fill what they lack");
   command->add_option("--plot", options->plot, "write the two tracks of the manoeuvre to this SVG file");
   command->callback([options] { run_compare(*options); });
 }

@@ -31,7 +31,10 @@ estimation::TrialFiles trial_files(const TrialFileOptions& options, const Record
     static_cast<void>(config.section("estimator"));  // a file without one is a mistake
     files.add(config);
   }
-  if (!options.vehicle.empty()) files.mounts = model::Mounts::from(Config::load(options.vehicle).section("sensors"));
+  if (!options.vehicle.empty()) {
+    const Config vehicle = Config::load(options.vehicle);
+    files.mounts = vehicle.is_section("sensors") ? model::Mounts::from(vehicle.section("sensors")) : model::Mounts{};
+  }
   if (!options.site.empty()) files.site = model::Site::load(options.site);
   return files;
 }

@@ -14,6 +14,9 @@ void Options::add_to(runtime::CommandLine& app) {
                  "an effect in the truth that the others shall find: NAME or NAME=parameter:value,...")
       ->take_all()
       ->expected(1);
+  app.add_option("--model", setup.model,
+                 "result.json of fathom diagnose: its numbers, effects and learned force are the truth")
+      ->type_name("FILE");
   app.add_option("--fail", setup.fail,
                  "an instrument that fails: NAME=silent|frozen|nan|delay|jump[,from:S][,to:S][,by:S]")
       ->take_all()

@@ -132,4 +132,68 @@ TEST_CASE("fathom smooth: what it lacks is said with the remedy, and nothing is 
   CHECK_MESSAGE(despite.code == 0, despite.text);
 }
 
+TEST_CASE("fathom methods: one live log without a word of configuration, on every estimator's states") {
+  const Scratch scratch;
+  Recording tank = live("tank", 23);
+  wire::write_log(tank, scratch.path("tank.lcmlog"));
+  const std::string methods =
+      program("fathom") + " methods --truth --vehicle " + file("config/vehicles/seabotix_lbv150.yaml") + " --train ";
+  const auto ran = shell(methods + scratch.path("tank.lcmlog"));
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  for (const char* words : {"complementary filter, re", "Kalman filter, recursive", "Kalman smoother, recursi",
+                            "smoother, AR(1)", "parameter error, root mean square", "state error, root mean square"})
+    CHECK_MESSAGE(ran.says(words), ran.text);
+  // Without thrusters nothing can be learnt, and the vehicle file's prior is no result.
+  for (Thrusters& one : tank.thrusters) {
+    one.force.clear();
+    one.has_tau = false;
+  }
+  wire::write_log(tank, scratch.path("idle.lcmlog"));
+  const auto idle = shell(methods + scratch.path("idle.lcmlog"));
+  CHECK(idle.code == 1);
+  CHECK_MESSAGE(!idle.says("m_X"), idle.text);
+}
+
+TEST_CASE("any log: a command gives a result, or one clear line that says what is missing") {
+  const Scratch scratch;
+  wire::write_log(live("deep", 24), scratch.path("deep.lcmlog"));
+  const model::Manoeuvre manoeuvre{.kind = model::ManoeuvreKind::kZigzag, .duration = 40.0, .difference = 4.5};
+  wire::write_log(test::record_trial(test::vehicle_from_repository("pap104_half"),
+                                     test::instruments_from_repository("pap104_half"), {.manoeuvre = manoeuvre})
+                      .recording,
+                  scratch.path("pap.lcmlog"));
+  const std::string deep = scratch.path("deep.lcmlog"), pap = scratch.path("pap.lcmlog");
+  const std::string beluga = file("test/data/beluga/yaw-1.csv") + " --map " + file("config/maps/beluga.yaml");
+  const std::string lbv = " --vehicle " + file("config/vehicles/seabotix_lbv150.yaml");
+  const std::string half = " --vehicle " + file("config/vehicles/pap104_half.yaml");
+  const std::string out = " --out " + scratch.path("smooth.lcmlog");
+  struct Row {
+    std::string command;
+    int code;
+    const char* says;
+  };
+  const std::vector<Row> rows{
+      {"smooth " + deep + out, 0, "range north"},
+      {"smooth " + pap + out, 1, "nothing that is known tells the position"},
+      {"smooth " + pap + out + " --config " + file("config/pipelines/pap104_half.yaml"), 0, "range A"},
+      {"smooth " + beluga + out, 0, "pose position"},
+      {"regress " + deep + lbv, 1, "no SMOOTHED in this log"},
+      {"regress " + pap + half, 1, "no SMOOTHED in this log"},
+      {"methods" + lbv + " --train " + deep, 0, "Kalman smoother, recursi"},
+      {"methods" + half + " --train " + pap, 1, "no section identifier"},
+  };
+  for (const Row& row : rows) {
+    CAPTURE(row.command);
+    const auto ran = shell(program("fathom") + " " + row.command);
+    CHECK_MESSAGE(ran.code == row.code, ran.text);
+    CHECK_MESSAGE(ran.says(row.says), ran.text);
+  }
+  // What a live log smoothed gives is not what regress takes: the vehicle has no derivatives.
+  const auto smoothed = shell(program("fathom") + " smooth " + deep + out);
+  REQUIRE_MESSAGE(smoothed.code == 0, smoothed.text);
+  const auto regressed = shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + lbv);
+  CHECK(regressed.code == 1);
+  CHECK_MESSAGE(regressed.says("the vehicle file has no section hydrodynamics"), regressed.text);
+}
+
 }  // namespace fathom

@@ -77,6 +77,36 @@ TEST_CASE("thruster check: where the curve explains nothing, the logged wrench i
   CHECK_FALSE(result.corrections[0].thrusters.use_commands);
 }
 
+TEST_CASE("thruster check: a thruster that pushes the other way is named") {
+  model::Vehicle vehicle = one_thruster();
+  vehicle.thrusters.resize(2);
+  vehicle.thrusters[0].name = "port";
+  vehicle.thrusters[1].name = "starboard";
+  vehicle.allocation = Eigen::MatrixXd::Zero(6, 2);
+  vehicle.allocation.row(0) << 1.0, 1.0;
+  vehicle.allocation.row(5) << 0.4, -0.4;
+  Recording recording;
+  for (int i = 0; i < 2000; ++i) {
+    const double port = 20.0 * std::sin(0.07 * i), starboard = 15.0 * std::sin(0.031 * i + 1.0);
+    Thrusters one;
+    one.utime = utime_after(0, 0.1 * i);
+    one.pwm_us = {1500.0 + 10.0 * port, 1500.0 + 10.0 * starboard};
+    one.has_tau = true;
+    one.tau[0] = port - starboard;
+    one.tau[5] = 0.4 * (port + starboard);
+    recording.thrusters.push_back(one);
+  }
+  ConsistencyResult result;
+  result.corrections.resize(1);
+  check_thrusters(std::span(&recording, 1), vehicle, result);
+  const ConsistencyFinding* sign = find(result.findings, "thrusters.tau", "sign");
+  REQUIRE(sign != nullptr);
+  CHECK(sign->evidence.ends_with("with starboard reversed"));
+  CHECK(sign->action.find("pwm_sign: -1, of starboard") != std::string::npos);
+  CHECK(find(result.findings, "thrusters.tau", "disagreement") == nullptr);
+  CHECK_FALSE(result.corrections[0].thrusters.use_commands);
+}
+
 TEST_CASE("thruster check: pulses without a wrench are all there is to use, forces say it themselves") {
   Recording pulses = driven(1.0, 0.0);
   for (Thrusters& one : pulses.thrusters) one.has_tau = false;

@@ -167,7 +167,7 @@ TEST_CASE("import: a map that does not fit is refused with its own line") {
   CHECK(complaint("t,u,v,w\n0,1,,3\n1,,2,3\n", dvl("{columns: [u, v, w], unit: m/s, frame: FLU}")) ==
         "run.csv: not one whole sample of dvl");
   CHECK(complaint(csv, kAbout + "thrusters: {invalid_where: [u]}\n") ==
-        "map.yaml:4: 'thrusters' needs pwm, force or wrench");
+        "map.yaml:4: 'thrusters' needs pwm, command, force, speed or wrench");
 }
 
 TEST_CASE("beluga: every run is imported with the counts that its flag columns state") {

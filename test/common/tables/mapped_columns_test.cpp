@@ -219,3 +219,40 @@ TEST_CASE("columns: shaft speeds become forces by k n |n|, commands between -1 a
   CHECK_THROWS_AS((void)ColumnMap::parse(kAbout + map + "  pwm: {columns: [a, b], unit: us}\n", "map.yaml"),
                   InputError);
 }
+
+TEST_CASE("columns: acoustic fixes, ranges and loads come in from tables; an empty range is no echo") {
+  const std::string csv = "t,e,n,up,good,ra,rb,l1\n0,1,2,-3,1,10,,5\n1,1,2,-3,0,0,12,\n2,,,,1,,,6\n";
+  const std::string map =
+      "usbl:\n  position: {columns: [e, n, up], unit: m, frame: ENU}\n  sigma: 0.5 m\n  valid_where: [good]\n"
+      "ranges: {columns: [ra, rb], unit: m}\nloads: {columns: [l1], unit: N}\n";
+  const Imported imported = import_text(csv, map);
+  const Recording& r = imported.recording;
+  REQUIRE(r.usbl.size() == 2);
+  CHECK(r.usbl[0].p_WB == Vector3d(2, 1, 3));
+  CHECK(r.usbl[0].sigma == Vector3d(0.5, 0.5, 0.5));
+  CHECK(r.usbl[0].valid);
+  CHECK_FALSE(r.usbl[1].valid);
+  REQUIRE(r.ranges.size() == 2);
+  CHECK(r.ranges[0].range == std::vector<double>{10.0, 0.0});
+  CHECK(r.ranges[0].valid == std::vector<std::uint8_t>{1, 0});
+  CHECK(r.ranges[1].valid == std::vector<std::uint8_t>{0, 1});
+  REQUIRE(r.loads.size() == 2);
+  CHECK(r.loads[1].utime == 2'000'000);
+  const ColumnMap parsed = ColumnMap::parse(kAbout + map, "map.yaml");
+  const std::string once = to_yaml(parsed);
+  CHECK(to_yaml(ColumnMap::parse(once, "again.yaml")) == once);
+  CHECK(once.find("sigma: 0.5 m") != std::string::npos);
+  // Standard deviations of their own stand along the position's axes.
+  const Imported own = import_text("t,e,n,up,se,sn,su\n0,1,2,3,0.1,0.2,0.3\n",
+                                   "usbl:\n  position: {columns: [e, n, up], unit: m, frame: ENU}\n"
+                                   "  sigma: {columns: [se, sn, su], unit: m}\n");
+  CHECK(own.recording.usbl.at(0).sigma == Vector3d(0.2, 0.1, 0.3));
+}
+
+TEST_CASE("columns: ranges and loads by their names need no map") {
+  const CsvTable table = parse_csv("t,range_A,range_B,load_x\n0,1,2,3\n1,1,,3\n", "run.csv");
+  const Imported imported = import_table(table, canonical_map(table));
+  CHECK(imported.notes.empty());
+  CHECK(imported.recording.ranges.at(1).valid == std::vector<std::uint8_t>{1, 0});
+  CHECK(imported.recording.loads.size() == 2);
+}
