@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kNewtonsInKgf = 9.80665;
 constexpr double kAlike = 1.7;  // of a unit's factor: as well as a vehicle file knows its masses
-// How well a file knows the logarithm of an inertia: of a mass, the added water is in doubt; of a moment of inertia,
-// the distribution of the mass too.
-constexpr double kMassDoubt = 0.3, kMomentDoubt = 0.7;
+// How well a file knows the logarithm of an inertia. Of a mass the added water is in doubt, as far as its prior says:
+// where the file says nothing of it, half the body's is a guess. Of a moment of inertia, the distribution of mass too.
+constexpr double kMassDoubt = 0.3, kGuessedMassDoubt = 0.5, kMomentDoubt = 0.7;
 constexpr double kMost = 6.0;      // doubts: further off is no better known
 constexpr double kPrice = 6.0;     // log likelihood, of one factor on all thrust, as of one wrong thruster
 constexpr double kCertain = 20.0;  // log likelihood over the file as it is, as of wrong thrusters
@@ -63,8 +63,10 @@ std::optional<ConsistencyFinding> compare_inertia(const model::Vehicle& vehicle,
     if (!parameter || model::sign_constraint(*parameter) <= 0 || !(vehicle.priors[i].mean > 0.0)) continue;
     const auto fitted = std::ranges::find(parameters, vehicle.parameters[i], &NamedValue::name);
     if (fitted == parameters.end() || !(fitted->value > 0.0)) continue;
-    logs.push_back(std::log(fitted->value / vehicle.priors[i].mean));
-    ratios.push_back({logs.back(), model::axis(*parameter) < 3 ? kMassDoubt : kMomentDoubt});
+    const model::Prior& prior = vehicle.priors[i];
+    logs.push_back(std::log(fitted->value / prior.mean));
+    const double of_mass = std::clamp(prior.sigma / prior.mean, kMassDoubt, kGuessedMassDoubt);
+    ratios.push_back({logs.back(), model::axis(*parameter) < 3 ? of_mass : kMomentDoubt});
   }
   if (ratios.empty()) return std::nullopt;
   const double factor = median(std::move(logs));

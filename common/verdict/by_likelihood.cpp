@@ -128,16 +128,10 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
-<<<<<<< HEAD
   const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
   const model::Model after = learning::as_model(best.hypothesis, input_step, force);
-  const auto residual_before = residuals_of(before, unseen), residual_after = residuals_of(after, unseen);
-=======
-  const model::Model before = as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = as_model(conclusion.reported.hypothesis, input_step);
   const auto residual_before = diagnosis::wrench_residuals(before, unseen),
              residual_after = diagnosis::wrench_residuals(after, unseen);
->>>>>>> main
   const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
   result.error_before.force_rmse = diagnosis::force_rmse(vehicle, residual_before);
   result.error_after.force_rmse = diagnosis::force_rmse(vehicle, residual_after);

@@ -23,6 +23,7 @@
 #include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
@@ -65,7 +66,12 @@ void run(runtime::Process& process, const Options& options) {
   if (process.reads_logs()) throw InputError("--in: the board shows a live bus; play the log with lcm-logplayer");
   const char* bus = std::getenv("LCM_DEFAULT_URL");
   board::Board board{{.host = runtime::host_name(), .pid = getpid(), .bus = bus == nullptr ? "" : bus}};
-  show<fathom_lcm::health_t>(process, wire::kHealth, board);
+  runtime::Speakers speakers{runtime::host_name(), runtime::Speakers::Home::kAnywhere};
+  process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&](const fathom_lcm::health_t& message) {
+    const auto health = wire::decode(message);
+    if (!health || !speakers.believes(message)) return process.reject(wire::kHealth);
+    board.hear(*health, seconds_now());
+  });
   show<fathom_lcm::excitation_t>(process, wire::kExcitation, board);
   show<fathom_lcm::thrusters_t>(process, wire::kThrusters, board);
   show<fathom_lcm::wrench_command_t>(process, wire::kWrenchCommand, board);

@@ -9,7 +9,9 @@
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
 #include "common/estimation/state_reconstruction.hpp"
+#include "common/report/smoothed_page.hpp"
 #include "common/runtime/command_line.hpp"
+#include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -22,7 +24,7 @@ constexpr double kConverged = 30.0;   // s after which filter and smoother are c
 constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
 struct SmoothOptions {
-  std::string run, out, model, map;
+  std::string run, out, model, map, page;
   TrialFileOptions files;
   bool stated{false}, without_position{false}, despite_state{false};
 };
@@ -90,8 +92,11 @@ void run_smooth(const SmoothOptions& options) {
   };
   tell();
   estimation::SmoothedTrial trial;
+  bool attitude_used = false;
   try {
-    trial = estimation::reconstruct_state(recording, files, asked, notes, line->progress()).trial;
+    auto found = estimation::reconstruct_state(recording, files, asked, notes, line->progress());
+    attitude_used = found.settings.attitude == estimation::AttitudeUse::kEverything;
+    trial = std::move(found.trial);
   } catch (const InputError&) {
     tell();
     throw;
@@ -103,6 +108,8 @@ void run_smooth(const SmoothOptions& options) {
   for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));
   recording.smoothed = std::move(trial.smoothed);
   const auto events = wire::write_log(recording, options.out);
+  if (!options.page.empty())
+    tables::write_file(options.page, report::smoothed_page(recording, trial.filtered, attitude_used));
   std::printf("%s: %llu events, %zu of them SMOOTHED\n", options.out.c_str(), static_cast<unsigned long long>(events),
               recording.smoothed.size());
 }
@@ -117,6 +124,7 @@ void add_smooth(runtime::CommandLine& app) {
   add_trial_files(*command, options->files);
   command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
   command->add_option("--model", options->model, "kinematic model")->one_of({"printed", "coupled"});
+  command->add_option("--page", options->page, "HTML file to write: the run drawn, filter and smoother");
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
   command->add_flag("--without-position", options->without_position,
                     "velocity and attitude alone, where nothing tells the position");

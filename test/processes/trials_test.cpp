@@ -176,6 +176,30 @@ TEST_CASE("fathom methods: against a truth it tells what each estimate was worth
   }
 }
 
+TEST_CASE("scripts/pap104: three manoeuvres flown, smoothed, drawn and regressed, on one page") {
+  if (shell("unshare -rn ip link set lo up").code != 0) {
+    MESSAGE("skipped: this machine allows no private network (unshare -rn)");
+    return;
+  }
+  const Scratch scratch;
+  const auto ran = shell("FATHOM_BIN='" + std::string{FATHOM_BINARY_DIR} + "/bin' " + file("scripts/pap104") + " " +
+                         scratch.path("out") + " 3");
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const auto text = [&](const std::string& name) {
+    std::ifstream from{scratch.path("out/" + name)};
+    return std::string{std::istreambuf_iterator<char>{from}, {}};
+  };
+  for (const char* manoeuvre : {"line", "zigzag", "circle"}) {
+    const std::string page = text(std::string{manoeuvre} + ".html");
+    CHECK(page.find("6. Derivative of v in the body: line smoother, dashed truth.") != std::string::npos);
+    CHECK(page.find("which the filter never saw") != std::string::npos);
+  }
+  CHECK(text("circle.html").find("degrees ahead of U") != std::string::npos);
+  const std::string report = text("report.html");
+  CHECK(report.find("X (surge): dimensionless") != std::string::npos);
+  CHECK(report.find("circle.html") != std::string::npos);
+}
+
 TEST_CASE("fathom smooth: a table with a column map, from motion capture and gyro") {
   const Scratch scratch;
   const auto ran = shell(program("fathom") + " smooth " + file("test/data/beluga/yaw-1.csv") + " --map " +

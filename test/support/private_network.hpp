@@ -33,7 +33,7 @@ inline Ran on_a_network(const Scratch& scratch, const std::string& lines, int se
           "within() { local e=$((SECONDS + $1)) t=$1; shift; while ! \"$@\"; do sleep 0.05; [ $SECONDS -lt $e ] || "
           "{ echo \"not within $t s: $*\"; return 1; }; done; }\n"
           "up() { within 20 grep -qs 'waits for orders' $1; }\n"
-          "vehicle() { $deputy -i vehicle \"$@\" 2>deputy.txt & d=$!; up deputy.txt; }\n" +
+          "vehicle() { rm -f deputy.txt; $deputy -i vehicle \"$@\" 2>deputy.txt & d=$!; up deputy.txt; }\n" +
           lines);
   return shell("timeout " + std::to_string(seconds) + " unshare -rnm --pid --fork --kill-child --mount-proc bash " +
                scratch.path("script"));

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/base/printable.hpp"
 #include "common/runtime/command_line.hpp"
 #include "processes/fathom/operator/orders.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 using Options = OperatorOptions;
 
 void print(const Excitation& e) {
-  std::printf("%-10s %s\n", e.phase.c_str(), e.reason.c_str());
+  std::printf("%-10s %s\n", printable(e.phase).c_str(), printable(e.reason).c_str());
   if (e.mode.empty()) return;
   std::printf("mode %s, %.0f of at most %.0f s", e.mode.c_str(), e.elapsed, e.duration);
   if (e.metric >= 0.0) std::printf(", certainty %.3g of %.3g", e.metric, e.threshold);
@@ -32,7 +33,7 @@ void order(const Options& options, bool enable, const std::string& word) {
   orders.give(
       {.enable = enable, .order = word, .segment = options.segment, .duration = options.seconds, .attends = stays},
       !options.no_supervisor);
-  if (stays > 0.0) attend(console, orders, stays);
+  if (stays > 0.0) attend(console, orders, stays, !options.no_supervisor);
 }
 
 void abort(const Options& options) {
@@ -53,9 +54,9 @@ void status(const Options& options) {
     std::printf("state %s, at %.2f %.2f %.2f m\n", console.state->valid ? "valid" : "NOT VALID", p.x(), p.y(), p.z());
   }
   for (const auto& [name, health] : console.health) {
-    std::printf("%-16s %-10s busy %3.0f %%, dropped %lld, rejected %lld  %s\n", name.c_str(), health.state.c_str(),
-                100.0 * health.busy, static_cast<long long>(health.dropped), static_cast<long long>(health.rejected),
-                health.detail.c_str());
+    std::printf("%-16s %-10s busy %3.0f %%, dropped %lld, rejected %lld  %s\n", printable(name).c_str(),
+                printable(health.state).c_str(), 100.0 * health.busy, static_cast<long long>(health.dropped),
+                static_cast<long long>(health.rejected), printable(health.detail).c_str());
   }
 }
 

@@ -1,6 +1,7 @@
 // Logs: what is written comes back, the same recording gives the same bytes, and damage is named with its place.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
@@ -260,6 +261,24 @@ TEST_CASE("log: another version of a message type is named, not skipped") {
   write_raw(scratch.path("a.lcmlog"), "DEPTH", bytes);
   const auto text = complaint_of<InputError>([&] { (void)wire::read_log(scratch.path("a.lcmlog")); });
   CHECK(contains(text, "channel DEPTH does not hold this version's depth_t"));
+}
+
+TEST_CASE("log: of another version, what says nothing of the motion is left out and counted, and the rest is read") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("a.lcmlog");
+  write_raw(path, "DEPTH", depth_bytes(1.0));
+  for (const char* channel : {"ANSWER", "HEALTH", "OPERATOR", "PROCESS_INFO", "WRENCH_COMMAND"}) {
+    write_raw(path, channel, depth_bytes(1.0));  // a fingerprint that is not theirs
+  }
+  const auto contents = wire::read_log(path);
+  CHECK(contents.recording.depth.size() == 1);
+  CHECK(contents.recording.health.empty());
+  const auto& count = contents.report.channels.at("HEALTH");
+  CHECK(count.other_version == 1);
+  CHECK(count.rejected == 0);
+  const std::string said = wire::complaints(path, contents.report);
+  CHECK(contains(said, "channel HEALTH: 1 messages of another version of Fathom left out"));
+  CHECK(std::ranges::count(said, '\n') == 5);
 }
 
 TEST_CASE("log: messages that were logged late are sorted into place and counted") {
