@@ -5,8 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "common/inference/product_features.hpp"
-
 namespace fathom::inference {
 namespace {
 
@@ -37,7 +35,6 @@ class Library {
       time(axis);
     }
     if (scene_.attitude) world();
-    add_products(problem_, seen_, scene_, adjoint_, force_);
     scale();
     force_.weights.assign(force_.features.size(), 0.0);
     return std::move(force_);

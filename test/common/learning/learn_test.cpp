@@ -98,20 +98,6 @@ TEST_CASE("learning: an unlisted force is adopted, and what was not recorded yet
   CHECK(over_told.value < 1.3);
 }
 
-TEST_CASE("learning: a known term that something else modulates is learned as their product") {
-  const auto bow = [](double, const Vector6d& nu) {  // a drag of sway that grows with surge
-    return Vector6d{0.0, -1.5 * std::abs(nu[0]) * nu[1], 0.0, 0.0, 0.0, 0.0};
-  };
-  const Case dive{{.duration = 60.0, .seed = 9, .force = 0.01, .outside = bow}};
-  const Learned learned = dive.learned();
-  show("drag of sway with surge", learned.given);
-  CHECK(learned.given.adopted);
-  CHECK(learned.given.held_out < 0.4);
-  REQUIRE(learned.given.formula);
-  CHECK(learned.given.formula->equation == "tau_Y = c |u| v");
-  CHECK(learned.given.formula->numbers[0].value < 0.0);
-}
-
 TEST_CASE("learning: where nothing is hidden, or a random force acts alone, nothing is adopted") {
   for (const double force : {0.0, 0.1}) {
     const Case clean{{.duration = 60.0, .seed = 5, .force = force}};
