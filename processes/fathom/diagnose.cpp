@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,7 +49,7 @@ constexpr double kTooLate = 0.3;
 
 /// Phases of the work beside those of the diagnosis.
 constexpr std::string_view kReading = "reading", kSensors = "sensors", kReconstruction = "reconstruction",
-                           kReport = "report", kDiagnosis = "diagnosis", kLikelihoodSearch = "likelihood";
+                           kReport = "report", kDiagnosis = "diagnosis";
 constexpr double kLight = 0.03;             // of a fit: reading or reconstructing a run, until it has been timed
 constexpr double kGuessedDiagnosis = 40.0;  // fits, until it says more itself
 
@@ -58,6 +59,7 @@ struct DiagnoseOptions {
   std::vector<std::string> without;
   std::string core{kTrajectories};
   int threads{2};
+  double time_budget{std::numeric_limits<double>::infinity()};
 };
 
 void check_names(const std::vector<std::string>& without) {
@@ -213,16 +215,9 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
     out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
     progress.expect(kDiagnosis, 0);
     if (options.core == kLikelihood) {
-      double share_told = 0.0;  // of its hundred units; it tells its share of the work
-      progress.expect(kLikelihoodSearch, 100.0, kGuessedDiagnosis / 100.0);
-      const auto show = [&](const std::string& what, double share) {
-        progress.done(kLikelihoodSearch, 100.0 * (share - share_told));
-        share_told = std::max(share_told, share);
-        progress.begin(kLikelihoodSearch, what);
-      };
-      verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
-                                                 {.without = options.without, .threads = options.threads}, show);
-      progress.expect(kLikelihoodSearch, 0);
+      verdict::Answer answer = verdict::diagnose(
+          vehicle, out.fitting->trials(), out.judging->trials(),
+          {.without = options.without, .threads = options.threads, .time_budget = options.time_budget}, progress);
       out.report = std::move(answer.report);
       out.given = std::move(answer.given);
       return;
@@ -316,6 +311,10 @@ void add_diagnose(CLI::App& app) {
       ->check(CLI::IsMember({kTrajectories, kLikelihood}));
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
+  command
+      ->add_option("--time-budget", options->time_budget,
+                   "with --core likelihood: s for the search; what is not asked by then is said to be open")
+      ->check(CLI::PositiveNumber);
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->check(CLI::Range(1, 64));
