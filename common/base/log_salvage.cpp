@@ -145,6 +145,14 @@ namespace {
 class Parts {
  public:
   explicit Parts(std::string to) : to_{std::move(to)} {}
+  /// Nothing half done stays behind.
+  ~Parts() {
+    std::error_code ignored;
+    for (const std::string& path : finished_ ? std::vector<std::string>{} : paths_)
+      std::filesystem::remove(path, ignored);
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
   void write(Bytes event, std::size_t part) {
     if (part == paths_.size()) begin();
     file_.write(reinterpret_cast<const char*>(event.data()), static_cast<std::streamsize>(event.size()));
@@ -152,11 +160,8 @@ class Parts {
   /// False when something could not be written.
   [[nodiscard]] bool finish() {
     file_.close();
-    return sound_ && file_.good();
-  }
-  void remove() const {
-    std::error_code ignored;
-    for (const std::string& path : paths_) std::filesystem::remove(path, ignored);
+    finished_ = sound_ && file_.good();
+    return finished_;
   }
   [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
 
@@ -190,7 +195,7 @@ class Parts {
   std::string to_;
   std::ofstream file_;
   std::vector<std::string> paths_;
-  bool sound_{true};
+  bool sound_{true}, finished_{};
 };
 
 }  // namespace
@@ -201,10 +206,7 @@ Salvage salvage(const std::string& from, const std::string& to) {
   Parts parts{to};
   Salvage result = salvage(log.bytes(), [&](Bytes event, std::size_t part) { parts.write(event, part); });
   if (result.events == 0) throw InputError(from + ": holds no whole event of an LCM log");
-  if (!parts.finish()) {
-    parts.remove();
-    throw InputError(to + ": writing failed; is the disk full?");
-  }
+  if (!parts.finish()) throw InputError(to + ": writing failed; is the disk full?");
   for (std::size_t i = 0; i < result.parts.size(); ++i) result.parts[i].path = parts.paths()[i];
   return result;
 }

@@ -230,7 +230,6 @@ bool Check::blame_position_scale(const PairResult& dvl) {
 /// offset are one and the same, and no axis by itself is seen.
 void Check::compare_distances(const PairResult& dvl) {
   std::vector<Estimate> ratios(runs_.size());
-  bool scale_known = true;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     if (!poses_[r].has_position || !poses_[r].has_attitude || dvl_[r].empty()) continue;
     const SensorFault fault = dvl.checked ? dvl.faults[r] : SensorFault{};
@@ -240,8 +239,7 @@ void Check::compare_distances(const PairResult& dvl) {
   const SharedValue ratio = share(ratios, 1.0, kDistanceFloor);
   result_.distance = ratio.pooled;
   result_.distance_limit = ratio.limit;
-  scale_known = !ratio.found && ratio.different.empty();
-  if (scale_known) return;
+  if (!ratio.found && ratio.different.empty()) return;
   const auto say = [&](const std::string& run, double value, double sigma) {
     result_.findings.push_back(
         {.run = run,

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "common/base/statistics.hpp"
 #include "common/consistency/consistency.hpp"
@@ -66,6 +67,52 @@ Estimated jackknifed(const std::array<Sums, kBlocks>& blocks, Statistic statisti
   return result;
 }
 
+/// Forces of the commands of each sample that has the logged wrench too.
+template <class Use>
+void each_pair(std::span<const Recording> recordings, const model::Vehicle& vehicle, const Use& use) {
+  const double reference = reference_voltage(vehicle);
+  for (const Recording& recording : recordings) {
+    for (const Thrusters& sample : recording.thrusters) {
+      if (!sample.has_tau || sample.pwm_us.size() != vehicle.thrusters.size()) continue;
+      const double battery = voltage_at(recording.battery, sample.utime);
+      const std::vector<double> force =
+          forces_of(ThrusterCorrection{}, vehicle, sample.pwm_us, battery > 0.0 ? battery : reference);
+      use(Eigen::Map<const Vector6d>(sample.tau.data()),
+          Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(force.size())), battery);
+    }
+  }
+}
+
+/// Thrusters that push the other way than the file says, by least squares of the logged wrench on each one's share of
+/// the computed; empty where turning them round does not make the two agree.
+std::string reversed_thrusters(std::span<const Recording> recordings, const model::Vehicle& vehicle,
+                               const Vector6d& weight) {
+  constexpr double kRidge = 1e-6;  // relative: thrusters that are always commanded alike share what they did
+  const Eigen::Index n = vehicle.allocation.cols();
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  double total = 0.0;
+  const Eigen::MatrixXd allocation = weight.asDiagonal() * vehicle.allocation;
+  each_pair(recordings, vehicle, [&](const Vector6d& tau, const Eigen::VectorXd& force, double) {
+    const Eigen::MatrixXd shares = allocation * force.asDiagonal();
+    const Vector6d wanted = weight.cwiseProduct(tau);
+    normal += shares.transpose() * shares;
+    right += shares.transpose() * wanted;
+    total += wanted.squaredNorm();
+  });
+  const Eigen::MatrixXd held = normal + kRidge * normal.trace() * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::VectorXd gains = held.ldlt().solve(right);
+  Eigen::VectorXd sign = Eigen::VectorXd::Ones(n);
+  std::string names;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (gains[i] > -0.5) continue;
+    sign[i] = -1.0;
+    names += (names.empty() ? "" : ", ") + vehicle.thrusters[static_cast<std::size_t>(i)].name;
+  }
+  const double misfit = total - 2.0 * sign.dot(right) + sign.dot(normal * sign);
+  return misfit < (1.0 - kAgrees) * total ? names : std::string{};
+}
+
 }  // namespace
 
 void check_thrusters(std::span<const Recording> recordings, const model::Vehicle& vehicle, ConsistencyResult& result) {
@@ -94,23 +141,14 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
   std::vector<Pair> pairs;
   double low = 1e9, high = 0.0;  // V
   Vector6d size = Vector6d::Zero();
-  for (const Recording& recording : recordings) {
-    for (const Thrusters& sample : recording.thrusters) {
-      if (!sample.has_tau || sample.pwm_us.size() != thrusters) continue;
-      const double battery = voltage_at(recording.battery, sample.utime);
-      const std::vector<double> force =
-          forces_of(ThrusterCorrection{}, vehicle, sample.pwm_us, battery > 0.0 ? battery : reference);
-      pairs.push_back(
-          {Eigen::Map<const Vector6d>(sample.tau.data()),
-           vehicle.allocation * Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(thrusters)),
-           battery > 0.0 ? std::log(battery / reference) : 0.0});
-      size += pairs.back().tau.cwiseAbs2();
-      if (battery > 0.0) {
-        low = std::min(low, battery);
-        high = std::max(high, battery);
-      }
+  each_pair(recordings, vehicle, [&](const Vector6d& tau, const Eigen::VectorXd& force, double battery) {
+    pairs.push_back({tau, vehicle.allocation * force, battery > 0.0 ? std::log(battery / reference) : 0.0});
+    size += tau.cwiseAbs2();
+    if (battery > 0.0) {
+      low = std::min(low, battery);
+      high = std::max(high, battery);
     }
-  }
+  });
   if (pairs.empty()) return;
   const Vector6d weight = (size / static_cast<double>(pairs.size())).cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   std::array<Sums, kBlocks> blocks;
@@ -157,7 +195,14 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
   const std::string action = correction.use_commands
                                  ? "thruster forces from the commands, scaled to give the logged wrench"
                                  : "the logged wrench is used";
-  if (!correction.use_commands) {
+  const std::string reversed = correction.use_commands ? "" : reversed_thrusters(recordings, vehicle, weight);
+  if (!reversed.empty()) {
+    report("sign", -1.0,
+           text("the vehicle's curve and allocation explain %.3f of the logged wrench, and all but %.2f of it with ",
+                explained, 1.0 - kAgrees) +
+               reversed + " reversed",
+           action + "; turn the axis, or set pwm_sign: -1, of " + reversed + " in the vehicle file");
+  } else if (!correction.use_commands) {
     report("disagreement", explained,
            text("the vehicle's curve and allocation explain %.3f of the logged wrench, %.2f is needed", explained,
                 kAgrees),

@@ -15,12 +15,6 @@ constexpr double kBent = 3.0;            // standard deviations by which a fit m
 constexpr int kRounds = 3;               // of weights by what is left
 constexpr double kSmallestSize = 1e-12;  // N, N m: an axis without residual
 
-std::vector<std::vector<Vector6d>> residuals_of(const model::Model& model, std::span<const Trial> trials) {
-  std::vector<std::vector<Vector6d>> residuals;
-  for (const Trial& trial : trials) residuals.push_back(wrench_residuals(model, trial));
-  return residuals;
-}
-
 /// Samples that share no measurement, axis by axis.
 Eigen::VectorXd stacked(std::span<const Trial> trials, std::span<const std::vector<Vector6d>> residuals) {
   std::vector<double> all;
@@ -69,7 +63,7 @@ Vector6d weights(const Eigen::VectorXd& left) {
 
 std::vector<std::vector<Vector6d>> residuals_unbent(const model::Model& model, std::span<const Trial> trials,
                                                     std::span<const NamedValue> fitted) {
-  std::vector<std::vector<Vector6d>> residuals = residuals_of(model, trials);
+  std::vector<std::vector<Vector6d>> residuals = wrench_residuals(model, trials);
   const Eigen::VectorXd target = stacked(trials, residuals);
   const identification::ParameterMap map{model};
   std::vector<std::size_t> base;
@@ -83,13 +77,13 @@ std::vector<std::vector<Vector6d>> residuals_unbent(const model::Model& model, s
   // Least squares would call noise of the acceleration times mass a mass that is too large. Columns of the foretold
   // motion are blind to it: they choose which sums must vanish (instrumental variables; Soderstrom and Stoica 1983).
   const std::vector<Trial> smooth = foretold(model, trials);
-  const Eigen::VectorXd smooth_target = stacked(smooth, residuals_of(model, smooth));
+  const Eigen::VectorXd smooth_target = stacked(smooth, wrench_residuals(model, smooth));
   Eigen::MatrixXd columns(target.size(), static_cast<Eigen::Index>(base.size())), instruments = columns;
   for (std::size_t j = 0; j < base.size(); ++j) {
     model::Model moved = model;  // the residual is linear in base numbers, so any step will do
     moved.theta[map[base[j]].base] += map[base[j]].scale;
-    columns.col(static_cast<Eigen::Index>(j)) = stacked(trials, residuals_of(moved, trials)) - target;
-    instruments.col(static_cast<Eigen::Index>(j)) = stacked(smooth, residuals_of(moved, smooth)) - smooth_target;
+    columns.col(static_cast<Eigen::Index>(j)) = stacked(trials, wrench_residuals(moved, trials)) - target;
+    instruments.col(static_cast<Eigen::Index>(j)) = stacked(smooth, wrench_residuals(moved, smooth)) - smooth_target;
   }
   Eigen::VectorXd step = Eigen::VectorXd::Zero(columns.cols()), left = target;
   for (int round = 0; round < kRounds; ++round) {
@@ -112,7 +106,7 @@ std::vector<std::vector<Vector6d>> residuals_unbent(const model::Model& model, s
   model::Model unbent = model;
   for (std::size_t j = 0; j < base.size(); ++j)
     unbent.theta[map[base[j]].base] += step[static_cast<Eigen::Index>(j)] * map[base[j]].scale;
-  return residuals_of(unbent, trials);
+  return wrench_residuals(unbent, trials);
 }
 
 }  // namespace fathom::diagnosis

@@ -32,30 +32,6 @@ constexpr double kStep = 0.04;   // s between the velocities that are predicted:
 
 using Residuals = std::vector<std::vector<Vector6d>>;
 
-Residuals residuals_of(const model::Model& model, std::span<const Trial> trials) {
-  Residuals residuals;
-  for (const Trial& trial : trials) residuals.push_back(wrench_residuals(model, trial));
-  return residuals;
-}
-
-std::map<std::string, double> force_rmse(const model::Vehicle& vehicle, const Residuals& residuals) {
-  std::map<std::string, double> rmse;
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (!vehicle.dof[axis]) continue;
-    double square = 0.0, count = 0.0;
-    for (const auto& run : residuals) {
-      for (const Vector6d& wrench : run) {
-        const double value = wrench[static_cast<Eigen::Index>(axis)];
-        if (!std::isfinite(value)) continue;
-        square += value * value;
-        count += 1.0;
-      }
-    }
-    if (count > 0.0) rmse[model::kAxisNames[axis]] = std::sqrt(square / count);
-  }
-  return rmse;
-}
-
 /// Every run once, however many stretches it has.
 std::vector<std::string> names_of(std::span<const Trial> trials) {
   std::vector<std::string> names;
@@ -250,8 +226,8 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
     take_back(found, kNotCarriedOver);
     after = before;
   }
-  const Residuals residual_before = residuals_of(found.before.model, unseen);
-  Residuals residual_after = residuals_of(found.after.model, unseen);
+  const Residuals residual_before = wrench_residuals(found.before.model, unseen);
+  Residuals residual_after = wrench_residuals(found.after.model, unseen);
   result.wiring =
       wrongly_wired(vehicle, train, whiteness(found.after.model, unseen, residual_after), settings, progress);
   if (result.wiring) {

@@ -94,4 +94,29 @@ std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& t
   return residuals;
 }
 
+std::vector<std::vector<Vector6d>> wrench_residuals(const model::Model& model, std::span<const Trial> trials) {
+  std::vector<std::vector<Vector6d>> residuals;
+  for (const Trial& trial : trials) residuals.push_back(wrench_residuals(model, trial));
+  return residuals;
+}
+
+std::map<std::string, double> force_rmse(const model::Vehicle& vehicle,
+                                         std::span<const std::vector<Vector6d>> residuals) {
+  std::map<std::string, double> rmse;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!vehicle.dof[axis]) continue;
+    double square = 0.0, count = 0.0;
+    for (const auto& run : residuals) {
+      for (const Vector6d& wrench : run) {
+        const double value = wrench[static_cast<Eigen::Index>(axis)];
+        if (!std::isfinite(value)) continue;
+        square += value * value;
+        count += 1.0;
+      }
+    }
+    if (count > 0.0) rmse[model::kAxisNames[axis]] = std::sqrt(square / count);
+  }
+  return rmse;
+}
+
 }  // namespace fathom::diagnosis

@@ -2,6 +2,9 @@
 // uses it.
 #pragma once
 
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "common/model/dynamics.hpp"
@@ -24,5 +27,13 @@ namespace fathom::diagnosis {
 /// thrust within the span leaves nothing). NaN where the span meets an edge or an invalid sample, and on axes that are
 /// not simulated or not measured.
 [[nodiscard]] std::vector<Vector6d> wrench_residuals(const model::Model& model, const Trial& trial);
+/// The same of several runs.
+[[nodiscard]] std::vector<std::vector<Vector6d>> wrench_residuals(const model::Model& model,
+                                                                  std::span<const Trial> trials);
+
+/// Root mean square of such residuals [N, N m] by letter X Y Z K M N, of the axes that the vehicle is free in. Samples
+/// without a residual do not count; an axis that has none is left out.
+[[nodiscard]] std::map<std::string, double> force_rmse(const model::Vehicle& vehicle,
+                                                       std::span<const std::vector<Vector6d>> residuals);
 
 }  // namespace fathom::diagnosis

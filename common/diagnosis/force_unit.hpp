@@ -1,4 +1,5 @@
-// Thrust in another unit than newtons: everything fits, with inertias that no such vehicle has.
+// All thrust wrong by one factor, as in another unit than newtons: everything fits, with inertias that no such vehicle
+// has.
 #pragma once
 
 #include <optional>
@@ -9,8 +10,9 @@
 
 namespace fathom::diagnosis {
 
-/// A finding when the fitted inertias (of `parameters`) are, by their median, a fifth or fivefold of what the
-/// vehicle file expects, or further off.
+/// A finding when one factor on all thrust makes the fitted inertias (of `parameters`) those that the vehicle file
+/// expects: a hypothesis beside "as filed", by the likelihoods of both and the price and certainty of a wrong thruster.
+/// A single inertia that is off is none, nor one that is half or twice what was expected.
 [[nodiscard]] std::optional<ConsistencyFinding> compare_inertia(const model::Vehicle& vehicle,
                                                                 std::span<const NamedValue> parameters);
 

@@ -30,7 +30,7 @@ constexpr std::size_t kWholeRefits = 2;      // whatever it promises by whole wi
 constexpr std::size_t kMostRefits = 8;       // while no winner is found and the screening still speaks for some
 constexpr std::size_t kSearchWindows = 160;  // half an hour; more only makes the search longer
 constexpr double kLeftByFar = 0.1;           // of the cost, at least: by what reshapes the whole model
-constexpr double kMostOfIt = 0.5;            // of the error, explained: what was found is no imitation
+constexpr double kMostExplained = 0.5;       // of the error, explained: what was found is no imitation
 constexpr double kSearchStep = 0.04;         // s: coarser than most recordings, finer than any vehicle moves
 
 /// The final model without the effects that are no longer accepted.
@@ -129,7 +129,7 @@ SearchResult search(const model::Vehicle& vehicle, std::span<const Trial> train,
       ask_whole(answers, problem, result.after, scene, tried, settings);
       winner = fits.fit_best(Which::kAll, kWholeRefits, kMostRefits);
     }
-    if (!winner && something && (left > kLeftByFar || explained(result.accepted) < kMostOfIt)) {
+    if (!winner && something && (left > kLeftByFar || explained(result.accepted) < kMostExplained)) {
       look_afar(answers, problem, trials, settings, result.after, scene, progress, done);
       winner = fits.fit_best(Which::kFromAfar, kRefits, kRefits);
     }

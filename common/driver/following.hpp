@@ -22,6 +22,8 @@ class Following {
   };
   explicit Following(const Limits& limits) : limits_{limits} {}
 
+  /// The line was opened anew: what was reported is of another time.
+  void restart() { reported_at_.reset(); }
   /// What is sent now; once per command.
   void asked(const Eigen::VectorXd& force, double now);
   /// What the vehicle reports.

@@ -14,6 +14,7 @@
 #include "common/link/i2c.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/sensors.hpp"
 
 namespace fathom::driver {
@@ -62,11 +63,8 @@ PressureSensor::PressureSensor(runtime::Process& process, const Config& config)
   constexpr double kQuickest = 0.05;  // s: two conversions take 41 ms
   if (period_ < kQuickest) config.fail("period", "an ms5837 needs 0.05 s for a reading");
   if (arm_.needed()) {
-    process_.on_latest<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
-      const auto sample = wire::decode(message);
-      if (!sample) return process_.reject(wire::kAhrs);
-      arm_.hear(*sample);
-    });
+    process_.on_latest<fathom_lcm::ahrs_t>(wire::kAhrs, wire::kDecode,
+                                           [this](const Ahrs& sample) { arm_.hear(sample); });
   }
   process_.waits_with([this](std::span<const int> descriptors, int limit_ms) { wait(descriptors, limit_ms); });
   process_.on_health([this] {

@@ -22,6 +22,7 @@
 #include "common/link/raw_log.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/sensors.hpp"
 
 namespace fathom::driver {
@@ -68,11 +69,9 @@ class SensorDriver final : public devices::Output {
       if (process_.reads_logs()) open_beside_log();
     }
     if (arm_.needed()) {
-      process_.on<fathom_lcm::ahrs_t>(wire::kAhrs, [this](const auto& message) {
-        const auto sample = wire::decode(message);
-        if (!sample) return process_.reject(wire::kAhrs);
-        arm_.hear(*sample);
-        replay(sample->utime);
+      process_.on<fathom_lcm::ahrs_t>(wire::kAhrs, wire::kDecode, [this](const Ahrs& sample) {
+        arm_.hear(sample);
+        replay(sample.utime);
       });
     }
     process_.waits_with(

@@ -29,6 +29,7 @@
 #include "common/model/thruster_allocation.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
 #include "common/wire/signature.hpp"
@@ -340,16 +341,12 @@ int thruster_main(int argc, const char* const* argv) {
     process.publishes<fathom_lcm::battery_t>(wire::kBattery);
     process.publishes<fathom_lcm::answer_t>(wire::kAnswer);
     process.publishes<fathom_lcm::vehicle_condition_t>(wire::kVehicle);
-    process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
-      const auto command = wire::open(message, keys.command);
-      if (!command) return process.reject(wire::kWrenchCommand);
-      driver.hear(*command);
-    });
-    process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
-      const auto order = wire::open(message, keys.order);
-      if (!order) return process.reject(wire::kOperator);
-      driver.hear(*order);
-    });
+    process.on<fathom_lcm::wrench_command_t>(
+        wire::kWrenchCommand, [&](const auto& message) { return wire::open(message, keys.command); },
+        [&](const WrenchCommand& command) { driver.hear(command); });
+    process.on<fathom_lcm::operator_t>(
+        wire::kOperator, [&](const auto& message) { return wire::open(message, keys.order); },
+        [&](const Operator& order) { driver.hear(order); });
     process.waits_with(
         [&](std::span<const int> descriptors, int milliseconds) { driver.wait(descriptors, milliseconds); });
     process.on_health([&] { return driver.condition(); });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/printable.hpp"
+
 namespace fathom::driver {
 
 bool ThrusterGate::was_armed(const WrenchCommand& command) const {
@@ -11,13 +13,10 @@ bool ThrusterGate::was_armed(const WrenchCommand& command) const {
 }
 
 void ThrusterGate::refuse(const WrenchCommand& command, Utime now) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 40;  // characters of a name
   ++(command.authentic ? replayed_ : unsigned_);
   forged_at_ = now;
-  forger_ = command.commander.substr(0, kLongest);
-  for (char& c : forger_) {  // what a stranger says shall not command the operator's terminal
-    if (c < ' ' || c > '~') c = '?';
-  }
+  forger_ = printable(command.commander, kLongest);
 }
 
 bool ThrusterGate::hears_forgeries(Utime now) const {
@@ -96,6 +95,7 @@ Answer ThrusterGate::hear(const Operator& order, Utime now) {
     return answer;
   };
   if (order.abort) {
+    check_.abort(now);
     aborted_ = true;
     armed_ = false;
     command_.reset();

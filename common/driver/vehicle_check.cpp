@@ -51,6 +51,7 @@ void VehicleCheck::restart(double now) {
   mode_.clear();
   failsafe_ = false;
   tells_state_ = false;
+  following_.restart();
 }
 
 void VehicleCheck::remember(VehicleText words, double now) {

@@ -16,8 +16,14 @@ KalmanEstimator::KalmanEstimator(const KalmanSettings& settings)
     : settings_{settings}, machine_{machine()}, finder_{settings_} {}
 
 KalmanEstimator::Machine KalmanEstimator::machine() const {
-  if (settings_.biases) return KinematicEstimator<model::kMostStates>{settings_};
-  return KinematicEstimator<model::kKinematicStates>{settings_};
+  switch (settings_.states()) {
+    case model::kMostStates:
+      return KinematicEstimator<model::kMostStates>{settings_};
+    case model::kInertialStates:
+      return KinematicEstimator<model::kInertialStates>{settings_};
+    default:
+      return KinematicEstimator<model::kKinematicStates>{settings_};
+  }
 }
 
 void KalmanEstimator::reset() {

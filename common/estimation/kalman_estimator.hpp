@@ -44,7 +44,8 @@ class KalmanEstimator {
     Utime utime{};
     Sample sample;
   };
-  using Machine = std::variant<KinematicEstimator<model::kKinematicStates>, KinematicEstimator<model::kMostStates>>;
+  using Machine = std::variant<KinematicEstimator<model::kKinematicStates>, KinematicEstimator<model::kInertialStates>,
+                               KinematicEstimator<model::kMostStates>>;
 
   const Output& wait(Event event);
   void release(Utime until);

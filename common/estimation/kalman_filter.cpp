@@ -173,6 +173,8 @@ void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicMod
     P_.diagonal().template segment<3>(at::kBias).array() += square(noise.accelerometer_bias) * dt;
     P_.diagonal().template segment<3>(at::kBias + 3).array() += square(noise.gyro_bias) * dt;
   }
+  if constexpr (N > model::kInertialStates)
+    P_.diagonal().template segment<3>(at::kLogBias).array() += square(noise.log_bias) * dt;
   mirror<N>(P_);
   transition_ = F;
 }
@@ -213,10 +215,13 @@ typename KalmanFilter<N>::Outcome KalmanFilter<N>::update(const model::Observati
 }
 
 template class KalmanFilter<model::kKinematicStates>;
+template class KalmanFilter<model::kInertialStates>;
 template class KalmanFilter<model::kMostStates>;
 template void transport_back<model::kKinematicStates>(const Transition&, Eigen::Matrix<double, 18, 18>&);
-template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 24, 24>&);
+template void transport_back<model::kInertialStates>(const Transition&, Eigen::Matrix<double, 24, 24>&);
+template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 27, 27>&);
 template void transport_back<model::kKinematicStates>(const Transition&, Eigen::Matrix<double, 18, 1>&);
-template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 24, 1>&);
+template void transport_back<model::kInertialStates>(const Transition&, Eigen::Matrix<double, 24, 1>&);
+template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 27, 1>&);
 
 }  // namespace fathom::estimation

@@ -19,7 +19,8 @@ struct ProcessNoise {
   double angular_jerk{0.05};        ///< rad/s^2: moves the derivative of the rates
   double velocity{0.1};             ///< m/s: moves the velocity of the printed model; unused in the coupled one
   double accelerometer_bias{1e-4};  ///< m/s^2: moves the first three biases
-  double gyro_bias{1e-5};           ///< rad/s: moves the last three
+  double gyro_bias{1e-5};           ///< rad/s: moves the next three
+  double log_bias{1e-5};            ///< m/s: moves those of a velocity log
 };
 
 /// What a step does to small errors: the model's derivative at a point. Kept so that a smoother can go back.
@@ -34,7 +35,7 @@ struct Transition {
   Eigen::Matrix3d euler_euler;  ///< d(new euler)/d(euler)
 };
 
-/// N is 18, or 24 with six sensor biases.
+/// N is 18, 24 with the biases of accelerometers and gyros, or 27 with those of a velocity log as well.
 template <int N>
 class KalmanFilter {
  public:
@@ -90,6 +91,7 @@ template <int N>
 void transport_back(const Transition& F, Eigen::Matrix<double, N, 1>& l);
 
 extern template class KalmanFilter<model::kKinematicStates>;
+extern template class KalmanFilter<model::kInertialStates>;
 extern template class KalmanFilter<model::kMostStates>;
 
 }  // namespace fathom::estimation

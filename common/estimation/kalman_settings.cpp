@@ -49,6 +49,7 @@ void read_attitude(const Config& config, KalmanSettings& s) {
                                     : AttitudeUse::kEverything;
   }
   read(config, "noise", "rad", s.attitude_noise);
+  if (config.has("memory")) s.attitude_memory = config.not_negative("memory", "s");
   read(config, "heading_noise", "rad", s.heading_noise);
   if (config.has("declination")) s.declination = config.quantity("declination", "rad");
 }
@@ -56,6 +57,7 @@ void read_attitude(const Config& config, KalmanSettings& s) {
 void read_ranges(const Config& config, KalmanSettings& s) {
   if (config.has("transducer")) s.p_BA = config.vector3("transducer", "m");
   read(config, "noise", "m", s.range_noise);
+  if (!config.has("transponders")) return;
   for (const Config& one : config.list("transponders")) {
     s.transponders.push_back({one.text("name"), one.vector3("position", "m")});
     for (std::size_t i = 0; i + 1 < s.transponders.size(); ++i) {
@@ -65,8 +67,12 @@ void read_ranges(const Config& config, KalmanSettings& s) {
 }
 
 void read_tags(const Config& config, KalmanSettings& s) {
-  for (const Config& one : config.list("known")) s.tags.push_back({one.integer("tag"), pose(one)});
-  for (const Config& one : config.list("cameras")) s.cameras.push_back({one.text("name"), pose(one)});
+  if (config.has("known")) {
+    for (const Config& one : config.list("known")) s.tags.push_back({one.integer("tag"), pose(one)});
+  }
+  if (config.has("cameras")) {
+    for (const Config& one : config.list("cameras")) s.cameras.push_back({one.text("name"), pose(one)});
+  }
   read(config, "noise", "", s.tag_noise);
   read(config, "attitude_noise", "rad", s.tag_attitude_noise);
 }
@@ -101,7 +107,11 @@ KalmanSettings KalmanSettings::from(const Config& config) {
     read(depth, "noise", "m", s.depth_noise);
   }
   if (config.has("ranges")) read_ranges(config.section("ranges"), s);
-  if (config.has("dvl")) read(config.section("dvl"), "noise", "m/s", s.velocity_noise);
+  if (config.has("dvl")) {
+    const Config dvl = config.section("dvl");
+    read(dvl, "noise", "m/s", s.velocity_noise);
+    if (dvl.has("bias")) s.velocity_bias = dvl.not_negative("bias", "m/s");
+  }
   if (config.has("usbl")) read(config.section("usbl"), "noise", "m", s.usbl_noise);
   if (config.has("pose_capture")) {
     const Config capture = config.section("pose_capture");

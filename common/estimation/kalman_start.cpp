@@ -114,16 +114,20 @@ void StartFinder::use(const TagPose& sample) {
   for (const KnownTag& tag : settings_->tags) {
     for (const KnownCamera& camera : settings_->cameras) {
       if (tag.number != sample.tag || camera.name != sample.camera) continue;
-      const model::Pose body = model::body_from_tag(tag.X_WT, {sample.p_CT, sample.q_CT}, camera.X_BC);
-      position_ = body.p;
-      attitude_ = body.q;
+      if (settings_->tag_attitude) {
+        const model::Pose body = model::body_from_tag(tag.X_WT, {sample.p_CT, sample.q_CT}, camera.X_BC);
+        position_ = body.p;
+        attitude_ = body.q;
+      } else if (attitude_) {
+        position_ = tag.X_WT.p - *attitude_ * (camera.X_BC.p + camera.X_BC.q * sample.p_CT);
+      }
     }
   }
 }
 
 std::optional<KalmanStart> StartFinder::found() const {
   if (!attitude_ && !(heading_ && up_)) return std::nullopt;
-  const bool unmeasured = settings_->transponders.empty() && elapsed_ > kPatience;
+  const bool unmeasured = !awaited_ && settings_->transponders.empty() && elapsed_ > kPatience;
   if (!position_ && !settings_->start && !unmeasured) return std::nullopt;
   KalmanStart start;
   if (attitude_) {
@@ -146,6 +150,7 @@ std::optional<KalmanStart> StartFinder::found() const {
   start.sigma.segment<3>(at::kRateSlopes).setConstant(s.start_acceleration);
   start.sigma.segment<3>(at::kBias).setConstant(s.accelerometer_bias);
   start.sigma.segment<3>(at::kBias + 3).setConstant(s.gyro_bias);
+  start.sigma.segment<3>(at::kLogBias).setConstant(s.velocity_bias);
   return start;
 }
 

@@ -13,8 +13,8 @@
 namespace fathom::estimation {
 
 /// A sample of any instrument, not owned.
-using SampleView =
-    std::variant<const Ahrs*, const PoseCapture*, const Dvl*, const Depth*, const Usbl*, const Ranges*, const TagPose*>;
+using SampleView = std::variant<const Ahrs*, const PoseCapture*, const Dvl*, const Depth*, const Usbl*, const Ranges*,
+                                const TagPose*, const OpticalFlow*, const LaserRange*>;
 
 struct KalmanStart {
   model::KinematicVector x{model::KinematicVector::Zero()};
@@ -40,11 +40,13 @@ struct Verdict {
 
 class StartFinder {
  public:
-  explicit StartFinder(const KalmanSettings& settings) : settings_{&settings} {}
+  /// `awaited`: it is known that something will tell the position, however late.
+  explicit StartFinder(const KalmanSettings& settings, bool awaited = false)
+      : settings_{&settings}, awaited_{awaited} {}
 
   void hear(Utime utime, const SampleView& sample);
   /// The start, as soon as attitude and position are known; a position that nothing measures is taken to be zero after
-  /// some seconds, unless there are transponders.
+  /// some seconds, unless there are transponders or it is awaited.
   [[nodiscard]] std::optional<KalmanStart> found() const;
   /// One line: what is missing.
   [[nodiscard]] std::string missing() const;
@@ -57,8 +59,11 @@ class StartFinder {
   void use(const Usbl& sample);
   void use(const Ranges& sample);
   void use(const TagPose& sample);
+  void use(const OpticalFlow&) {}
+  void use(const LaserRange&) {}
 
   const KalmanSettings* settings_;
+  bool awaited_;
   std::optional<Utime> first_;
   double elapsed_{};
   int ranges_heard_{};

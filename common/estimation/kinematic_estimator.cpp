@@ -9,6 +9,7 @@
 #include "common/model/sensors/attitude.hpp"
 #include "common/model/sensors/gyro.hpp"
 #include "common/model/sensors/heading.hpp"
+#include "common/model/sensors/level_floor.hpp"
 #include "common/model/sensors/position.hpp"
 #include "common/model/sensors/pressure.hpp"
 #include "common/model/sensors/range.hpp"
@@ -24,8 +25,10 @@ constexpr double kWide = 2.0;         // noises of a range: a position less sure
 constexpr int kRangePatience = 4;     // the same of ranges, which are seldom
 constexpr int kPatience = 6;          // refused in a row before the estimate is taken to be the one that is wrong
 constexpr double kLongestStep = 0.2;  // s, of one linear prediction
-constexpr std::array<const char*, kFirstRange> kNames{
-    "accelerometer", "gyro", "heading", "attitude", "depth", "dvl", "usbl", "pose position", "pose attitude", "tag"};
+constexpr double kNearWall = 0.1;     // m: what position and tilt are off by at the far end of a view, and the corner
+constexpr std::array<const char*, kFirstRange> kNames{"accelerometer", "gyro", "heading",      "attitude",
+                                                      "depth",         "dvl",  "usbl",         "pose position",
+                                                      "pose attitude", "tag",  "optical flow", "laser"};
 
 double square(double value) { return value * value; }
 
@@ -82,8 +85,13 @@ void KinematicEstimator<N>::doubt(std::size_t instrument) {
     sigma.template segment<3>(at::kEuler).setConstant(settings_->start_tilt);
     sigma.template segment<3>(at::kRates).setConstant(settings_->start_rates);
   }
-  if (instrument != kHeading && instrument != kAttitude && instrument != kPoseAttitude) {
-    sigma.template segment<3>(at::kPosition).setConstant(instrument == kDvl ? 0.0 : settings_->start_position);
+  const bool depth_alone = instrument == kDepth || instrument == kLaser;
+  const bool velocity_alone = instrument == kDvl || instrument == kFlow;
+  if (depth_alone) {
+    sigma[at::kPosition + 2] = settings_->start_position;
+    sigma[at::kVelocity + 2] = settings_->start_velocity;
+  } else if (instrument != kHeading && instrument != kAttitude && instrument != kPoseAttitude) {
+    sigma.template segment<3>(at::kPosition).setConstant(velocity_alone ? 0.0 : settings_->start_position);
     sigma.template segment<3>(at::kVelocity).setConstant(settings_->start_velocity);
   }
   filter_.doubt(sigma);
@@ -153,7 +161,12 @@ void KinematicEstimator<N>::use(const Ahrs& sample) {
     const double heading = euler_from_rotation(sample.q_WB.toRotationMatrix()).z();
     apply(kHeading, observe_heading(point, s.declination, heading, square(s.heading_noise)));
   } else if (s.attitude == AttitudeUse::kEverything) {
-    for (const auto& row : observe_attitude(point, sample.q_WB, square(s.attitude_noise))) apply(kAttitude, row);
+    // Errors that go on for `memory` have this density at slow frequencies, where the gyro does not know better.
+    const double apart = attitude_ ? seconds_between(*attitude_, sample.utime) : s.attitude_memory;
+    const double repeats = apart > 0.0 ? std::max(1.0, 2.0 * s.attitude_memory / apart) : 1.0;
+    const double variance = square(s.attitude_noise) * (attitude_ ? repeats : 1.0);
+    for (const auto& row : observe_attitude(point, sample.q_WB, variance)) apply(kAttitude, row);
+    attitude_ = sample.utime;
   }
 }
 
@@ -184,9 +197,9 @@ void KinematicEstimator<N>::use(const Dvl& sample) {
   }
   const model::KinematicPoint point = filter_.point();
   const double variance = square(settings_->velocity_noise);
-  for (const auto& row : observe_velocity(point, Eigen::Vector3d::Zero(), sample.v_WB_B, variance)) {
+  const Eigen::Vector3d v_B = settings_->velocity_scale.cwiseProduct(sample.v_WB_B);
+  for (const auto& row : observe_velocity(point, Eigen::Vector3d::Zero(), v_B, variance, N > model::kInertialStates))
     apply(kDvl, row);
-  }
 }
 
 template <int N>
@@ -246,19 +259,67 @@ void KinematicEstimator<N>::use(const Ranges& sample) {
 }
 
 template <int N>
+const KnownCamera* KinematicEstimator<N>::camera(const std::string& name) const {
+  const auto found = std::ranges::find(settings_->cameras, name, &KnownCamera::name);
+  return found == settings_->cameras.end() ? nullptr : &*found;
+}
+
+template <int N>
 void KinematicEstimator<N>::use(const TagPose& sample) {
-  for (const KnownTag& tag : settings_->tags) {
-    for (const KnownCamera& camera : settings_->cameras) {
-      if (tag.number != sample.tag || camera.name != sample.camera) continue;
-      const model::KinematicPoint point = filter_.point();
-      const double along = square(settings_->tag_noise * sample.p_CT.norm());
-      const auto rows = observe_tag(point, tag.X_WT, camera.X_BC, {sample.p_CT, sample.q_CT}, along / 9.0, along,
-                                    square(settings_->tag_attitude_noise));
-      for (const auto& row : rows) apply(kTag, row);
-      return;
-    }
+  const KnownCamera* by = camera(sample.camera);
+  const auto tag = std::ranges::find(settings_->tags, sample.tag, &KnownTag::number);
+  if (by == nullptr || tag == settings_->tags.end()) {
+    ++statistics_[kTag].dropped;
+    return;
   }
-  ++statistics_[kTag].dropped;
+  const model::KinematicPoint point = filter_.point();
+  const double along = square(settings_->tag_noise * sample.p_CT.norm());
+  const auto rows = observe_tag(point, tag->X_WT, by->X_BC, {sample.p_CT, sample.q_CT}, along / 9.0, along,
+                                square(settings_->tag_attitude_noise));
+  for (std::size_t i = 0; i < (settings_->tag_attitude ? 6U : 3U); ++i) apply(kTag, rows[i]);
+}
+
+// A tilted vehicle looks at a wall now and then, and along the wall range and scene change so gently that no gate
+// notices.
+template <int N>
+bool KinematicEstimator<N>::within_walls(const Eigen::Vector3d& p_W) const {
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kNearWall);
+  return Eigen::AlignedBox2d{settings_->walls.min() + margin, settings_->walls.max() - margin}.contains(
+      Eigen::Vector2d{p_W.head<2>()});
+}
+
+template <int N>
+void KinematicEstimator<N>::use(const OpticalFlow& sample) {
+  const KnownCamera* by = camera(sample.camera);
+  const model::KinematicPoint point = filter_.point();
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  const auto distance =
+      by != nullptr ? model::distance_to_floor(point, *settings_->floor, by->X_BC, axis) : std::nullopt;
+  if (!distance ||
+      !within_walls(point.group(at::kPosition) + point.R_WB * (by->X_BC.p + *distance * (by->X_BC.q * axis)))) {
+    ++statistics_[kFlow].dropped;
+    return;
+  }
+  // A scale of what is read, along B, seen by the camera.
+  const Eigen::Vector3d read{sample.flow_C.x(), sample.flow_C.y(), 0.0};
+  const Eigen::Vector3d flow = by->X_BC.q.conjugate() * settings_->flow_scale.cwiseProduct(by->X_BC.q * read);
+  const double variance = square(sample.sigma) + square(settings_->flow_noise / *distance);
+  const auto rows = observe_flow(point, *settings_->floor, by->X_BC, flow.head<2>(), variance);
+  for (const auto& row : *rows) apply(kFlow, row);
+}
+
+template <int N>
+void KinematicEstimator<N>::use(const LaserRange& sample) {
+  const KnownCamera* by = camera(sample.camera);
+  const model::KinematicPoint point = filter_.point();
+  if (by == nullptr ||
+      !within_walls(point.group(at::kPosition) + point.R_WB * (by->X_BC.p + by->X_BC.q * sample.p_CL))) {
+    ++statistics_[kLaser].dropped;
+    return;
+  }
+  const double variance = square(sample.sigma_range) + square(settings_->laser_noise);
+  const auto row = observe_floor_point(point, *settings_->floor, by->X_BC, sample.p_CL, variance);
+  row ? apply(kLaser, *row) : static_cast<void>(++statistics_[kLaser].dropped);
 }
 
 template <int N>
@@ -285,6 +346,7 @@ StateEstimate state_of(Utime utime, const model::KinematicVector& x, const model
 }
 
 template class KinematicEstimator<model::kKinematicStates>;
+template class KinematicEstimator<model::kInertialStates>;
 template class KinematicEstimator<model::kMostStates>;
 
 }  // namespace fathom::estimation

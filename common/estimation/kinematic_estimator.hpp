@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,7 @@ struct InnovationStatistics {
   [[nodiscard]] double nis() const { return used > 0 ? nis_sum / static_cast<double>(used) : 0.0; }
 };
 
-/// Rows in the order: accelerometer, gyro, heading, attitude, depth, dvl, usbl, pose position, pose attitude, tag, and
-/// then one per transponder.
+/// Rows in this order, and then one per transponder.
 enum Instrument : std::size_t {
   kAccelerometer,
   kGyro,
@@ -38,6 +38,8 @@ enum Instrument : std::size_t {
   kPosePosition,
   kPoseAttitude,
   kTag,
+  kFlow,
+  kLaser,
   kFirstRange
 };
 
@@ -68,6 +70,10 @@ class KinematicEstimator {
   void use(const Usbl& sample);
   void use(const Ranges& sample);
   void use(const TagPose& sample);
+  void use(const OpticalFlow& sample);
+  void use(const LaserRange& sample);
+  [[nodiscard]] const KnownCamera* camera(const std::string& name) const;
+  [[nodiscard]] bool within_walls(const Eigen::Vector3d& p_W) const;
   void apply(std::size_t instrument, const model::Observation& observation);
   void doubt(std::size_t instrument);
   void doubt_if_lost();
@@ -78,8 +84,9 @@ class KinematicEstimator {
   typename KalmanFilter<N>::State moved_{KalmanFilter<N>::State::Zero()};
   FilterRecord<N>* record_{};
   std::vector<InnovationStatistics> statistics_;
-  std::vector<int> in_a_row_;   // refused
-  std::vector<double> ranges_;  // of one message; 0: not heard, or contradicts the others
+  std::vector<int> in_a_row_;      // refused
+  std::vector<double> ranges_;     // of one message; 0: not heard, or contradicts the others
+  std::optional<Utime> attitude_;  // of the newest sample that told one
   Utime now_{};
   bool open_{};  // time has gone on since the last record
   bool started_{false}, upright_{true};
@@ -90,6 +97,7 @@ class KinematicEstimator {
                                      const model::KinematicVector& variance, const Eigen::Matrix3d& reference);
 
 extern template class KinematicEstimator<model::kKinematicStates>;
+extern template class KinematicEstimator<model::kInertialStates>;
 extern template class KinematicEstimator<model::kMostStates>;
 
 }  // namespace fathom::estimation

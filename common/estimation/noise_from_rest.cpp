@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
@@ -13,6 +14,9 @@ namespace {
 constexpr double kBlock = 0.5;        // s
 constexpr int kFewest = 8;            // samples that a standard deviation needs
 constexpr double kStillMean = 4.0;    // sigma of a block's mean by which it may lie off the stretch's
+constexpr double kStillSpeed = 0.01;  // m/s that a velocity log may show at rest: its own bias
+constexpr double kGone = 4.0;         // sigma of the way that an instrument tells between a stretch's two halves
+constexpr int kFewestHalf = 3;        // samples in each half that a way is told by
 constexpr double kResolution = 1e-5;  // floor of a noise: a sensor that repeats itself to the last bit is rounded
 
 /// Six numbers of the inertial package over one block.
@@ -51,6 +55,100 @@ Vector6d white_noise(const std::vector<Ahrs>& stream) {
   return sigma;
 }
 
+/// One number that an instrument tells, over time.
+struct Told {
+  std::vector<double> t, x;  // s since the first inertial sample
+  double sigma{};            // white noise of one
+  double allowed{};          // what it may say at rest, and else than zero: infinite where it tells a place
+};
+
+template <class Stream, class Value>
+void tell(const Stream& stream, Utime origin, const Value& value, std::vector<Told>& all,
+          double allowed = std::numeric_limits<double>::infinity()) {
+  Told told{.allowed = allowed};
+  for (const auto& sample : stream) {
+    const std::optional<double> x = value(sample);
+    const double t = seconds_between(origin, sample.utime);
+    if (!x || (!told.t.empty() && t <= told.t.back())) continue;
+    told.t.push_back(t);
+    told.x.push_back(*x);
+  }
+  if (told.x.size() < 2 * kFewestHalf) return;
+  told.sigma = std::max(white_noise_sigma(told.t, told.x), kResolution);
+  all.push_back(std::move(told));
+}
+
+/// What all instruments but gyro and accelerometer tell of the motion.
+std::vector<Told> told_by(const Recording& recording) {
+  std::vector<Told> all;
+  const Utime origin = recording.ahrs.front().utime;
+  const auto first = std::ranges::find_if(recording.ahrs, &Ahrs::has_attitude);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (first != recording.ahrs.end()) {
+      tell(
+          recording.ahrs, origin,
+          [&](const Ahrs& one) {
+            return one.has_attitude
+                       ? std::optional{rotation_vector_from_quaternion(first->q_WB.conjugate() * one.q_WB)[i]}
+                       : std::nullopt;
+          },
+          all);
+    }
+    tell(
+        recording.pose_capture, origin,
+        [i](const PoseCapture& one) {
+          return one.valid && one.has_position ? std::optional{one.p_WB[i]} : std::nullopt;
+        },
+        all);
+    tell(
+        recording.usbl, origin, [i](const Usbl& one) { return one.valid ? std::optional{one.p_WB[i]} : std::nullopt; },
+        all);
+    tell(
+        recording.dvl, origin,
+        [i](const Dvl& one) { return one.valid && !one.held ? std::optional{one.v_WB_B[i]} : std::nullopt; }, all,
+        kStillSpeed);
+  }
+  for (Eigen::Index i = 0; i < 2; ++i)
+    tell(
+        recording.optical_flow, origin, [i](const OpticalFlow& one) { return std::optional{one.flow_C[i]}; }, all,
+        kStillSpeed);
+  tell(
+      recording.depth, origin, [](const Depth& one) { return std::optional{one.z}; }, all);
+  tell(
+      recording.laser_range, origin, [](const LaserRange& one) { return std::optional{one.p_CL.norm()}; }, all);
+  const std::size_t ranges = recording.ranges.empty() ? 0 : recording.ranges.front().range.size();
+  for (std::size_t i = 0; i < ranges; ++i) {
+    tell(
+        recording.ranges, origin,
+        [i](const Ranges& one) {
+          return i < one.range.size() && i < one.valid.size() && one.valid[i] != 0 ? std::optional{one.range[i]}
+                                                                                   : std::nullopt;
+        },
+        all);
+  }
+  return all;
+}
+
+/// Medians, since acoustic instruments tell a wild number now and then.
+double median_between(const Told& told, double from, double to, int& count) {
+  const auto begin = std::ranges::lower_bound(told.t, from), end = std::ranges::upper_bound(told.t, to);
+  count = static_cast<int>(end - begin);
+  if (count == 0) return 0.0;
+  return median({told.x.begin() + (begin - told.t.begin()), told.x.begin() + (end - told.t.begin())});
+}
+
+/// Whether an instrument sees the vehicle go anywhere between two times. One that says nothing sees nothing.
+bool moves(const Told& told, double from, double to) {
+  int before = 0, after = 0;
+  const double middle = 0.5 * (from + to);
+  const double first = median_between(told, from, middle, before), second = median_between(told, middle, to, after);
+  if (before < kFewestHalf || after < kFewestHalf) return false;
+  // A median's standard deviation is 1.25 times a mean's; what rounding does comes on top, once.
+  const double sigma = 1.25 * told.sigma * std::sqrt(1.0 / before + 1.0 / after);
+  if (std::abs(second - first) > kGone * sigma) return true;
+  return std::abs(0.5 * (first + second)) > told.allowed + 0.5 * kGone * sigma;
+}
+
 /// Standard deviation of what `value` says of every sample within the rest; nothing when there are too few.
 template <class Stream, class Value>
 std::optional<double> spread(const Stream& stream, const Rest& rest, const Value& value) {
@@ -79,6 +177,13 @@ std::optional<Rest> find_rest(const Recording& recording, double shortest) {
   const std::vector<Block> blocks = blocks_of(recording.ahrs);
   if (blocks.size() < 2) return std::nullopt;
   const Vector6d sigma = white_noise(recording.ahrs);
+  const std::vector<Told> others = told_by(recording);
+  const Utime origin = recording.ahrs.front().utime;
+  const auto still = [&](const Rest& rest) {
+    return std::ranges::none_of(others, [&](const Told& told) {
+      return moves(told, seconds_between(origin, rest.from), seconds_between(origin, rest.to));
+    });
+  };
   std::optional<Rest> best;
   for (std::size_t first = 0; first < blocks.size(); ++first) {
     Vector6d sum = Vector6d::Zero();
@@ -94,6 +199,7 @@ std::optional<Rest> find_rest(const Recording& recording, double shortest) {
     }
     const Rest rest{blocks[first].from, blocks[last - 1].to};
     if (seconds_between(rest.from, rest.to) < shortest) continue;
+    if (!still(rest)) continue;
     if (!best || rest.to - rest.from > best->to - best->from) best = rest;
     first = last - 1;
   }

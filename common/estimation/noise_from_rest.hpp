@@ -15,8 +15,10 @@ struct Rest {
   Utime from{}, to{};
 };
 
-/// The longest stretch, `shortest` seconds at least, in which neither gyro nor accelerometer moves by more than its own
-/// white noise explains. Nothing without one, or without an inertial package.
+/// The longest stretch, `shortest` seconds at least, in which no instrument moves by more than its own white noise
+/// explains: means of gyro and accelerometer stay, what tells place, depth, range or attitude goes nowhere, and what
+/// tells velocity tells none. Nothing without one, or without an inertial package: a vehicle that drifts has quiet
+/// gyros and accelerometers too.
 [[nodiscard]] std::optional<Rest> find_rest(const Recording& recording, double shortest = 4.0);
 
 /// `settings` with the noises of every instrument that gave enough samples during rest; without a rest as they were. A

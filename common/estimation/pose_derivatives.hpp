@@ -6,7 +6,7 @@
 namespace fathom::estimation {
 
 /// One of two sources of three components, with its white noise.
-struct Source {
+struct DerivativeSource {
   Series series;
   Eigen::Vector3d sigma{Eigen::Vector3d::Zero()};
   double bridged{};  ///< s between samples that a spline runs across, where that is more than a few steps
@@ -15,7 +15,7 @@ struct Source {
 
 /// Body velocity and body rates from the pose, where all samples under the window are valid.
 struct PoseDerivatives {
-  Source velocity, rates;
+  DerivativeSource velocity, rates;
 };
 
 [[nodiscard]] PoseDerivatives differentiate(const PoseSeries& pose);

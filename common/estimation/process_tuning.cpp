@@ -28,6 +28,8 @@ Recording beginning(const Recording& recording, double longest) {
   part.usbl = recording.usbl;
   part.ranges = recording.ranges;
   part.tag_pose = recording.tag_pose;
+  part.optical_flow = recording.optical_flow;
+  part.laser_range = recording.laser_range;
   const Utime origin = !part.ahrs.empty()           ? part.ahrs.front().utime
                        : !part.pose_capture.empty() ? part.pose_capture.front().utime
                                                     : Utime{};
@@ -39,6 +41,8 @@ Recording beginning(const Recording& recording, double longest) {
   cut(part.usbl, end);
   cut(part.ranges, end);
   cut(part.tag_pose, end);
+  cut(part.optical_flow, end);
+  cut(part.laser_range, end);
   return part;
 }
 

@@ -20,7 +20,7 @@ constexpr double kDoubt = 0.4;         // s: half the window in which gyro and p
 constexpr double kFewSteps = 2.5;      // between samples that a spline joins
 constexpr double kMostlyThere = 0.05;  // least share of the grid that samples fill: else a clock has leapt
 
-void measure_noise(Source& source) {
+void measure_noise(DerivativeSource& source) {
   for (int k = 0; k < 3; ++k) {
     std::vector<double> part;
     for (const Eigen::Vector3d& x : source.series.x) part.push_back(x[k]);
@@ -29,7 +29,7 @@ void measure_noise(Source& source) {
 }
 
 /// Evaluates a source on the grid.
-void sample(const Source& source, const std::vector<double>& grid, std::vector<Eigen::Vector3d>& x,
+void sample(const DerivativeSource& source, const std::vector<double>& grid, std::vector<Eigen::Vector3d>& x,
             std::vector<std::uint8_t>& ok) {
   x.assign(grid.size(), Eigen::Vector3d::Zero());
   ok.assign(grid.size(), 0);
@@ -74,7 +74,8 @@ struct Choice {
   Eigen::Vector3d share{Eigen::Vector3d::Ones()};  ///< of the sensor
 };
 
-Choice choose(const Source& sensor, const Source& derivative, const std::vector<double>& grid, Doubt doubt) {
+Choice choose(const DerivativeSource& sensor, const DerivativeSource& derivative, const std::vector<double>& grid,
+              Doubt doubt) {
   std::vector<Eigen::Vector3d> a, b;
   std::vector<std::uint8_t> a_ok, b_ok;
   sample(sensor, grid, a, a_ok);
@@ -157,14 +158,14 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
   shift(pose.t, corrections.pose_shift);
   PoseDerivatives derived = differentiate(pose);
 
-  Source gyro{.series = block_average(run.gyro, kHighestRate)};
+  DerivativeSource gyro{.series = block_average(run.gyro, kHighestRate)};
   shift(gyro.series.t, corrections.gyro_shift);
   to_body(corrections.rates_frame, corrections.rates_world, pose, gyro.series);
   const Eigen::Matrix3d gyro_matrix = corrections.gyro.matrix();
   for (Eigen::Vector3d& x : gyro.series.x) x = gyro_matrix * x + corrections.gyro.bias;
   measure_noise(gyro);
 
-  Source dvl{.series = block_average(run.dvl, kHighestRate)};
+  DerivativeSource dvl{.series = block_average(run.dvl, kHighestRate)};
   shift(dvl.series.t, corrections.dvl_shift);
   to_body(corrections.velocity_frame, corrections.velocity_world, pose, dvl.series);
   const Spline rates(gyro.exists() ? gyro.series : derived.rates.series);
@@ -211,10 +212,10 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
   for (std::size_t i = 0; i < count; ++i) trial.nu.push_back((Vector6d() << velocity.x[i], angular.x[i]).finished());
   trial.nu_sigma << velocity.sigma, angular.sigma;
 
-  Source position, vector, scalar;
+  DerivativeSource position, vector, scalar;
   for (std::size_t i = 0; i < pose.size(); ++i) {
     if (!pose.valid[i]) continue;
-    for (Source* one : {&position, &vector, &scalar}) one->series.t.push_back(pose.t[i]);
+    for (DerivativeSource* one : {&position, &vector, &scalar}) one->series.t.push_back(pose.t[i]);
     position.series.x.push_back(pose.p_WB[i]);
     vector.series.x.push_back(pose.q_WB[i].vec());
     scalar.series.x.emplace_back(pose.q_WB[i].w(), 0.0, 0.0);

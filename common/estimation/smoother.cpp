@@ -49,7 +49,8 @@ template <int N>
 typename Smoothed<N>::State Smoothed<N>::variance() const {
   // Lambda is the sum of a half and its transpose, which both give the diagonal of P Lambda P alike: blocks above the
   // diagonal need not be multiplied.
-  constexpr int kBlock = 6;
+  constexpr int kBlock = N % 6 == 0 ? 6 : 9;
+  static_assert(N % kBlock == 0);
   const Covariance& P = filtered_.P;
   State variance = P.diagonal();
   Eigen::Matrix<double, kBlock, N> half;
@@ -103,10 +104,13 @@ void Smoother<N>::back_over(const FilterRecord<N>& record, const Visit& visit) {
 }
 
 template struct FilterRecord<model::kKinematicStates>;
+template struct FilterRecord<model::kInertialStates>;
 template struct FilterRecord<model::kMostStates>;
 template class Smoothed<model::kKinematicStates>;
+template class Smoothed<model::kInertialStates>;
 template class Smoothed<model::kMostStates>;
 template class Smoother<model::kKinematicStates>;
+template class Smoother<model::kInertialStates>;
 template class Smoother<model::kMostStates>;
 
 }  // namespace fathom::estimation

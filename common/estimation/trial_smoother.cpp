@@ -33,19 +33,21 @@ std::vector<Event> events_of(const Recording& recording, const KalmanSettings& s
   add(recording.usbl);
   if (!settings.transponders.empty()) add(recording.ranges);
   if (!settings.tags.empty()) add(recording.tag_pose);
+  if (settings.floor && settings.flow) add(recording.optical_flow);
+  if (settings.floor && settings.laser) add(recording.laser_range);
   std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
     return a.utime != b.utime ? a.utime < b.utime : a.sample.index() < b.sample.index();
   });
   return events;
 }
 
-KalmanStart start_of(const std::string& name, const std::vector<Event>& events, const KalmanSettings& settings) {
-  StartFinder finder{settings};
+KalmanStart start_of(const Recording& recording, const std::vector<Event>& events, const KalmanSettings& settings) {
+  StartFinder finder{settings, tells_position(recording, settings)};
   for (const Event& event : events) {
     finder.hear(event.utime, event.sample);
     if (const auto start = finder.found()) return *start;
   }
-  throw InputError(name + ": " + (events.empty() ? "no sensor to estimate motion from" : finder.missing()));
+  throw InputError(recording.name + ": " + (events.empty() ? "no sensor to estimate motion from" : finder.missing()));
 }
 
 /// [first, last) of one time stamp.
@@ -74,8 +76,18 @@ model::KinematicVector widen(const Eigen::Matrix<double, N, 1>& x) {
 
 /// The inertial acceleration less w x v is the derivative of v in B.
 SmoothedState motion_of(Utime utime, const model::KinematicVector& x, const model::KinematicVector& variance,
-                        const Eigen::Matrix3d& reference) {
-  const StateEstimate state = state_of(utime, x, variance, reference);
+                        const Eigen::Matrix3d& reference, const KalmanSettings& settings) {
+  StateEstimate state = state_of(utime, x, variance, reference);
+  const auto widen = [&state](Eigen::Index begin, const Eigen::Vector3d& lasting) {
+    state.sigma.segment<3>(begin) =
+        (state.sigma.segment<3>(begin).cwiseAbs2() + lasting.cwiseAbs2()).cwiseSqrt().eval();
+  };
+  widen(0, settings.lasting_position);
+  widen(3, settings.lasting_attitude);
+  widen(6, settings.lasting_velocity);
+  // A package turned by a small angle is off by that angle times what it measures.
+  const Eigen::Vector3d turned = settings.lasting_attitude.cwiseAbs2();
+  widen(9, (skew(state.nu.tail<3>()).cwiseAbs2() * turned).cwiseSqrt());
   SmoothedState motion{.utime = utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .nu = state.nu};
   const Eigen::Vector3d v = state.nu.head<3>(), w = state.nu.tail<3>();
   motion.nu_dot << x.segment<3>(at::kAcceleration) - w.cross(v), x.segment<3>(at::kRateSlopes);
@@ -102,7 +114,7 @@ class Run {
       first = last;
     }
     instants_.push_back(events_.size());
-    estimator_.start(events_.empty() ? 0 : events_.front().utime, start_of(name_, events_, settings));
+    estimator_.start(events_.empty() ? 0 : events_.front().utime, start_of(recording, events_, settings));
   }
 
   void forward(SmoothedTrial* trial, const Progress& progress = {}) {
@@ -148,7 +160,7 @@ class Run {
         if (visit) visit(utimes[i], x, smoothed.covariance());
         if (trial.smoothed.empty()) trial.biases = widen<N>(x);
         trial.smoothed.push_back(
-            motion_of(utimes[i], widen<N>(x), widen<N>(smoothed.variance()), smoothed.reference()));
+            motion_of(utimes[i], widen<N>(x), widen<N>(smoothed.variance()), smoothed.reference(), settings_));
       });
       progress.done(kBackward);
     }
@@ -217,15 +229,40 @@ std::vector<InnovationStatistics> statistics_as(const Recording& recording, cons
 
 }  // namespace
 
+bool tells_position(const Recording& recording, const KalmanSettings& settings) {
+  const auto camera = [&](const std::string& name) {
+    return std::ranges::find(settings.cameras, name, &KnownCamera::name) != settings.cameras.end();
+  };
+  const auto tag = [&](int number) {
+    return std::ranges::find(settings.tags, number, &KnownTag::number) != settings.tags.end();
+  };
+  return std::ranges::any_of(recording.pose_capture, [](const auto& one) { return one.valid && one.has_position; }) ||
+         std::ranges::any_of(recording.usbl, &Usbl::valid) ||
+         std::ranges::any_of(recording.tag_pose, [&](const auto& one) { return camera(one.camera) && tag(one.tag); }) ||
+         (settings.transponders.size() >= 3 && !recording.ranges.empty());
+}
+
 std::vector<InnovationStatistics> innovations(const Recording& recording, const KalmanSettings& settings) {
-  return settings.biases ? statistics_as<model::kMostStates>(recording, settings)
-                         : statistics_as<model::kKinematicStates>(recording, settings);
+  switch (settings.states()) {
+    case model::kMostStates:
+      return statistics_as<model::kMostStates>(recording, settings);
+    case model::kInertialStates:
+      return statistics_as<model::kInertialStates>(recording, settings);
+    default:
+      return statistics_as<model::kKinematicStates>(recording, settings);
+  }
 }
 
 SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit,
                      const Progress& progress) {
-  return settings.biases ? smooth_as<model::kMostStates>(recording, settings, visit, progress)
-                         : smooth_as<model::kKinematicStates>(recording, settings, visit, progress);
+  switch (settings.states()) {
+    case model::kMostStates:
+      return smooth_as<model::kMostStates>(recording, settings, visit, progress);
+    case model::kInertialStates:
+      return smooth_as<model::kInertialStates>(recording, settings, visit, progress);
+    default:
+      return smooth_as<model::kKinematicStates>(recording, settings, visit, progress);
+  }
 }
 
 double likelihood(const Recording& recording, const KalmanSettings& settings) {

@@ -28,6 +28,9 @@ using SmoothedVisit = std::function<void(Utime, const Eigen::VectorXd& x, const 
 [[nodiscard]] SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings,
                                    const SmoothedVisit& visit = nullptr, const Progress& progress = {});
 
+/// Whether anything in the recording tells where the vehicle is, with what is known of the instruments.
+[[nodiscard]] bool tells_position(const Recording& recording, const KalmanSettings& settings);
+
 /// The filter alone: how every instrument fared.
 [[nodiscard]] std::vector<InnovationStatistics> innovations(const Recording& recording, const KalmanSettings& settings);
 

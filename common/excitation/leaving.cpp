@@ -81,4 +81,10 @@ LeavingVerdict may_leave(const Mode& mode, const ModelEstimate& model, const mod
   return verdict;
 }
 
+std::string LeavingVerdict::words() const {
+  std::string all;
+  for (const std::string& part : missing) all += (all.empty() ? "" : "; ") + part;
+  return all;
+}
+
 }  // namespace fathom::excitation

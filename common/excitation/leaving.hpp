@@ -30,9 +30,10 @@ struct LeavingSettings {
 };
 
 struct LeavingVerdict {
-  double metric{-1.0};               ///< -1: MODEL does not have it yet
-  bool certain{false};               ///< the metric is below the threshold
-  std::vector<std::string> missing;  ///< each in a few words; empty: the mode may be left
+  double metric{-1.0};                      ///< -1: MODEL does not have it yet
+  bool certain{false};                      ///< the metric is below the threshold
+  std::vector<std::string> missing;         ///< each in a few words; empty: the mode may be left
+  [[nodiscard]] std::string words() const;  ///< what is missing, in one line
 };
 
 /// Names of the parameters that belong to a mode: those of its axis, all for -1.

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "common/base/health_words.hpp"
+#include "common/base/printable.hpp"
 #include "common/excitation/needs.hpp"
 
 namespace fathom::excitation {
@@ -73,7 +74,7 @@ bool all_ok(const std::vector<PreflightLine>& lines) {
 
 std::string shown(const PreflightLine& line) {
   const std::string gap(line.name.size() < 16 ? 16 - line.name.size() : 1, ' ');
-  return (line.ok ? "ok      " : "NOT OK  ") + line.name + gap + line.text;
+  return (line.ok ? "ok      " : "NOT OK  ") + printable(line.name) + gap + printable(line.text);
 }
 
 }  // namespace fathom::excitation

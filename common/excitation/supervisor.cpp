@@ -6,17 +6,14 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/excitation/segments.hpp"
 
 namespace fathom::excitation {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;
 constexpr double kNear = 0.12;       // m from the place where a mode begins
 constexpr double kNearTurn = 0.12;   // rad
 constexpr double kSlow = 0.05;       // m/s, rad/s
 constexpr double kSayStopped = 1.0;  // s of commanding zero after a stop, should a message be lost
-constexpr double kRounding = 1e-4;   // s: stamps are whole microseconds
 
 double heading_of(const StateEstimate& state) {
   const Eigen::Vector3d ahead = state.q_WB * Eigen::Vector3d::UnitX();
@@ -25,12 +22,6 @@ double heading_of(const StateEstimate& state) {
 
 std::string words(const Needs::Trouble& trouble) {
   return trouble.process + " " + trouble.what + "; " + trouble.remedy;
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string all;
-  for (const std::string& part : parts) all += (all.empty() ? "" : "; ") + part;
-  return all;
 }
 
 }  // namespace
@@ -140,150 +131,6 @@ void Supervisor::stop(Phase phase, const std::string& reason, Then then) {
   flight_.reset();
 }
 
-// A mode begins in the middle of the room, with the axis that it excites along the room's longer side.
-Place Supervisor::place_for(const Mode& mode) const {
-  const Eigen::Vector3d room = fence_.settings().high - fence_.settings().low;
-  const double longer = room.x() >= room.y() ? 0.0 : 0.5 * kHalfTurn;
-  return {middle_, turned_towards(mode.axis == 1 ? longer + 0.5 * kHalfTurn : longer)};
-}
-
-// Either way round serves; the nearer one, but not further than half a turn of the tether.
-double Supervisor::turned_towards(double heading) const {
-  const double start = last_heading_ - turned_;
-  double target = heading - start;
-  target += kHalfTurn * std::round((turned_ - target) / kHalfTurn);
-  while (target > kHalfTurn) target -= kHalfTurn;
-  while (target < -kHalfTurn) target += kHalfTurn;
-  return target;
-}
-
-void Supervisor::enter(std::size_t mode) {
-  mode_ = mode;
-  attempt_ = 0;
-  mode_since_ = now();
-  dwell_ = 0.0;
-  verdict_ = {};
-  flight_.reset();
-  if (this->mode().axis < 0) frozen_.clear();  // all are learnt again to the end
-  begin();
-}
-
-void Supervisor::begin() {
-  phase_ = Phase::kApproach;
-  phase_since_ = now();
-  place_ = place_for(mode());
-  segment_.reset();
-  model_is_new_ = false;
-  reason_ = "goes to where mode " + mode().name + " begins";
-  const auto steps = [&](double time) { return std::max(1, static_cast<int>(std::lround(time * settings_.rate))); };
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    signals_[axis].reset();
-    if (!excites(static_cast<int>(axis))) continue;
-    const std::uint64_t seed =
-        settings_.seed * 1'000'003U + mode_ * 101U + axis * 11U + static_cast<std::uint64_t>(attempt_);
-    signals_[axis].emplace(PaperSignalSettings{.largest = settings_.largest[static_cast<Eigen::Index>(axis)],
-                                               .low_share = settings_.low_share,
-                                               .highest_frequency = settings_.highest_frequency,
-                                               .submode_steps = steps(settings_.submode_time),
-                                               .interval_steps = steps(settings_.interval_time),
-                                               .random_amplitude = settings_.random_amplitude},
-                           seed);
-  }
-}
-
-bool Supervisor::excites(int axis) const {
-  if (!vehicle_.dof[static_cast<std::size_t>(axis)] || settings_.largest[axis] <= 0.0) return false;
-  return flight_ ? flight_->segment.moves(axis) : mode().axis < 0 || mode().axis == axis;
-}
-
-void Supervisor::finish_mode(bool left, const std::string& missing) {
-  visits_.push_back({.mode = mode().name, .begun = mode_since_, .ended = now(), .left = left, .missing = missing});
-  if (left && mode().axis >= 0) {
-    for (std::string& name : parameters_of(mode(), vehicle_)) frozen_.push_back(std::move(name));
-  }
-  if (mode_ + 1 < settings_.schedule.size()) {
-    enter(mode_ + 1);
-    return;
-  }
-  std::string open;
-  for (const Visit& visit : visits_) {
-    if (!visit.left) open += (open.empty() ? "" : "; ") + visit.mode + ": " + visit.missing;
-  }
-  closing_ = open.empty() ? "all modes are done" : "done, but not settled: " + open;
-  finish(closing_);
-}
-
-// At the end it flies what it may without being asked.
-void Supervisor::finish(const std::string& reason) {
-  phase_ = Phase::kDone;
-  phase_since_ = now();
-  place_ = {state_.p_WB, turned_};
-  reason_ = reason;
-  if (!proposal_ || flights_ >= settings_.flights) return;
-  std::optional<Segment> segment = segment_named(proposal_->segment, vehicle_, settings_.largest);
-  if (!segment) return;
-  ++flights_;
-  flight_ = {std::move(*segment), proposal_->duration, proposal_->purpose, Phase::kDone};
-  take_off();
-}
-
-void Supervisor::judge(double now) {
-  if (model_ && model_is_new_) {
-    model_is_new_ = false;
-    verdict_ = may_leave(mode(), *model_, vehicle_, settings_.leaving);
-    const bool adopted = std::find(model_->effects.begin(), model_->effects.end(), suspect_) != model_->effects.end();
-    if (!verdict_.missing.empty() && !suspect_.empty() && !adopted)
-      verdict_.missing.push_back("suspected: " + suspect_);
-    if (verdict_.missing.empty() && dwell_ >= settings_.least_dwell) {
-      finish_mode(true, "");
-      return;
-    }
-  }
-  if (now - phase_since_ < settings_.most_dwell) return;
-  // Variances fall as one over time: who lacks nothing else, and will have enough within one more attempt, is given it.
-  const double share = verdict_.metric / mode().threshold;
-  const bool nearly = attempt_ == settings_.retries && verdict_.missing.size() == 1 && !verdict_.certain &&
-                      share > 0.0 && (share - 1.0) * (attempt_ + 1) <= 1.0;
-  if (attempt_ < settings_.retries || nearly) {
-    ++attempt_;
-    begin();
-  } else {
-    finish_mode(false, verdict_.missing.empty() ? "no MODEL came" : joined(verdict_.missing));
-  }
-}
-
-Vector6d Supervisor::probe(double dt) {
-  Vector6d tau = Vector6d::Zero();
-  if (flight_ && flight_->pilot) {
-    const auto [ahead, turning] = flight_->pilot->demand(now() - phase_since_, last_heading_);
-    tau[0] = ahead * settings_.largest[0];
-    tau[5] = turning * settings_.largest[5];
-    return tau;
-  }
-  if (flight_) {
-    const Segment& segment = flight_->segment;
-    return segment.at(std::fmod(now() - phase_since_, segment.duration)).cwiseProduct(settings_.largest);
-  }
-  if (settings_.optimal) {
-    if (!segment_ || now() - segment_since_ >= segment_->duration - kRounding) {
-      segment_ = designer_.next(state_, turned_, model_.value_or(ModelEstimate{}), fence_, hold_.trim());
-      segment_since_ = now();
-    }
-    return segment_->at(now() - segment_since_).cwiseProduct(settings_.largest);
-  }
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (signals_[axis]) tau[static_cast<Eigen::Index>(axis)] = signals_[axis]->step(dt);
-  }
-  return tau;
-}
-
-void Supervisor::turn(const std::array<bool, 6>& axes) {
-  if (settings_.optimal || flight_) return;  // what is designed fits, or is bent for the rest of a segment
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (axes[axis] && signals_[axis]) signals_[axis]->turn();
-  }
-}
-
 bool Supervisor::arrived() const {
   return (place_.p_WB - state_.p_WB).norm() < kNear && std::abs(place_.turned - turned_) < kNearTurn &&
          state_.nu.head<3>().norm() < kSlow && std::abs(state_.nu[5]) < kSlow;
@@ -306,7 +153,7 @@ void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
   said.duration = settings_.most_dwell;
   said.metric = verdict_.metric;
   said.threshold = armed_ ? mode().threshold : 0.0;
-  said.missing = joined(verdict_.missing);
+  said.missing = verdict_.words();
   said.bent = bent;
   said.frozen = frozen_;
   if (flight_) {
@@ -401,7 +248,7 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   for (std::size_t axis = 0; axis < 6; ++axis) held[axis] = vehicle_.dof[axis];
   Vector6d share = Vector6d::Zero();
   if (phase_ == Phase::kExcite && flight_) {
-    const bool round = flight_->one_turn && std::abs(turned_ - flight_->turned) >= 2.0 * kHalfTurn;
+    const bool round = flight_->one_turn && std::abs(turned_ - flight_->turned) >= 2.0 * std::numbers::pi;
     if (round || now() - phase_since_ >= flight_->duration - kRounding) land("is flown");
   } else if (phase_ == Phase::kExcite) {
     dwell_ += dt;

@@ -119,6 +119,8 @@ class Supervisor {
   [[nodiscard]] const Fence& fence() const { return fence_; }
 
  private:
+  static constexpr double kRounding = 1e-4;  // s: stamps are whole microseconds
+
   /// A segment that is flown by its name, whatever the schedule says.
   struct Flight {
     Segment segment;

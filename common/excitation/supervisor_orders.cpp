@@ -33,6 +33,7 @@ void Supervisor::hear(const Answer& answer) {
 Answer Supervisor::hear(const Operator& order) {
   Answer answer{.sequence = order.sequence};
   if (order.abort) {
+    if (has_state_) check_.abort(state_.utime);
     stop(Phase::kAborted, "aborted by the operator", Then::kZero);
     answer.done = true;
     answer.text = reason_;

@@ -5,6 +5,8 @@
 #include <cstdio>
 
 #include "common/base/error.hpp"
+#include "common/base/statistics.hpp"
+#include "common/identification/term_errors.hpp"
 #include "common/model/manoeuvres.hpp"
 
 namespace fathom::identification {
@@ -75,6 +77,41 @@ WrenchSignal thrusters_of(const Recording& recording, const model::Vehicle& vehi
   return signal;
 }
 
+/// One signal for each load cell, and for each thruster whose force THRUSTERS alone tells.
+std::vector<WrenchSignal> parts_of(const Recording& recording, const model::Vehicle& vehicle, bool cells, bool thrust) {
+  std::vector<WrenchSignal> parts;
+  const auto& all = vehicle.hydrodynamics->load_cells;
+  for (std::size_t i = 0; cells && i < all.size(); ++i) {
+    WrenchSignal& part = parts.emplace_back();
+    for (const Loads& one : recording.loads) {
+      const Eigen::Vector3d force = one.load[i] * all[i].axis_B;
+      Vector6d wrench;
+      wrench << force, all[i].p_BL.cross(force);
+      part.add(one.utime, wrench);
+    }
+  }
+  for (Eigen::Index i = 0; thrust && i < vehicle.allocation.cols(); ++i) {
+    WrenchSignal part;
+    for (const Thrusters& one : recording.thrusters) {
+      if (static_cast<Eigen::Index>(one.force.size()) == vehicle.allocation.cols())
+        part.add(one.utime, vehicle.allocation.col(i) * one.force[static_cast<std::size_t>(i)]);
+    }
+    if (!part.empty()) parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// Medians over the run of what SMOOTHED says of itself from `begin` on.
+Eigen::Vector3d typical_sigma(const std::vector<SmoothedState>& states, Eigen::Index begin) {
+  Eigen::Vector3d result;
+  std::vector<double> values(states.size());
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    std::ranges::transform(states, values.begin(), [&](const SmoothedState& one) { return one.sigma[begin + i]; });
+    result[i] = median(values);
+  }
+  return result;
+}
+
 double typical_step(const std::vector<SmoothedState>& states) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < states.size(); ++k)
@@ -104,6 +141,10 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
   ManoeuvreRows rows;
   rows.name = recording.name;
   rows.known_from = cells.empty() ? "THRUSTERS" : thrust.empty() ? "load cells" : "load cells and THRUSTERS";
+  const std::vector<WrenchSignal> parts = parts_of(recording, vehicle, !cells.empty(), !thrust.empty());
+  rows.cells = cells.empty() ? 0 : vehicle.hydrodynamics->load_cells.size();
+  rows.sigma_attitude = typical_sigma(states, 3);
+  rows.sigma_velocity = typical_sigma(states, 6);
   const double step = typical_step(states);
   const auto per_row = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / (rate * step))));
   rows.dt = static_cast<double>(per_row) * step;
@@ -116,6 +157,7 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
     for (int n = 0; k < states.size(); ++n) {
       const Utime end = utime_after(origin, (n + 1) * rows.dt - 0.5 * step);
       ManoeuvreRows::Row row;
+      row.parts.assign(parts.size(), Vector6d::Zero());
       int count = 0;
       const std::size_t first = k;
       Eigen::Vector4d q = Eigen::Vector4d::Zero();
@@ -127,6 +169,7 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
           if (!pulls[i].empty()) row.pulls[i] += pulls[i].at(states[k].utime);
         }
         if (!thrust.empty()) row.known += thrust.at(states[k].utime);
+        for (std::size_t i = 0; i < parts.size(); ++i) row.parts[i] += parts[i].at(states[k].utime);
         const double sign = states[k].q_WB.dot(states[first].q_WB) < 0.0 ? -1.0 : 1.0;
         q += sign * states[k].q_WB.coeffs();
       }
@@ -135,6 +178,7 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
       row.nu_dot /= count;
       row.known /= count;
       for (Vector6d& pull : row.pulls) pull /= count;
+      for (Vector6d& part : row.parts) part /= count;
       row.q_WB = Eigen::Quaterniond{Eigen::Vector4d(q.normalized())};
       stretch.push_back(row);
       if (k < states.size() && seconds_between(end, states[k].utime) > kGap * std::max(step, 0.5 * rows.dt)) break;
@@ -211,8 +255,14 @@ std::vector<AxisRegression> regress(const model::Vehicle& vehicle, std::span<con
     for (const ManoeuvreRows& run : runs) {
       grams.push_back(gram_of(run, axis, one.candidates, vehicle, settings));
       one.manoeuvres.push_back(stepwise({grams.back()}, one.candidates.names, settings.stepwise));
+      if (settings.errors) add_term_errors(vehicle, {&run, 1}, axis, one.candidates, settings, one.manoeuvres.back());
     }
-    one.together = runs.size() > 1 ? stepwise(grams, one.candidates.names, settings.stepwise) : one.manoeuvres.front();
+    if (runs.size() > 1) {
+      one.together = stepwise(grams, one.candidates.names, settings.stepwise);
+      if (settings.errors) add_term_errors(vehicle, runs, axis, one.candidates, settings, one.together);
+    } else {
+      one.together = one.manoeuvres.front();
+    }
   }
   return result;
 }

@@ -18,6 +18,9 @@ struct RegressionSettings {
   double rate{10.0};                              ///< Hz, of the rows: averages of what is recorded faster
   Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};  ///< m/s, steady velocity of the water
   double block{2.0};                              ///< s, of the blocks that tell how independent samples are
+  double cell_gain{0.03};                         ///< std of a load cell's gain: makers' and mounting's together
+  double thrust_gain{0.10};                       ///< std of a thruster's force over what its curve says
+  bool errors{true};  ///< of every term also what its scatter does not tell (term_errors.hpp)
   StepwiseSettings stepwise;
 };
 
@@ -31,11 +34,15 @@ struct ManoeuvreRows {
     Vector6d nu{Vector6d::Zero()}, nu_dot{Vector6d::Zero()};
     Vector6d known{Vector6d::Zero()};  ///< N, N m: thrusters, umbilical and chain, as measured
     std::array<Vector6d, kPulls.size()> pulls{Vector6d::Zero(), Vector6d::Zero()};  ///< what of it is theirs
+    std::vector<Vector6d> parts{};  ///< and what each load cell and thruster says, whose gains err apart
   };
   std::string name;
-  double dt{};                              ///< s
-  std::vector<std::vector<Row>> stretches;  ///< of equal steps
-  std::string known_from;                   ///< "load cells", "load cells and THRUSTERS", "THRUSTERS"
+  double dt{};                                              ///< s
+  std::vector<std::vector<Row>> stretches;                  ///< of equal steps
+  std::string known_from;                                   ///< "load cells", "load cells and THRUSTERS", "THRUSTERS"
+  std::size_t cells{};                                      ///< so many of the parts are load cells, the rest thrusters
+  Eigen::Vector3d sigma_attitude{Eigen::Vector3d::Zero()};  ///< rad, typical of SMOOTHED
+  Eigen::Vector3d sigma_velocity{Eigen::Vector3d::Zero()};  ///< m/s
 };
 
 /// InputError in one line when the log holds no SMOOTHED, or no force at all, or load cells that are not the file's.

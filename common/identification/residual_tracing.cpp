@@ -42,7 +42,9 @@ bool has(const AxisRegression& axis, int column) {
 }  // namespace
 
 std::vector<TracedPull> trace_pulls(const model::Vehicle& vehicle, std::span<const ManoeuvreRows> runs,
-                                    const RegressionSettings& settings) {
+                                    const RegressionSettings& asked) {
+  RegressionSettings settings = asked;
+  settings.errors = false;  // what is selected and what is left is asked, not how sure it is
   const std::vector<AxisRegression> known = regress(vehicle, runs, settings);
   std::vector<TracedPull> traced;
   for (std::size_t pull = 0; pull < kPulls.size(); ++pull) {

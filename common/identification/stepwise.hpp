@@ -3,6 +3,7 @@
 // of the trial, so that the test knows how many independent samples there are.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,8 +30,14 @@ struct SelectedTerm {
   double sigma{};  ///< standard error, widened where blocks scatter more than white residuals would
   double f{};      ///< of leaving it out
   double p{};      ///< probability of such an F by chance
+  /// What is not in the residual's scatter (term_errors.hpp); zero where nobody has looked.
+  double unseen{};                 ///< instruments that are off all the time, and terms that act and were not selected
+  std::vector<int> equivalents{};  ///< columns that would explain as much in its place
+  [[nodiscard]] double total() const { return std::hypot(sigma, unseen); }
+  /// Whether the value is more than its errors together, at 95 %: else an instrument or another term may be all of it.
+  [[nodiscard]] bool stands() const { return std::abs(value) > 1.96 * total(); }
   /// Standard error as Pereira and Duncan print it.
-  [[nodiscard]] double percent() const { return value != 0.0 ? 100.0 * sigma / (value < 0.0 ? -value : value) : 0.0; }
+  [[nodiscard]] double percent() const { return value != 0.0 ? 100.0 * total() / std::abs(value) : 0.0; }
 };
 
 struct RefusedColumn {

@@ -73,48 +73,6 @@ double price(const likelihood::FeatureGroup& group, std::size_t of, const Thresh
          (group.searched ? thresholds.searched_price : 0.0);
 }
 
-GroupEvidence evidence_of(const Screen& screen, const std::vector<std::size_t>& picked, std::vector<double> sigma) {
-  std::vector<Range> ranges;
-  for (const std::size_t k : picked) ranges.push_back(screen.ranges[k]);
-  return group_evidence(screen.gram, screen.gradient, ranges, std::move(sigma));
-}
-
-/// Nats that are lost without the k-th of the groups picked.
-double worth_of(const Screen& screen, const std::vector<std::size_t>& picked, const GroupEvidence& evidence,
-                std::size_t k) {
-  std::vector<std::size_t> others = picked;
-  std::vector<double> sigma = evidence.sigma;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-  sigma.erase(sigma.begin() + static_cast<std::ptrdiff_t>(k));
-  return evidence.log_bayes_factor - (others.empty() ? 0.0 : evidence_of(screen, others, sigma).log_bayes_factor);
-}
-
-/// What later groups have made superfluous goes; the others stand in the order of their worth beside each other.
-template <typename Price>
-void settle(const Screen& screen, std::vector<std::size_t>& picked, GroupEvidence& evidence, const Price& price,
-            double least) {
-  while (picked.size() > 1) {
-    std::vector<std::pair<double, std::size_t>> worth;
-    for (std::size_t k = 0; k < picked.size(); ++k)
-      worth.emplace_back(worth_of(screen, picked, evidence, k) - price(picked[k]), k);
-    std::ranges::sort(worth, std::greater{});
-    std::vector<std::size_t> order;
-    std::vector<double> sigma;
-    for (const auto& [nats, k] : worth) {
-      order.push_back(picked[k]);
-      sigma.push_back(evidence.sigma[k]);
-    }
-    const bool superfluous = worth.back().first < least;
-    if (superfluous) {
-      order.pop_back();
-      sigma.pop_back();
-    }
-    picked = std::move(order);
-    evidence = evidence_of(screen, picked, sigma);
-    if (!superfluous) return;
-  }
-}
-
 /// The hypothesis with these groups of the library as its free force.
 likelihood::FreeForce chosen(const likelihood::FreeForce& library, const Screen& screen,
                              const std::vector<std::size_t>& picked, const GroupEvidence& evidence) {
@@ -245,17 +203,11 @@ FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& s
       of_best = std::move(with);
     }
     if (taken == shortlist.size()) break;
+    const likelihood::FeatureGroup& group = library.groups[whole.groups[taken]];
+    found.groups.push_back({group.kind, group.axis, best});
+    priced += price(group, all, thresholds);
     picked.push_back(taken);
     evidence = std::move(of_best);
-  }
-  settle(
-      whole, picked, evidence, [&](std::size_t k) { return price(library.groups[whole.groups[k]], all, thresholds); },
-      thresholds.group_gain);
-  for (std::size_t k = 0; k < picked.size(); ++k) {
-    const likelihood::FeatureGroup& group = library.groups[whole.groups[picked[k]]];
-    found.groups.push_back(
-        {group.kind, group.axis, worth_of(whole, picked, evidence, k) - price(group, all, thresholds)});
-    priced += price(group, all, thresholds);
   }
   // Where nothing stands out, the best is fitted all the same: the fitted random force may have swallowed it.
   if (picked.empty()) {

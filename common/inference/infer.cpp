@@ -72,8 +72,12 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   }
 
   const likelihood::Fit& fit = found.best.fit;
+  // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
+  const bool beside =
+      found.free_force && found.free_force->fit.finite && found.free_force->log_odds >= thresholds.free_force_odds;
+  const likelihood::Noise& noise = beside ? found.free_force->fit.noise : fit.noise;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
-    const double share = explained(problem, fit.noise[axis], axis);
+    const double share = explained(problem, noise[axis], axis);
     if (share < thresholds.following)
       reasons.push_back({Cause::kNotFollowing, share, thresholds.following,
                          model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});

@@ -1,87 +1,18 @@
-// A free force: weights times functions of the filter's own state and of what was recorded. Weights are numbers of the
-// fit with one Gaussian prior per group, so that a learned force is part of a model like any effect.
+// The free force of common/model as the likelihood calls it.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "common/base/spatial.hpp"
-#include "common/model/motion.hpp"
+#include "common/model/learned/features.hpp"
 
 namespace fathom::likelihood {
 
-/// Time constants of the low passes that features may run over, s.
-constexpr std::array kThrustMemories{0.05, 0.15, 0.4, 1.2};
-constexpr std::array kVelocityMemories{0.4, 1.5, 4.0};
-
-/// What features read at one instant.
-struct FeatureState {
-  double t{};  ///< s
-  Eigen::Vector3d p_WB{Eigen::Vector3d::Zero()};
-  Eigen::Matrix3d R_WB{Eigen::Matrix3d::Identity()};
-  double heading_cosine{1.0}, heading_sine{0.0};
-  Vector6d nu{Vector6d::Zero()};
-  Vector6d tau{Vector6d::Zero()};  ///< wrench of the actuators as they reach the water
-  model::ActuatorForces force{};   ///< N
-  std::array<Vector6d, kThrustMemories.size()> slow_tau{};
-  std::array<Vector6d, kVelocityMemories.size()> slow_nu{};
-};
-
-enum class Quantity : std::uint8_t {
-  kVelocity,  ///< of axis `index`
-  kSpeed,     ///< its size
-  kWrench,    ///< of axis `index`
-  kWrenchSize,
-  kThruster,  ///< force of actuator `index`
-  kThrusterSize,
-  kSlowWrench,  ///< of axis `index` through low pass `bank`
-  kSlowVelocity,
-  kDepthBump,      ///< Gaussian about a, width b
-  kPlanBump,       ///< about (a, b), width c
-  kHeadingCosine,  ///< of `index` times the heading
-  kHeadingSine,
-  kAfter,       ///< smooth step at a, over b seconds
-  kToneCosine,  ///< of a rad/s
-  kToneSine
-};
-
-struct Factor {
-  Quantity quantity{};
-  int index{}, bank{};
-  double a{}, b{1.0}, c{1.0};
-};
-
-/// Axes of a feature: X..N of the body, then north, east and down of the world.
-constexpr int kWorldAxis = 6;
-
-struct Feature {
-  int axis{};
-  int count{};  ///< of factors
-  std::array<Factor, 3> factors{};
-  double scale{1.0};
-  /// Scaled value, N or N m.
-  [[nodiscard]] double value(const FeatureState& state) const;
-  [[nodiscard]] bool moves_with_velocity() const;
-  void add(const FeatureState& state, double weight, Vector6d& wrench) const;
-};
-
-struct FeatureGroup {
-  std::string kind;  ///< in words: "depth", "thrust a moment ago"
-  int axis{};
-  int first{}, count{};  ///< of the features
-  double sigma{0.05};    ///< of its weights
-  bool searched{false};  ///< its moment or frequency was sought in the data
-};
-
-struct FreeForce {
-  std::vector<Feature> features;
-  std::vector<FeatureGroup> groups;
-  std::vector<double> weights;
-  [[nodiscard]] bool empty() const { return features.empty(); }
-  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;
-};
+using model::Factor;
+using model::Feature;
+using model::FeatureGroup;
+using model::FeatureState;
+using model::FreeForce;
+using model::kThrustMemories;
+using model::kVelocityMemories;
+using model::kWorldAxis;
+using model::Quantity;
 
 }  // namespace fathom::likelihood

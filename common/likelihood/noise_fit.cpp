@@ -17,7 +17,7 @@ using Information = Eigen::Matrix<double, kNoiseNumbers, kNoiseNumbers>;
 
 constexpr double kStep = 1e-3;                                // of a logarithm, for differences
 constexpr double kLongest = 1.5;                              // of a logarithm, in one step
-constexpr double kEnough = 0.05;                              // nats: what one iteration must gain
+constexpr double kEnough = 0.02;                              // nats: what one iteration must gain
 constexpr double kMemory = 1.0, kFloor = 0.05, kMost = 25.0;  // FollowedScale's
 constexpr int kTogether = 8;  // factors of one logarithm: variances of 1e-30 do not yet underflow
 
@@ -191,7 +191,7 @@ NoiseFit fit_noise(std::span<const std::vector<ReducedBlock>* const> runs, const
       gradient[i] = (here.log_likelihood[j + 1] - here.log_likelihood[0]) / kStep - weight * (at[j] - prior.mean[j]);
       information(i, i) += weight;
     }
-    if (0.5 * gradient.dot(information.ldlt().solve(gradient)) < kEnough) break;
+    if (0.5 * gradient.dot(information.ldlt().solve(gradient)) < 0.1 * kEnough) break;
     // Trial steps, each with its own damping, all in one pass.
     LaneLogs trials;
     for (int l = 0; l < kLanes; ++l) {

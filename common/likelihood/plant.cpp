@@ -89,7 +89,10 @@ void Plant::at_substep(std::size_t interval, int substep) {
   set(here, here.t + (substep + 0.5 - 0.5 * run_.substeps()) * run_.h());
   force_ = forces_.col(static_cast<Eigen::Index>(interval) * run_.substeps() + substep);
   motion_.force = force_;
-  if (free_.empty()) return;
+  if (!free_.empty()) show_features();
+}
+
+void Plant::show_features() {
   features_.t = motion_.t;
   features_.p_WB = motion_.p_WB;
   features_.R_WB = motion_.R_WB;
@@ -98,7 +101,7 @@ void Plant::at_substep(std::size_t interval, int substep) {
   features_.heading_sine = across > 0.0 ? motion_.R_WB(1, 0) / across : 0.0;
   features_.force = force_;
   features_.tau = model_.allocation * force_;
-  if (!free_moves_) free_still_ = free_.wrench(features_);
+  if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);
 }
 
 void Plant::at_middle(std::size_t block) {
@@ -109,15 +112,7 @@ void Plant::at_middle(std::size_t block) {
   set(at, middle);
   force_ = mean_.col(static_cast<Eigen::Index>(block));
   motion_.force = force_;
-  features_.t = middle;
-  features_.p_WB = motion_.p_WB;
-  features_.R_WB = motion_.R_WB;
-  const double across = std::hypot(motion_.R_WB(0, 0), motion_.R_WB(1, 0));
-  features_.heading_cosine = across > 0.0 ? motion_.R_WB(0, 0) / across : 1.0;
-  features_.heading_sine = across > 0.0 ? motion_.R_WB(1, 0) / across : 0.0;
-  features_.force = force_;
-  features_.tau = model_.allocation * force_;
-  if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);
+  show_features();
 }
 
 void Plant::feel() {

@@ -53,6 +53,8 @@ class Plant {
 
  private:
   void set(const Interval& interval, double t);
+  /// What the free force and the learned features are functions of, of the moment that was set.
+  void show_features();
   [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
   void feel();
 

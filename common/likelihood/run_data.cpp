@@ -150,4 +150,11 @@ RunData::RunData(const Trial& trial, const model::Vehicle& vehicle, const RunSet
   }
 }
 
+void RunData::leave_out(double from, double to) {
+  for (Block& block : blocks_) {
+    const double end = trial_->t[block.last];
+    if (end >= from && end < to) block.scored = false;
+  }
+}
+
 }  // namespace fathom::likelihood

@@ -64,6 +64,8 @@ class RunData {
   [[nodiscard]] double last_time() const { return trial_->t.back(); }
   /// Samples that take part, per axis and sample: neither a spike, nor held from the sample before, nor a guess.
   [[nodiscard]] bool used(std::size_t sample, std::size_t axis) const { return used_[sample][axis] != 0; }
+  /// Blocks that end within [from, to) s are filtered and not scored: no number is fitted to them.
+  void leave_out(double from, double to);
   [[nodiscard]] std::size_t spikes() const { return spikes_; }
   [[nodiscard]] std::size_t held() const { return held_; }
 

@@ -1,7 +1,9 @@
 #include "common/model/manoeuvres.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "common/base/error.hpp"
 #include "common/model/derivative_motion.hpp"
@@ -9,6 +11,9 @@
 namespace fathom::model {
 namespace {
 
+constexpr double kHanging = 0.05;    // m/s and rad/s, together: still on its way to rest after that long
+constexpr double kDamping = 1.0;     // 1/s
+constexpr double kRunaway = 10.0;    // m/s and rad/s: ten times what such a vehicle can do
 constexpr double kStep = 0.01;       // s
 constexpr double kSettling = 400.0;  // s in which a vehicle comes to rest on its chain
 
@@ -81,14 +86,85 @@ HangingRest hanging_rest(const Vehicle& vehicle) {
   require_derivatives(vehicle);
   State state;
   state.p.z() = vehicle.hydrodynamics->chain ? vehicle.hydrodynamics->chain->seabed - 1.0 : 5.0;
-  for (double t = 0.0; t < kSettling; t += kStep) step(vehicle, state, Vector6d::Zero(), Eigen::Vector3d::Zero());
+  const State begin = state;
+  const auto moves = [&] { return !state.nu.allFinite() || state.nu.norm() > kHanging; };
+  for (double t = 0.0; t < kSettling && state.nu.allFinite(); t += kStep)
+    step(vehicle, state, Vector6d::Zero(), Eigen::Vector3d::Zero());
+  if (moves()) {
+    // Products of velocities vanish at rest: where it is does not depend on derivatives, and these do not lead there.
+    Vehicle damped = vehicle;
+    damped.hydrodynamics->coefficients.clear();
+    state = begin;
+    for (double t = 0.0; t < kSettling; t += kStep) {
+      step(damped, state, Vector6d::Zero(), Eigen::Vector3d::Zero());
+      state.nu *= 1.0 - kDamping * kStep;
+    }
+  }
   const double yaw = euler_from_rotation(state.q.toRotationMatrix()).z();
   return {state.p.z(), Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * state.q};
 }
 
+std::string Divergence::text() const {
+  constexpr std::array kVelocity{"u", "v", "w", "p", "q", "r"};
+  const bool turn = axis >= 3;
+  char line[160];
+  const int n = std::snprintf(line, sizeof line, "diverges at %.1f s along %s (%.3g %s)", t,
+                              kVelocity[static_cast<std::size_t>(axis)], velocity, turn ? "rad/s" : "m/s");
+  if (!term.empty() && n > 0)
+    std::snprintf(line + n, sizeof line - static_cast<std::size_t>(n), ", driven by %s with %.3g %s", term.c_str(),
+                  force, term[0] >= 'K' && term[0] <= 'N' ? "N m" : "N");
+  return line;
+}
+
+namespace {
+
+/// What each derivative has done to a motion that grows: its work since the motion was twice what such a vehicle can
+/// do.
+class Growth {
+ public:
+  explicit Growth(const Vehicle& vehicle) : vehicle_{vehicle}, work_(vehicle.hydrodynamics->coefficients.size(), 0.0) {}
+
+  void see(const Vector6d& nu) {
+    if (!(nu.cwiseAbs().maxCoeff() > kGrowing)) return;
+    for (std::size_t i = 0; i < work_.size(); ++i)
+      work_[i] += kStep * force(i, nu) * nu[vehicle_.hydrodynamics->coefficients[i].term->axis];
+  }
+  /// The fastest axis, and of the derivatives along it, else of all, the one that has put most into the motion.
+  [[nodiscard]] Divergence found(double t, const Vector6d& nu) const {
+    Divergence result{.t = t};
+    nu.cwiseAbs().maxCoeff(&result.axis);
+    result.velocity = nu[result.axis];
+    const auto& all = vehicle_.hydrodynamics->coefficients;
+    std::optional<std::size_t> most;
+    for (const bool any : {false, true}) {
+      for (std::size_t i = 0; i < work_.size() && !(any && most && all[*most].term->axis == result.axis); ++i) {
+        if ((any || all[i].term->axis == result.axis) && work_[i] > (most ? work_[*most] : 0.0)) most = i;
+      }
+    }
+    if (!most) return result;
+    result.term = all[*most].term->name;
+    result.force = force(*most, nu);
+    return result;
+  }
+
+ private:
+  static constexpr double kGrowing = 2.0;  // m/s and rad/s
+  [[nodiscard]] double force(std::size_t i, const Vector6d& nu) const {
+    const Hydrodynamics& h = *vehicle_.hydrodynamics;
+    const ManoeuvringCoefficient& one = h.coefficients[i];
+    return one.value * manoeuvring_scale(*one.term, h.length, vehicle_.water_density) * one.term->value(nu);
+  }
+
+  const Vehicle& vehicle_;
+  std::vector<double> work_;
+};
+
+}  // namespace
+
 std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre, double dt,
-                              const Disturbance& disturbance) {
+                              const Disturbance& disturbance, std::optional<Divergence>* diverged) {
   const HangingRest rest = hanging_rest(vehicle);
+  if (!std::isfinite(rest.depth)) throw InputError(vehicle.name + ": with these derivatives it does not come to rest");
   if (vehicle.thrusters.size() != 2) throw InputError(vehicle.name + ": these manoeuvres are flown with two thrusters");
   State state;
   state.q = Eigen::AngleAxisd(manoeuvre.heading, Eigen::Vector3d::UnitZ()) * rest.q_WB;
@@ -98,6 +174,7 @@ std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre
   const auto every = static_cast<long>(std::lround(dt / kStep));
   const auto steps = static_cast<long>(std::lround(manoeuvre.duration / kStep));
   ManoeuvrePilot pilot{manoeuvre};
+  Growth growth{vehicle};
   double yaw = manoeuvre.heading;
   for (long k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) * kStep;
@@ -119,8 +196,13 @@ std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre
     }
     step(vehicle, state, tau, extra);
     yaw = euler_from_rotation(state.q.toRotationMatrix()).z();
-    if (!state.nu.allFinite() || state.nu.norm() > 50.0) {
-      throw InputError(vehicle.name + ": with these derivatives the motion diverges");
+    growth.see(state.nu);
+    // Seen while the numbers still mean something: what runs away is past this within a second.
+    if (!state.nu.allFinite() || state.nu.cwiseAbs().maxCoeff() > kRunaway) {
+      const Divergence found = growth.found(t, state.nu);
+      if (diverged == nullptr) throw InputError(vehicle.name + ": with these derivatives the motion " + found.text());
+      *diverged = found;
+      break;
     }
   }
   return flight;

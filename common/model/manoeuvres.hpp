@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,9 +75,22 @@ struct FlightMoment {
 /// Additional force [N in W] at the umbilical's attachment at time t.
 using Disturbance = std::function<Eigen::Vector3d(double t)>;
 
-/// Moments `dt` apart. InputError when the vehicle file has no hydrodynamics or not two thrusters.
+/// A motion that runs away: no vehicle of this size is so fast.
+struct Divergence {
+  double t{};         ///< s
+  int axis{};         ///< 0..5 = u v w p q r, the fastest
+  double velocity{};  ///< m/s or rad/s along it
+  std::string term;   ///< the derivative that has put most into it; empty: none has
+  double force{};     ///< N or N m of that term then
+  /// "diverges at 23.4 s along v (6.1 m/s), driven by Y_vv (420 N)".
+  [[nodiscard]] std::string text() const;
+};
+
+/// Moments `dt` apart. InputError when the vehicle file has no hydrodynamics or not two thrusters. A motion that
+/// diverges is flown until then where `diverged` takes the reason, else InputError with it.
 [[nodiscard]] std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre, double dt,
-                                            const Disturbance& disturbance = nullptr);
+                                            const Disturbance& disturbance = nullptr,
+                                            std::optional<Divergence>* diverged = nullptr);
 
 /// What is known of the motion without derivatives: the wrench that hydrodynamics must have given, b of A x = b
 /// (Pereira and Duncan, eq. 1): M nu_dot + C_RB nu - weight and buoyancy - known.

@@ -14,7 +14,7 @@ namespace {
 constexpr double kAbsurdDerivative = 1e7;  // (m/s) per kg and the like, all together
 constexpr double kDifference = 1e-5;       // m, rad, m/s: truncation and rounding both below 1e-5 of an entry
 
-constexpr double kSteepest = 1e-3;  // cos^2 of the pitch beyond which the heading means nothing
+constexpr double kSteepestSquare = 1e-3;  // cos^2 of the pitch beyond which the heading means nothing
 
 Load total_load(const Model& model, const Motion& motion) {
   Load load;
@@ -241,7 +241,7 @@ void Sensitivity::advance(Rollout& rollout, const StepMiddle& at, double h) {
   if (!rollout.tilt_measured() && !rollout.heading_measured()) return;
   const Eigen::Vector3d down_B = R_WB.row(2).transpose();
   const Eigen::Vector3d across{0.0, down_B.y(), down_B.z()};
-  const Eigen::RowVector3d turn = across.transpose() / std::max(across.squaredNorm(), kSteepest);
+  const Eigen::RowVector3d turn = across.transpose() / std::max(across.squaredNorm(), kSteepestSquare);
   auto rotation = state_.middleRows<3>(3);
   if (rollout.tilt_measured() && rollout.heading_measured()) {
     rotation.setZero();

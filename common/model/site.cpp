@@ -105,8 +105,7 @@ void drop_doubtful(Site& site) {
   });
 }
 
-Site read(const std::string& path, bool pictures_alone) {
-  const Config config = Config::load(path);
+Site read(const Config& config, bool pictures_alone) {
   Site site;
   site.name = config.text("site");
   if (!pictures_alone || config.has("water")) read_water(config, site);
@@ -143,9 +142,11 @@ Site read(const std::string& path, bool pictures_alone) {
 
 }  // namespace
 
-Site Site::load(const std::string& path) { return read(path, false); }
+Site Site::load(const std::string& path) { return from(Config::load(path)); }
 
-Site Site::load_for_pictures(const std::string& path) { return read(path, true); }
+Site Site::from(const Config& config) { return read(config, false); }
+
+Site Site::load_for_pictures(const std::string& path) { return read(Config::load(path), true); }
 
 const Tag* Site::tag(int number) const {
   const auto found = std::ranges::find(tags, number, &Tag::number);

@@ -12,6 +12,10 @@
 
 #include "common/model/lens.hpp"
 
+namespace fathom {
+class Config;
+}
+
 namespace fathom::model {
 
 /// What is printed on a tag: numbers are those of a family, as the AprilTag library names it.
@@ -75,6 +79,8 @@ struct Site {
 
   /// InputError with file and line when anything is missing, unknown, or in a wrong unit.
   [[nodiscard]] static Site load(const std::string& path);
+  /// The same of a file that has been read already.
+  [[nodiscard]] static Site from(const Config& config);
   /// The same for recorded pictures alone: water and declination may be left out,
   /// and what is printed on two tags costs these two, not the site.
   [[nodiscard]] static Site load_for_pictures(const std::string& path);

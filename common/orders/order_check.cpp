@@ -9,6 +9,7 @@ void OrderCheck::begin(std::int64_t challenge, std::int64_t accepted) {
   challenge_ = challenge;
   accepted_ = accepted;
   last_.reset();
+  aborted_.reset();
 }
 
 std::string_view OrderCheck::objection(const Operator& order, Utime now) const {
@@ -18,6 +19,8 @@ std::string_view OrderCheck::objection(const Operator& order, Utime now) const {
   if (order.sequence <= accepted_) return "heard before";
   if (order.sequence > accepted_ + kAhead) return "its number does not follow the last one";
   if (std::abs(seconds_between(order.utime, now)) > age_) return "not of this time: a replay, or late";
+  const bool clock_went_back = aborted_ && now < *aborted_;  // then nothing is known of before and after
+  if (aborted_ && !clock_went_back && order.utime <= *aborted_) return "given before the abort; give it again";
   return {};
 }
 

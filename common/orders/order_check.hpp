@@ -1,5 +1,5 @@
-// Whether an order may be obeyed: signed, to this life of the thruster driver, not heard before, and of now. The
-// thruster driver and the supervisor judge by the same rules, each for itself.
+// Whether an order may be obeyed: signed, to this life of the thruster driver, not heard before, of now, and given
+// after the last abort. The thruster driver and the supervisor judge by the same rules, each for itself.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +28,9 @@ class OrderCheck {
     accepted_ = order.sequence;
     last_ = order.utime;
   }
+  /// An order that was given before an abort, and comes after it, is not meant any more: it was on its way, or is said
+  /// again, or somebody kept it back.
+  void abort(Utime now) { aborted_ = now; }
   /// The order that was accepted last has come once more, as a console sends it where answers are lost.
   [[nodiscard]] bool again(const Operator& order) const {
     return order.authentic && last_ && order.challenge == challenge_ && order.sequence == accepted_ &&
@@ -41,7 +44,8 @@ class OrderCheck {
   double age_;
   std::int64_t challenge_{};  // 0: no gate was heard
   std::int64_t accepted_{};
-  std::optional<Utime> last_{};  // time of the order that was accepted last
+  std::optional<Utime> last_{};     // time of the order that was accepted last
+  std::optional<Utime> aborted_{};  // when an abort was heard last
 };
 
 }  // namespace fathom::orders

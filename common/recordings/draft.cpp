@@ -7,16 +7,25 @@
 #include <filesystem>
 
 #include "common/recordings/usual_topics.hpp"
+#include "common/tables/map_writer.hpp"
 
 namespace fathom::recordings {
 namespace {
 
 constexpr std::size_t kMostFields = 40;  // named of a topic
+constexpr std::size_t kMostWords = 60;   // letters of a topic's text
 
 std::string formatted(const char* format, double value) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), format, value);
   return text.data();
+}
+
+/// What a file calls something, as part of a line.
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' '; }, ' ');
+  return text;
 }
 
 struct Candidate {
@@ -66,8 +75,8 @@ void write(std::string& text, const Entry& entry, bool list, const std::string& 
 
 std::string draft_map(const Content& content) {
   const std::vector<Candidate> all = candidates(content);
-  std::string text =
-      "source: " + quoted(std::filesystem::path(content.path()).filename().string()) + "\nlicence: not stated\n";
+  std::string text = "source: " + tables::written_name(std::filesystem::path(content.path()).filename().string()) +
+                     "\nlicence: not stated\n";
   bool any = false;
   for (const std::vector<Quantity>& quantities :
        std::vector<std::vector<Quantity>>{{Quantity::kPose},
@@ -125,10 +134,11 @@ std::string description(const Content& content) {
     text +=
         ", " + std::to_string(collected.recordings()) + " recordings, one behind the other (their clocks start anew)";
   text += "\n";
-  for (const std::string& remark : remarks(content)) text += "#   " + remark + "\n";
+  for (const std::string& remark : remarks(content)) text += "#   " + one_line(remark) + "\n";
   text += "#\n# topic (type): messages, rate, longest gap; fields\n";
   for (const TopicAccount& topic : collected.topics()) {
-    text += "# " + topic.topic.name + (topic.topic.type == topic.topic.name ? "" : " (" + topic.topic.type + ")") +
+    text += "# " +
+            one_line(topic.topic.name + (topic.topic.type == topic.topic.name ? "" : " (" + topic.topic.type + ")")) +
             ": " + std::to_string(topic.messages);
     if (topic.untimed > 0) text += " (" + std::to_string(topic.untimed) + " more without a time)";
     if (const double rate = topic.rate(); rate > 0.0) text += ", " + formatted("%.3g Hz", rate);
@@ -136,15 +146,10 @@ std::string description(const Content& content) {
     std::size_t named = 0;
     for (const Field& field : topic.topic.fields) {
       if (++named > kMostFields) break;
-      text += (named == 1 ? "; " : ", ") + field.name + (field.unit.empty() ? "" : " [" + field.unit + "]");
+      text += (named == 1 ? "; " : ", ") + one_line(field.name) + (field.unit.empty() ? "" : " [" + field.unit + "]");
     }
     if (named > kMostFields) text += ", and " + std::to_string(topic.topic.fields.size() - kMostFields) + " more";
-    if (!topic.words.empty()) {
-      std::string words = topic.words.substr(0, 60);
-      std::ranges::replace_if(
-          words, [](unsigned char c) { return c < ' '; }, ' ');
-      text += "; " + words;
-    }
+    if (!topic.words.empty()) text += "; " + one_line(topic.words.substr(0, kMostWords));
     text += "\n";
   }
   text += "#\n";

@@ -31,6 +31,9 @@ void append(Recording& to, Recording&& from) {
   append(to.depth, std::move(from.depth));
   append(to.thrusters, std::move(from.thrusters));
   append(to.battery, std::move(from.battery));
+  append(to.usbl, std::move(from.usbl));
+  append(to.ranges, std::move(from.ranges));
+  append(to.loads, std::move(from.loads));
 }
 
 std::string topics_of(const Content& content) {

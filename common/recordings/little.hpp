@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
 
 namespace fathom::recordings {
@@ -25,6 +27,15 @@ template <class T>
   std::reverse_copy(bytes.begin() + static_cast<std::ptrdiff_t>(at),
                     bytes.begin() + static_cast<std::ptrdiff_t>(at + sizeof(T)), turned.begin());
   return little<T>(turned);
+}
+
+/// A float of 16 bits (IEEE 754 binary16).
+[[nodiscard]] inline double half(std::uint16_t bits) {
+  const int exponent = bits >> 10U & 0x1F;
+  const double fraction = bits & 0x3FFU;
+  const double sign = (bits & 0x8000U) != 0 ? -1.0 : 1.0;
+  if (exponent == 31) return fraction == 0.0 ? sign * std::numeric_limits<double>::infinity() : std::nan("");
+  return sign * (exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024.0 + fraction, exponent - 25));
 }
 
 }  // namespace fathom::recordings

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "common/tables/map_writer.hpp"
+
 namespace fathom::recordings {
 namespace {
 
@@ -31,10 +33,12 @@ class Columns {
   [[nodiscard]] std::string list(const Names& names) const {
     std::string text = "[";
     for (const std::string& name : names)
-      text += (text.size() > 1 ? ", " : "") + quoted(topic_.topic.name + "." + name);
+      text += (text.size() > 1 ? ", " : "") + tables::written_name(topic_.topic.name + "." + name);
     return text + "]";
   }
-  [[nodiscard]] std::string one(const std::string& name) const { return quoted(topic_.topic.name + "." + name); }
+  [[nodiscard]] std::string one(const std::string& name) const {
+    return tables::written_name(topic_.topic.name + "." + name);
+  }
   [[nodiscard]] const FieldAccount* find(const std::string& name) const {
     for (std::size_t i = 0; i < topic_.topic.fields.size(); ++i) {
       if (topic_.topic.fields[i].name == name) return &topic_.fields[i];
@@ -327,16 +331,6 @@ void ros_topics(const TopicAccount& topic, const Columns& c, Out& out) {
 }
 
 }  // namespace
-
-std::string quoted(const std::string& column) {
-  const bool plain = !column.empty() && std::ranges::all_of(column, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '/';
-  });
-  if (plain) return column;
-  std::string text = "'";
-  for (const char c : column) text += c == '\'' ? std::string{"''"} : std::string{c};
-  return text + "'";
-}
 
 std::vector<Entry> entries_of(const TopicAccount& topic) {
   std::vector<Entry> out;

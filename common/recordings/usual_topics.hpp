@@ -27,7 +27,4 @@ struct Entry {
 /// Entries that a topic offers; none for a topic that is not known.
 [[nodiscard]] std::vector<Entry> entries_of(const TopicAccount& topic);
 
-/// A column's name as it stands in a map.
-[[nodiscard]] std::string quoted(const std::string& column);
-
 }  // namespace fathom::recordings

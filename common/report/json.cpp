@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/version.hpp"
+#include "common/report/correction.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -205,6 +206,7 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given) {
     file["paragraph"] = result.paragraph;
   }
   file["effects"] = effects(result.effects);
+  if (result.correction && result.correction->asked) file["correction"] = correction_json(*result.correction);
   file["candidates"] = candidates(result.candidates, given);
   file["not_measured"] = not_measured(result.not_measured);
   file["error"]["before"] = error(result.error_before);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/report/correction.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/style.hpp"
@@ -85,7 +86,8 @@ std::string verdict_section(const DiagnosisReport& report) {
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" +
                      lines(result.paragraph) + "<div class=\"tiles\">";
-  if (std::isfinite(result.improvement.value) && std::ranges::none_of(result.effects, &EffectFound::accepted)) {
+  if (std::isfinite(result.improvement.value) && std::ranges::none_of(result.effects, &EffectFound::accepted) &&
+      !(result.correction && result.correction->adopted)) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {
     html += tile(percent(-result.improvement.value),
@@ -115,6 +117,7 @@ std::string to_html(const DiagnosisReport& report, const std::string& gnuplot) {
       escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
   page += verdict_section(report);
   page += kKey;
+  page += correction_section(result);
   page += error_section(result, album);
   page += motion_section(report, album);
   page += sensor_section(report);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/report/correction.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -164,6 +165,10 @@ std::string to_table(const DiagnosisResult& result) {
   out.paragraph(result.paragraph);
   errors(out, result);
   accepted(out, result);
+  if (const std::string words = correction_words(result); !words.empty()) {
+    out.title("Correction: no cause");
+    out.paragraph(words);
+  }
   refused(out, result);
   sensors(out, result);
   return out.take().substr(1);  // without the blank line above the first title

@@ -1,6 +1,5 @@
 #include "common/runtime/arguments.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -23,26 +22,19 @@ std::optional<Arguments> Arguments::parse(const Program& program, int argc, cons
   Arguments arguments;
   std::vector<std::string> in;
   std::string out;
-  CLI::App app{program.sentence + " docs/messages.md tells what it hears and says.", program.name};
+  CommandLine app{program.sentence + " docs/messages.md tells what it hears and says.", program.name};
   app.add_option("--config", arguments.config, "YAML files: vehicle, site, pipeline");
   app.add_option("--in", in, "udpm://ADDRESS:PORT or file://RUN.lcmlog; several logs are merged by time")
       ->take_all()
       ->expected(1);
   app.add_option("--out", out, "udpm://ADDRESS:PORT or file://RESULT.lcmlog; default: the bus of --in");
   app.add_option("--log-level", arguments.log_level, "what to print on stderr")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
+      ->one_of({"trace", "debug", "info", "warning", "error", "critical", "off"});
   app.add_flag("--interface", arguments.interface_only, "print channels and types, then exit");
   app.add_flag("--lockstep", arguments.lockstep,
                "go on only when the simulator says so (it is started with --wait-for)");
   if (more) more(app);
-  try {
-    runtime::parse(app, argc, argv);
-  } catch (const CLI::Success& asked) {
-    app.exit(asked);
-    return {};
-  } catch (const CLI::ParseError& error) {
-    throw InputError(std::string{error.what()} + "; see --help");
-  }
+  if (!app.parse(argc, argv)) return {};
 
   if (in.empty()) in.push_back(default_bus());
   for (const std::string& text : in) {

@@ -9,14 +9,14 @@
 #include "common/runtime/bus.hpp"
 #include "common/runtime/process.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
+namespace fathom::runtime {
+class CommandLine;
 }
 
 namespace fathom::runtime {
 
 /// Adds a process's own options to the common ones.
-using MoreOptions = std::function<void(CLI::App&)>;
+using MoreOptions = std::function<void(CommandLine&)>;
 
 struct Arguments {
   std::vector<std::string> config;  ///< paths

@@ -26,6 +26,12 @@ constexpr std::uint32_t kMagicAt = 8, kChannelAt = 16, kWhole = 0x4c433032;  // 
 constexpr std::uint32_t kAll = 0xffffffff;
 constexpr std::size_t kLongestName = 63;  // of an LCM channel; and a jump of BPF must reach beyond its comparison
 
+// A message of several packets: in each where its part belongs, its number and how many there are; in the first the
+// channel follows.
+constexpr std::uint32_t kPart = 0x4c433033;  // "LC03"
+constexpr std::uint32_t kOffsetAt = 20, kNumberAt = 24, kHeaderEndsAt = 27, kFirstChannelAt = 28;
+constexpr std::uint32_t kLargest = 1U << 28U;  // B, of a message as liblcm takes it
+
 // Beside the packet's bytes: its IP header (destination at byte 16) and what the kernel knows of it.
 constexpr auto kDestinationAt = static_cast<std::uint32_t>(SKF_NET_OFF + 16);
 constexpr auto kInterface = static_cast<std::uint32_t>(SKF_AD_OFF + SKF_AD_IFINDEX);
@@ -42,8 +48,43 @@ struct Fence {
 
 void hear_fence(const lcm::ReceiveBuffer* buffer, const std::string& /*channel*/, Fence* fence) {
   const auto* data = static_cast<const char*>(buffer->data);
-  fence->came = fence->came || (buffer->data_size == fence->sign.size() &&
-                                std::equal(fence->sign.begin(), fence->sign.end(), data));
+  fence->came = fence->came ||
+                (buffer->data_size == fence->sign.size() && std::equal(fence->sign.begin(), fence->sign.end(), data));
+}
+
+/// Goes on behind itself where a name that begins there ends within the packet, and is not too long; else drops it.
+std::vector<sock_filter> name_program(std::uint32_t at) {
+  std::vector<sock_filter> program;
+  for (std::size_t i = 0; i <= kLongestName; ++i) {
+    const auto beyond = static_cast<std::uint8_t>(2 * (kLongestName - i) + 1);
+    program.push_back(BPF_STMT(BPF_LD | BPF_B | BPF_ABS, at + static_cast<std::uint32_t>(i)));
+    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, beyond, 0));
+  }
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, 0));
+  return program;
+}
+
+/// Goes on behind `checks` with what does not begin so.
+void append_for(std::uint32_t magic, const std::vector<sock_filter>& checks, std::vector<sock_filter>& program) {
+  program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kMagicAt));
+  program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, magic, 0, static_cast<std::uint8_t>(checks.size())));
+  program.insert(program.end(), checks.begin(), checks.end());
+}
+
+/// liblcm trusts a packet's form: it adds where a part belongs to its length in 32 bits, so that one from
+/// the end of these 4 GB is written there; it takes the header's length from a packet that is shorter; and it looks for
+/// the end of a channel's name behind the packet. What is read beyond a packet's end drops it.
+void append_form(std::vector<sock_filter>& program) {
+  const std::vector<sock_filter> first = name_program(kFirstChannelAt), whole = name_program(kChannelAt);
+  std::vector<sock_filter> part{BPF_STMT(BPF_LD | BPF_B | BPF_ABS, kHeaderEndsAt),
+                                BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kOffsetAt),
+                                BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kLargest, 0, 1),
+                                BPF_STMT(BPF_RET | BPF_K, 0),
+                                BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kNumberAt),
+                                BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, static_cast<std::uint8_t>(first.size()))};
+  part.insert(part.end(), first.begin(), first.end());
+  append_for(kPart, part, program);
+  append_for(kWhole, whole, program);
 }
 
 }  // namespace
@@ -87,17 +128,19 @@ std::vector<sock_filter> channel_program(std::span<const std::string> channels) 
 }
 
 // From this host is what comes over lo, and the copy that the kernel keeps of its own multicast on another interface
-// (PACKET_LOOPBACK, which no packet from outside is ever given). A packet's own ttl proves nothing: its sender writes it.
+// (PACKET_LOOPBACK, which no packet from outside is ever given). A packet's own ttl proves nothing: its sender writes
+// it.
 std::vector<sock_filter> bus_program(const BusAddress& bus, std::span<const std::string> channels) {
   std::vector<sock_filter> program{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kDestinationAt),
                                    BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, bus.group, 1, 0), BPF_STMT(BPF_RET | BPF_K, 0)};
   if (bus.one_host) {
-    program.insert(program.end(), {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kInterface),
-                                   BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kLoopback, 3, 0),
-                                   BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kPacketType),
-                                   BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PACKET_LOOPBACK, 1, 0),
-                                   BPF_STMT(BPF_RET | BPF_K, 0)});
+    program.insert(
+        program.end(),
+        {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kInterface), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kLoopback, 3, 0),
+         BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kPacketType), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PACKET_LOOPBACK, 1, 0),
+         BPF_STMT(BPF_RET | BPF_K, 0)});
   }
+  append_form(program);
   const std::vector<sock_filter> wanted = channels.empty() ? std::vector<sock_filter>{} : channel_program(channels);
   if (wanted.empty() || program.size() + wanted.size() > BPF_MAXINSNS) {
     program.push_back(BPF_STMT(BPF_RET | BPF_K, kAll));
@@ -147,8 +190,9 @@ std::optional<int> listen_filtered(lcm::LCM& bus, const std::string& url) {
   std::erase_if(came, [&](int each) { return std::ranges::find(before, each) != before.end(); });
   const bool filtered = std::ranges::all_of(came, [&](int each) { return filter(each, bus_program(address, {})); });
   if (came.empty() || !filtered) {
-    throw InputError(url + ": this system cannot tell what was sent to the bus from what was sent to this host alone "
-                           "(no socket filter), so that any host could give orders here");
+    throw InputError(url +
+                     ": this system cannot tell what was sent to the bus from what was sent to this host alone "
+                     "(no socket filter), so that any host could give orders here");
   }
   for (const auto end = Clock::now() + kLongest; !fence.came && Clock::now() < end;) {
     bus.publish(kSelfTest, fence.sign.data(), static_cast<unsigned>(fence.sign.size()));

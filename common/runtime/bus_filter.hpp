@@ -1,7 +1,7 @@
 // Which packets of a bus reach a process at all. liblcm reads whatever comes to its port: from any host, sent to the
 // bus's multicast address or to this host alone. A filter at the socket (classic BPF) has the kernel leave out what was
-// not sent to the bus, what comes from another host where the bus does not leave this one, and the channels that nobody
-// here listens to, for each of which the process would be woken.
+// not sent to the bus, what comes from another host where the bus does not leave this one, what liblcm would follow
+// beyond its memory, and the channels that nobody here listens to, for each of which the process would be woken.
 #pragma once
 
 #include <linux/filter.h>
@@ -27,8 +27,8 @@ struct BusAddress {
 };
 
 /// Classic BPF that passes what was sent to the bus, on one host alone what was sent by this host; then LCM messages of
-/// these channels, whatever comes in more than one packet (only the first says of which channel it is), and what is not
-/// LCM's. All channels where none is named, and where there are too many to compare.
+/// these channels, sound parts of one that comes in several packets (only the first says of which channel it is), and
+/// what is not LCM's. All channels where none is named, and where there are too many to compare.
 [[nodiscard]] std::vector<sock_filter> bus_program(const BusAddress& bus, std::span<const std::string> channels);
 
 /// The part of it that looks at channels; empty when there is too much to compare.

@@ -1,10 +1,13 @@
 #include "common/runtime/command_line.hpp"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <string>
+#include <iostream>
 #include <string_view>
 
+#include "common/base/error.hpp"
 #include "common/base/version.hpp"
 #include "common/runtime/command_pages.hpp"
 
@@ -23,33 +26,108 @@ void expect_finite_numbers(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) expect_finite_numbers(*command);
 }
 
-}  // namespace
-
-void parse(CLI::App& app, int argc, const char* const* argv) {
-  app.set_version_flag("--version", app.get_name() + " " + std::string{version()}, "print the version and exit");
-  if (argc == 4 && std::string_view{argv[1]} == "--pages") {
-    write_pages(app, argv[3], argv[2]);
-    throw CLI::Success{};
-  }
-  expect_finite_numbers(app);
-  app.parse(argc, argv);
+Option* with(Option* self, CLI::Option* option, const CLI::Validator& rule) {
+  option->check(rule);
+  return self;
 }
 
-int run_command_line(CLI::App& app, int argc, char** argv) {
-  app.require_subcommand(1);
+}  // namespace
+
+Option* Option::required() { return option_->required(), this; }
+Option* Option::positive() { return with(this, option_, CLI::PositiveNumber); }
+Option* Option::not_negative() { return with(this, option_, CLI::NonNegativeNumber); }
+Option* Option::within(int least, int most) { return with(this, option_, CLI::Range(least, most)); }
+Option* Option::within(double least, double most) { return with(this, option_, CLI::Range(least, most)); }
+Option* Option::one_of(std::initializer_list<const char*> words) {
+  return with(this, option_, CLI::IsMember(std::vector<std::string>(words.begin(), words.end())));
+}
+Option* Option::one_of(std::initializer_list<int> numbers) {
+  return with(this, option_, CLI::IsMember(std::vector<int>{numbers}));
+}
+Option* Option::existing_file() { return with(this, option_, CLI::ExistingFile); }
+Option* Option::expected(int values) { return option_->expected(values), this; }
+Option* Option::take_all() { return option_->take_all(), this; }
+Option* Option::delimiter(char sign) { return option_->delimiter(sign), this; }
+Option* Option::allow_extra_args(bool more) { return option_->allow_extra_args(more), this; }
+Option* Option::type_name(const std::string& name) { return option_->type_name(name), this; }
+Option* Option::each(std::function<void(const std::string&)> look) { return option_->each(std::move(look)), this; }
+Option* Option::needs(const Option* other) { return option_->needs(other->option_), this; }
+Option* Option::excludes(const Option* other) { return option_->excludes(other->option_), this; }
+Option* Option::envname(const std::string& variable) { return option_->envname(variable), this; }
+
+CommandLine::CommandLine(std::string description, std::string name)
+    : app_{new CLI::App{std::move(description), std::move(name)}}, own_{app_} {}
+
+CommandLine* CommandLine::add_subcommand(const std::string& name, const std::string& description) {
+  return &commands_.emplace_back(app_->add_subcommand(name, description));
+}
+
+template <typename Value>
+Option* CommandLine::add_option(const std::string& names, Value& value, const std::string& description) {
+  return &options_.emplace_back(app_->add_option(names, value, description));
+}
+template Option* CommandLine::add_option(const std::string&, bool&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, int&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, double&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, std::string&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option* CommandLine::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+
+Option* CommandLine::add_flag(const std::string& names, bool& value, const std::string& description) {
+  return &options_.emplace_back(app_->add_flag(names, value, description));
+}
+
+void CommandLine::callback(std::function<void()> what) { app_->callback(std::move(what)); }
+
+void CommandLine::hand_on(std::function<void(const std::vector<std::string>&)> what) {
+  app_->prefix_command();
+  app_->set_help_flag();
+  app_->callback([app = app_, what = std::move(what)] { what(app->remaining()); });
+}
+
+bool CommandLine::parse(int argc, const char* const* argv) { return parse(argc, argv, std::cout); }
+
+bool CommandLine::parse(int argc, const char* const* argv, std::ostream& answer) {
+  app_->set_version_flag("--version", app_->get_name() + " " + std::string{version()}, "print the version and exit");
+  if (argc == 4 && std::string_view{argv[1]} == "--pages") {
+    write_pages(*app_, argv[3], argv[2]);
+    return false;
+  }
+  expect_finite_numbers(*app_);
   try {
-    const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty())
-      throw CLI::ExtrasError(std::string(argv[1]) + " is no command", CLI::ExitCodes::ExtrasError);
-    parse(app, argc, argv);
-    return 0;
+    app_->parse(argc, argv);
+    return true;
   } catch (const CLI::Success& asked) {
-    return app.exit(asked);
+    app_->exit(asked, answer, answer);
+    return false;
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "fathom: %s; see fathom --help\n", error.what());
+    throw UsageError(std::string{error.what()} + "; see " + app_->get_name() + " --help");
+  }
+}
+
+std::optional<int> CommandLine::parse_or_tell(int argc, const char* const* argv) {
+  try {
+    return parse(argc, argv) ? std::nullopt : std::optional{0};
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), error.what());
     return 2;
+  }
+}
+
+int CommandLine::run(int argc, const char* const* argv) {
+  app_->require_subcommand(1);
+  const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
+  if (argc > 1 && argv[1][0] != '-' && app_->get_subcommands(is_first).empty()) {
+    const char* name = app_->get_name().c_str();
+    std::fprintf(stderr, "%s: %s is no command; see %s --help\n", name, argv[1], name);
+    return 2;
+  }
+  try {
+    return parse_or_tell(argc, argv).value_or(0);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "fathom: %s\n", error.what());
+    std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), error.what());
     return 1;
   }
 }

@@ -1,5 +1,6 @@
 #include "common/runtime/command_pages.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>

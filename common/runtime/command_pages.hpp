@@ -1,9 +1,10 @@
-// Manual pages and shell completion, made from the same CLI::App that parses the command line: neither can name an
+// Manual pages and shell completion, made from what parses the command line: neither can name an
 // option that the program has not, or miss one.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+#include "common/runtime/command_line.hpp"
 
 namespace fathom::runtime {
 

@@ -13,6 +13,7 @@
 #include "common/base/error.hpp"
 #include "common/runtime/disk_room.hpp"
 #include "common/runtime/record_file.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -125,6 +126,8 @@ void RecorderHealth::say_health(const std::string& state, const std::string& det
   health.process = "recorder";
   health.host = host_name();
   health.pid = getpid();
+  health.start = process_start(getpid()).value_or(0);
+  health.sequence = ++words_;
   health.state = state;
   health.received = received_;
   health.dropped = lost_;

@@ -27,7 +27,7 @@ class RecorderHealth {
 
   Output& bus_;
   Usage usage_;
-  std::int64_t received_{}, lost_{};
+  std::int64_t received_{}, lost_{}, words_{};
   bool well_{true};
   std::chrono::steady_clock::time_point last_{};
 };

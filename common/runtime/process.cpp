@@ -309,7 +309,7 @@ void Process::run_lockstep() {
 }
 
 int main(const Program& program, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
-         const std::function<void(CLI::App&)>& more) {
+         const std::function<void(CommandLine&)>& more) {
   try {
     auto arguments = Arguments::parse(program, argc, argv, more);
     if (!arguments) return 0;

@@ -13,8 +13,8 @@
 #include "common/base/config.hpp"
 #include "common/base/time.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
+namespace fathom::runtime {
+class CommandLine;
 }
 
 namespace fathom::runtime {
@@ -28,20 +28,23 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Hears every message of a channel; up to 1000 may wait. handler(const Message&).
-  template <class Message, class Handler>
-  void on(const std::string& channel, Handler handler) {
-    subscribe<Message>(channel, kQueue, std::move(handler));
+  /// Hears every message of a channel; up to 1000 may wait. decode(const Message&) gives a sample, or nothing when the
+  /// message is not plausible: it is then counted as rejected and nothing follows from it, its time stamp included.
+  /// handler(const Sample&).
+  template <class Message, class Decode, class Handler>
+  void on(const std::string& channel, Decode decode, Handler handler) {
+    subscribe<Message>(channel, kQueue, std::move(decode), std::move(handler));
   }
   /// Hears only the latest message of a channel: for commands and pictures. When reading a log it hears all.
-  template <class Message, class Handler>
-  void on_latest(const std::string& channel, Handler handler) {
-    subscribe<Message>(channel, 1, std::move(handler));
+  template <class Message, class Decode, class Handler>
+  void on_latest(const std::string& channel, Decode decode, Handler handler) {
+    subscribe<Message>(channel, 1, std::move(decode), std::move(handler));
   }
   /// Hears every message of a channel whose clock says nothing of this process's time: a jump in it restarts nothing.
+  /// handler(const Message&).
   template <class Message, class Handler>
   void listens_to(const std::string& channel, Handler handler) {
-    subscribe<Message>(channel, kQueue, std::move(handler), false);
+    hears<Message>(channel, kQueue, std::move(handler));
   }
   /// Declares what is said on a channel; needed before publish().
   template <class Message>
@@ -111,14 +114,24 @@ class Process {
   /// Decodes and hands over; false when it cannot be decoded.
   using Deliver = std::function<bool(std::span<const std::uint8_t>)>;
 
+  template <class Message, class Decode, class Handler>
+  void subscribe(const std::string& channel, std::size_t capacity, Decode decode, Handler handler) {
+    hears<Message>(
+        channel, capacity,
+        [this, channel, decode = std::move(decode), handler = std::move(handler)](const Message& message) mutable {
+          const auto sample = decode(message);
+          if (!sample) return reject(channel);
+          arrived(channel, message.utime);
+          handler(*sample);
+        });
+  }
   template <class Message, class Handler>
-  void subscribe(const std::string& channel, std::size_t capacity, Handler handler, bool keeps_time = true) {
+  void hears(const std::string& channel, std::size_t capacity, Handler handler) {
     add_hearing(channel, Message::getTypeName(), capacity,
-                [this, channel, keeps_time, handler = std::move(handler)](std::span<const std::uint8_t> bytes) mutable {
+                [handler = std::move(handler)](std::span<const std::uint8_t> bytes) mutable {
                   Message message{};
                   const int length = static_cast<int>(bytes.size());
                   if (message.decode(bytes.data(), 0, length) != length || !is_time(message.utime)) return false;
-                  if (keeps_time) arrived(channel, message.utime);
                   handler(static_cast<const Message&>(message));
                   return true;
                 });
@@ -151,6 +164,6 @@ struct Program {
 /// one critical line and exit code 1.
 /// `more` adds options of this process alone; what they set is ready when setup is called.
 int main(const Program& program, int argc, const char* const* argv, const std::function<void(Process&)>& setup,
-         const std::function<void(CLI::App&)>& more = {});
+         const std::function<void(CommandLine&)>& more = {});
 
 }  // namespace fathom::runtime

@@ -21,6 +21,8 @@ void Process::report_health(const std::string& state, const std::string& reason)
   health.process = state_->known_as;
   health.host = state_->host;
   health.pid = getpid();
+  health.start = state_->start;
+  health.sequence = ++state_->words;
   const Usage::Figures used = state_->usage.measure();
   health.cpu = used.cpu;
   health.memory = used.memory;

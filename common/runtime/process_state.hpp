@@ -16,6 +16,7 @@
 #include "common/runtime/lockstep.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/runtime/stop_signal.hpp"
 
 namespace fathom::runtime {
@@ -70,6 +71,8 @@ struct Process::State {
   Clock::time_point begun{Clock::now()};
   Clock::time_point last_health{};
   std::string host{host_name()};
+  std::int64_t start{process_start(getpid()).value_or(0)};
+  std::int64_t words{};  // HEALTH said so far
   Usage usage{};
   std::string known_as{name};
   Twins twins{name, host, getpid()};

@@ -3,7 +3,6 @@
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <iostream>
@@ -12,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/runtime/arguments.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/live_recorder.hpp"
 #include "common/runtime/lockstep.hpp"
 #include "common/runtime/record_file.hpp"
@@ -167,7 +167,7 @@ int recorder_main(int argc, const char* const* argv) {
     bool number{false};
     std::vector<std::string> without;
     const Program program{"recorder", "Writes all messages of a bus to a log."};
-    const auto arguments = Arguments::parse(program, argc, argv, [&](CLI::App& app) {
+    const auto arguments = Arguments::parse(program, argc, argv, [&](CommandLine& app) {
       app.add_option("--file", path, "the log to be written");
       app.add_flag("--number", number, "add .00, .01, ... to its name, the next number");
       app.add_option("--without", without, "a channel that is not recorded; more than once if wanted")

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/samples/correction.hpp"
 #include "common/samples/estimates.hpp"
 
 namespace fathom {
@@ -149,7 +150,8 @@ struct DiagnosisResult {
   std::vector<NamedValue> parameters_after;
   std::vector<AxisWhiteness> residual_before;
   std::vector<AxisWhiteness> residual_after;
-  std::vector<Association> goes_with;  ///< what the residual after still goes with, largest share first
+  std::optional<CorrectionGiven> correction{};  ///< a learned force: no cause
+  std::vector<Association> goes_with;           ///< what the residual after still goes with, largest share first
 };
 
 /// One stretch of validation data with the open-loop predictions laid over it, for the plots.

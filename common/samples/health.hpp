@@ -22,6 +22,8 @@ struct Health {
   std::string process;
   std::string host;
   std::int32_t pid{};       ///< on that host: two processes of one name are told apart
+  std::int64_t start{};     ///< us since the host's boot: when it began, as the kernel says
+  std::int64_t sequence{};  ///< number of this word, from 1
   std::string state;        ///< "running", "unhealthy" (detail begins with the reason), "stopped", "fault"
   std::int64_t received{};  ///< delivered to handlers
   std::int64_t published{};

@@ -78,7 +78,18 @@ Simulator::Simulator(const model::Vehicle& vehicle, const model::Site& site, con
                           .duration = setup.duration,
                           .righting = std::abs(truth.theta[model::index(model::BaseParameter::G_z)]),
                           .voltage = battery.full};
-  for (const std::string& text : setup.hide) {
+  std::vector<std::string> hide = setup.hide;
+  if (!setup.model.empty()) {
+    if (derivatives)
+      throw InputError(setup.model + ": the truth of this configuration has derivatives in place of these numbers");
+    const model::LearnedModel learned = model::read_learned(setup.model, vehicle);
+    for (const auto& [name, value] : learned.parameters)
+      truth.theta[model::index(*model::parameter_from_name(name))] = value;
+    hide.insert(hide.end(), learned.effects.begin(), learned.effects.end());
+    learned_ = learned.force;
+    if (learned_) truth.add({.effect = learned_.get()});
+  }
+  for (const std::string& text : hide) {
     model::ActiveEffect effect = hidden_effect(text, occasion, setup.seed);
     if (effect.effect->measures()) {
       faults_->effects.push_back(std::move(effect));

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "common/model/learned/learned_file.hpp"
 #include "common/model/thruster_allocation.hpp"
 #include "common/samples/commands.hpp"
 #include "common/simulation/body.hpp"
@@ -25,6 +26,7 @@ namespace fathom::simulation {
 struct Setup {
   std::uint64_t seed{1};
   std::vector<std::string> hide{};      ///< as hidden_effect() reads them
+  std::string model{};                  ///< result.json of fathom diagnose, whose model is the truth; empty: the file's
   std::vector<std::string> fail{};      ///< as Failure::parse() reads them
   bool pictures{false};                 ///< the camera's exposures in place of tags, flow and laser range
   bool raw{false};                      ///< drivers follow: instruments speak for their own places
@@ -92,6 +94,7 @@ class Simulator {
   Utime origin_, interval_;
   double largest_;  ///< N, of one thruster
   model::ThrusterAllocation allocation_;
+  std::shared_ptr<const model::LearnedForce> learned_;  ///< of the truth
   std::unique_ptr<Body> body_;
   std::unique_ptr<Faults> faults_;  ///< hidden effects that alter what sensors say
   AhrsTold ahrs_{};

@@ -15,7 +15,8 @@ namespace fathom::tables {
 namespace {
 
 constexpr const char* kCanonical =
-    "t; x y z; phi theta psi; u v w; p q r; ax ay az; f1..fN or X Y Z K M N; pwm1..pwmN; depth; voltage";
+    "t; x y z; phi theta psi; u v w; p q r; ax ay az; f1..fN or X Y Z K M N; pwm1..pwmN; depth; voltage; range_A, "
+    "range_B, ...; load_A, load_B, ...";
 
 constexpr std::array kNames{"t",  "x",  "y",  "z", "phi", "theta", "psi", "u", "v", "w",     "p",       "q",  "r",
                             "ax", "ay", "az", "X", "Y",   "Z",     "K",   "M", "N", "depth", "voltage", "f1", "pwm1"};
@@ -70,6 +71,16 @@ class Shelf {
     ColumnGroup group;
     for (int i = 1; left_.erase(prefix + std::to_string(i)) > 0; ++i) {
       group.columns.push_back({prefix + std::to_string(i), ""});
+    }
+    return group.columns.empty() ? std::nullopt : std::optional<ColumnGroup>(group);
+  }
+
+  /// Columns whose names begin so, in the order of the table.
+  std::optional<ColumnGroup> take_beginning(const std::string& prefix) {
+    ColumnGroup group;
+    for (const std::string& name : table_.names) {
+      if (name.size() > prefix.size() && name.starts_with(prefix) && left_.erase(name) > 0)
+        group.columns.push_back({name, ""});
     }
     return group.columns.empty() ? std::nullopt : std::optional<ColumnGroup>(group);
   }
@@ -174,9 +185,12 @@ ColumnMap canonical_map(const CsvTable& table) {
   if (z_as_depth) map.depth = ScalarColumn{*z_as_depth, {}};
   if (const auto depth = shelf.take({"depth"})) map.depth = ScalarColumn{*depth, {}};
   if (const auto voltage = shelf.take({"voltage"})) map.battery = ScalarColumn{*voltage, {}};
+  if (const auto ranges = shelf.take_beginning("range_")) map.ranges = ListColumns{*ranges, {}};
+  if (const auto loads = shelf.take_beginning("load_")) map.loads = ListColumns{*loads, {}};
   shelf.check_strangers();
   if (table.names.size() == 1) throw InputError(table.path + ":1: there is no column besides time");
-  if (!map.pose_capture && !map.ahrs && !map.dvl && !map.thrusters && !map.depth && !map.battery)
+  if (!map.pose_capture && !map.ahrs && !map.dvl && !map.thrusters && !map.depth && !map.battery && !map.ranges &&
+      !map.loads)
     throw InputError(table.path +
                      ":1: no column besides time is known; without a map (--map) these are: " + kCanonical);
   return map;

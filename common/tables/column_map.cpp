@@ -217,6 +217,19 @@ ThrusterColumns thrusters_of(const Config& config) {
   ThrusterColumns thrusters;
   if (config.has("pwm")) thrusters.pwm = group_of(config.section("pwm"), "us");
   if (config.has("force")) thrusters.force = group_of(config.section("force"), "N");
+  if (config.has("command")) {
+    const Config command = config.section("command");
+    if (thrusters.pwm) config.fail("command", "state 'pwm' or 'command', not both: a command becomes a pulse");
+    thrusters.command = {
+        {columns_of(command, "columns"), 1.0}, command.positive("neutral", "us"), command.positive("full", "us")};
+  }
+  if (config.has("speed")) {
+    const Config speed = config.section("speed");
+    constexpr const char* kUnit = "N/(rad/s)^2";
+    if (thrusters.force) config.fail("speed", "state 'force' or 'speed', not both: a speed becomes a force");
+    const double ahead = speed.positive("ahead", kUnit);
+    thrusters.speed = {group_of(speed, "rad/s"), ahead, speed.has("astern") ? speed.positive("astern", kUnit) : ahead};
+  }
   if (config.has("wrench")) {
     const Config wrench = config.section("wrench");
     const std::vector<Column> columns = components_of(wrench, "columns", 6);
@@ -225,14 +238,30 @@ ThrusterColumns thrusters_of(const Config& config) {
     thrusters.wrench_force = {{columns.begin(), split}, factor_to(wrench, "force_unit", "N"), frame};
     thrusters.wrench_moment = {{split, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
   }
-  if (!thrusters.pwm && !thrusters.force && !thrusters.wrench_force) {
-    config.fail("", "'thrusters' needs pwm, force or wrench");
+  if (!thrusters.pwm && !thrusters.command && !thrusters.force && !thrusters.speed && !thrusters.wrench_force) {
+    config.fail("", "'thrusters' needs pwm, command, force, speed or wrench");
   }
   thrusters.invalid_where = invalid_of(config);
   return thrusters;
 }
 
-constexpr std::array kStreams{"pose_capture", "ahrs", "dvl", "depth", "thrusters", "battery"};
+constexpr std::array kStreams{"pose_capture", "ahrs", "dvl",    "depth", "thrusters",
+                              "battery",      "usbl", "ranges", "loads"};
+
+UsblColumns usbl_of(const Config& config) {
+  UsblColumns usbl;
+  const Config position = config.section("position");
+  usbl.position = vector_of(position, "m");
+  usbl.position.to_house = world_frame(position, "frame");
+  if (config.is_section("sigma")) {
+    usbl.sigma = vector_of(config.section("sigma"), "m");
+    usbl.sigma->to_house = usbl.position.to_house.cwiseAbs();
+  } else {
+    usbl.stated_sigma = config.positive("sigma", "m");
+  }
+  usbl.invalid_where = invalid_of(config);
+  return usbl;
+}
 
 PoseColumns pose_of(const Config& section) {
   PoseColumns pose;
@@ -293,6 +322,7 @@ ScalarColumn depth_by_pressure(const Config& section) {
   const Config pressure = section.section("pressure");
   ScalarColumn depth{scalar(pressure, "Pa"), invalid_of(section)};
   const double weight = kGravity * pressure.positive("density", "kg/m^3");
+  depth.weight = weight;
   depth.group.factor /= weight;
   depth.offset = -pressure.not_negative("surface", "Pa") / weight;
   return depth;
@@ -314,6 +344,9 @@ void read_stream(ColumnMap& map, const std::string& name, const Config& section)
   if (name == "depth") map.depth = depth_of(section);
   if (name == "thrusters") map.thrusters = thrusters_of(section);
   if (name == "battery") map.battery = ScalarColumn{scalar(section, "V"), invalid_of(section)};
+  if (name == "usbl") map.usbl = usbl_of(section);
+  if (name == "ranges") map.ranges = ListColumns{group_of(section, "m"), invalid_of(section)};
+  if (name == "loads") map.loads = ListColumns{group_of(section, "N"), invalid_of(section)};
 }
 
 ColumnMap read(const Config& config) {

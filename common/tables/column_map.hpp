@@ -68,9 +68,23 @@ struct DvlColumns {
   double course_factor{};  ///< not 0: `velocity` holds course over ground (this factor to rad) and speed
 };
 
+/// Thrust of a propeller in still water: f = k n |n|, n its shaft's speed [rad/s].
+struct SpeedColumns {
+  ColumnGroup speed;         ///< factor to rad/s; order of the vehicle file
+  double ahead{}, astern{};  ///< k for positive and negative n, N/(rad/s)^2
+};
+
+/// Commands between -1 and 1: pulse = neutral + full * command.
+struct CommandColumns {
+  ColumnGroup command;       ///< order of the vehicle file
+  double neutral{}, full{};  ///< us
+};
+
 struct ThrusterColumns {
-  std::optional<ColumnGroup> pwm;           ///< factor to us
-  std::optional<ColumnGroup> force;         ///< order of the vehicle file
+  std::optional<ColumnGroup> pwm;  ///< factor to us
+  std::optional<CommandColumns> command;
+  std::optional<ColumnGroup> force;  ///< order of the vehicle file
+  std::optional<SpeedColumns> speed;
   std::optional<ColumnGroup> wrench_force;  ///< until it is completed: all columns of a short list
   std::optional<ColumnGroup> wrench_moment;
   std::vector<Column> invalid_where;
@@ -80,6 +94,21 @@ struct ScalarColumn {
   ColumnGroup group;  ///< one column; the sign of its direction is in the factor
   std::vector<Column> invalid_where;
   double offset{};  ///< added: of a pressure, the atmosphere's part
+  double weight{};  ///< of a pressure: density times gravity [N/m^3], by which it was divided; else 0
+};
+
+/// Fixes of an acoustic positioning system.
+struct UsblColumns {
+  ColumnGroup position;
+  std::optional<ColumnGroup> sigma;  ///< standard deviations along the axes of the position
+  double stated_sigma{};             ///< m, where no column says
+  std::vector<Column> invalid_where;
+};
+
+/// Several numbers of one kind, in the order of the site's transponders or of the vehicle's load cells.
+struct ListColumns {
+  ColumnGroup group;
+  std::vector<Column> invalid_where;
 };
 
 struct ColumnMap {
@@ -93,6 +122,9 @@ struct ColumnMap {
   std::optional<ScalarColumn> depth;
   std::optional<ThrusterColumns> thrusters;
   std::optional<ScalarColumn> battery;
+  std::optional<UsblColumns> usbl;
+  std::optional<ListColumns> ranges;
+  std::optional<ListColumns> loads;
 
   /// Reads a map; InputError "file:line: what" for an unknown key, unit or frame.
   [[nodiscard]] static ColumnMap load(const std::string& path);

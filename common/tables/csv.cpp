@@ -16,8 +16,9 @@ namespace fathom::tables {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kShownCell = 24;     // characters of a bad cell that a message repeats
-constexpr std::size_t kFirstBytes = 1024;  // that tell a text from what is none
+constexpr std::size_t kShownCell = 24;                 // characters of a bad cell that a message repeats
+constexpr std::size_t kFirstBytes = 1024;              // that tell a text from what is none
+constexpr std::size_t kPiece = std::size_t{1} << 20U;  // bytes of a file read at once
 
 std::string_view trim(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -185,6 +186,82 @@ std::string known_unit(std::string_view text) {
   return {};
 }
 
+/// A table on its way in, line by line.
+class Parser {
+ public:
+  /// `first`: the first bytes of the text. `rows`: how many lines there will be, about.
+  Parser(const std::string& path, std::string_view first, std::size_t rows) : path_(path), expected_rows_(rows) {
+    table_.path = path;
+    check_text(first, path);
+  }
+  /// `last`: nothing stands behind it.
+  void take(std::string_view line, bool last) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (number_++ == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    if (trim(line).empty()) return;
+    if (is_comment(trim(line))) {
+      if (table_.names.empty()) keep_comment(trim(line));
+    } else if (!table_.names.empty() || !read_header(line)) {
+      read_row(line, last);
+    }
+  }
+  CsvTable finish() {
+    if (table_.names.empty()) throw InputError(path_ + ": the file is empty");
+    if (table_.rows() == 0) throw InputError(path_ + ": there is a header but not one row of numbers");
+    return std::move(table_);
+  }
+
+ private:
+  void keep_comment(std::string_view comment) {
+    while (!comment.empty() && is_comment(comment)) comment.remove_prefix(1);
+    comment_ = comment;
+    comment_number_ = number_;
+  }
+  /// False where the line holds numbers and a comment above them the names.
+  bool read_header(std::string_view line) {
+    const std::string here = path_ + ":" + std::to_string(number_);
+    separator_ = separator_of(line, here);
+    const bool headless = holds_numbers(line, separator_);
+    if (headless && count_cells(comment_, separator_) == count_cells(line, separator_) && !comment_.empty()) {
+      read_names(comment_, separator_, path_ + ":" + std::to_string(comment_number_), table_);
+    } else if (headless && count_cells(line, separator_) > 1) {
+      throw InputError(here + ": the first line holds numbers where the names of the columns belong; write them above");
+    } else {
+      read_names(line, separator_, here, table_);
+    }
+    for (auto& column : table_.columns) column.reserve(expected_rows_);
+    table_.lines.reserve(expected_rows_);
+    return !headless;
+  }
+  void read_row(std::string_view line, bool last) {
+    std::size_t cells = 0;
+    for (bool more = true; more; ++cells) {
+      const std::string_view cell = take_cell(line, separator_, more);
+      if (cells >= table_.columns.size()) continue;
+      double value{};
+      std::string& fault = table_.faults[cells];
+      if (!read_number(cell, separator_, value) && !read_date_cell(cell, cells, table_, value) && fault.empty()) {
+        fault = path_ + ":" + std::to_string(number_) + ": column '" + table_.names[cells] + "': '" +
+                std::string(cell.substr(0, kShownCell)) + "' is not a number";
+      }
+      table_.columns[cells].push_back(value);
+    }
+    if (cells != table_.names.size()) {
+      throw InputError(path_ + ":" + std::to_string(number_) + ": this row has " + std::to_string(cells) +
+                       " cells, the header names " + std::to_string(table_.names.size()) +
+                       (last ? " (was the file cut off?)" : ""));
+    }
+    table_.lines.push_back(number_);
+  }
+
+  const std::string& path_;
+  std::size_t expected_rows_;
+  CsvTable table_;
+  std::size_t number_{}, comment_number_{};
+  std::string comment_;  ///< the last one: "% t, u, v" is a header where the next line holds numbers
+  char separator_{','};
+};
+
 }  // namespace
 
 NameAndUnit part_unit(std::string_view header) {
@@ -208,74 +285,52 @@ std::string CsvTable::where(std::size_t row) const {
 }
 
 CsvTable parse_csv(std::string_view text, const std::string& path) {
-  CsvTable table;
-  table.path = path;
-  check_text(text, path);
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
-  const auto expected_rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-  std::size_t number = 0, comment_number = 0;
-  std::string_view comment;  // the last one: "% t, u, v" is a header where the next line holds numbers
-  char separator = ',';
+  Parser parser{path, text.substr(0, kFirstBytes), static_cast<std::size_t>(std::ranges::count(text, '\n'))};
   while (!text.empty()) {
-    std::string_view line = take_line(text);
-    ++number;
-    if (trim(line).empty()) continue;
-    if (is_comment(trim(line))) {
-      if (table.names.empty()) {
-        comment = trim(line);
-        while (!comment.empty() && is_comment(comment)) comment.remove_prefix(1);
-        comment_number = number;
-      }
-      continue;
-    }
-    if (table.names.empty()) {
-      const std::string here = path + ":" + std::to_string(number);
-      separator = separator_of(line, here);
-      const bool headless = holds_numbers(line, separator);
-      if (headless && count_cells(comment, separator) == count_cells(line, separator) && !comment.empty()) {
-        read_names(comment, separator, path + ":" + std::to_string(comment_number), table);
-      } else if (headless && count_cells(line, separator) > 1) {
-        throw InputError(here +
-                         ": the first line holds numbers where the names of the columns belong; write them above");
-      } else {
-        read_names(line, separator, here, table);
-      }
-      for (auto& column : table.columns) column.reserve(expected_rows);
-      table.lines.reserve(expected_rows);
-      if (!headless) continue;
-    }
-    std::size_t cells = 0;
-    for (bool more = true; more; ++cells) {
-      const std::string_view cell = take_cell(line, separator, more);
-      if (cells >= table.columns.size()) continue;
-      double value{};
-      std::string& fault = table.faults[cells];
-      if (!read_number(cell, separator, value) && !read_date_cell(cell, cells, table, value) && fault.empty()) {
-        fault = path + ":" + std::to_string(number) + ": column '" + table.names[cells] + "': '" +
-                std::string(cell.substr(0, kShownCell)) + "' is not a number";
-      }
-      table.columns[cells].push_back(value);
-    }
-    if (cells != table.names.size()) {
-      throw InputError(path + ":" + std::to_string(number) + ": this row has " + std::to_string(cells) +
-                       " cells, the header names " + std::to_string(table.names.size()) +
-                       (text.empty() ? " (was the file cut off?)" : ""));
-    }
-    table.lines.push_back(number);
+    const std::string_view line = take_line(text);
+    parser.take(line, text.empty());
   }
-  if (table.names.empty()) throw InputError(path + ": the file is empty");
-  if (table.rows() == 0) throw InputError(path + ": there is a header but not one row of numbers");
-  return table;
+  return parser.finish();
 }
 
 CsvTable read_csv(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": cannot read this file");
-  std::string text(static_cast<std::size_t>(file.tellg()), '\0');
+  std::string piece(kPiece, '\0');
+  std::string first;
+  std::size_t rows = 0;
+  std::uintmax_t size = 0, taken = 0;
+  const auto next = [&] {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    if (file.bad()) throw InputError(path + ": cannot read this file to its end");
+    return std::string_view{piece.data(), static_cast<std::size_t>(file.gcount())};
+  };
+  for (std::string_view bytes = next(); !bytes.empty(); bytes = next()) {
+    if (size == 0) first = bytes.substr(0, kFirstBytes);
+    rows += static_cast<std::size_t>(std::ranges::count(bytes, '\n'));
+    size += bytes.size();
+  }
+  Parser parser{path, first, rows};
+  file.clear();
   file.seekg(0);
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file) throw InputError(path + ": cannot read this file to its end");
-  return parse_csv(text, path);
+  std::string begun;  // a line of which only the beginning has been read
+  for (std::string_view bytes = next(); !bytes.empty(); bytes = next()) {
+    while (!bytes.empty()) {
+      const bool whole = bytes.find('\n') != std::string_view::npos;
+      const std::string_view line = take_line(bytes);
+      taken += line.size() + (whole ? 1 : 0);
+      const bool last = taken >= size;
+      if (!whole && !last) {
+        begun += line;
+      } else if (begun.empty()) {
+        parser.take(line, last);
+      } else {
+        parser.take(begun += line, last);
+        begun.clear();
+      }
+    }
+  }
+  return parser.finish();
 }
 
 }  // namespace fathom::tables

@@ -27,6 +27,8 @@ const char* unit_of(std::string_view name) {
     return name.starts_with(prefix) && name.size() > prefix.size() &&
            std::isdigit(static_cast<unsigned char>(name[prefix.size()])) != 0;
   };
+  if (name.starts_with("range_")) return "m";
+  if (name.starts_with("load_")) return "N";
   return numbered("f") ? "N" : numbered("pwm") ? "us" : nullptr;
 }
 

@@ -2,6 +2,7 @@
 // refused.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "common/tables/absent.hpp"
 #include "common/tables/column_map.hpp"
 #include "common/tables/csv.hpp"
+#include "common/tables/readers.hpp"
 
 namespace fathom::tables {
 
@@ -20,10 +22,46 @@ struct Imported {
   std::string licence;
 };
 
-/// Applies a map. Components that it lacks are zero where `simulated` says that the vehicle does not move along them,
-/// and must not lack otherwise. A row whose time does not rise is dropped; a sample with an empty or NaN cell is
-/// refused; both are counted in the notes. InputError for a missing column, a column without a number, a stream without
-/// one whole sample.
+/// A table with what its columns are, and what was read otherwise than it stands there.
+struct MappedTable {
+  CsvTable table;
+  ColumnMap map;
+  std::vector<std::string> notes;
+};
+
+/// Reads a file with a map, or as canonical columns when `map_path` is empty.
+[[nodiscard]] MappedTable read_mapped(const std::string& csv_path, const std::string& map_path);
+
+/// A table on its way to samples, in slices: of a long one nothing is held but its columns. Components that it lacks
+/// are zero where `simulated` says that the vehicle does not move along them, and must not lack otherwise. A row whose
+/// time does not rise is dropped; a sample with an empty or NaN cell is refused; both are counted in the notes.
+/// InputError for a missing column, a column without a number, a stream without one whole sample (by `finish`).
+class TableImport {
+ public:
+  /// `table` must live as long as this.
+  TableImport(const CsvTable& table, ColumnMap map, const std::optional<SimulatedAxes>& simulated);
+  ~TableImport();
+  TableImport(const TableImport&) = delete;
+  TableImport& operator=(const TableImport&) = delete;
+
+  /// The samples of the next `rows` rows at most, into empty streams; all of them where an attitude turns others, which
+  /// lie between. False when no row is left.
+  bool next(std::size_t rows, Recording& out);
+  /// What was refused, held or left out.
+  [[nodiscard]] std::vector<std::string> finish();
+
+ private:
+  struct Streams;
+  const CsvTable& table_;
+  ColumnMap map_;
+  Resolver resolve_;
+  Rows rows_;
+  std::size_t taken_{};
+  std::unique_ptr<Streams> streams_;
+  std::vector<std::string> notes_;
+};
+
+/// All of a table.
 [[nodiscard]] Imported import_table(const CsvTable& table, ColumnMap map,
                                     const std::optional<SimulatedAxes>& simulated = {});
 
@@ -31,7 +69,7 @@ struct Imported {
 /// absent; InputError for unknown ones.
 [[nodiscard]] ColumnMap canonical_map(const CsvTable& table);
 
-/// Reads a file with a map, or as canonical columns when `map_path` is empty.
+/// Both: a file to a recording.
 [[nodiscard]] Imported import_csv(const std::string& csv_path, const std::string& map_path = "",
                                   const std::optional<SimulatedAxes>& simulated = {});
 

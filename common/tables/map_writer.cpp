@@ -1,5 +1,8 @@
 #include "common/tables/map_writer.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
@@ -16,10 +19,8 @@ constexpr double kSameFactor = 1e-6;  // relative
 
 std::string listed(std::span<const Column> columns) {
   std::string text = "[";
-  for (const Column& column : columns) {
-    const bool plain = column.name.find_first_of(" ,:[]{}#&*!|>'\"%@`") == std::string::npos;
-    text += (text.size() > 1 ? ", " : "") + (column.absent ? "none" : plain ? column.name : "\"" + column.name + "\"");
-  }
+  for (const Column& column : columns)
+    text += (text.size() > 1 ? ", " : "") + (column.absent ? "none" : written_name(column.name));
   return text + "]";
 }
 
@@ -60,13 +61,16 @@ std::string vector(const ColumnGroup& group, const std::string& frame, const cha
          "}";
 }
 
+std::string column_and_unit(const ColumnGroup& group, const char* si, const Names& units) {
+  return "column: " + written_name(group.columns.front().name) + ", unit: " + unit_of(group.factor, si, units);
+}
 std::string scalar(const ColumnGroup& group, const char* si, const Names& units) {
-  const std::string name = listed(group.columns);
-  return "{column: " + name.substr(1, name.size() - 2) + ", unit: " + unit_of(group.factor, si, units) + "}";
+  return "{" + column_and_unit(group, si, units) + "}";
 }
 
 const Names kLengths{"mm", "cm", "km", "ft"}, kSpeeds{"mm/s", "cm/s", "km/h", "kn", "ft/s"}, kAngles{"deg", "mrad"},
-    kRates{"deg/s", "mrad/s", "rpm"}, kTimes{"ms", "us", "ns", "min", "h"}, kForces{"kN"}, kVoltages{"mV"};
+    kRates{"deg/s", "mrad/s", "rpm"}, kTimes{"ms", "us", "ns", "min", "h"}, kForces{"kN"}, kVoltages{"mV"},
+    kPressures{"hPa", "kPa", "MPa", "mbar", "dbar", "bar"};
 
 std::string attitude(const AttitudeColumns& columns, const std::string& indent) {
   std::string text =
@@ -100,12 +104,65 @@ std::string flags(const std::vector<Column>& columns, const std::string& indent)
 std::string held(const HeldRule& rule, const std::string& indent) {
   if (rule.detect) return indent + "held: detect\n";
   if (!rule.flag) return {};
-  const std::string name = listed({&*rule.flag, 1});
-  return indent + "held: {column: " + name.substr(1, name.size() - 2) + "}\n";
+  return indent + "held: {column: " + written_name(rule.flag->name) + "}\n";
+}
+
+std::string depth(const ScalarColumn& column) {
+  ColumnGroup group = column.group;
+  std::string text = "depth:\n";
+  if (column.weight > 0.0) {
+    constexpr double kGravity = 9.80665;  // m/s^2
+    group.factor *= column.weight;
+    std::array<char, 96> more{};
+    std::snprintf(more.data(), more.size(), ", surface: %.10g Pa, density: %.10g kg/m^3}\n",
+                  std::abs(column.offset * column.weight), column.weight / kGravity);
+    text += "  pressure: {" + column_and_unit(group, "Pa", kPressures) + more.data();
+  } else {
+    const bool up = group.factor < 0.0;
+    group.factor = std::abs(group.factor);
+    text += "  column: " + written_name(group.columns.front().name) +
+            "\n  unit: " + unit_of(group.factor, "m", kLengths) + "\n  direction: " + (up ? "up" : "down") + "\n";
+  }
+  return text + flags(column.invalid_where, "  ");
+}
+
+std::string battery(const ScalarColumn& column) {
+  return "battery:\n  column: " + written_name(column.group.columns.front().name) +
+         "\n  unit: " + unit_of(column.group.factor, "V", kVoltages) + "\n" + flags(column.invalid_where, "  ");
+}
+
+std::string list(const char* name, const ListColumns& columns, const char* si, const Names& units) {
+  return std::string{name} + ":\n  columns: " + listed(columns.group.columns) +
+         "\n  unit: " + unit_of(columns.group.factor, si, units) + "\n" + flags(columns.invalid_where, "  ");
+}
+
+std::string with_unit(double value, const char* unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.10g %s", value, unit);
+  return text.data();
+}
+
+std::string usbl(const UsblColumns& columns) {
+  std::string text =
+      "usbl:\n  position: " + vector(columns.position, world_of(columns.position.to_house), "m", kLengths) +
+      "\n  sigma: ";
+  text += columns.sigma ? "{columns: " + listed(columns.sigma->columns) +
+                              ", unit: " + unit_of(columns.sigma->factor, "m", kLengths) + "}"
+                        : with_unit(columns.stated_sigma, "m");
+  return text + "\n" + flags(columns.invalid_where, "  ");
 }
 
 std::string thrusters(const ThrusterColumns& columns) {
   std::string text = "thrusters:\n";
+  if (columns.command)
+    text += "  command: {columns: " + listed(columns.command->command.columns) +
+            ", neutral: " + with_unit(columns.command->neutral, "us") +
+            ", full: " + with_unit(columns.command->full, "us") + "}\n";
+  if (columns.speed)
+    text += "  speed: {columns: " + listed(columns.speed->speed.columns) +
+            ", unit: " + unit_of(columns.speed->speed.factor, "rad/s", kRates) +
+            ", ahead: " + with_unit(columns.speed->ahead, "N/(rad/s)^2") +
+            ", astern: " + with_unit(columns.speed->astern, "N/(rad/s)^2") + "}\n";
   if (columns.pwm)
     text += "  pwm: {columns: " + listed(columns.pwm->columns) +
             ", unit: " + unit_of(columns.pwm->factor, "us", {"ms", "s"}) + "}\n";
@@ -126,9 +183,19 @@ std::string thrusters(const ThrusterColumns& columns) {
 
 }  // namespace
 
+std::string written_name(const std::string& name) {
+  const bool plain = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '/';
+  });
+  if (plain) return name;
+  std::string text = "'";
+  for (const char c : name) text += c == '\'' ? std::string{"''"} : std::string{c};
+  return text + "'";
+}
+
 std::string to_yaml(const ColumnMap& map) {
-  std::string text = "source: \"" + (map.source.empty() ? "not stated" : map.source) + "\"\nlicence: \"" +
-                     (map.licence.empty() ? "not stated" : map.licence) + "\"\n";
+  std::string text = "source: " + written_name(map.source.empty() ? "not stated" : map.source) +
+                     "\nlicence: " + written_name(map.licence.empty() ? "not stated" : map.licence) + "\n";
   if (map.time.columns.size() > 1) {
     text += "time: {columns: " + listed(map.time.columns) + ", units: [";
     for (std::size_t i = 0; i < map.time_factors.size(); ++i)
@@ -180,18 +247,12 @@ std::string to_yaml(const ColumnMap& map) {
     if (map.dvl->altitude) text += "  altitude: " + scalar(*map.dvl->altitude, "m", kLengths) + "\n";
     text += held(map.dvl->held, "  ") + flags(map.dvl->invalid_where, "  ");
   }
-  if (map.depth && map.depth->offset == 0.0) {
-    ColumnGroup depth = map.depth->group;
-    const bool up = depth.factor < 0.0;
-    depth.factor = std::abs(depth.factor);
-    std::string inside = scalar(depth, "m", kLengths);
-    inside.pop_back();
-    text += "depth: " + inside + ", direction: " + (up ? "up" : "down") + "}\n";
-  } else if (map.depth) {
-    throw InputError("a depth from a pressure is not written; keep its section of your map");
-  }
+  if (map.depth) text += depth(*map.depth);
   if (map.thrusters) text += thrusters(*map.thrusters);
-  if (map.battery) text += "battery: " + scalar(map.battery->group, "V", kVoltages) + "\n";
+  if (map.battery) text += battery(*map.battery);
+  if (map.usbl) text += usbl(*map.usbl);
+  if (map.ranges) text += list("ranges", *map.ranges, "m", kLengths);
+  if (map.loads) text += list("loads", *map.loads, "N", kForces);
   return text;
 }
 

@@ -25,14 +25,14 @@ ColumnData Resolver::operator()(const Column& column) {
   if (column.absent) return nullptr;
   const ColumnData data = table_.find(column.name);
   if (data != nullptr) {
-    const std::string& fault = table_.faults[static_cast<std::size_t>(data - table_.columns.data())];
+    const std::string& fault = table_.faults[table_.index(data)];
     if (!fault.empty()) throw InputError(fault);
   } else {
     throw InputError((column.where.empty() ? "" : column.where + ": ") + "column '" + column.name + "' is not in " +
                      table_.path + ", which has: " + joined(table_.names));
   }
   const auto finite = [](double value) { return std::isfinite(value); };
-  if (used_.insert(column.name).second && std::none_of(data->begin(), data->end(), finite)) {
+  if (used_.insert(table_.names[table_.index(data)]).second && std::none_of(data->begin(), data->end(), finite)) {
     throw InputError(table_.path + ": column '" + column.name +
                      "' holds no number at all; leave out of the table what was not measured");
   }

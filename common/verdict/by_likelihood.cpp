@@ -22,6 +22,7 @@ using inference::Conclusion;
 using inference::Verdict;
 using likelihood::NumberKind;
 
+constexpr inference::Step kLearning{"learning", "learning what no list holds", 10.0};
 constexpr std::size_t kFiveSeconds = 1;  // of diagnosis::kHorizons
 constexpr double kStep = 0.04;           // s between the velocities that are predicted: short of it there is only noise
 
@@ -45,39 +46,13 @@ std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::Vect
   return values;
 }
 
-/// The model with the thrust's offset as a delay that straight lines between inputs can carry.
-model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step) {
-  model::Model model = hypothesis.model;
-  double offset = 0.0;
-  for (const likelihood::RunNumbers& run : hypothesis.runs)
-    offset += run.command_offset / static_cast<double>(hypothesis.runs.size());
-  if (input_step > 0.0) model.input_hold = std::clamp(offset / input_step, -0.5, 0.5);
-  return model;
-}
-
-std::vector<std::vector<Vector6d>> residuals_of(const model::Model& model, std::span<const Trial> trials) {
-  std::vector<std::vector<Vector6d>> residuals;
-  for (const Trial& trial : trials) residuals.push_back(diagnosis::wrench_residuals(model, trial));
-  return residuals;
-}
-
-std::map<std::string, double> force_rmse(const model::Vehicle& vehicle,
-                                         const std::vector<std::vector<Vector6d>>& residuals) {
-  std::map<std::string, double> rmse;
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (!vehicle.dof[axis]) continue;
-    double square = 0.0, count = 0.0;
-    for (const auto& run : residuals) {
-      for (const Vector6d& wrench : run) {
-        const double value = wrench[static_cast<Eigen::Index>(axis)];
-        if (!std::isfinite(value)) continue;
-        square += value * value;
-        count += 1.0;
-      }
-    }
-    if (count > 0.0) rmse[model::kAxisNames[axis]] = std::sqrt(square / count);
-  }
-  return rmse;
+/// The learned force for runs that judge: whole on stretches of the runs that it was learned from, else what lasts.
+const model::LearnedForce* force_for(const learning::Learned& learned, std::span<const Trial> train,
+                                     std::span<const Trial> validate) {
+  const bool here = std::ranges::all_of(validate, [&](const Trial& judging) {
+    return std::ranges::any_of(train, [&](const Trial& fitted) { return same_run(judging, fitted); });
+  });
+  return here ? learned.here.get() : learned.elsewhere.get();
 }
 
 /// `sigma`: of the best fit's numbers.
@@ -118,15 +93,14 @@ void list_effects(const Conclusion& conclusion, const Eigen::VectorXd& sigma, Di
 
 /// Predictions on runs that no fit has seen, beside the simplest ones. An axis that is foretold worse than by saying
 /// that nothing changes has no model.
-void judge_predictions(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
-                       DiagnosisReport& report, VerdictGiven& given, Conclusion& conclusion,
-                       std::span<const Trial> train) {
+void judge_predictions(const model::Vehicle& vehicle, const model::Model& before, const model::Model& after,
+                       std::span<const Trial> unseen, std::span<const Trial> train, DiagnosisReport& report,
+                       VerdictGiven& given, Conclusion& conclusion) {
   DiagnosisResult& result = report.result;
-  const model::Model before = as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = as_model(conclusion.reported.hypothesis, input_step);
-  const auto residual_before = residuals_of(before, unseen), residual_after = residuals_of(after, unseen);
-  result.error_before.force_rmse = force_rmse(vehicle, residual_before);
-  result.error_after.force_rmse = force_rmse(vehicle, residual_after);
+  const auto residual_before = diagnosis::wrench_residuals(before, unseen),
+             residual_after = diagnosis::wrench_residuals(after, unseen);
+  result.error_before.force_rmse = diagnosis::force_rmse(vehicle, residual_before);
+  result.error_after.force_rmse = diagnosis::force_rmse(vehicle, residual_after);
   result.residual_before = diagnosis::whiteness(before, unseen, residual_before);
   result.residual_after = diagnosis::whiteness(after, unseen, residual_after);
   report.traces = diagnosis::traces_of(unseen, before, after, residual_before, residual_after);
@@ -182,7 +156,7 @@ void seek_reason(const model::Vehicle& vehicle, std::span<const Trial> train, co
 }  // namespace
 
 Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
-                const inference::Settings& settings, const Progress& progress) {
+                const inference::Settings& settings, const Progress& progress, const learning::Settings& learning) {
   Answer answer;
   DiagnosisReport& report = answer.report;
   DiagnosisResult& result = report.result;
@@ -192,15 +166,29 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.validate = names_of(validate);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   result.improvement = {kNaN, kNaN, kNaN};
+  progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
+  learning::Learned learned;
+  if (learning.learn && conclusion.verdict == Verdict::unexplained) {
+    progress.begin(kLearning.phase, kLearning.what);
+    learned = learning::learn(likelihood::make_problem(vehicle, train, settings.runs), train, conclusion, learning,
+                              settings.threads);
+    result.correction = learned.given;
+  }
+  progress.expect(kLearning.phase, 0);
+  const model::LearnedForce* force = force_for(learned, train, validate);
+  const likelihood::Fit& best = force != nullptr ? learned.fit : conclusion.reported;
   std::vector<Trial> unseen;
   double input_step = 0.0;
   for (const Trial& trial : validate) {
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
-  if (conclusion.reported.finite)
-    judge_predictions(vehicle, unseen, input_step, report, answer.given, conclusion, train);
+  if (conclusion.reported.finite) {
+    const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+    const model::Model after = learning::as_model(best.hypothesis, input_step, force);
+    judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
+  }
   if (conclusion.verdict == Verdict::no_model) seek_reason(vehicle, train, settings.thresholds, result, conclusion);
   result.verdict = word(conclusion.verdict);
   result.paragraph = paragraph(conclusion);
@@ -219,7 +207,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
   if (conclusion.reported.finite && conclusion.verdict != Verdict::no_model) {
     result.parameters_before = numbers_of(conclusion.reported_base, deviations(conclusion.found.base.fit));
-    result.parameters_after = numbers_of(conclusion.reported, of_best);
+    result.parameters_after = numbers_of(best, force != nullptr ? best.sigma() : of_best);
   }
   return answer;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/inference/infer.hpp"
+#include "common/learning/learn.hpp"
 #include "common/samples/diagnosis_result.hpp"
 #include "common/samples/verdict_given.hpp"
 
@@ -20,7 +21,7 @@ struct Answer {
 /// Diagnosis of `train`, predictions on `validate`. Consistency findings are the caller's to add.
 [[nodiscard]] Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train,
                               std::span<const Trial> validate, const inference::Settings& settings,
-                              const Progress& progress);
+                              const Progress& progress, const learning::Settings& learning = {});
 
 /// The verdict in plain words.
 [[nodiscard]] std::string paragraph(const inference::Conclusion& conclusion);

@@ -1,7 +1,7 @@
 #include "common/vision/camera_pose.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
@@ -44,11 +44,13 @@ double accumulate(const Projection& projection, const std::vector<Correspondence
 }
 
 cv::Mat planar_objects(const std::vector<Correspondence>& points, Eigen::Matrix3d& R_WS, Eigen::Vector3d& p_WS) {
-  Eigen::Matrix3Xd all{3, static_cast<Eigen::Index>(points.size())};
-  for (std::size_t i = 0; i < points.size(); ++i) all.col(static_cast<Eigen::Index>(i)) = points[i].p_W;
-  p_WS = all.rowwise().mean();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd{all.colwise() - p_WS, Eigen::ComputeFullU};
-  R_WS = svd.matrixU();
+  p_WS.setZero();
+  for (const Correspondence& each : points) p_WS += each.p_W;
+  p_WS /= static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Correspondence& each : points) spread += (each.p_W - p_WS) * (each.p_W - p_WS).transpose();
+  R_WS =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{spread}.eigenvectors().rowwise().reverse();  // widest axis first
   if (R_WS.determinant() < 0.0) R_WS.col(2) *= -1.0;
   cv::Mat objects(static_cast<int>(points.size()), 1, CV_64FC3);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -135,7 +137,12 @@ Pose mirrored(const Pose& pose, const std::vector<Correspondence>& points, const
   const Eigen::Vector3d p_C = pose.R_WC.transpose() * (middle - pose.p_WC);
   const Eigen::Vector3d sight = p_C.normalized(), normal = pose.R_WC.transpose() * normal_W;
   const Eigen::Vector3d other = 2.0 * normal.dot(sight) * sight - normal;
-  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(normal, other).toRotationMatrix();
+  // The smallest turn from one to the other, by Rodrigues; half a turn where the plane is seen edge on.
+  const Eigen::Matrix3d by = skew(normal.cross(other));
+  const double beside = 1.0 + normal.dot(other);
+  const Eigen::Matrix3d turn = beside > 1e-12
+                                   ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() + by + by * by / beside)
+                                   : Eigen::Matrix3d(2.0 * sight * sight.transpose() - Eigen::Matrix3d::Identity());
   Pose result;
   result.R_WC = pose.R_WC * turn.transpose();
   result.p_WC = middle - result.R_WC * p_C;

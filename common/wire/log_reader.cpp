@@ -15,7 +15,7 @@ namespace fathom::wire {
 namespace {
 
 struct Stream {
-  std::function<bool(const LogEvent&)> take;  ///< false: rejected
+  std::function<void(const LogEvent&)> take;
   ChannelCount count;
 };
 
@@ -26,14 +26,23 @@ std::string fingerprint(std::span<const std::uint8_t> bytes) {
   return text.str();
 }
 
+/// What says nothing of the vehicle's motion: of another version it is left out and counted, and the log can be read.
+template <class Sample>
+constexpr bool kBeside =
+    std::is_same_v<Sample, Answer> || std::is_same_v<Sample, Health> || std::is_same_v<Sample, Operator> ||
+    std::is_same_v<Sample, ProcessInfo> || std::is_same_v<Sample, WrenchCommand>;
+
 template <class Message>
-void require_type(const std::string& path, const LogEvent& event) {
-  Message probe{};
+bool holds(const LogEvent& event) {
   std::uint64_t stated = 0;
   for (const std::uint64_t byte : event.data.first(std::min<std::size_t>(event.data.size(), 8))) {
     stated = stated << 8U | byte;
   }
-  if (event.data.size() < 8 || stated == static_cast<std::uint64_t>(probe.getHash())) return;
+  return event.data.size() < 8 || stated == static_cast<std::uint64_t>(Message::getHash());
+}
+
+template <class Message>
+[[noreturn]] void refuse_version(const std::string& path, const LogEvent& event) {
   throw InputError(path + ": byte " + std::to_string(event.offset) + ": channel " + std::string{event.channel} +
                    " does not hold this version's " + Message::getTypeName() + " (fingerprint " +
                    fingerprint(event.data) + "); read the log with the version of Fathom that made it");
@@ -61,8 +70,14 @@ LogContents read_log(const std::string& path) {
     using Sample = typename std::remove_reference_t<decltype(samples)>::value_type;
     Stream& stream = streams[channel];
     stream.take = [&path, &samples, &count = stream.count](const LogEvent& event) {
-      require_type<MessageOf<Sample>>(path, event);
-      return take(event, samples, count);
+      if (!holds<MessageOf<Sample>>(event)) {
+        if constexpr (!kBeside<Sample>) refuse_version<MessageOf<Sample>>(path, event);
+        ++count.other_version;
+      } else if (take(event, samples, count)) {
+        ++count.accepted;
+      } else if (count.rejected++ == 0) {
+        count.first_rejected = event.offset;
+      }
     };
   });
 
@@ -80,17 +95,13 @@ LogContents read_log(const std::string& path) {
       ++contents.report.foreign;
       continue;
     }
-    ChannelCount& count = found->second.count;
-    if (found->second.take(*event)) {
-      ++count.accepted;
-    } else if (count.rejected++ == 0) {
-      count.first_rejected = event->offset;
-    }
+    found->second.take(*event);
   }
   contents.report.events = log.events();
   contents.report.warning = log.warning();
   for (const auto& [channel, stream] : streams) {
-    if (stream.count.accepted + stream.count.rejected > 0) contents.report.channels.emplace(channel, stream.count);
+    if (stream.count.accepted + stream.count.rejected + stream.count.other_version > 0)
+      contents.report.channels.emplace(channel, stream.count);
   }
   if (contents.report.channels.empty() && !known) {
     throw InputError(
@@ -136,6 +147,10 @@ std::string complaints(const std::string& path, const LogReport& report) {
               std::to_string(count.accepted + count.rejected) +
               " messages refused (non-finite number, wrong length or non-unit quaternion), first at byte " +
               std::to_string(count.first_rejected) + "\n";
+    }
+    if (count.other_version > 0) {
+      text += path + ": channel " + channel + ": " + std::to_string(count.other_version) +
+              " messages of another version of Fathom left out\n";
     }
     if (count.late > 0) {
       text += path + ": channel " + channel + ": " + std::to_string(count.late) +

@@ -16,6 +16,7 @@ struct ChannelCount {
   std::uint64_t accepted{};
   std::uint64_t rejected{};        ///< undecodable, a non-finite number, or a quaternion that is not unit
   std::uint64_t first_rejected{};  ///< byte offset of the first of them
+  std::uint64_t other_version{};   ///< of another version's type, left out: says nothing of the vehicle's motion
   std::uint64_t late{};            ///< older than the one before; sorted into place
 };
 

@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -21,8 +20,10 @@
 
 #include "common/base/error.hpp"
 #include "common/board/board.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
@@ -65,7 +66,12 @@ void run(runtime::Process& process, const Options& options) {
   if (process.reads_logs()) throw InputError("--in: the board shows a live bus; play the log with lcm-logplayer");
   const char* bus = std::getenv("LCM_DEFAULT_URL");
   board::Board board{{.host = runtime::host_name(), .pid = getpid(), .bus = bus == nullptr ? "" : bus}};
-  show<fathom_lcm::health_t>(process, wire::kHealth, board);
+  runtime::Speakers speakers{runtime::host_name(), runtime::Speakers::Home::kAnywhere};
+  process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&](const fathom_lcm::health_t& message) {
+    const auto health = wire::decode(message);
+    if (!health || !speakers.believes(message)) return process.reject(wire::kHealth);
+    board.hear(*health, seconds_now());
+  });
   show<fathom_lcm::excitation_t>(process, wire::kExcitation, board);
   show<fathom_lcm::thrusters_t>(process, wire::kThrusters, board);
   show<fathom_lcm::wrench_command_t>(process, wire::kWrenchCommand, board);
@@ -101,8 +107,8 @@ int main(int argc, char** argv) {
   const runtime::Program program{"board", "Serves a page that shows a live trial."};
   return runtime::main(
       program, argc, argv, [&](runtime::Process& process) { run(process, options); },
-      [&](CLI::App& app) {
-        app.add_option("--port", options.port, "of the page (8077); 0: any that is free")->check(CLI::Range(0, 65535));
+      [&](runtime::CommandLine& app) {
+        app.add_option("--port", options.port, "of the page (8077); 0: any that is free")->within(0, 65535);
         app.add_option("--host", options.host, "address to listen at (127.0.0.1: this host alone)");
         app.add_option("--name", options.names,
                        "by which browsers call this host, beside its addresses, its own name and localhost");

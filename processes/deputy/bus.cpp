@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/runtime/self.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/launch.hpp"
 #include "common/wire/minds.hpp"
@@ -27,7 +28,8 @@ Bus::Bus(const std::string& url, const std::string& health_url, Handlers handler
     : handlers_{std::move(handlers)},
       procman_{{live(url)}, {{wire::kLaunchOrders, 100}, {wire::kLaunchInfo, 100}, {wire::kLaunchDiscover, 100}}},
       health_{{live(health_url)}, {{wire::kHealth, 1000}}},
-      output_{live(url)} {}
+      output_{live(url)},
+      speakers_{runtime::host_name(), runtime::Speakers::Home::kAnywhere} {}
 
 std::vector<int> Bus::descriptors() const {
   std::vector<int> all = procman_.descriptors();
@@ -52,7 +54,14 @@ void Bus::serve() {
     if (message->subscription == 1) hand<procman_lcm::deputy_info_t>(*message, handlers_.info);
     if (message->subscription == 2) hand<procman_lcm::discovery_t>(*message, handlers_.discovery);
   }
-  while (const auto message = health_.next()) hand<fathom_lcm::health_t>(*message, handlers_.health);
+  while (const auto message = health_.next()) {
+    const auto word = runtime::message_of<fathom_lcm::health_t>(message->bytes);
+    if (word && !speakers_.believes(*word)) {
+      ++rejected_;
+      continue;
+    }
+    hand<fathom_lcm::health_t>(*message, handlers_.health);
+  }
 }
 
 void Bus::say(const DeputyInfo& info) { runtime::say(output_, wire::kLaunchInfo, wire::encode(info)); }

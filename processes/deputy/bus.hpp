@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/runtime/bus.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/samples/health.hpp"
 #include "common/samples/launch.hpp"
 
@@ -40,6 +41,7 @@ class Bus {
   runtime::LiveInput procman_;
   runtime::LiveInput health_;
   runtime::Output output_;
+  runtime::Speakers speakers_;
   std::uint64_t rejected_{};
 };
 

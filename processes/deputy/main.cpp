@@ -2,7 +2,6 @@
 // may be replaced by procman's own.
 #include <sys/prctl.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 
@@ -13,7 +12,8 @@
 
 int main(int argc, char** argv) {
   using namespace fathom;
-  CLI::App app{"Starts, watches and stops programs on this host as a sheriff orders; procman's protocol.", "deputy"};
+  runtime::CommandLine app{"Starts, watches and stops programs on this host as a sheriff orders; procman's protocol.",
+                           "deputy"};
   deputy::Options options{.name = runtime::host_name(), .url = {}, .allow = {}};
   std::string log;
   app.add_option("-i,--id", options.name, "this deputy's name in configurations (the host's)");
@@ -25,11 +25,7 @@ int main(int argc, char** argv) {
   bool leave{false};
   app.add_flag("--leave-with-parent", leave, "stop everything and end when whoever started it is gone");
   app.add_flag("-v,--verbose", options.verbose, "print what the programs print");
-  try {
-    runtime::parse(app, argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
+  if (const auto code = app.parse_or_tell(argc, argv)) return *code;
   if (leave) prctl(PR_SET_PDEATHSIG, SIGTERM);
   try {
     if (!log.empty() && std::freopen(log.c_str(), "a", stderr) == nullptr) {

@@ -18,6 +18,7 @@
 #include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
 #include "processes/diagnoser/proposals.hpp"
@@ -69,31 +70,22 @@ int main(int argc, char** argv) {
     };
 
     process.publishes<fathom_lcm::effects_t>(wire::kEffects);
-    process.on<fathom_lcm::state_t>(wire::kState, [&](const auto& message) {
-      const auto state = wire::decode(message);
-      if (!state) return process.reject(wire::kState);
-      say(diagnoser.step(*state));
+    process.on<fathom_lcm::state_t>(wire::kState, wire::kDecode,
+                                    [&](const StateEstimate& state) { say(diagnoser.step(state)); });
+    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, wire::kDecode, [&](const Thrusters& thrusters) {
+      say(diagnoser.step(forces.step(thrusters)));
     });
-    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, [&](const auto& message) {
-      const auto thrusters = wire::decode(message);
-      if (!thrusters) return process.reject(wire::kThrusters);
-      say(diagnoser.step(forces.step(*thrusters)));
-    });
-    process.on<fathom_lcm::battery_t>(wire::kBattery, [&](const auto& message) {
-      const auto battery = wire::decode(message);
-      if (!battery) return process.reject(wire::kBattery);
-      forces.step(*battery);
-      say(diagnoser.step(*battery));
+    process.on<fathom_lcm::battery_t>(wire::kBattery, wire::kDecode, [&](const Battery& battery) {
+      forces.step(battery);
+      say(diagnoser.step(battery));
     });
     compare<fathom_lcm::ahrs_t>(process, diagnoser, wire::kAhrs);
     compare<fathom_lcm::dvl_t>(process, diagnoser, wire::kDvl);
     compare<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
     compare<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
-    process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
-      const auto model = wire::decode(message);
-      if (!model) return process.reject(wire::kModel);
-      diagnoser.hear(*model);
-      if (proposals) proposals->hear(*model);
+    process.on<fathom_lcm::model_t>(wire::kModel, wire::kDecode, [&](const ModelEstimate& model) {
+      diagnoser.hear(model);
+      if (proposals) proposals->hear(model);
     });
     process.on_restart([&] {
       diagnoser.reset();

@@ -24,6 +24,7 @@
 #include "common/model/vehicle.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
 
@@ -33,10 +34,8 @@ namespace {
 
 template <class Message, class Mind>
 void hear(runtime::Process& process, Mind& mind, const std::string& channel) {
-  process.on<Message>(channel, [&process, &mind, channel](const Message& message) {
-    const auto sample = wire::decode(message);
-    if (!sample) return process.reject(channel);
-    for (const StateEstimate& state : mind.step(*sample)) process.publish(wire::kState, wire::encode(state));
+  process.on<Message>(channel, wire::kDecode, [&process, &mind](const auto& sample) {
+    for (const StateEstimate& state : mind.step(sample)) process.publish(wire::kState, wire::encode(state));
   });
 }
 
@@ -65,12 +64,10 @@ struct Trial {
 };
 
 void hear_ahrs(Trial& trial) {
-  trial.process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&trial](const auto& message) {
-    const auto sample = wire::decode(message);
-    if (!sample) return trial.process.reject(wire::kAhrs);
-    for (const StateEstimate& state : trial.navigator.step(*sample))
+  trial.process.on<fathom_lcm::ahrs_t>(wire::kAhrs, wire::kDecode, [&trial](const Ahrs& sample) {
+    for (const StateEstimate& state : trial.navigator.step(sample))
       trial.process.publish(wire::kState, wire::encode(state));
-    trial.look(sample->utime);
+    trial.look(sample.utime);
   });
 }
 
@@ -89,7 +86,7 @@ void hear_aid(Trial& trial, const std::string& channel) {
 /// its configuration.
 template <class Message>
 void ignore(runtime::Process& process, const std::string& channel) {
-  process.on<Message>(channel, [](const Message&) {});
+  process.on<Message>(channel, wire::kDecode, [](const auto& /*sample*/) {});
 }
 
 void tell_refused(runtime::Process& process, const std::map<std::string, std::int64_t>& rejected) {
@@ -147,7 +144,13 @@ void run_trial(runtime::Process& process, const Config& config) {
 }
 
 void run_kalman(runtime::Process& process, const Config& config) {
-  estimation::KalmanEstimator estimator{estimation::KalmanSettings::from(config)};
+  const auto settings = estimation::KalmanSettings::from(config);
+  // Offline these places may come from a site's file; here nobody else tells them.
+  if (config.has("ranges") && settings.transponders.empty())
+    config.section("ranges").fail("transponders", "key 'transponders' is missing in 'estimator.ranges'");
+  if (config.has("tags") && settings.tags.empty())
+    config.section("tags").fail("known", "key 'known' is missing in 'estimator.tags'");
+  estimation::KalmanEstimator estimator{settings};
   hear<fathom_lcm::pose_capture_t>(process, estimator, wire::kPoseCapture);
   hear<fathom_lcm::ahrs_t>(process, estimator, wire::kAhrs);
   hear<fathom_lcm::dvl_t>(process, estimator, wire::kDvl);

@@ -4,7 +4,6 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -18,6 +17,7 @@
 #include <map>
 #include <memory>
 
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/stop_signal.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
@@ -182,10 +182,11 @@ void run_bus(const BusOptions& options) {
 
 }  // namespace
 
-void add_bus(CLI::App& app) {
+void add_bus(runtime::CommandLine& app) {
   auto options = std::make_shared<BusOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
-  CLI::App* command = app.add_subcommand("bus", "what a live bus loses and how long it takes: a table, at Ctrl-C");
+  runtime::CommandLine* command =
+      app.add_subcommand("bus", "what a live bus loses and how long it takes: a table, at Ctrl-C");
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
   command->add_option("--seconds", options->seconds, "end after so long");
   command->callback([options] { run_bus(*options); });

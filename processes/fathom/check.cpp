@@ -1,5 +1,4 @@
 // fathom check: do the sensors of these recordings agree with each other? Nothing is fitted.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -16,8 +15,11 @@
 #include "common/estimation/split.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
+#include "common/recordings/worth.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 #include "processes/fathom/mended_map.hpp"
 #include "processes/fathom/recordings.hpp"
 
@@ -44,8 +46,13 @@ void run_check(const CheckOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   std::vector<std::string> notes;
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
-  std::vector<Recording> recordings = read_recordings(options.runs, options.map, notes, vehicle.dof);
+  const std::vector<std::string> runs = paths_of(options.runs);
+  std::vector<Recording> recordings = read_recordings(runs, options.map, notes, vehicle.dof);
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  for (const Recording& recording : recordings) {
+    for (const std::string& reason : recordings::against_fitting(recording))
+      std::printf("%s: ! %s\n", recording.name.c_str(), reason.c_str());
+  }
   const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
   consistency::ConsistencyResult result = consistency::check_consistency(recordings);
   result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
@@ -70,7 +77,7 @@ void run_check(const CheckOptions& options) {
     print(result.findings);
   }
   if (!options.write_map.empty()) {
-    for (const std::string& note : write_mended_map(options.write_map, options.map, options.runs, result.corrections))
+    for (const std::string& note : write_mended_map(options.write_map, options.map, runs, result.corrections))
       std::printf("%s: %s\n", options.write_map.c_str(), note.c_str());
     std::printf("%s: the map as it should be\n", options.write_map.c_str());
   }
@@ -90,13 +97,13 @@ void run_check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app) {
+void add_check(runtime::CommandLine& app) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
+  runtime::CommandLine* command = app.add_subcommand("check", "compare the sensors of recordings with each other");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site,
                       "site file (YAML): optical flow is compared with the tags of its map, too");
-  command->add_option("runs", options->runs, ".lcmlog or .csv files")->required();
+  command->add_option("runs", options->runs, "recordings: files, folders or patterns")->required();
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--write-map", options->write_map,
                       "write the map of the tables as it should be to this file: conventions, heading, unit");

@@ -3,32 +3,36 @@
 
 #include <string>
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
+namespace fathom::runtime {
+class CommandLine;
 }
 
 namespace fathom::tool {
 
-void add_import(CLI::App& app);
-void add_check(CLI::App& app);
-void add_diagnose(CLI::App& app);
-void add_compare(CLI::App& app);
-void add_smooth(CLI::App& app);
-void add_regress(CLI::App& app);
-void add_methods(CLI::App& app);
-void add_plan(CLI::App& app);
+void add_import(runtime::CommandLine& app);
+void add_check(runtime::CommandLine& app);
+void add_diagnose(runtime::CommandLine& app);
+void add_compare(runtime::CommandLine& app);
+void add_smooth(runtime::CommandLine& app);
+void add_regress(runtime::CommandLine& app);
+void add_methods(runtime::CommandLine& app);
+void add_plan(runtime::CommandLine& app);
 
-/// Two vehicle files flown through one manoeuvre; the second may be a file of coefficients for the first one's vehicle.
-void compare_manoeuvre(const std::string& first, const std::string& second, const std::string& name,
-                       const std::string& plot);
-void add_decode(CLI::App& app);
-void add_emulate(CLI::App& app);
-void add_operator(CLI::App& app);
-void add_doctor(CLI::App& app);
-void add_repair_log(CLI::App& app);
-void add_pictures(CLI::App& app);
-void add_trial(CLI::App& app);
-void add_watch(CLI::App& app);
-void add_bus(CLI::App& app);
+/// Two vehicle files flown through one manoeuvre, or files of coefficients: for `vehicle`, or for the first one's.
+struct ManoeuvreComparison {
+  std::string first, second, name, plot, vehicle;
+  bool over{false};  ///< coefficients stand over the vehicle's own, which fill the gaps of an incomplete set
+};
+void compare_manoeuvre(const ManoeuvreComparison& asked);
+void add_decode(runtime::CommandLine& app);
+void add_emulate(runtime::CommandLine& app);
+void add_operator(runtime::CommandLine& app);
+void add_doctor(runtime::CommandLine& app);
+void add_repair_log(runtime::CommandLine& app);
+void add_pictures(runtime::CommandLine& app);
+void add_trial(runtime::CommandLine& app);
+void add_watch(runtime::CommandLine& app);
+void add_bus(runtime::CommandLine& app);
+void add_vehicle(runtime::CommandLine& app);
 
 }  // namespace fathom::tool

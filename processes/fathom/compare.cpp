@@ -1,12 +1,12 @@
 // fathom compare: do two logs end with the same model, or with --intervals one that agrees? With --manoeuvre: do two
 // sets of derivatives fly alike?
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/log_reader.hpp"
 #include "processes/fathom/commands.hpp"
 
@@ -14,8 +14,8 @@ namespace fathom::tool {
 namespace {
 
 struct CompareOptions {
-  std::string first, second, manoeuvre, plot;
-  bool intervals{false};
+  std::string first, second, manoeuvre, plot, vehicle;
+  bool intervals{false}, over{false};
 };
 
 ModelEstimate last_model(const std::string& path) {
@@ -46,7 +46,12 @@ void compare_intervals(const ModelEstimate& a, const ModelEstimate& b) {
 
 void run_compare(const CompareOptions& options) {
   if (!options.manoeuvre.empty()) {
-    compare_manoeuvre(options.first, options.second, options.manoeuvre, options.plot);
+    compare_manoeuvre({.first = options.first,
+                       .second = options.second,
+                       .name = options.manoeuvre,
+                       .plot = options.plot,
+                       .vehicle = options.vehicle,
+                       .over = options.over});
     return;
   }
   const ModelEstimate a = last_model(options.first), b = last_model(options.second);
@@ -68,15 +73,17 @@ void run_compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
+void add_compare(runtime::CommandLine& app) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
+  runtime::CommandLine* command =
       app.add_subcommand("compare", "do two logs end with the same MODEL, or do two vehicles fly a manoeuvre alike?");
   command->add_option("first", options->first, "LCM log; with --manoeuvre a vehicle file")->required();
   command->add_option("second", options->second, "LCM log; with --manoeuvre a vehicle file, or coefficients alone")
       ->required();
   command->add_flag("--intervals", options->intervals, "not the same bits: do the parameters' 95 % intervals meet?");
   command->add_option("--manoeuvre", options->manoeuvre, "line, zigzag or circle: fly both and compare");
+  command->add_option("--vehicle", options->vehicle, "of --manoeuvre: whose coefficients both files are");
+  command->add_flag("--over", options->over, "coefficients alone: over the vehicle's own, which fill what they lack");
   command->add_option("--plot", options->plot, "write the two tracks of the manoeuvre to this SVG file");
   command->callback([options] { run_compare(*options); });
 }

@@ -1,5 +1,4 @@
 // fathom decode: recorded bytes of an instrument to a table: what it said, in its own units, beside what that means.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
@@ -8,6 +7,7 @@
 #include "common/devices/protocols.hpp"
 #include "common/devices/sample_fields.hpp"
 #include "common/link/raw_log.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -106,9 +106,9 @@ void run_decode(const DecodeOptions& options) {
 
 }  // namespace
 
-void add_decode(CLI::App& app) {
+void add_decode(runtime::CommandLine& app) {
   auto options = std::make_shared<DecodeOptions>();
-  CLI::App* command = app.add_subcommand("decode", "recorded bytes of an instrument to a table");
+  runtime::CommandLine* command = app.add_subcommand("decode", "recorded bytes of an instrument to a table");
   std::string known = "one of:";
   for (const devices::Protocol& each : devices::protocols()) {
     known += "\n" + std::string{each.name} + ": " + std::string{each.title};

@@ -1,6 +1,5 @@
 // fathom diagnose: closes the loop on recordings. Sensors are checked, the base model fitted, its residual traced to
 // effects that it lacks, and the error before and after reported on runs that no fit has seen.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -19,6 +18,7 @@
 #include "common/consistency/thruster_clock.hpp"
 #include "common/diagnosis/diagnoser.hpp"
 #include "common/diagnosis/force_unit.hpp"
+#include "common/diagnosis/implausible.hpp"
 #include "common/diagnosis/sensor_faults.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
@@ -27,10 +27,14 @@
 #include "common/estimation/wording.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
+#include "common/recordings/worth.hpp"
+#include "common/report/folds.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/verdict/by_likelihood.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/rehearsals.hpp"
 #include "processes/fathom/search_progress.hpp"
@@ -58,8 +62,10 @@ struct DiagnoseOptions {
   std::vector<std::string> train, validate;
   std::vector<std::string> without;
   std::string core{kTrajectories};
+  bool no_learning{false};
   int threads{2};
   double time_budget{std::numeric_limits<double>::infinity()};
+  int folds{0};
 };
 
 void check_names(const std::vector<std::string>& without) {
@@ -152,9 +158,12 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   check_names(options.without);
   if (!options.without.empty() && options.core != kLikelihood)
     throw InputError("--without takes effects out of the list of --core likelihood alone; give that too");
+  if (options.no_learning && options.core != kLikelihood)
+    throw InputError("--no-learning is about --core likelihood alone; give that too");
   make_folder(options.out);
-  std::vector<std::string> paths = options.train;
-  paths.insert(paths.end(), options.validate.begin(), options.validate.end());
+  std::vector<std::string> paths = paths_of(options.train);
+  const std::size_t fitted_runs = paths.size();
+  std::ranges::move(paths_of(options.validate), std::back_inserter(paths));
   const auto runs = static_cast<double>(paths.size());
   progress.expect(kReading, runs, kLight);
   progress.expect(kSensors, 1, kLight * runs);
@@ -163,12 +172,15 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   progress.expect(kDiagnosis, 1, kGuessedDiagnosis);
   progress.begin(kReading, "reading recordings");
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
-  const std::size_t fitted_runs = options.train.size();
   sort_by_time(std::span{recordings}.first(fitted_runs), std::span{paths}.first(fitted_runs));
   sort_by_time(std::span{recordings}.subspan(fitted_runs), std::span{paths}.subspan(fitted_runs));
   for (Recording& recording : recordings) {
     if (!estimation::take_state_as_measured(recording)) continue;
     notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
+  }
+  for (const Recording& recording : recordings) {
+    for (const std::string& reason : recordings::against_fitting(recording))
+      notes.push_back(recording.name + ": ! " + reason);
   }
 
   progress.done(kReading, runs);
@@ -217,7 +229,8 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
     if (options.core == kLikelihood) {
       verdict::Answer answer = verdict::diagnose(
           vehicle, out.fitting->trials(), out.judging->trials(),
-          {.without = options.without, .threads = options.threads, .time_budget = options.time_budget}, progress);
+          {.without = options.without, .threads = options.threads, .time_budget = options.time_budget}, progress,
+          {.learn = !options.no_learning});
       out.report = std::move(answer.report);
       out.given = std::move(answer.given);
       return;
@@ -262,6 +275,8 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   diagnosis::adopt_sensor_faults(report.result);
   if (auto finding = diagnosis::compare_inertia(vehicle, report.result.parameters_after))
     report.result.consistency.push_back(*std::move(finding));
+  std::ranges::move(diagnosis::implausible_numbers(vehicle, report.result.parameters_after),
+                    std::back_inserter(report.result.consistency));
   const double left_out = (fitting.left_out() + judging.left_out()) / (fitting.whole() + judging.whole());
   if (left_out > kNotable) {
     report.result.paragraph += estimation::text(
@@ -271,7 +286,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   return std::move(explained.report);
 }
 
-void run_diagnose(const DiagnoseOptions& options) {
+DiagnosisResult run_once(const DiagnoseOptions& options) {
   std::vector<std::string> notes;
   DiagnosisReport report;
   VerdictGiven given;
@@ -288,18 +303,44 @@ void run_diagnose(const DiagnoseOptions& options) {
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   std::printf("%s\nresult %s\nreport %s\ntook   %.1f s\n", report::to_table(report.result).c_str(),
               written.json.c_str(), written.html.c_str(), elapsed);
+  return std::move(report.result);
+}
+
+void run_diagnose(const DiagnoseOptions& options) {
+  if (options.folds == 0) {
+    static_cast<void>(run_once(options));
+    return;
+  }
+  if (!options.validate.empty())
+    throw InputError("--folds holds recordings out by itself; give all of them to --train, and no --validate");
+  std::vector<DiagnosisResult> results;
+  for (const report::Fold& fold : report::folds_of(paths_of(options.train), options.folds)) {
+    DiagnoseOptions one = options;
+    one.train = fold.fitted;
+    one.validate = fold.held_out;
+    one.out = options.out + "/fold-" + std::to_string(results.size() + 1);
+    std::printf("fold %zu: %zu recordings fitted, %zu held out\n", results.size() + 1, fold.fitted.size(),
+                fold.held_out.size());
+    results.push_back(run_once(one));
+  }
+  std::printf("\n%s", report::fold_table(results).c_str());
 }
 
 }  // namespace
 
-void add_diagnose(CLI::App& app) {
+void add_diagnose(runtime::CommandLine& app) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
+  runtime::CommandLine* command = app.add_subcommand("diagnose", "find what a vehicle's model lacks");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
-  command->add_option("--train", options->train, ".lcmlog or .csv files to fit")->required();
+  command->add_option("--train", options->train, "recordings to fit: files, folders or patterns")->required();
   command->add_option(
       "--validate", options->validate,
-      "files to judge by; without: the last 30 % of every run, or other parts when something begins there");
+      "recordings to judge by; without: the last 30 % of every run, or other parts when something begins there");
+  command
+      ->add_option("--folds", options->folds,
+                   "judge every recording once, by what is found on the others: in this many parts, each a diagnosis "
+                   "in a folder of its own")
+      ->within(2, 100);
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--site", options->site,
                       "site file: what to fly there to tell look-alikes apart is computed, and optical flow is "
@@ -308,16 +349,18 @@ void add_diagnose(CLI::App& app) {
   command
       ->add_option("--core", options->core,
                    "trajectories: windows of open-loop rollouts; likelihood: an innovations filter over whole runs")
-      ->check(CLI::IsMember({kTrajectories, kLikelihood}));
+      ->one_of({kTrajectories, kLikelihood});
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
   command
       ->add_option("--time-budget", options->time_budget,
                    "with --core likelihood: s for the search; what is not asked by then is said to be open")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--no-learning", options->no_learning,
+                    "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
-      ->check(CLI::Range(1, 64));
+      ->within(1, 64);
   command->callback([options] { run_diagnose(*options); });
 }
 

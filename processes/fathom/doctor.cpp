@@ -1,12 +1,12 @@
 // fathom doctor: is this host ready for a trial?
 #include "processes/fathom/doctor.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -43,12 +43,12 @@ void run_doctor(const DoctorOptions& options) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app) {
+void add_doctor(runtime::CommandLine& app) {
   auto options = std::make_shared<DoctorOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
   if (const char* run = std::getenv("FATHOM_RUN"); run != nullptr && *run != '\0') options->folder = run;
   if (const char* file = std::getenv("FATHOM_OPERATOR"); file != nullptr) options->operator_file = file;
-  CLI::App* command =
+  runtime::CommandLine* command =
       app.add_subcommand("doctor", "is this host ready: programs, network, buffers, clock, disk, devices");
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
   command->add_option("--config", options->config, "the drivers' file: are its devices there and ours?");

@@ -1,6 +1,5 @@
 // fathom emulate: plays an instrument at a pseudo-terminal or a TCP port, at its real rate, and answers what a driver
 // asks, so that a whole chain can be tried without hardware.
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include "common/devices/protocols.hpp"
 #include "common/link/raw_log.hpp"
 #include "common/link/server.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -117,18 +117,19 @@ void run_emulate(const EmulateOptions& options) {
 
 }  // namespace
 
-void add_emulate(CLI::App& app) {
+void add_emulate(runtime::CommandLine& app) {
   auto options = std::make_shared<EmulateOptions>();
-  CLI::App* command = app.add_subcommand("emulate", "play an instrument at a pseudo-terminal or a TCP port");
+  runtime::CommandLine* command =
+      app.add_subcommand("emulate", "play an instrument at a pseudo-terminal or a TCP port");
   command->add_option("protocol", options->protocol, "as for decode")->required();
   command->add_option("--to", options->to, "pty (its name is printed), pty:PATH (a link to it), or tcp:PORT")
       ->required();
   command->add_option("--file", options->file,
                       "bytes to play: of a driver's 'record', or bare; left out: a gentle curve");
   command->add_option("--rate", options->rate, "reports per second; left out: as the instrument does")
-      ->check(CLI::Range(1e-3, 1e4));
+      ->within(1e-3, 1e4);
   command->add_option("--seconds", options->seconds, "ends after this time; left out: never, or with the file")
-      ->check(CLI::NonNegativeNumber);
+      ->not_negative();
   command->add_option("--sent", options->sent, "writes what was sent to this file");
   command
       ->add_option("--condition", options->conditions,

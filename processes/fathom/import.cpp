@@ -1,15 +1,21 @@
 // fathom import: recordings of others to an LCM log, each stream on the channel that a driver would use.
-#include <CLI/CLI.hpp>
+#include "common/tables/import.hpp"
+
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include "common/base/error.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/recordings/merge.hpp"
 #include "common/recordings/worth.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
@@ -36,7 +42,7 @@ std::map<std::string, double> shifts_of(const ImportOptions& options, const std:
     } catch (const std::exception&) {
       used = 0;
     }
-    if (used == 0 || equal + 1 + used != text.size())
+    if (used == 0 || equal + 1 + used != text.size() || !std::isfinite(seconds))
       throw InputError("--shift " + text + ": must be NAME=SECONDS, NAME being one of the files");
     const std::string name = text.substr(0, equal);
     const bool known = std::ranges::any_of(sources, [&](const Source& each) {
@@ -57,22 +63,74 @@ std::optional<double> shift_of(const Source& source, const std::map<std::string,
   return std::nullopt;
 }
 
-void write(const Recording& recording, const std::string& path) {
-  for (const std::string& reason : recordings::against_fitting(recording))
-    std::printf("%s: ! %s\n", path.c_str(), reason.c_str());
-  const std::uint64_t events = wire::write_log(recording, path);
-  std::printf("%s: %llu messages (%s)\n", path.c_str(), static_cast<unsigned long long>(events),
-              counts(recording).c_str());
+/// Names of logs in one folder: the recording's, with its folder's in front where two have the same.
+std::vector<std::string> names_of(const std::vector<Source>& sources) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Source& source : sources) {
+    std::string name = source.name;
+    if (taken.contains(name))
+      name = std::filesystem::absolute(source.files.front()).parent_path().filename().string() + "-" + name;
+    if (!taken.insert(name).second)
+      throw InputError(source.files.front() + ": another recording is named " + name + "; give it a folder of its own");
+    names.push_back(name);
+  }
+  return names;
+}
+
+void refuse_source(const std::string& path, const std::vector<Source>& sources) {
+  for (const Source& source : sources) {
+    for (const std::string& file : source.files) {
+      std::error_code unknown;
+      if (std::filesystem::equivalent(file, path, unknown))
+        throw InputError(path + ": is read from; give the new log another name");
+    }
+  }
+}
+
+void say(const recordings::Worth& worth, wire::LogWriter& log, const std::string& path) {
+  const std::uint64_t events = log.finish();
+  for (const std::string& reason : worth.against_fitting()) std::printf("%s: ! %s\n", path.c_str(), reason.c_str());
+  std::printf("%s: %llu messages (%s)\n", path.c_str(), static_cast<unsigned long long>(events), log.counts().c_str());
+}
+
+void write(const Recording& recording, const std::string& path, const std::vector<Source>& sources) {
+  refuse_source(path, sources);
+  recordings::Worth worth;
+  wire::LogWriter log{path};
+  worth.take(recording);
+  log.append(recording);
+  say(worth, log, path);
+}
+
+/// A table to a log, some rows after the others: its samples never stand in memory together.
+void write_table(const Source& source, const std::string& map, const std::optional<tables::SimulatedAxes>& simulated,
+                 std::optional<double> shift, const std::string& path, const std::vector<Source>& sources) {
+  constexpr std::size_t kRows = 50'000;
+  refuse_source(path, sources);
+  tables::MappedTable mapped = tables::read_mapped(source.files.front(), map);
+  tables::TableImport import{mapped.table, std::move(mapped.map), simulated};
+  recordings::Worth worth;
+  wire::LogWriter log{path};
+  for (Recording part{.name = source.name}; import.next(kRows, part); part = {.name = source.name}) {
+    if (shift) recordings::shift(part, *shift);
+    worth.take(part);
+    log.append(part);
+  }
+  for (const auto& notes : {mapped.notes, import.finish()}) {
+    for (const std::string& note : notes) std::printf("%s: %s\n", source.files.front().c_str(), note.c_str());
+  }
+  say(worth, log, path);
 }
 
 /// All runs that came, each to a log of its own; `out` with the run's number where there are several.
-void write_each(const std::vector<Recording>& runs, const std::string& out) {
+void write_each(const std::vector<Recording>& runs, const std::string& out, const std::vector<Source>& sources) {
   const std::filesystem::path path{out};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::filesystem::path own = path;
     if (runs.size() > 1)
       own.replace_filename(path.stem().string() + "-" + std::to_string(i + 1) + path.extension().string());
-    write(runs[i], own.string());
+    write(runs[i], own.string(), sources);
   }
 }
 
@@ -95,19 +153,26 @@ void run_import(const ImportOptions& options) {
   const bool folder = options.out.ends_with('/') || std::filesystem::is_directory(options.out);
   const std::map<std::string, double> shifts = shifts_of(options, sources);
   if (folder && !shifts.empty()) throw InputError("--shift is for files of one run; --out names a folder of several");
+  const std::vector<std::string> names = folder ? names_of(sources) : std::vector<std::string>{};
   std::vector<Recording> parts;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::string map = options.maps.empty() ? "" : options.maps[options.maps.size() == 1 ? 0 : i];
+    if (folder) std::filesystem::create_directories(options.out);
+    if (sources[i].is_table() && (folder || sources.size() == 1)) {
+      write_table(sources[i], map, simulated, shift_of(sources[i], shifts),
+                  folder ? (std::filesystem::path(options.out) / (names[i] + ".lcmlog")).string() : options.out,
+                  sources);
+      continue;
+    }
     FromSource read = read_source(sources[i], map, simulated);
     for (const std::string& note : read.notes) std::printf("%s\n", note.c_str());
     if (folder) {
-      std::filesystem::create_directories(options.out);
-      write_each(read.runs, (std::filesystem::path(options.out) / (sources[i].name + ".lcmlog")).string());
+      write_each(read.runs, (std::filesystem::path(options.out) / (names[i] + ".lcmlog")).string(), sources);
     } else if (sources.size() == 1) {
       if (const auto shift = shift_of(sources[i], shifts)) {
         for (Recording& each : read.runs) recordings::shift(each, *shift);
       }
-      write_each(read.runs, options.out);
+      write_each(read.runs, options.out, sources);
     } else if (read.runs.size() > 1) {
       throw InputError(sources[i].files.front() + ": holds " + std::to_string(read.runs.size()) +
                        " recordings, one behind the other; import it alone first, then merge what comes of it");
@@ -122,14 +187,14 @@ void run_import(const ImportOptions& options) {
   std::vector<std::string> notes;
   const Recording merged = recordings::merge(std::move(parts), stated, notes);
   for (const std::string& note : notes) std::printf("%s\n", note.c_str());
-  write(merged, options.out);
+  write(merged, options.out, sources);
 }
 
 }  // namespace
 
-void add_import(CLI::App& app) {
+void add_import(runtime::CommandLine& app) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand("import", "recordings of others to an LCM log");
+  runtime::CommandLine* command = app.add_subcommand("import", "recordings of others to an LCM log");
   std::string known = "files, folders or patterns: tables of text";
   for (const recordings::Format& format : recordings::formats()) known += ", " + std::string{format.title};
   command->add_option("data", options->data, known)->required();

@@ -57,6 +57,23 @@ bool is_bag(const std::string& extension) {
   return extension == ".db3" || extension == ".mcap" || extension == ".zstd";
 }
 
+/// "bag_2.db3" before "bag_10.db3": a number within a name counts as one.
+bool before(const fs::path& one, const fs::path& other) {
+  const std::string a = one.string(), b = other.string();
+  const auto run = [](const std::string& text, std::size_t at) {
+    return std::min(text.find_first_not_of("0123456789", at), text.size()) - at;
+  };
+  for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();) {
+    const std::size_t digits = run(a, i), others = run(b, k);
+    if (digits > 0 && others > 0 && digits != others) return digits < others;
+    const std::size_t count = digits > 0 && others > 0 ? digits : 1;
+    if (const int order = a.compare(i, count, b, k, count); order != 0) return order < 0;
+    i += count;
+    k += count;
+  }
+  return a.size() < b.size();
+}
+
 void take_folder(const fs::path& folder, std::vector<Source>& sources) {
   std::vector<fs::path> files;
   bool bag = fs::exists(folder / "metadata.yaml");
@@ -66,14 +83,11 @@ void take_folder(const fs::path& folder, std::vector<Source>& sources) {
     files.push_back(entry.path());
     only_parts = only_parts && (entry.path().extension() == ".db3" || entry.path().filename() == "metadata.yaml");
   }
-  std::ranges::sort(files);
+  std::ranges::sort(files, before);
   bag = bag || (only_parts && !files.empty());
-  Source whole{.name =
-                   fs::path(folder.lexically_normal().string().ends_with('/') ? folder.lexically_normal().parent_path()
-                                                                              : folder.lexically_normal())
-                       .filename()
-                       .string()};
-  std::size_t before = sources.size();
+  const fs::path plain = folder.lexically_normal();
+  Source whole{.name = (plain.has_filename() ? plain : plain.parent_path()).filename().string()};
+  const std::size_t known = sources.size();
   for (const fs::path& file : files) {
     const std::string extension = file.extension().string();
     if (bag) {
@@ -90,7 +104,7 @@ void take_folder(const fs::path& folder, std::vector<Source>& sources) {
       sources.push_back(source_of(file.string()));
   }
   if (bag && !whole.files.empty()) sources.push_back(whole);
-  if (sources.size() == before)
+  if (sources.size() == known)
     throw InputError(folder.string() + ": holds no recording; known are: " + known_formats());
 }
 

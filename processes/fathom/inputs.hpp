@@ -17,6 +17,8 @@ struct Source {
   std::vector<std::string> files;
   const recordings::Format* format{};  ///< null: a table of text, or an LCM log
   bool lcm{};
+
+  [[nodiscard]] bool is_table() const { return format == nullptr && !lcm; }
 };
 
 /// Folders become the recordings in them, patterns ("dives/*.BIN") the files that match. A folder that is one recording

@@ -3,7 +3,7 @@
 #include "processes/fathom/commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Explains from recordings why an underwater vehicle moves as it does.", "fathom"};
+  fathom::runtime::CommandLine app{"Explains from recordings why an underwater vehicle moves as it does.", "fathom"};
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
@@ -21,5 +21,6 @@ int main(int argc, char** argv) {
   fathom::tool::add_watch(app);
   fathom::tool::add_bus(app);
   fathom::tool::add_trial(app);
-  return fathom::runtime::run_command_line(app, argc, argv);
+  fathom::tool::add_vehicle(app);
+  return app.run(argc, argv);
 }

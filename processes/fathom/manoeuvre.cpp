@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -18,13 +19,23 @@ using Flight = std::vector<model::FlightMoment>;
 
 constexpr double kEvery = 0.1;  // s
 
-/// A vehicle file, or a file of coefficients alone for the vehicle `base`.
-model::Vehicle vehicle_of(const std::string& path, const model::Vehicle* base) {
+/// A vehicle file, or a file of coefficients alone for the vehicle `base`: in place of all of its own, or `over` them.
+model::Vehicle vehicle_of(const std::string& path, const model::Vehicle* base, bool over) {
   const Config config = Config::load(path);
+  if (base == nullptr && !config.has("name"))
+    throw InputError(path + ": coefficients alone; name the vehicle that they are for (--vehicle)");
   if (base == nullptr || config.has("name")) return model::Vehicle::load(path);
   model::Vehicle vehicle = *base;
-  vehicle.hydrodynamics->coefficients = model::read_coefficients(config.section("coefficients"));
+  if (!vehicle.hydrodynamics) throw InputError(base->name + ": the vehicle file has no section hydrodynamics");
+  std::vector<model::ManoeuvringCoefficient> own = std::move(vehicle.hydrodynamics->coefficients);
+  auto& set = vehicle.hydrodynamics->coefficients;
+  set = model::read_coefficients(config.section("coefficients"));
+  if (config.has("source")) static_cast<void>(config.text("source"));
   config.finish();
+  std::erase_if(own, [&](const auto& one) {
+    return std::ranges::find(set, one.term, &model::ManoeuvringCoefficient::term) != set.end();
+  });
+  if (over) set.insert(set.end(), own.begin(), own.end());
   return vehicle;
 }
 
@@ -102,16 +113,29 @@ std::string axes(const Flight& one, const Flight& two, const report::Figure& fig
 
 }  // namespace
 
-void compare_manoeuvre(const std::string& first, const std::string& second, const std::string& name,
-                       const std::string& plot) {
-  const model::Vehicle a = vehicle_of(first, nullptr);
-  const model::Vehicle b = vehicle_of(second, &a);
+void compare_manoeuvre(const ManoeuvreComparison& asked) {
+  const auto& [first, second, name, plot, vehicle, over] = asked;
+  std::optional<model::Vehicle> base;
+  if (!vehicle.empty()) base = model::Vehicle::load(vehicle);
+  const model::Vehicle a = vehicle_of(first, base ? &*base : nullptr, over);
+  const model::Vehicle b = vehicle_of(second, base ? &*base : &a, over);
   model::Manoeuvre manoeuvre;
   manoeuvre.kind = model::manoeuvre_from(name);
-  const Flight one = model::fly(a, manoeuvre, kEvery), two = model::fly(b, manoeuvre, kEvery);
+  std::optional<model::Divergence> lost_a, lost_b;
+  Flight one = model::fly(a, manoeuvre, kEvery, nullptr, &lost_a);
+  Flight two = model::fly(b, manoeuvre, kEvery, nullptr, &lost_b);
+  const auto tell = [](const std::string& path, const std::optional<model::Divergence>& lost) {
+    if (lost) std::printf("%s %s; compared until then\n", label(path).c_str(), lost->text().c_str());
+  };
+  tell(first, lost_a);
+  tell(second, lost_b);
+  const std::size_t both = std::min(one.size(), two.size());
+  if (both < 2) throw InputError("the motion of one set is lost at once; there is nothing to compare");
+  one.resize(both);
+  two.resize(both);
   const Figures x = figures_of(one, manoeuvre), y = figures_of(two, manoeuvre);
   std::printf("%s, %.0f s, the same thrusters' rule for both; means over the second half\n%-28s %12s %12s\n",
-              name.c_str(), manoeuvre.duration, "", "first", "second");
+              name.c_str(), one.back().t, "", "first", "second");
   line("speed", x.speed, y.speed, "m/s");
   line("drift angle", x.drift, y.drift, "rad");
   line("pitch", x.pitch, y.pitch, "rad");

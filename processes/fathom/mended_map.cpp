@@ -21,6 +21,9 @@ using estimation::VectorFrame;
 constexpr double kSameHeading = 0.5 * kDegree;
 constexpr double kNoTurn = 0.05;  // of a matrix: less is no other axes, but small angles that a map does not hold
 
+/// The turn of whole axes that a matrix holds, small angles left out.
+Eigen::Matrix3d whole_of(const Eigen::Matrix3d& axes) { return axes.array().round().matrix(); }
+
 void mend_attitude(tables::AttitudeColumns& attitude, const Corrections& c) {
   const bool last = c.quaternion == QuaternionForm::kScalarLast || c.quaternion == QuaternionForm::kScalarLastInverse;
   const bool inverse = c.quaternion == QuaternionForm::kInverse || c.quaternion == QuaternionForm::kScalarLastInverse;
@@ -34,13 +37,13 @@ void mend_attitude(tables::AttitudeColumns& attitude, const Corrections& c) {
   }
   attitude.world_to_house = c.attitude_world * attitude.world_to_house;
   // Only whole turns of axes; small angles are a mount's.
-  const Eigen::Matrix3d whole = c.attitude_axes.array().round().matrix();
+  const Eigen::Matrix3d whole = whole_of(c.attitude_axes);
   if (std::abs(whole.determinant() - 1.0) < 1e-9) attitude.body_to_house = whole.transpose() * attitude.body_to_house;
   attitude.heading_offset = std::remainder(attitude.heading_offset + c.heading, 360.0 * kDegree);
 }
 
 bool is_whole(const Eigen::Matrix3d& matrix) {
-  return (matrix - matrix.array().round().matrix()).norm() < kNoTurn && !matrix.array().round().matrix().isIdentity();
+  return (matrix - whole_of(matrix)).norm() < kNoTurn && !whole_of(matrix).isIdentity();
 }
 
 }  // namespace
@@ -51,8 +54,12 @@ std::vector<std::string> mend(tables::ColumnMap& map, std::span<const Correction
   const Corrections& c = corrections.front();
   for (const Corrections& other : corrections) {
     const bool same = other.quaternion == c.quaternion && other.heading_sense == c.heading_sense &&
-                      other.attitude_world == c.attitude_world && other.position_axes == c.position_axes &&
-                      other.velocity_frame == c.velocity_frame && other.rates_frame == c.rates_frame &&
+                      other.attitude_world == c.attitude_world &&
+                      whole_of(other.attitude_axes) == whole_of(c.attitude_axes) &&
+                      other.position_axes == c.position_axes && other.position_scale == c.position_scale &&
+                      other.velocity_frame == c.velocity_frame && other.velocity_world == c.velocity_world &&
+                      other.rates_frame == c.rates_frame && other.rates_world == c.rates_world &&
+                      other.dvl.base == c.dvl.base && other.gyro.base == c.gyro.base &&
                       std::abs(std::remainder(other.heading - c.heading, 360.0 * kDegree)) < kSameHeading;
     if (!same)
       throw InputError(
@@ -62,7 +69,11 @@ std::vector<std::string> mend(tables::ColumnMap& map, std::span<const Correction
   if (map.pose_capture && map.pose_capture->position) {
     tables::ColumnGroup& position = *map.pose_capture->position;
     position.to_house = c.position_axes * position.to_house;
-    if (!map.pose_capture->geodetic) position.factor *= c.position_scale;
+    if (!map.pose_capture->geodetic) {
+      position.factor *= c.position_scale;
+    } else if (c.position_scale != 1.0) {
+      notes.emplace_back("a map scales no latitudes and longitudes; the position's scale stays with the sensor check");
+    }
   }
   if (map.pose_capture && map.pose_capture->attitude) {
     mend_attitude(*map.pose_capture->attitude, c);

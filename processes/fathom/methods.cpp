@@ -1,32 +1,36 @@
 // fathom methods: the same recordings identified twice, by complementary filters with recursive least squares (Karras
 // et al.) and by a Kalman smoother with regression under AR(1) (Pereira and Duncan), in one table.
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <memory>
+#include <optional>
+#include <ranges>
 
-#include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/consistency/consistency.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/estimation/corrected_recording.hpp"
 #include "common/estimation/estimator.hpp"
-#include "common/estimation/process_tuning.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
+#include "common/estimation/state_reconstruction.hpp"
 #include "common/estimation/thruster_forces.hpp"
-#include "common/estimation/trial_smoother.hpp"
 #include "common/estimation/wording.hpp"
 #include "common/identification/base_regression.hpp"
 #include "common/identification/identifier.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
+#include "processes/fathom/trial_files.hpp"
 
 namespace fathom::tool {
 namespace {
 
 struct MethodsOptions {
-  std::string vehicle, config, map;
+  std::string vehicle, config, site, map;
   std::vector<std::string> train, validate;
   bool truth{false};
 };
@@ -58,16 +62,29 @@ struct StateErrors {
   }
 };
 
+/// The truth is told less often than states are, and between their times: it goes on to the next state's by itself.
 template <class State>
-void compare(const std::vector<State>& states, const std::vector<Truth>& truth, StateErrors& errors) {
+void compare(const std::vector<State>& states, const std::vector<Truth>& truths, StateErrors& errors) {
+  constexpr double kNext = 0.02;  // s
   std::size_t k = 0;
-  for (const State& state : states) {
-    while (k < truth.size() && truth[k].utime < state.utime) ++k;
-    if (k < truth.size() && truth[k].utime == state.utime) errors.add(state, truth[k]);
+  for (Truth truth : truths) {
+    while (k < states.size() && states[k].utime < truth.utime) ++k;
+    if (k == states.size()) break;
+    const double dt = seconds_between(truth.utime, states[k].utime);
+    if (dt > kNext) continue;
+    if constexpr (requires { states[k].valid; }) {
+      if (!states[k].valid) continue;
+    }
+    if (dt > 0.0) {
+      truth.p_WB += dt * (truth.q_WB * truth.nu.head<3>());
+      truth.q_WB = truth.q_WB * quaternion_from_rotation_vector(dt * truth.nu.tail<3>());
+      truth.nu += dt * truth.nu_dot;
+    }
+    errors.add(states[k], truth);
   }
 }
 
-std::vector<StateEstimate> filter(const Recording& recording, const estimation::EstimatorSettings& settings) {
+std::vector<StateEstimate> filtered(const Recording& recording, const estimation::EstimatorSettings& settings) {
   estimation::Estimator estimator{settings, {}};
   std::vector<StateEstimate> states;
   const auto keep = [&](const estimation::Estimator::Output& output) {
@@ -124,83 +141,162 @@ void validate(const char* name, const model::Vehicle& vehicle, const std::vector
   }
 }
 
-void run_methods(const MethodsOptions& options) {
-  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
-  const Config config = Config::load(options.config);
-  const auto filter_settings = estimation::EstimatorSettings::from(config.section("estimator"));
-  const auto identifier_settings = identification::IdentifierSettings::from(config.section("identifier"));
-  estimation::KalmanSettings kalman;
-  kalman.position_noise = filter_settings.position_noise;
-  kalman.capture_attitude_noise = filter_settings.attitude_noise;
-  kalman.velocity_noise = filter_settings.velocity_noise;
-  kalman.depth_noise = filter_settings.depth_noise;
-  kalman.gyro_noise.setConstant(filter_settings.rate_noise);
-  std::vector<std::string> notes;
-  std::vector<std::string> paths = options.train;
-  paths.insert(paths.end(), options.validate.begin(), options.validate.end());
-  std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
-  auto checked = consistency::check_consistency(recordings);
-  consistency::check_thrusters(recordings, vehicle, checked);
+/// One estimator's states of all runs, and what the recursive estimate makes of them.
+struct Method {
+  const char* name;
+  std::vector<std::vector<StateEstimate>> runs;  ///< one list per recording
+  StateErrors errors;
+  std::vector<NamedValue> parameters;
+};
 
-  identification::Identifier identifier{identifier_settings, vehicle};
-  std::vector<identification::BaseRun> runs;
-  StateErrors complementary{"complementary filter"}, forward{"Kalman filter"}, smoothed{"Kalman smoother"};
-  for (std::size_t i = 0; i < options.train.size(); ++i) {
-    const Recording recording = estimation::corrected(recordings[i], checked.corrections[i]);
-    const std::vector<Thrusters> inputs = forces(recording, checked.corrections[i], vehicle);
-    if (i == 0) kalman = estimation::tune_process(recording, kalman);
-    auto trial = estimation::smooth(recording, kalman);
-    const std::vector<StateEstimate> states = filter(recording, filter_settings);
+std::vector<StateEstimate> states_of(const std::vector<SmoothedState>& smoothed) {
+  std::vector<StateEstimate> states;
+  for (const SmoothedState& one : smoothed) {
+    StateEstimate& state = states.emplace_back(StateEstimate{.utime = one.utime,
+                                                             .p_WB = one.p_WB,
+                                                             .q_WB = one.q_WB,
+                                                             .nu = one.nu,
+                                                             .sigma = one.sigma.head<12>(),
+                                                             .valid = true});
+    state.covariance.diagonal() << one.sigma.head<3>().cwiseAbs2(), one.sigma.segment<3>(6).cwiseAbs2();
+  }
+  return states;
+}
+
+/// Recursive least squares on one estimator's states. Nothing when no row could be used: the result would be the prior.
+std::optional<ModelEstimate> recursive(const identification::IdentifierSettings& settings,
+                                       const model::Vehicle& vehicle, const Method& method,
+                                       const std::vector<std::vector<Thrusters>>& inputs) {
+  identification::Identifier identifier{settings, vehicle};
+  for (std::size_t i = 0; i < method.runs.size(); ++i) {
     // Recorded runs may begin at the same time; the identifier hears them one after the other.
     constexpr Utime kApart = 1'000'000'000'000;  // us
     const Utime later = static_cast<Utime>(i) * kApart;
     std::size_t next = 0;
-    for (StateEstimate state : states) {
-      for (; next < inputs.size() && inputs[next].utime <= state.utime; ++next) {
-        Thrusters input = inputs[next];
+    for (StateEstimate state : method.runs[i]) {
+      for (; next < inputs[i].size() && inputs[i][next].utime <= state.utime; ++next) {
+        Thrusters input = inputs[i][next];
         input.utime += later;
         static_cast<void>(identifier.step(input));
       }
       state.utime += later;
       static_cast<void>(identifier.step(state));
     }
-    compare(states, recording.truth, complementary);
-    compare(trial.filtered, recording.truth, forward);
-    compare(trial.smoothed, recording.truth, smoothed);
-    runs.push_back({std::move(trial.smoothed), inputs});
   }
-  const std::vector<NamedValue> recursive = identifier.model().parameters;
+  ModelEstimate model = identifier.model();
+  return model.updates > 0 ? std::optional{std::move(model)} : std::nullopt;
+}
+
+void print_parameters(const std::vector<Method>& methods, const identification::BaseFit& regression,
+                      const model::Vehicle& vehicle, bool truth) {
+  std::printf("%-10s", "parameter");
+  for (const Method& one : methods) std::printf(" %24s", (std::string{one.name} + ", recursive").substr(0, 24).c_str());
+  std::printf(" %24s%s\n", "smoother, AR(1)", truth ? "     truth    errors [%]" : "");
+  std::vector<double> squares(methods.size() + 1, 0.0);
+  for (std::size_t j = 0; j < regression.parameters.size(); ++j) {
+    std::vector<const NamedValue*> row;
+    for (const Method& one : methods) row.push_back(&one.parameters[j]);
+    row.push_back(&regression.parameters[j]);
+    std::printf("%-10s", row.back()->name.c_str());
+    for (const NamedValue* one : row) std::printf(" %12.4f +- %8.4f", one->value, one->std);
+    if (truth) {
+      const double mean = vehicle.priors[j].mean;
+      std::printf("  %8.4f ", mean);
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const double off = row[i]->value / mean - 1.0;
+        std::printf(" %6.1f", 100.0 * off);
+        squares[i] += off * off;
+      }
+    }
+    std::printf("  %s\n", row.back()->unit.c_str());
+  }
+  if (!truth) return;
+  std::printf("parameter error, root mean square:");
+  for (const double square : squares)
+    std::printf(" %.1f %%", 100.0 * std::sqrt(square / static_cast<double>(regression.parameters.size())));
+  std::printf("\n");
+}
+
+/// Why nothing could be learnt: said in place of a table that would show the vehicle file's prior.
+[[noreturn]] void refuse_prior(const Recording& recording, const Method& method, const std::vector<Thrusters>& inputs,
+                               const model::Vehicle& vehicle) {
+  const auto valid = std::ranges::count_if(method.runs.front(), &StateEstimate::valid);
+  const auto told = std::ranges::count_if(inputs, [&](const Thrusters& one) {
+    return one.has_tau || static_cast<Eigen::Index>(one.force.size()) == vehicle.allocation.cols();
+  });
+  throw InputError(recording.name + ": nothing could be learnt from the states of the " + method.name + ": " +
+                   std::to_string(valid) + " of them are valid, and " + std::to_string(told) + " of " +
+                   std::to_string(inputs.size()) + " messages of THRUSTERS tell what drove " + vehicle.name +
+                   "; what a table would show is the vehicle file's prior");
+}
+
+void run_methods(const MethodsOptions& options) {
+  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  std::vector<std::string> notes;
+  std::vector<std::string> paths = paths_of(options.train);
+  const std::size_t fitted_runs = paths.size();
+  std::ranges::move(paths_of(options.validate), std::back_inserter(paths));
+  std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
+  const estimation::TrialFiles files = trial_files(
+      {.config = options.config, .vehicle = options.vehicle, .site = options.site}, recordings.front(), notes);
+  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  if (!files.identifier)
+    throw InputError(recordings.front().name +
+                     ": no section identifier, neither in the log's PROCESS_INFO nor in --config; the recursive "
+                     "estimate needs one (config/pipelines)");
+  const auto identifier_settings = identification::IdentifierSettings::from(*files.identifier);
+  const std::string filter =
+      files.estimator && files.estimator->has("filter") ? files.estimator->text("filter") : "recorded";
+  const bool captured = files.estimator && filter == "recorded";
+
+  auto checked = consistency::check_consistency(recordings);
+  consistency::check_thrusters(recordings, vehicle, checked);
+  std::vector<Method> methods;
+  if (captured || (filter == "complementary" &&
+                   std::ranges::none_of(recordings, [](const Recording& one) { return one.state.empty(); })))
+    methods.push_back({.name = "complementary filter", .errors = {"complementary filter"}});
+  const bool own = !methods.empty();
+  methods.push_back({.name = "Kalman filter", .errors = {"Kalman filter"}});
+  methods.push_back({.name = "Kalman smoother", .errors = {"Kalman smoother"}});
+  Method &forward = methods[own ? 1 : 0], &smoothed = methods.back();
+
+  std::vector<identification::BaseRun> runs;
+  std::vector<std::vector<Thrusters>> inputs;
+  estimation::ProcessNoise process;
+  for (std::size_t i = 0; i < fitted_runs; ++i) {
+    const Recording recording = estimation::corrected(recordings[i], checked.corrections[i]);
+    inputs.push_back(forces(recording, checked.corrections[i], vehicle));
+    // Noises are stated by the pipeline: a rest's would not be those of the filter beside it.
+    notes.clear();
+    auto found = estimation::reconstruct_state(recording, files, {.noises_stated = true}, notes);
+    if (i == 0) process = found.settings.process;
+    if (own)
+      methods.front().runs.push_back(
+          captured ? filtered(recording, estimation::EstimatorSettings::from(*files.estimator)) : recording.state);
+    if (own) compare(methods.front().runs.back(), recording.truth, methods.front().errors);
+    compare(found.trial.filtered, recording.truth, forward.errors);
+    compare(found.trial.smoothed, recording.truth, smoothed.errors);
+    forward.runs.push_back(std::move(found.trial.filtered));
+    smoothed.runs.push_back(states_of(found.trial.smoothed));
+    runs.push_back({std::move(found.trial.smoothed), inputs.back()});
+  }
+  for (Method& one : methods) {
+    const auto model = recursive(identifier_settings, vehicle, one, inputs);
+    if (!model) refuse_prior(recordings.front(), one, inputs.front(), vehicle);
+    one.parameters = model->parameters;
+  }
   const identification::BaseFit regression = identification::fit_base(vehicle, runs);
 
-  std::printf("process noise by likelihood: jerk %.3g, angular jerk %.3g\n", kalman.process.jerk,
-              kalman.process.angular_jerk);
-  std::printf("%-10s %24s %24s%s\n", "parameter", "complementary, recursive", "smoother, AR(1)",
-              options.truth ? "     truth    errors [%]" : "");
-  double squares[2] = {0.0, 0.0};
-  for (std::size_t j = 0; j < recursive.size(); ++j) {
-    const NamedValue &a = recursive[j], &b = regression.parameters[j];
-    std::printf("%-10s %12.4f +- %8.4f %12.4f +- %8.4f", a.name.c_str(), a.value, a.std, b.value, b.std);
-    if (options.truth) {
-      const double truth = vehicle.priors[j].mean;
-      std::printf("  %8.4f  %6.1f %6.1f", truth, 100.0 * (a.value / truth - 1.0), 100.0 * (b.value / truth - 1.0));
-      squares[0] += std::pow(a.value / truth - 1.0, 2);
-      squares[1] += std::pow(b.value / truth - 1.0, 2);
-    }
-    std::printf("  %s\n", a.unit.c_str());
-  }
-  if (options.truth) {
-    const auto n = static_cast<double>(recursive.size());
-    std::printf("parameter error, root mean square: %.1f %% and %.1f %%\n", 100.0 * std::sqrt(squares[0] / n),
-                100.0 * std::sqrt(squares[1] / n));
-  }
-  if (complementary.count > 0.0) {
+  std::printf("process noise by likelihood: jerk %.3g, angular jerk %.3g\n", process.jerk, process.angular_jerk);
+  print_parameters(methods, regression, vehicle, options.truth);
+  if (smoothed.errors.count > 0.0) {
     std::printf("state error, root mean square: position [m], attitude [rad], velocity [m/s], rates [rad/s], ");
     std::printf("acceleration [m/s^2]\n");
-    for (const StateErrors* one : {&complementary, &forward, &smoothed}) one->print();
+    for (const Method& one : methods) one.errors.print();
   }
   if (options.validate.empty()) return;
   std::vector<Trial> trials;
-  for (std::size_t i = options.train.size(); i < recordings.size(); ++i) {
+  for (std::size_t i = fitted_runs; i < recordings.size(); ++i) {
     const Trial run = estimation::reconstruct(recordings[i], checked.corrections[i], vehicle);
     for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
       trials.push_back(std::move(stretch));
@@ -212,17 +308,20 @@ void run_methods(const MethodsOptions& options) {
                                       diagnosis::kHorizons.back()));
   }
   std::printf("validation error, m/s and rad/s:\n");
-  validate("complementary filter, recursive", vehicle, recursive, trials);
+  for (const Method& one : methods)
+    validate((std::string{one.name} + ", recursive").c_str(), vehicle, one.parameters, trials);
   validate("smoother, regression under AR(1)", vehicle, regression.parameters, trials);
 }
 
 }  // namespace
 
-void add_methods(CLI::App& app) {
+void add_methods(runtime::CommandLine& app) {
   auto options = std::make_shared<MethodsOptions>();
-  CLI::App* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
+  runtime::CommandLine* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
-  command->add_option("--config", options->config, "pipeline file with sections estimator and identifier")->required();
+  command->add_option("--config", options->config,
+                      "pipeline file with sections estimator and identifier; else what the log tells");
+  command->add_option("--site", options->site, "site file (YAML): tags, transponders, floor; else the log's");
   command->add_option("--train", options->train, "logs or tables to identify from")->required();
   command->add_option("--validate", options->validate, "logs or tables on which predictions are judged");
   command->add_option("--map", options->map, "column map of .csv files");

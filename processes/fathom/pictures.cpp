@@ -2,13 +2,13 @@
 // pictures and videos.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -29,16 +29,13 @@ namespace {
                    ": cannot be started; it belongs beside fathom: cmake --build --preset release --target pictures");
 }
 
-void add(CLI::App& app, const std::string& name, const std::string& what) {
-  CLI::App* command = app.add_subcommand(name, what);
-  command->prefix_command();  // all words behind it go on unread
-  command->set_help_flag();   // --help too
-  command->callback([command, name] { run(name, command->remaining()); });
+void add(runtime::CommandLine& app, const std::string& name, const std::string& what) {
+  app.add_subcommand(name, what)->hand_on([name](const std::vector<std::string>& words) { run(name, words); });
 }
 
 }  // namespace
 
-void add_pictures(CLI::App& app) {
+void add_pictures(runtime::CommandLine& app) {
   add(app, "track", "tags, camera pose, velocity and laser range from recorded pictures");
   add(app, "calibrate", "lens and map of tags from a sequence of pictures");
 }

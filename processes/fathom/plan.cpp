@@ -1,5 +1,4 @@
 // fathom plan: before a trial, what its excitation would tell about every effect, and what to fly in addition.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include "common/base/version.hpp"
 #include "common/planning/flights.hpp"
 #include "common/planning/foresight.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/rehearsals.hpp"
 
@@ -137,21 +137,19 @@ void run_plan(const PlanOptions& options) {
 
 }  // namespace
 
-void add_plan(CLI::App& app) {
+void add_plan(runtime::CommandLine& app) {
   auto options = std::make_shared<PlanOptions>();
-  CLI::App* command = app.add_subcommand("plan", "before a trial: what would its excitation tell about every effect?");
-  command->add_option("--vehicle", options->vehicle, "vehicle file")->required()->check(CLI::ExistingFile);
-  command->add_option("--site", options->site, "site file")->required()->check(CLI::ExistingFile);
-  command->add_option("--excitation", options->excitation, "paper or optimal")
-      ->check(CLI::IsMember({"paper", "optimal"}));
+  runtime::CommandLine* command =
+      app.add_subcommand("plan", "before a trial: what would its excitation tell about every effect?");
+  command->add_option("--vehicle", options->vehicle, "vehicle file")->required()->existing_file();
+  command->add_option("--site", options->site, "site file")->required()->existing_file();
+  command->add_option("--excitation", options->excitation, "paper or optimal")->one_of({"paper", "optimal"});
   command->add_option("--config", options->config, "pipeline file (../pipelines/ beside the site's, of the same name)")
-      ->check(CLI::ExistingFile);
-  command->add_option("--velocity-noise", options->velocity_noise, "m/s of a sample (0.005)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--rate-noise", options->rate_noise, "rad/s of a sample (0.0035)")->check(CLI::PositiveNumber);
-  command->add_option("--rate", options->rate, "Hz of samples (100)")->check(CLI::PositiveNumber);
-  command->add_option("--longest", options->longest, "s after which the trial is ended (600)")
-      ->check(CLI::PositiveNumber);
+      ->existing_file();
+  command->add_option("--velocity-noise", options->velocity_noise, "m/s of a sample (0.005)")->positive();
+  command->add_option("--rate-noise", options->rate_noise, "rad/s of a sample (0.0035)")->positive();
+  command->add_option("--rate", options->rate, "Hz of samples (100)")->positive();
+  command->add_option("--longest", options->longest, "s after which the trial is ended (600)")->positive();
   command->add_option("--json", options->json, "write the plan here too");
   command->callback([options] { run_plan(*options); });
 }

@@ -29,8 +29,8 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
                        " recordings, one behind the other; 'fathom import' writes each to a log of its own");
     recordings.push_back(std::move(read.runs.front()));
     Recording& last = recordings.back();
-    last.name = file.stem().string();
-    if (names.contains(last.name)) last.name = (file.parent_path().filename() / file.stem()).string();  // day2/run.csv
+    last.name = found.front().name;
+    if (names.contains(last.name)) last.name = (file.parent_path().filename() / last.name).string();  // day2/run
     if (!names.insert(last.name).second) {
       throw InputError(path + ": a second recording named " + last.name + "; give each run once, under its own name");
     }

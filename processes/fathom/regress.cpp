@@ -1,11 +1,11 @@
 // fathom regress: hydrodynamic derivatives from reconstructed trials, printed as Pereira and Duncan's Tables 1 to 6.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <set>
 
 #include "common/base/error.hpp"
 #include "common/identification/residual_tracing.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -24,7 +24,7 @@ struct RegressOptions {
   std::vector<std::string> runs;
   std::vector<double> current;
   double rate{10.0};
-  double significance{0.05}, f_in{}, f_out{};
+  double significance{0.05}, f_in{}, f_out{}, cell_gain{3.0}, thrust_gain{10.0};
   bool table{false}, estimate{false}, plain{false}, trace{false};
 };
 
@@ -33,8 +33,8 @@ std::string cell(const StepwiseResult& result, int column) {
     const auto& term = result.terms[i];
     if (term.column != column) continue;
     char text[64];
-    std::snprintf(text, sizeof text, "%9.4f%s %4.0f%%", term.value,
-                  static_cast<int>(i) == result.most_significant ? "*" : " ", term.percent());
+    std::snprintf(text, sizeof text, "%9.4f%s %4.0f%%%s", term.value,
+                  static_cast<int>(i) == result.most_significant ? "*" : " ", term.percent(), term.stands() ? "" : "?");
     return text;
   }
   return "";
@@ -42,11 +42,11 @@ std::string cell(const StepwiseResult& result, int column) {
 
 void print(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs,
            const model::Vehicle& vehicle) {
-  std::printf("\n%s (%s): dimensionless, standard error in per cent, * most significant\n%-10s",
+  std::printf("\n%s (%s): dimensionless, standard error in per cent, * most significant, ? within its errors\n%-10s",
               model::kAxisNames[static_cast<std::size_t>(axis.axis)], kTitles[static_cast<std::size_t>(axis.axis)], "");
-  for (const auto& run : runs) std::printf(" | %16.16s", run.name.c_str());
-  if (runs.size() > 1) std::printf(" | %16s", "together");
-  std::printf(" | %16s\n", "reference");
+  for (const auto& run : runs) std::printf(" | %17.17s", run.name.c_str());
+  if (runs.size() > 1) std::printf(" | %17s", "together");
+  std::printf(" | %17s\n", "reference");
   std::set<int> shown;
   for (const StepwiseResult& one : axis.manoeuvres) {
     for (const auto& term : one.terms) shown.insert(term.column);
@@ -62,9 +62,9 @@ void print(const AxisRegression& axis, const std::vector<identification::Manoeuv
     }
     if (reference.empty() && !shown.contains(static_cast<int>(j))) continue;
     std::printf("%-10s", axis.candidates.names[j].c_str());
-    for (const StepwiseResult& one : axis.manoeuvres) std::printf(" | %16s", cell(one, static_cast<int>(j)).c_str());
-    if (runs.size() > 1) std::printf(" | %16s", cell(axis.together, static_cast<int>(j)).c_str());
-    std::printf(" | %16s\n", reference.c_str());
+    for (const StepwiseResult& one : axis.manoeuvres) std::printf(" | %17s", cell(one, static_cast<int>(j)).c_str());
+    if (runs.size() > 1) std::printf(" | %17s", cell(axis.together, static_cast<int>(j)).c_str());
+    std::printf(" | %17s\n", reference.c_str());
   }
 }
 
@@ -75,6 +75,13 @@ void print_quality(const AxisRegression& axis, const std::vector<identification:
         "cross-validated %.1f %%\n",
         name, one.phi, one.phi_sigma, one.sigma, one.samples, one.effective_samples, 100.0 * one.explained,
         100.0 * one.cross_validated);
+    for (const auto& term : one.terms) {
+      if (term.equivalents.empty()) continue;
+      std::printf("    %s or, as well:", axis.candidates.names[static_cast<std::size_t>(term.column)].c_str());
+      for (const int column : term.equivalents)
+        std::printf(" %s", axis.candidates.names[static_cast<std::size_t>(column)].c_str());
+      std::printf("\n");
+    }
     for (const auto& refused : one.refused) {
       std::printf("    %s: %s\n", axis.candidates.names[static_cast<std::size_t>(refused.column)].c_str(),
                   refused.why.c_str());
@@ -123,6 +130,8 @@ void run_regress(const RegressOptions& options) {
   }
   identification::RegressionSettings settings;
   settings.rate = options.rate;
+  settings.cell_gain = 0.01 * options.cell_gain;
+  settings.thrust_gain = 0.01 * options.thrust_gain;
   settings.stepwise.familywise = options.significance;
   if (options.f_out > 0.0 && !(options.f_in >= options.f_out))
     throw InputError("--f-out must not exceed --f-in, or a term would leave as soon as it has entered");
@@ -153,23 +162,26 @@ void run_regress(const RegressOptions& options) {
 
 }  // namespace
 
-void add_regress(CLI::App& app) {
+void add_regress(runtime::CommandLine& app) {
   auto options = std::make_shared<RegressOptions>();
-  CLI::App* command = app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
+  runtime::CommandLine* command =
+      app.add_subcommand("regress", "hydrodynamic derivatives from smoothed runs, term by term");
   command->add_option("runs", options->runs, "logs written by fathom smooth, one per manoeuvre")->required();
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML) with hydrodynamics")->required();
   command->add_flag("--table", options->table, "the tables alone");
-  command->add_option("--rate", options->rate, "rows per second")->check(CLI::PositiveNumber);
+  command->add_option("--rate", options->rate, "rows per second")->positive();
   command->add_option("--current", options->current, "north and east velocity of the water [m/s]")->expected(2);
   command->add_flag("--estimate-current", options->estimate, "find the water's velocity as well");
   command->add_flag("--plain", options->plain, "plain least squares, as if the residual were white");
   command->add_flag("--trace", options->trace, "whence the residual comes: umbilical and chain, known and not");
   command->add_option("--significance", options->significance, "chance that any term is selected when none acts")
-      ->check(CLI::Range(1e-12, 1.0));
-  command->add_option("--f-in", options->f_in, "F from which a term enters, in place of --significance")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--f-out", options->f_out, "F below which a term leaves; --f-in without it")
-      ->check(CLI::PositiveNumber);
+      ->within(1e-12, 1.0);
+  command->add_option("--f-in", options->f_in, "F from which a term enters, in place of --significance")->positive();
+  command->add_option("--f-out", options->f_out, "F below which a term leaves; --f-in without it")->positive();
+  command->add_option("--cell-gain", options->cell_gain, "per cent by which a load cell's gain may be off (std)")
+      ->positive();
+  command->add_option("--thrust-gain", options->thrust_gain, "the same of a thruster's force without a cell")
+      ->positive();
   command->add_option("--json", options->json, "write all that is told to this file");
   command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
   command->callback([options] { run_regress(*options); });

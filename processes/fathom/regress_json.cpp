@@ -12,10 +12,21 @@ using Json = nlohmann::ordered_json;
 
 Json of(const identification::StepwiseResult& result, const identification::AxisCandidates& candidates) {
   const auto name = [&](int column) { return candidates.names[static_cast<std::size_t>(column)]; };
+  const auto equivalents = [&](const identification::SelectedTerm& term) {
+    Json names = Json::array();
+    for (const int column : term.equivalents) names.push_back(name(column));
+    return names;
+  };
   Json terms = Json::array(), refused = Json::array();
   for (const auto& term : result.terms)
-    terms.push_back(
-        {{"name", name(term.column)}, {"value", term.value}, {"std", term.sigma}, {"f", term.f}, {"p", term.p}});
+    terms.push_back({{"name", name(term.column)},
+                     {"value", term.value},
+                     {"std", term.total()},
+                     {"std_of_scatter", term.sigma},
+                     {"stands", term.stands()},
+                     {"equivalents", equivalents(term)},
+                     {"f", term.f},
+                     {"p", term.p}});
   for (const auto& one : result.refused) refused.push_back({{"name", name(one.column)}, {"why", one.why}});
   const int most = result.most_significant;
   return {{"terms", terms},

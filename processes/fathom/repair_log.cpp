@@ -1,9 +1,9 @@
 // fathom repair-log: the whole events of a damaged log, before the damage and behind it, into a new one.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
 #include "common/base/log_salvage.hpp"
+#include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
 namespace fathom::tool {
@@ -45,9 +45,10 @@ void run_repair_log(const RepairLogOptions& options) {
 
 }  // namespace
 
-void add_repair_log(CLI::App& app) {
+void add_repair_log(runtime::CommandLine& app) {
   auto options = std::make_shared<RepairLogOptions>();
-  CLI::App* command = app.add_subcommand("repair-log", "take what is whole out of a damaged log, part joined ones");
+  runtime::CommandLine* command =
+      app.add_subcommand("repair-log", "take what is whole out of a damaged log, part joined ones");
   command->add_option("log", options->log, "damaged LCM log; it stays as it is")->required();
   command->add_option("--out", options->out, "the new log")->required();
   command->callback([options] { run_repair_log(*options); });

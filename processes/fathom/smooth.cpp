@@ -1,5 +1,4 @@
 // fathom smooth: a recorded run through the Kalman filter and back through the smoother.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -9,24 +8,25 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
-#include "common/estimation/noise_from_rest.hpp"
-#include "common/estimation/process_tuning.hpp"
-#include "common/estimation/transponder_check.hpp"
-#include "common/estimation/trial_smoother.hpp"
+#include "common/estimation/state_reconstruction.hpp"
+#include "common/report/smoothed_page.hpp"
+#include "common/runtime/command_line.hpp"
+#include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
+#include "processes/fathom/trial_files.hpp"
 
 namespace fathom::tool {
 namespace {
 
 constexpr double kConverged = 30.0;   // s after which filter and smoother are compared, as Pereira and Duncan did
-constexpr double kTuned = 120.0;      // s of the run, at most, by which the process noise is tuned
 constexpr double kMostRefused = 0.2;  // of an instrument's numbers: more are no outliers
 
 struct SmoothOptions {
-  std::string run, out, config, model, map;
-  bool stated{false};
+  std::string run, out, model, map, page;
+  TrialFileOptions files;
+  bool stated{false}, without_position{false}, despite_state{false};
 };
 
 void print(const estimation::SmoothedTrial& trial) {
@@ -72,64 +72,63 @@ StateEstimate estimate_of(const SmoothedState& smoothed) {
 }
 
 void run_smooth(const SmoothOptions& options) {
-  estimation::KalmanSettings settings;
-  bool process_stated = options.stated;
-  if (!options.config.empty()) {
-    const Config config = Config::load(options.config);
-    const Config section = config.section("estimator");
-    settings = estimation::KalmanSettings::from(section);
-    section.finish();
-    process_stated = process_stated || section.has("process");
-  }
-  if (!options.model.empty()) {
-    settings.model =
-        options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
-  }
   std::error_code ignored;
   if (std::filesystem::equivalent(options.run, options.out, ignored)) {
     throw InputError(options.out + ": --out is the run itself; what was recorded is not written over");
   }
   std::vector<std::string> notes;
   Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
-  if (!recording.ranges.empty() && settings.transponders.empty()) {
-    notes.push_back(options.run + ": RANGES are not used: no transponder's place is known; state them in --config");
+  const estimation::TrialFiles files = trial_files(options.files, recording, notes);
+  estimation::ReconstructionOptions asked{
+      .stated = options.stated, .without_position = options.without_position, .despite_state = options.despite_state};
+  if (!options.model.empty()) {
+    asked.model =
+        options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
   }
-  if (!options.stated) settings = estimation::noise_from_rest(recording, settings, notes);
-  settings = estimation::without_wrong_transponders(recording, settings, notes);
   std::optional<ProgressLine> line{std::in_place};
-  const Progress progress = line->progress();
-  if (!process_stated) {
-    settings = estimation::tune_process(recording, settings, kTuned, progress);
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  ": most probable process noise: jerk %.3g m/s^2, angular jerk %.3g rad/s^2 per root second",
-                  settings.process.jerk, settings.process.angular_jerk);
-    notes.push_back(recording.name + text);
+  const auto tell = [&] {
+    for (const std::string& note : notes) line->say(note);
+    notes.clear();
+  };
+  tell();
+  estimation::SmoothedTrial trial;
+  bool attitude_used = false;
+  try {
+    auto found = estimation::reconstruct_state(recording, files, asked, notes, line->progress());
+    attitude_used = found.settings.attitude == estimation::AttitudeUse::kEverything;
+    trial = std::move(found.trial);
+  } catch (const InputError&) {
+    tell();
+    throw;
   }
-  for (const std::string& note : notes) line->say(note);
-  estimation::SmoothedTrial trial = estimation::smooth(recording, settings, nullptr, progress);
+  tell();
   line.reset();
-  for (const std::string& note : trial.notes) std::fprintf(stderr, "%s\n", note.c_str());
   print(trial);
   recording.state.clear();
   for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));
   recording.smoothed = std::move(trial.smoothed);
   const auto events = wire::write_log(recording, options.out);
+  if (!options.page.empty())
+    tables::write_file(options.page, report::smoothed_page(recording, trial.filtered, attitude_used));
   std::printf("%s: %llu events, %zu of them SMOOTHED\n", options.out.c_str(), static_cast<unsigned long long>(events),
               recording.smoothed.size());
 }
 
 }  // namespace
 
-void add_smooth(CLI::App& app) {
+void add_smooth(runtime::CommandLine& app) {
   auto options = std::make_shared<SmoothOptions>();
-  CLI::App* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
+  runtime::CommandLine* command = app.add_subcommand("smooth", "reconstruct a recorded run with a Kalman smoother");
   command->add_option("run", options->run, ".lcmlog or .csv file")->required();
   command->add_option("--out", options->out, "LCM log to write: the run with SMOOTHED, and STATE from it")->required();
-  command->add_option("--config", options->config, "YAML file whose section estimator has `filter: ekf`");
+  add_trial_files(*command, options->files);
   command->add_option("--map", options->map, "YAML file that says what the columns of a .csv file are");
-  command->add_option("--model", options->model, "kinematic model")->check(CLI::IsMember({"printed", "coupled"}));
+  command->add_option("--model", options->model, "kinematic model")->one_of({"printed", "coupled"});
+  command->add_option("--page", options->page, "HTML file to write: the run drawn, filter and smoother");
   command->add_flag("--stated", options->stated, "keep the noises of the settings: nothing from rest, nothing tuned");
+  command->add_flag("--without-position", options->without_position,
+                    "velocity and attitude alone, where nothing tells the position");
+  command->add_flag("--despite-state", options->despite_state, "the log's own STATE is known to be wrong");
   command->callback([options] { run_smooth(*options); });
 }
 

@@ -1,5 +1,4 @@
 // fathom trial: the log of a live trial as a verdict table, result.json and a page with the paper's figures.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/estimation/navigator.hpp"
 #include "common/report/live_trial.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/log_reader.hpp"
 #include "processes/fathom/commands.hpp"
@@ -63,9 +63,10 @@ void run_trial(const TrialOptions& options) {
 
 }  // namespace
 
-void add_trial(CLI::App& app) {
+void add_trial(runtime::CommandLine& app) {
   auto options = std::make_shared<TrialOptions>();
-  CLI::App* command = app.add_subcommand("trial", "what a live trial's log holds: modes, parameters, figures");
+  runtime::CommandLine* command =
+      app.add_subcommand("trial", "what a live trial's log holds: modes, parameters, figures");
   command->add_option("log", options->log, "log of the trial (.lcmlog)")->required();
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--site", options->site, "site file (YAML)")->required();

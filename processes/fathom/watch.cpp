@@ -1,13 +1,13 @@
 // fathom watch: how far a live trial is, a line at a time, until it ends or is stopped. It only listens.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/stop_signal.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/operator/console.hpp"
@@ -73,10 +73,10 @@ void watch(const WatchOptions& options) {
 
 }  // namespace
 
-void add_watch(CLI::App& app) {
+void add_watch(runtime::CommandLine& app) {
   auto options = std::make_shared<WatchOptions>();
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); url != nullptr && *url != '\0') options->url = url;
-  CLI::App* command = app.add_subcommand("watch", "how far a live trial is, until Ctrl-C");
+  runtime::CommandLine* command = app.add_subcommand("watch", "how far a live trial is, until Ctrl-C");
   command->add_option("--bus", options->url, "LCM URL (LCM_DEFAULT_URL)");
   command->callback([options] { watch(*options); });
 }

@@ -1,6 +1,5 @@
 // identifier: states and thruster commands in, the vehicle's parameters and what they leave unexplained out. With
 // `estimate: joint` it hears the instruments as well, and MODEL has the numbers of a filter on state and parameters.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
@@ -25,8 +24,10 @@
 #include "common/estimation/thruster_forces.hpp"
 #include "common/joint/live_identifier.hpp"
 #include "common/model/site.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
 
@@ -125,39 +126,27 @@ int main(int argc, char** argv) {
 
     process.publishes<fathom_lcm::model_t>(wire::kModel);
     process.publishes<fathom_lcm::residual_t>(wire::kResidual);
-    process.on<fathom_lcm::state_t>(wire::kState, [&](const auto& message) {
-      const auto state = wire::decode(message);
-      if (!state) return process.reject(wire::kState);
-      say(identifier.step(*state));
-      unpushed = seconds_between(pushed.value_or(state->utime), state->utime);
-      if (!pushed) pushed = state->utime;
+    process.on<fathom_lcm::state_t>(wire::kState, wire::kDecode, [&](const StateEstimate& state) {
+      say(identifier.step(state));
+      unpushed = seconds_between(pushed.value_or(state.utime), state.utime);
+      if (!pushed) pushed = state.utime;
       if (const bool silent = unpushed > kPushed; silent != told_silent) {
         told_silent = silent;
         process.tell_health();
       }
     });
-    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, [&](const auto& message) {
-      const auto thrusters = wire::decode(message);
-      if (!thrusters) return process.reject(wire::kThrusters);
-      pushed = thrusters->utime;
-      say(identifier.step(forces.step(*thrusters)));
+    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, wire::kDecode, [&](const Thrusters& thrusters) {
+      pushed = thrusters.utime;
+      say(identifier.step(forces.step(thrusters)));
     });
-    process.on<fathom_lcm::battery_t>(wire::kBattery, [&](const auto& message) {
-      const auto battery = wire::decode(message);
-      if (!battery) return process.reject(wire::kBattery);
-      forces.step(*battery);
-      identifier.hear(*battery);
+    process.on<fathom_lcm::battery_t>(wire::kBattery, wire::kDecode, [&](const Battery& battery) {
+      forces.step(battery);
+      identifier.hear(battery);
     });
-    process.on<fathom_lcm::effects_t>(wire::kEffects, [&](const auto& message) {
-      const auto ranking = wire::decode(message);
-      if (!ranking) return process.reject(wire::kEffects);
-      identifier.hear(*ranking);
-    });
-    process.on<fathom_lcm::excitation_t>(wire::kExcitation, [&](const auto& message) {
-      const auto excitation = wire::decode(message);
-      if (!excitation) return process.reject(wire::kExcitation);
-      identifier.hear(*excitation);
-    });
+    process.on<fathom_lcm::effects_t>(wire::kEffects, wire::kDecode,
+                                      [&](const EffectRanking& ranking) { identifier.hear(ranking); });
+    process.on<fathom_lcm::excitation_t>(wire::kExcitation, wire::kDecode,
+                                         [&](const Excitation& excitation) { identifier.hear(excitation); });
     if (identifier.joint() != nullptr) hear_instruments(process, identifier);
     process.on_health([&]() -> runtime::Process::Condition {
       if (unpushed <= kPushed) return {};
@@ -178,7 +167,7 @@ int main(int argc, char** argv) {
     process.run();
   };
   const runtime::Program program{"identifier", "Identifies the parameters of the vehicle's model on line."};
-  return runtime::main(program, argc, argv, setup, [&](CLI::App& app) {
+  return runtime::main(program, argc, argv, setup, [&](runtime::CommandLine& app) {
     app.add_option("--save", saved, "file to go on from after an interruption; instead of the section's key");
   });
 }

@@ -1,6 +1,5 @@
 // fathom calibrate: lens and map of tags from a sequence of pictures, by bundle adjustment; what is left of every
 // corner before and after, in numbers and in a picture.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include "common/base/progress_line.hpp"
 #include "common/model/site.hpp"
 #include "common/pictures/source.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/vision/calibration.hpp"
 #include "common/vision/calibration_drawing.hpp"
 #include "processes/pictures/commands.hpp"
@@ -166,9 +166,9 @@ void run_calibrate(const CalibrateOptions& options) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& app) {
+void add_calibrate(runtime::CommandLine& app) {
   auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = app.add_subcommand("calibrate", "lens and map of tags from a sequence of pictures");
+  runtime::CommandLine* command = app.add_subcommand("calibrate", "lens and map of tags from a sequence of pictures");
   command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
   command->add_option("--site", options->site, "what is known: tags or board, a lens to begin with");
   command->add_option("--vehicle", options->vehicle, "vehicle file whose camera's lens is the one to begin with");
@@ -177,22 +177,22 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--picture", options->picture, "PNG: what is left of every corner, and the map");
   command
       ->add_option("--adjust", options->what, "all; lens: the tags are a board, known exactly; map: the lens is known")
-      ->check(CLI::IsMember({"all", "lens", "map"}));
+      ->one_of({"all", "lens", "map"});
   command->add_option("--distortion", options->distortion, "coefficients that are adjusted: 0, 2, 4 or 5")
-      ->check(CLI::IsMember({0, 2, 4, 5}));
+      ->one_of({0, 2, 4, 5});
   command
       ->add_option("--size", options->sizes,
                    "m, edge of tags that are not in the map: of all (0.15), of a family (16h5=0.15) or of one tag "
                    "(16h5:3=0.12), more than once if wanted; left out: they stay outside")
       ->allow_extra_args(false);
   command->add_option("--map-sigma", options->map_sigma, "m, how well the map is known; left out: the site's")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--focal", options->focal, "px, a focal length to begin with")->check(CLI::PositiveNumber);
+      ->positive();
+  command->add_option("--focal", options->focal, "px, a focal length to begin with")->positive();
   command->add_option("--focal-sigma", options->focal_sigma, "how well it is known, as a share of it (0.1)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--every", options->every, "use every n-th picture")->check(CLI::PositiveNumber);
+      ->positive();
+  command->add_option("--every", options->every, "use every n-th picture")->positive();
   command->add_option("--hold-out", options->held_out, "keep every n-th picture back and judge by it")
-      ->check(CLI::Range(2, 1'000'000));
+      ->within(2, 1'000'000);
   command->add_option("--families", options->families, "families of tags in place of the site's");
   command->add_flag("--not-flat", options->not_flat, "the tags do not lie in one plane");
   command->callback([options] { run_calibrate(*options); });

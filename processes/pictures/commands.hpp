@@ -8,7 +8,7 @@ class App;
 
 namespace fathom::pictures {
 
-void add_track(CLI::App& app);
-void add_calibrate(CLI::App& app);
+void add_track(runtime::CommandLine& app);
+void add_calibrate(runtime::CommandLine& app);
 
 }  // namespace fathom::pictures

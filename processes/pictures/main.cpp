@@ -3,8 +3,8 @@
 #include "processes/pictures/commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Reads pictures: what `fathom` runs for its subcommands track and calibrate.", "fathom"};
+  fathom::runtime::CommandLine app{"Reads pictures: what `fathom` runs for its subcommands track and calibrate.", "fathom"};
   fathom::pictures::add_track(app);
   fathom::pictures::add_calibrate(app);
-  return fathom::runtime::run_command_line(app, argc, argv);
+  return app.run(argc, argv);
 }

@@ -1,5 +1,4 @@
 // fathom track: the front end of the vision process over recorded pictures, without LCM.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/model/site.hpp"
 #include "common/pictures/source.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/vision/drawing.hpp"
 #include "common/vision/threads.hpp"
 #include "processes/pictures/commands.hpp"
@@ -156,9 +156,10 @@ void run_track(const TrackOptions& options) {
 
 }  // namespace
 
-void add_track(CLI::App& app) {
+void add_track(runtime::CommandLine& app) {
   auto options = std::make_shared<TrackOptions>();
-  CLI::App* command = app.add_subcommand("track", "tags, camera pose, velocity and laser range from recorded pictures");
+  runtime::CommandLine* command =
+      app.add_subcommand("track", "tags, camera pose, velocity and laser range from recorded pictures");
   command->add_option("pictures", options->source, "folder of pictures, or a video")->required();
   command->add_option("--site", options->site, "tags to look for and where they lie, camera; left out: tag36h11 alone");
   command
@@ -166,7 +167,7 @@ void add_track(CLI::App& app) {
       ->required();
   command->add_option("--pictures", options->drawings, "folder for the pictures with everything drawn in");
   command->add_option("--rate", options->rate, "Hz of the pictures; left out: the video's own, 10 for a folder")
-      ->check(CLI::PositiveNumber);
+      ->positive();
   command->add_option("--vehicle", options->vehicle, "vehicle file: camera, its mounting, laser");
   command->add_option("--camera", options->camera, "which of the vehicle's cameras; left out: the first");
   command->add_option("--families", options->families, "families of tags in place of the site's");

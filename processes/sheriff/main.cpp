@@ -1,6 +1,5 @@
 // sheriff: starts and stops what a configuration of procman names, on all its hosts, and shows how it fares. Speaks
 // procman's protocol, so that either side may be procman's own.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -33,7 +32,7 @@ int check(const fathom::launch::LaunchConfig& config) {
 
 int main(int argc, char** argv) {
   using namespace fathom;
-  CLI::App app{
+  runtime::CommandLine app{
       "Starts and stops what a procman configuration names, and shows how it fares. Without --script, --status or "
       "--stop it looks on until Ctrl-C. Exit 0: all that shall run does; 1: not; 130: interrupted.",
       "sheriff"};
@@ -51,11 +50,7 @@ int main(int argc, char** argv) {
   app.add_flag("-v,--verbose", options.verbose, "print what the programs print");
   script->excludes(status)->excludes(stop)->excludes(checks);
   status->excludes(stop);
-  try {
-    runtime::parse(app, argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
+  if (const auto code = app.parse_or_tell(argc, argv)) return *code;
   try {
     launch::LaunchConfig config = launch::LaunchConfig::load(find_config(options.config));
     if (only_check) return check(config);

@@ -34,7 +34,7 @@ double steady() { return std::chrono::duration<double>(std::chrono::steady_clock
 constexpr double kListen = 1.3;      // s: every deputy speaks once a second
 constexpr double kListenHere = 0.4;  // s, where silence means no more than that we start one: two settle it themselves
 constexpr double kLocalPatience = 10.0;   // s until a deputy of our own speaks: liblcm may test itself that long
-constexpr double kAnswer = 0.5;           // s that a deputy may take to say what it may run
+constexpr double kAnswer = 2.0;           // s that a deputy, on a busy machine, may take to say what it may run
 constexpr double kCall = 0.5;             // s between two calls for a deputy that is silent
 constexpr double kSettle = 1.5;           // s after a script: what ends at once is seen to end
 constexpr std::size_t kLastWords = 2000;  // B that are kept of what a command prints
@@ -95,6 +95,7 @@ void Office::hear() {
   }
   while (const auto message = health_input_.next()) {
     const auto decoded = runtime::message_of<fathom_lcm::health_t>(message->bytes);
+    if (decoded && !speakers_.believes(*decoded)) continue;
     if (const auto health = decoded ? wire::decode(*decoded) : std::nullopt) health_.hear(*health, now);
   }
 }

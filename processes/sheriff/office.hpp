@@ -10,6 +10,8 @@
 #include "common/launch/sheriff.hpp"
 #include "common/launch/table.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/runtime/stop_signal.hpp"
 #include "processes/sheriff/local_deputies.hpp"
 #include "processes/sheriff/screen.hpp"
@@ -48,6 +50,7 @@ class Office {
   runtime::StopSignal interrupt_;  // before liblcm starts its thread
   launch::Sheriff mind_;
   launch::HealthBoard health_;
+  runtime::Speakers speakers_{runtime::host_name(), runtime::Speakers::Home::kAnywhere};
   runtime::LiveInput procman_, health_input_;
   runtime::Output output_;
   Screen screen_;

@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/operator_key.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/signature.hpp"
 #include "processes/simulator/speech.hpp"
@@ -61,28 +62,27 @@ int main(int argc, char** argv) {
         if (!options.manoeuvre.empty()) pilot = pilot_of(options.manoeuvre, vehicle, simulator);
         simulator::Stage stage{process, simulator, darkroom, options, instruments ? &*instruments : nullptr, pilot};
         declare(process);
-        process.on<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
+        process.listens_to<fathom_lcm::wrench_command_t>(wire::kWrenchCommand, [&](const auto& message) {
           stage.count_command();
           const auto command = wire::open(message, options.keys.command);
           if (!command) return process.reject(wire::kWrenchCommand);
           stage.hear(*command);
         });
-        process.on<fathom_lcm::excitation_t>(wire::kExcitation, [&](const auto& message) {
+        process.listens_to<fathom_lcm::excitation_t>(wire::kExcitation, [&](const auto& message) {
           const auto excitation = wire::decode(message);
           if (!excitation) process.reject(wire::kExcitation);
           stage.hear(excitation.value_or(Excitation{}));  // one that cannot be read is counted all the same
         });
-        process.on<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
-          const auto order = wire::open(message, options.keys.order);
-          if (!order) return process.reject(wire::kOperator);
-          stage.hear(*order);
-        });
+        process.on<fathom_lcm::operator_t>(
+            wire::kOperator, [&](const auto& message) { return wire::open(message, options.keys.order); },
+            [&](const Operator& order) { stage.hear(order); });
         process.listens_to<fathom_lcm::answer_t>(wire::kAnswer, [&](const auto& message) {
           if (const auto answer = wire::open(message, options.keys.answer)) stage.hear(*answer);
         });
-        process.on<fathom_lcm::lockstep_ack_t>(runtime::kLockstepAck, [&](const auto& ack) { stage.hear(ack); });
-        process.on<fathom_lcm::process_info_t>("PROCESS_INFO", [&](const auto& info) { stage.hear(info); });
-        process.on<fathom_lcm::health_t>("HEALTH", [&](const auto& health) { stage.hear(health); });
+        process.listens_to<fathom_lcm::lockstep_ack_t>(runtime::kLockstepAck,
+                                                       [&](const auto& ack) { stage.hear(ack); });
+        process.listens_to<fathom_lcm::process_info_t>("PROCESS_INFO", [&](const auto& info) { stage.hear(info); });
+        process.listens_to<fathom_lcm::health_t>("HEALTH", [&](const auto& health) { stage.hear(health); });
         process.waits_with([&](std::span<const int> descriptors, int ms) { stage.wait(descriptors, ms); });
         process.on_health([&] { return stage.condition(); });
         process.on_end([&] {
@@ -91,5 +91,5 @@ int main(int argc, char** argv) {
         });
         process.run();
       },
-      [&](CLI::App& app) { options.add_to(app); });
+      [&](runtime::CommandLine& app) { options.add_to(app); });
 }

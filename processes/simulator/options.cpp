@@ -1,19 +1,22 @@
 #include "processes/simulator/options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 
 #include "common/base/error.hpp"
+#include "common/runtime/command_line.hpp"
 
 namespace fathom::simulator {
 
-void Options::add_to(CLI::App& app) {
+void Options::add_to(runtime::CommandLine& app) {
   app.add_option("--seed", setup.seed, "of every random number (1)");
   app.add_option("--hide", setup.hide,
                  "an effect in the truth that the others shall find: NAME or NAME=parameter:value,...")
       ->take_all()
       ->expected(1);
+  app.add_option("--model", setup.model,
+                 "result.json of fathom diagnose: its numbers, effects and learned force are the truth")
+      ->type_name("FILE");
   app.add_option("--fail", setup.fail,
                  "an instrument that fails: NAME=silent|frozen|nan|delay|jump[,from:S][,to:S][,by:S]")
       ->take_all()
@@ -25,7 +28,7 @@ void Options::add_to(CLI::App& app) {
   app.add_option("--duration", setup.duration, "virtual seconds until the run ends by itself (330)");
   app.add_flag("--until-done", until_done, "end when the supervisor says that it is done, aborted or lost");
   app.add_option("--speed", speed, "virtual over real seconds (1); 0: as fast as possible, with --wait-for")
-      ->check(CLI::NonNegativeNumber);
+      ->not_negative();
   app.add_option("--wait-for", wait_for, "processes started with --lockstep: wait for each of them")->delimiter(',');
   app.add_option("--order", orders, "the operator's word at a virtual time: SECONDS=enable, abort, hold, identify, fly")
       ->take_all()

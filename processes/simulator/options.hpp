@@ -9,8 +9,8 @@
 #include "common/samples/commands.hpp"
 #include "common/simulation/simulator.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): theirs
-class App;
+namespace fathom::runtime {
+class CommandLine;
 }
 
 namespace fathom::simulator {
@@ -27,7 +27,7 @@ struct Options {
   std::string manoeuvre;  ///< preset that is flown here, whatever is commanded; empty: commands are obeyed
   OperatorKeys keys{};    ///< with which its own orders are signed and those of others believed
 
-  void add_to(CLI::App& app);
+  void add_to(runtime::CommandLine& app);
   /// The operator's orders in the order of their times (their utime), not numbered yet. InputError for a bad one.
   [[nodiscard]] std::vector<Operator> schedule() const;
   /// InputError for words that do not go together.

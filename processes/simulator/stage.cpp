@@ -172,6 +172,7 @@ void Stage::begin() {
   first_tick_ = last_answer_ = Clock::now();
   if (has_lines()) {
     const Utime planned = simulator_.origin(), origin = wall_utime();
+    gate_ = driver::ThrusterGate{unforeseeable()};  // a successor must not be taken for this one
     simulator_.begin_at(origin);
     darkroom_.begin_at(origin);
     if (instruments_ != nullptr) instruments_->begin_at(origin);

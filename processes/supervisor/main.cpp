@@ -10,12 +10,16 @@
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/vehicle_condition_t.hpp>
 #include <fathom_lcm/wrench_command_t.hpp>
+#include <utility>
 
 #include "common/base/operator_key.hpp"
 #include "common/excitation/supervisor.hpp"
 #include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
+#include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/signature.hpp"
 #include "common/wire/vehicle.hpp"
@@ -48,10 +52,8 @@ int main(int argc, char** argv) {
     process.publishes<fathom_lcm::wrench_command_t>(wire::kWrenchCommand);
     process.publishes<fathom_lcm::excitation_t>(wire::kExcitation);
     process.publishes<fathom_lcm::answer_t>(wire::kAnswer);
-    process.on<fathom_lcm::state_t>(wire::kState, [&](const auto& message) {
-      const auto state = wire::decode(message);
-      if (!state) return process.reject(wire::kState);
-      const auto& output = supervisor.step(*state);
+    process.on<fathom_lcm::state_t>(wire::kState, wire::kDecode, [&](const StateEstimate& state) {
+      const auto& output = supervisor.step(state);
       if (output.command) {
         WrenchCommand command = *output.command;
         command.commander = commander;
@@ -62,16 +64,10 @@ int main(int argc, char** argv) {
       if (output.excitation) process.publish(wire::kExcitation, wire::encode(*output.excitation));
       tell();
     });
-    process.on<fathom_lcm::model_t>(wire::kModel, [&](const auto& message) {
-      const auto model = wire::decode(message);
-      if (!model) return process.reject(wire::kModel);
-      supervisor.hear(*model);
-    });
-    process.on<fathom_lcm::effects_t>(wire::kEffects, [&](const auto& message) {
-      const auto effects = wire::decode(message);
-      if (!effects) return process.reject(wire::kEffects);
-      supervisor.hear(*effects);
-    });
+    process.on<fathom_lcm::model_t>(wire::kModel, wire::kDecode,
+                                    [&](const ModelEstimate& model) { supervisor.hear(model); });
+    process.on<fathom_lcm::effects_t>(wire::kEffects, wire::kDecode,
+                                      [&](const EffectRanking& effects) { supervisor.hear(effects); });
     // Neither an operator's clock nor that of another host is ours: a jump in it starts nothing over.
     process.listens_to<fathom_lcm::operator_t>(wire::kOperator, [&](const auto& message) {
       const auto order = wire::open(message, keys.order);
@@ -95,10 +91,13 @@ int main(int argc, char** argv) {
         }
       });
     }
-    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&](const auto& message) {
+    // Whether the kernel knows a process is of interest while it lives, not when a log is read.
+    runtime::Speakers speakers{process.reads_logs() ? "" : runtime::host_name(), runtime::Speakers::Home::kFirst};
+    process.listens_to<fathom_lcm::health_t>(wire::kHealth, [&, warned = false](const auto& message) mutable {
       const auto health = wire::decode(message);
-      if (!health) return process.reject(wire::kHealth);
-      supervisor.hear(*health);
+      if (health && speakers.believes(message)) return supervisor.hear(*health);
+      if (health && !std::exchange(warned, true)) process.log_warning(runtime::Speakers::kNotBelieved);
+      process.reject(wire::kHealth);
     });
     process.listens_to<fathom_lcm::vehicle_condition_t>(wire::kVehicle, [&](const auto& message) {
       const auto vehicle_now = wire::decode(message);

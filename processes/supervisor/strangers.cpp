@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "common/base/printable.hpp"
+
 namespace fathom::supervisor {
 namespace {
 
@@ -22,7 +24,7 @@ void Strangers::sent(const fathom_lcm::wrench_command_t& message) {
 
 bool Strangers::heard(const fathom_lcm::wrench_command_t& message) {
   constexpr std::int64_t kTellAgain = 1000;  // commands of a stranger
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 40;       // characters of a name
   const auto found = std::find(sent_.begin(), sent_.end(), signature_in(message));
   const auto index = static_cast<std::size_t>(found - sent_.begin());
   if (found != sent_.end() && waiting_[index]) {
@@ -30,10 +32,7 @@ bool Strangers::heard(const fathom_lcm::wrench_command_t& message) {
     return false;
   }
   ++count_;
-  last_ = message.commander.substr(0, kLongest);
-  for (char& c : last_) {  // what a stranger says shall not command the operator's terminal
-    if (c < ' ' || c > '~') c = '?';
-  }
+  last_ = printable(message.commander, kLongest);
   if (count_ > 1 && count_ - told_at_ < kTellAgain) return false;
   told_at_ = count_;
   return true;

@@ -1,5 +1,4 @@
 // vision: pictures and attitude in; poses of tags, optical flow and the laser's range out.
-#include <CLI/CLI.hpp>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
@@ -10,10 +9,12 @@
 #include "common/base/error.hpp"
 #include "common/model/mounts.hpp"
 #include "common/model/site.hpp"
+#include "common/runtime/command_line.hpp"
 #include "common/runtime/process.hpp"
 #include "common/vision/threads.hpp"
 #include "common/vision/watch.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/sensors.hpp"
 
 using namespace fathom;
@@ -76,16 +77,10 @@ int main(int argc, char** argv) {
         if (const std::string doubts = vision::lens_doubts(used.camera.lens); !doubts.empty()) {
           process.log_warning("camera '" + name + "': " + doubts);
         }
-        process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
-          const auto sample = wire::decode(message);
-          if (!sample) return process.reject(wire::kAhrs);
-          watch.hear(*sample);
-        });
-        process.on_latest<fathom_lcm::camera_t>(wire::kCamera, [&](const auto& message) {
-          if (message.camera != name) return;
-          const auto picture = wire::decode(message);
-          if (!picture) return process.reject(wire::kCamera);
-          if (!watch.see(*picture)) process.reject(wire::kCamera);
+        process.on<fathom_lcm::ahrs_t>(wire::kAhrs, wire::kDecode, [&](const Ahrs& sample) { watch.hear(sample); });
+        process.on_latest<fathom_lcm::camera_t>(wire::kCamera, wire::kDecode, [&](const Camera& picture) {
+          if (picture.camera != name) return;
+          if (!watch.see(picture)) process.reject(wire::kCamera);
           for (const TagPose& each : watch.front_end().tag_poses(name)) {
             process.publish(wire::kTagPose, wire::encode(each));
           }
@@ -95,8 +90,8 @@ int main(int argc, char** argv) {
           if (const auto range = watch.front_end().laser_range(name)) {
             process.publish(wire::kLaserRange, wire::encode(*range));
           }
-          if (debug && seconds_between(drawn, picture->utime) >= debug_every) {
-            drawn = picture->utime;
+          if (debug && seconds_between(drawn, picture.utime) >= debug_every) {
+            drawn = picture.utime;
             if (const auto shown = watch.drawing(kDebugQuality))
               process.publish(wire::kCameraDebug, wire::encode(*shown));
           }
@@ -112,8 +107,8 @@ int main(int argc, char** argv) {
         process.on_end([&] { process.log_info(watch.counts()); });
         process.run();
       },
-      [&](CLI::App& app) {
+      [&](runtime::CommandLine& app) {
         app.add_flag("--debug", debug, "publish pictures with everything drawn in");
-        app.add_option("--debug-every", debug_every, "seconds between two of them (0.2)")->check(CLI::PositiveNumber);
+        app.add_option("--debug-every", debug_every, "seconds between two of them (0.2)")->positive();
       });
 }

@@ -8,12 +8,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "common/runtime/self.hpp"
 #include "test/support/bus.hpp"
 #include "test/support/channels.hpp"
 #include "test/support/private_network.hpp"
+#include "test/support/sleeper.hpp"
 
 namespace fathom {
 namespace {
@@ -66,12 +68,8 @@ struct Running {
 };
 
 fathom_lcm::health_t health(const std::string& name, int pid) {
-  fathom_lcm::health_t message{};
-  message.utime = test::now();
-  message.process = name;
-  message.host = "vehicle";
+  fathom_lcm::health_t message = test::word_of(name);
   message.pid = pid;
-  message.state = "running";
   return message;
 }
 
@@ -303,6 +301,27 @@ TEST_CASE("board: two on one bus are both well, and a true twin of one is still 
   const Json told = one.json();
   CHECK(std::any_of(told["processes"].begin(), told["processes"].end(),
                     [](const Json& each) { return is_board(each) && each["second"] == true; }));
+}
+
+TEST_CASE("board: HEALTH in the name of a dead process of this host shows nobody") {
+  Bus bus;
+  const Running board{bus};
+  test::Sleeper alive, dead;
+  dead.end();
+  const Json shown = board.until(bus, [&](const Json& all) {
+    for (const auto& [name, one] : {std::pair{"dead", &dead}, std::pair{"alive", &alive}}) {
+      auto word = health(name, one->pid);
+      word.host = runtime::host_name();
+      word.start = one->start;
+      bus.publish("HEALTH", word);
+    }
+    return all["processes"].size() > 1;
+  });
+  const auto named = [&](const std::string& name) {
+    return std::ranges::any_of(shown["processes"], [&](const Json& each) { return each["name"] == name; });
+  };
+  CHECK(named("alive"));
+  CHECK_FALSE(named("dead"));
 }
 
 TEST_CASE("board: a client that does not go on cannot keep it from stopping") {

@@ -63,6 +63,7 @@ TEST_CASE("fathom doctor: names what is missing, with the command that mends it"
   const auto routed = shell("unshare -rn sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; \"$0\" doctor' " +
                             program("fathom"));
   CHECK_MESSAGE(routed.says("ok    network      a message comes back over multicast"), routed.text);
+  CHECK_MESSAGE(routed.says("what is sent to this host past the bus is refused"), routed.text);
 }
 
 TEST_CASE("disk: a process whose log cannot be written says so and fails") {

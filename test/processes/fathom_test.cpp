@@ -99,6 +99,42 @@ TEST_CASE("fathom: runs of one name in two folders are two, one file twice is re
   one_line(shell(check + first + " " + second + " " + first), 1, "run.CSV: this is ");
 }
 
+TEST_CASE("fathom: vehicle files to begin with are listed, printed as they are, and a slip of the name is told") {
+  const Ran listed = shell(kTool + " vehicle");
+  CHECK(listed.code == 0);
+  for (const char* name : {"bluerov2_heavy", "otter", "remus100", "slocum", "cybership2"}) CHECK(listed.says(name));
+  const Ran otter = shell(kTool + " vehicle otter");
+  CHECK(otter.code == 0);
+  CHECK(otter.text == test::read_bytes(FATHOM_SOURCE_DIR "/config/vehicles/otter.yaml"));
+  one_line(shell(kTool + " vehicle remus_100"), 1, "did you mean remus100?");
+}
+
+TEST_CASE("fathom: folds need recordings to hold out, and hold them out themselves") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,phi,theta,psi,u,v,w,p,q,r"));
+  const std::string command = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " +
+                              scratch.path("a.csv") + " --out " + scratch.path("d");
+  one_line(shell(command + " --folds 3"), 1, "--folds: at least two recordings are needed, 1 is given");
+  one_line(shell(command + " --folds 3 --validate " + scratch.path("a.csv")), 1, "and no --validate");
+}
+
+TEST_CASE("fathom: an import that fails leaves the log that was there, and nothing beside it") {
+  const Scratch scratch;
+  const std::string header = "t,x,y,z,phi,theta,psi,u,v,w,p,q,r";
+  test::write_bytes(scratch.path("good.csv"), table(header));
+  std::string broken;  // not one depth
+  std::istringstream lines{table(header)};
+  for (std::string line; std::getline(lines, line);) broken += line + (broken.empty() ? ",depth\n" : ",\n");
+  test::write_bytes(scratch.path("bad.csv"), broken);
+  const std::string out = scratch.path("run.lcmlog");
+  REQUIRE(shell(kTool + " import " + scratch.path("good.csv") + " --out " + out).code == 0);
+  const std::string before = test::read_bytes(out);
+  CHECK(shell(kTool + " import " + scratch.path("bad.csv") + " --out " + out).code == 1);
+  CHECK(test::read_bytes(out) == before);
+  CHECK_FALSE(std::filesystem::exists(out + ".part"));
+}
+
 TEST_CASE("fathom: a NaN cell costs its sample, and is counted") {
   const Scratch scratch;
   test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N", "nan"));

@@ -229,6 +229,17 @@ TEST_CASE("fathom import: several files of one run on one clock, folders, patter
   CHECK(std::filesystem::exists(scratch.path("all/pilot.lcmlog")));
   CHECK(std::filesystem::exists(scratch.path("all/mocap.lcmlog")));
   CHECK(shell(kTool + " import " + scratch.path("dives") + " --out " + scratch.path("all/")).code == 0);
+  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " '" + scratch.path("all");
+  const Ran checked = shell(check + "/*'");
+  CHECK_MESSAGE(checked.code == 0, checked.text);
+  CHECK(checked.says("would have been seen"));
+  CHECK(shell(check + "/*' '" + scratch.path("all") + "/pilot.*'").says("pilot.lcmlog again"));  // it was among them
+  std::filesystem::create_directories(scratch.path("more"));
+  std::filesystem::copy_file(scratch.path("dives/pilot.ulg"), scratch.path("more/pilot.ulg"));
+  const Ran twins = shell(kTool + " import " + scratch.path("dives/pilot.ulg") + " " + scratch.path("more/pilot.ulg") +
+                          " --out " + scratch.path("all/"));
+  CHECK_MESSAGE(twins.code == 0, twins.text);
+  CHECK(std::filesystem::exists(scratch.path("all/more-pilot.lcmlog")));
 
   const auto refused = [&](const std::string& words, const std::string& because) {
     const Ran ran = shell(kTool + " import " + words);
@@ -239,6 +250,8 @@ TEST_CASE("fathom import: several files of one run on one clock, folders, patter
   refused(scratch.path("none.ulg") + out, "no such file");
   refused("'" + scratch.path("dives") + "/*.bag'" + out, "no file matches");
   refused(scratch.path("dives/pilot.ulg"), "--out is missing");
+  refused(scratch.path("all/pilot.lcmlog") + " --out " + scratch.path("all/pilot.lcmlog"), "is read from");
+  refused(scratch.path("dives/pilot.ulg") + out + " --shift pilot=nan", "must be NAME=SECONDS");
   test::write_bytes(scratch.path("map.yaml"),
                     "source: s\nlicence: l\nahrs:\n  rates: {columns: ['sensor_combined.gyro_rad[0]', "
                     "'sensor_combined.gyro_rad[1]', 'sensor_combined.gyro_rad[3]'], unit: rad/s, frame: FRD}\n");

@@ -16,6 +16,7 @@
 #include <memory>
 
 #include "common/link/server.hpp"
+#include "test/support/private_network.hpp"
 
 namespace fathom {
 namespace {
@@ -58,7 +59,7 @@ struct Vehicle {
         program("supervisor") + " --config " + file("config/pipelines/tank.yaml") + " --config " +
             file("config/vehicles/bluerov2.yaml") + " --config " + file("config/sites/tank.yaml") + " --config " +
             kOperator + " --in '" + bus.url + "'");
-    for (int i = 0; i < 100 && bus.said_of("supervisor").empty(); ++i) run(0.1);
+    until([&] { return !bus.said_of("supervisor").empty(); });
     run(1.0);  // until it has heard its neighbours
   }
   /// Estimator and identifier as far as a supervisor sees them.
@@ -69,12 +70,7 @@ struct Vehicle {
         std::vector<std::string> neighbours{"estimator", "identifier", "recorder"};
         if (deaf_supervisor) neighbours.emplace_back("supervisor");
         for (const std::string& process : neighbours) {
-          fathom_lcm::health_t health{};
-          health.utime = now();
-          health.process = process;
-          health.host = "vehicle";
-          health.state = process == "identifier" ? identifier : "running";
-          bus.publish("HEALTH", health);
+          bus.publish("HEALTH", test::word_of(process, process == "identifier" ? identifier : "running"));
         }
       }
       if (i % 10 == 0) {
@@ -86,8 +82,19 @@ struct Vehicle {
       bus.listen(0.005);
     }
   }
+  /// As long as a busy machine may take until `enough`; whether it came to that.
+  template <class Enough>
+  bool until(const Enough& enough, double longest = 30.0) {
+    for (const double end = link::wall_seconds() + longest; !enough(); run(0.05)) {
+      if (link::wall_seconds() > end) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool supervisor_says(const std::string& words) const {
+    return bus.said_of("supervisor").find(words) != std::string::npos;
+  }
   /// A command of the operator's tool, while everything else goes on.
-  Ran tool(const std::string& words, double longest = 8.0) {
+  Ran tool(const std::string& words, double longest = 30.0) {
     std::remove(scratch.path("code").c_str());
     const Background one{scratch, "tool",
                          "sh -c \"" + program("fathom") + " " + words + " --bus '" + bus.url + "' < /dev/null > " +
@@ -106,6 +113,7 @@ struct Vehicle {
   }
   /// Of the newest command.
   [[nodiscard]] double commanded_ahead() const { return bus.commands.empty() ? 0.0 : bus.commands.back().tau[0]; }
+  [[nodiscard]] bool pushes_ahead(double force) const { return std::abs(commanded_ahead() - force) < 0.1 * force; }
 };
 
 }  // namespace
@@ -141,6 +149,7 @@ TEST_CASE("orders: forged and copied commands at 200 Hz move nothing and are nam
     sideways = std::max(sideways, std::abs(vehicle.bus.thrusters[i].tau[1]));
   CHECK(sideways < 15.0);  // what the supervisor itself may ask for: 12 N
   vehicle.run(1.2);
+  vehicle.until([&] { return vehicle.bus.said_of("thruster_driver").find("replayed") != std::string::npos; });
   const std::string driver = vehicle.bus.said_of("thruster_driver"), supervisor = vehicle.bus.said_of("supervisor");
   CHECK_MESSAGE(driver.find("not signed with this vehicle's key") != std::string::npos, driver);
   CHECK_MESSAGE(driver.find("replayed") != std::string::npos, driver);
@@ -172,8 +181,7 @@ TEST_CASE("orders: forged and copied commands at 200 Hz move nothing and are nam
 TEST_CASE("orders: an order that is played again after the driver was started again arms nothing") {
   Vehicle vehicle;
   const auto order = give(vehicle.bus, {.enable = true});
-  vehicle.bus.listen(0.3);
-  REQUIRE(vehicle.bus.gate()->armed != 0);
+  REQUIRE(vehicle.bus.until([&] { return vehicle.bus.gate()->armed != 0; }));
   const auto first = vehicle.bus.gate()->challenge;
   vehicle.driver.reset();
   vehicle.start_driver();
@@ -210,8 +218,8 @@ TEST_CASE(
   vehicle.meanwhile = [&, i = 0]() mutable {
     if (++i % 10 == 0) commander.say(test::ahead(20.0));
   };
-  vehicle.run(1.0);
-  REQUIRE(vehicle.bus.thrusters.back().tau[0] > 15.0);
+  const auto pushed = [&] { return !vehicle.bus.thrusters.empty() && vehicle.bus.thrusters.back().tau[0] > 15.0; };
+  REQUIRE(vehicle.until(pushed));
   const auto ran = vehicle.tool("abort --operator " + kOperator);
   CHECK_MESSAGE(ran.code == 0, ran.text);
   CHECK_MESSAGE(ran.says("aborted, confirmed after"), ran.text);
@@ -291,15 +299,12 @@ TEST_CASE("orders: what is steered ages out: one order to push is not held") {
   Vehicle vehicle;
   vehicle.start_supervisor();
   give(vehicle.bus, {.enable = true, .order = "hold"});
-  vehicle.run(1.0);
-  CHECK_MESSAGE(vehicle.bus.said_of("supervisor").find("hold: ") != std::string::npos,
-                vehicle.bus.said_of("supervisor"));
+  CHECK_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("hold: "); }), vehicle.bus.said_of("supervisor"));
   give(vehicle.bus, {.order = "manual", .tau = test::ahead(10.0)});
-  vehicle.run(0.25);
-  CHECK(vehicle.commanded_ahead() == doctest::Approx(10.0).epsilon(0.1));
+  CHECK(vehicle.until([&] { return vehicle.pushes_ahead(10.0); }));
   vehicle.run(1.0);
   CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);
-  CHECK_MESSAGE(vehicle.bus.said_of("supervisor").find("hold: who steers has let go") != std::string::npos,
+  CHECK_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("hold: who steers has let go"); }),
                 vehicle.bus.said_of("supervisor"));
 }
 
@@ -323,8 +328,8 @@ TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is h
     };
     if (joystick) event(0, JS_EVENT_BUTTON | JS_EVENT_INIT, 4);
     const auto said = [&] { return vehicle.bus.said_of("supervisor"); };
-    for (int i = 0; i < 60 && said().find("hold: ") == std::string::npos; ++i) vehicle.run(0.1);
-    REQUIRE_MESSAGE(said().find("hold: ") != std::string::npos, test::read_bytes(vehicle.scratch.path("steer.text")));
+    REQUIRE_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("hold: "); }),
+                    test::read_bytes(vehicle.scratch.path("steer.text")));
     if (joystick) {
       event(-32767, JS_EVENT_AXIS, 1);
       vehicle.run(0.5);
@@ -335,8 +340,9 @@ TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is h
         if (++i % 6 == 0) keys.send("w");
       };
     }
-    vehicle.run(1.5);
-    CHECK(vehicle.commanded_ahead() == doctest::Approx(8.0).epsilon(0.1));
+    CHECK(vehicle.until([&] { return vehicle.pushes_ahead(8.0); }));
+    vehicle.run(1.0);
+    CHECK(vehicle.commanded_ahead() == doctest::Approx(8.0).epsilon(0.1));  // and goes on
     vehicle.meanwhile = {};
     if (joystick) event(0, JS_EVENT_BUTTON, 4);
     vehicle.run(1.5);
@@ -347,13 +353,39 @@ TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is h
     } else {
       keys.send(" ");
     }
-    for (int i = 0; i < 40 && said().find("aborted: ") == std::string::npos; ++i) vehicle.run(0.1);
-    vehicle.run(0.5);
-    CHECK_MESSAGE(
-        test::read_bytes(vehicle.scratch.path("steer.text")).find("aborted, confirmed after") != std::string::npos,
-        test::read_bytes(vehicle.scratch.path("steer.text")));
+    const auto confirmed = [&] {
+      const std::string told = test::read_bytes(vehicle.scratch.path("steer.text"));
+      return told.find("aborted, confirmed after") != std::string::npos;
+    };
+    CHECK_MESSAGE(vehicle.until(confirmed), test::read_bytes(vehicle.scratch.path("steer.text")));
+    CHECK(vehicle.until([&] { return vehicle.supervisor_says("aborted: "); }));
     CHECK(vehicle.bus.gate()->armed == 0);
   }
+}
+
+TEST_CASE("orders: where the bus leaves this host who arms stays, unless told to leave") {
+  if (!test::private_network()) return;
+  const Scratch scratch;
+  test::write_bytes(scratch.path("x.yaml"),
+                    "thruster_driver: {protocol: dry_run, rate: 20 Hz, largest_thrust: 30 N}\n");
+  const auto ran = test::on_a_network(
+      scratch, "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=1'\n" + program("thruster_driver") +
+                   " --config x.yaml --config " + file("config/vehicles/bluerov2.yaml") + " --config " + kOperator +
+                   " 2>driver.txt &\n"
+                   "up() { $fathom status | grep -q thruster_driver; }; within 30 up\n"
+                   "arm() { timeout -s INT 8 $fathom arm --no-supervisor --operator " +
+                   kOperator +
+                   " $*; echo \"code $?\"; }\n"
+                   "arm; echo leaves; arm --leave; export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'; arm\n");
+  const auto leaves = ran.text.find("leaves");
+  REQUIRE_MESSAGE(leaves != std::string::npos, ran.text);
+  const std::string stayed = ran.text.substr(0, leaves), left = ran.text.substr(leaves);
+  CHECK_MESSAGE(stayed.find("stays with it, a sign of life every 1.2 s; Ctrl-C aborts") != std::string::npos, ran.text);
+  CHECK(stayed.find("code 124") != std::string::npos);  // until it was told to end
+  CHECK(left.find("stays with it") == std::string::npos);
+  const auto first = left.find("code 0");
+  REQUIRE_MESSAGE(first != std::string::npos, ran.text);
+  CHECK(left.find("code 0", first + 1) != std::string::npos);
 }
 
 TEST_CASE("orders: who armed over a link and is gone is missed") {
@@ -368,9 +400,8 @@ TEST_CASE("orders: who armed over a link and is gone is missed") {
                   vehicle.bus.said_of("supervisor"));
     test::shell("kill -KILL $(cat " + vehicle.scratch.path("attend.pid") + ")");
   }
-  vehicle.run(2.5);
   CHECK_MESSAGE(
-      vehicle.bus.said_of("supervisor").find("aborted: the operator is lost: no sign of life") != std::string::npos,
+      vehicle.until([&] { return vehicle.supervisor_says("aborted: the operator is lost: no sign of life"); }),
       vehicle.bus.said_of("supervisor"));
 }
 

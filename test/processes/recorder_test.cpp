@@ -38,6 +38,16 @@ void traffic(Bus& bus, double seconds) {
   bus.thrusters.clear();
 }
 
+/// The same, until the recorder's newest word is of this state and holds these words.
+bool traffic_until(Bus& bus, const std::string& state, const std::string& words = "") {
+  const auto said = [&] {
+    const auto word = newest(bus);
+    return word.state == state && word.detail.find(words) != std::string::npos;
+  };
+  for (int i = 0; i < 120 && !said(); ++i) traffic(bus, 0.5);
+  return said();
+}
+
 /// Every log in the folder is whole and holds something; how many there are.
 int whole_logs(const std::string& folder) {
   int logs = 0;
@@ -62,9 +72,7 @@ TEST_CASE("recorder: tells the room that is left and how long it lasts") {
   const Background recorder{scratch, "recorder",
                             program("recorder") + " --number --file " + scratch.path("a.lcmlog") + " --in '" + bus.url +
                                 "' --out '" + bus.url + "'"};
-  traffic(bus, 4.0);
-  CHECK(newest(bus).state == "running");
-  CHECK_MESSAGE(newest(bus).detail.find(" free, full in ") != std::string::npos, newest(bus).detail);
+  CHECK_MESSAGE(traffic_until(bus, "running", " free, full in "), newest(bus).detail);
   recorder.stop();
   CHECK(whole_logs(scratch.path("")) == 1);
 }
@@ -104,15 +112,10 @@ TEST_CASE("recorder: on a full disk one log stays, whole; with room again the ne
                         "while [ ! -e stop ]; do sleep 0.05; done; kill -TERM $r; wait $r; echo \"code $?\"\n"
                         "mkdir logs; cp full/* logs; touch copied\n");
   const Background inside{scratch, "inside", "unshare -rm bash " + scratch.path("script")};
-  traffic(bus, 2.0);
-  CHECK_MESSAGE(newest(bus).detail.starts_with("the disk is nearly full: "), newest(bus).detail);  // before it is full
-  CHECK(newest(bus).state == "unhealthy");
-  traffic(bus, 13.0);  // 1.9 MB at 160 kB/s
-  CHECK_MESSAGE(newest(bus).detail.find("is the disk full?") != std::string::npos, newest(bus).detail);
-  CHECK(newest(bus).state == "unhealthy");
+  CHECK_MESSAGE(traffic_until(bus, "unhealthy", "the disk is nearly full: "), newest(bus).detail);  // before it is full
+  CHECK_MESSAGE(traffic_until(bus, "unhealthy", "is the disk full?"), newest(bus).detail);  // 1.9 MB at 160 kB/s
   test::write_bytes(scratch.path("release"), "");
-  traffic(bus, 6.0);
-  CHECK(newest(bus).state == "running");
+  CHECK_MESSAGE(traffic_until(bus, "running"), newest(bus).detail);
   test::write_bytes(scratch.path("stop"), "");
   for (int i = 0; i < 100 && !std::filesystem::exists(scratch.path("copied")); ++i) bus.listen(0.05);
   CHECK_MESSAGE(test::read_bytes(scratch.path("inside.text")).find("code 0") != std::string::npos,

@@ -54,7 +54,7 @@ Ran flight(const Scratch& scratch, const std::string& log, const std::string& op
                               "\ncode=\\$?\nwait\nexit \\$code");
   }
   return on_private_network("lcm-logger -q -f --lcm-url='" + kBus + "&recv_buf_size=2097152' " + path +
-                            " >/dev/null 2>&1 & logger=\\$!\n" + pilot() + " & pilot=\\$!\nsleep 0.4\n" +
+                            " >/dev/null 2>&1 & logger=\\$!\n" + pilot() + " & pilot=\\$!\nsleep 1\n" +
                             simulator(options) +
                             "\ncode=\\$?\nsleep 0.3\nkill \\$pilot \\$logger 2>/dev/null\nwait\nexit \\$code");
 }

@@ -46,17 +46,19 @@ TEST_CASE(
         program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
             test::file(protocol == "text" ? "config/vehicles/beluga.yaml" : "config/vehicles/bluerov2.yaml") +
             " --config " + test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
-    bus.listen(1.5);
+    bus.until([&] { return bus.gate() != nullptr && !bus.thrusters.empty(); });
     CAPTURE(test::read_bytes(scratch.path("driver.text")));
     const auto thrust = [&] { return bus.thrusters.empty() ? -1.0 : bus.thrusters.back().tau[0]; };
     CHECK(thrust() == doctest::Approx(0.0));
     test::Commander commander{bus};
-    const auto command = [&](double seconds) {
-      for (int i = 0; i < static_cast<int>(20 * seconds); ++i) {
-        commander.say(test::ahead(20.0));
+    Utime commanded{};
+    const auto command = [&](double seconds, double wanted = 1e9) {
+      for (int i = 0; i < static_cast<int>(20 * seconds) && thrust() < wanted; ++i) {
+        commanded = commander.say(test::ahead(20.0)).utime;
         bus.listen(0.05);
       }
     };
+    constexpr double kSlow = 20.0;  // s until a busy machine obeys
     command(0.7);
     CHECK(thrust() == doctest::Approx(0.0));  // nobody has armed
     commander.obey(test::give(bus, {.enable = true}, keys_from(Key{1, 2, 3})));
@@ -67,16 +69,25 @@ TEST_CASE(
     command(0.4);
     CHECK(thrust() == doctest::Approx(0.0));  // who was publishing before
     commander.obey(order);
-    command(1.0);
+    command(kSlow, 18.0);
+    command(0.5);
     CHECK(thrust() == doctest::Approx(20.0).epsilon(0.05));  // the rig rounds to a microsecond
-    bus.listen(0.9);                                         // half a second, and the rig's next report
-    CHECK(thrust() == doctest::Approx(0.0));
-    command(0.7);
+    CHECK(bus.until([&] { return thrust() == doctest::Approx(0.0); }));
+    Utime pushed{};
+    for (const auto& each : bus.thrusters) {
+      if (each.tau[0] != doctest::Approx(0.0)) pushed = each.utime;
+    }
+    CHECK(seconds_between(commanded, pushed) < 0.9);  // half a second, and the rig's next report
+    command(kSlow, 15.0);
     CHECK(thrust() > 15.0);
     const auto abort = test::give(bus, {.sequence = 77, .abort = true});
+    const auto answered = [&] {
+      return std::ranges::any_of(bus.answers, [&](const auto& each) { return each.sequence == abort.sequence; });
+    };
+    for (double waited = 0.0; waited < kSlow && !answered(); waited += 0.05) command(0.05);
+    CHECK(answered());
     command(0.4);
     REQUIRE(bus.gate() != nullptr);
-    CHECK(std::ranges::any_of(bus.answers, [&](const auto& each) { return each.sequence == abort.sequence; }));
     CHECK(thrust() == doctest::Approx(0.0));
   }
 }
@@ -93,9 +104,10 @@ TEST_CASE("thruster_driver: RC override puts the wrench on the pilot's channels,
                           program("thruster_driver") + " --config " + scratch.path("x.yaml") + " --config " +
                               test::file("config/vehicles/bluerov2.yaml") + " --config " +
                               test::file("config/operators/simulated.yaml") + " --in '" + bus.url + "'"};
-  bus.listen(1.5);
+  REQUIRE(bus.until([&] { return bus.gate() != nullptr; }));
   test::Commander commander{bus};
   commander.obey(test::give(bus, {.enable = true}));
+  CHECK(bus.until([&] { return bus.gate()->armed != 0; }));
   (void)vehicle.wait(0.1);
   std::string bytes;
   for (int i = 0; i < 20; ++i) {

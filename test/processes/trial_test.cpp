@@ -129,7 +129,8 @@ TEST_CASE("trial: a replayed log does not arm, and its orders are named") {
       "timeout 30 unshare -rn sh -c \"ip link set lo up; ip route add 224.0.0.0/4 dev lo; "
       "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'\n" +
       program("thruster_driver") + " --config " + config + " --config " + file("config/vehicles/bluerov2.yaml") +
-      " --config " + file("config/operators/simulated.yaml") + " & driver=\\$!\nsleep 0.5\nlcm-logplayer --speed=4 " +
+      " --config " + file("config/operators/simulated.yaml") + " & driver=\\$!\nfor i in 1 2 3 4 5 6 7 8; do " +
+      program("fathom") + " status | grep -q thruster_driver && break; done\nlcm-logplayer --speed=4 " +
       scratch.path("run.lcmlog") + " >/dev/null 2>&1\n" + program("fathom") + " status\nkill \\$driver\nwait\"");
   CHECK_MESSAGE(replayed.says("orders refused 1 (a replay: "), replayed.text);
   CHECK_MESSAGE(replayed.says("zero thrust: not armed"), replayed.text);

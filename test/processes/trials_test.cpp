@@ -80,6 +80,11 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
   const auto bare =
       shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("x.lcmlog"));
   CHECK_MESSAGE(bare.says("RANGES are not used"), bare.text);
+  CHECK(bare.code == 1);
+  CHECK_MESSAGE(bare.says("nothing that is known tells the position"), bare.text);
+  const auto drifting = shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " +
+                              scratch.path("x.lcmlog") + " --without-position");
+  CHECK_MESSAGE(drifting.code == 0, drifting.text);
   const auto itself =
       shell(program("fathom") + " smooth " + scratch.path("zigzag.lcmlog") + " --out " + scratch.path("zigzag.lcmlog"));
   CHECK(itself.code == 1);
@@ -100,6 +105,29 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: what is wrong is said
       shell(program("fathom") + " compare " + kVehicle + " " + scratch.path("bad.yaml") + " --manoeuvre line");
   CHECK(bad.code == 1);
   CHECK_MESSAGE(bad.says("'X_uuu' is no hydrodynamic derivative"), bad.text);
+}
+
+TEST_CASE("fathom compare --manoeuvre: the paper's tables are flown, and what diverges says when, where and by what") {
+  const auto set = [](const char* name) { return file(std::string{"config/coefficients/pap104_"} + name + ".yaml"); };
+  const std::string compare = program("fathom") + " compare ";
+  // The reference of the tables, over what the vehicle file assumes: a set that flies.
+  const auto over = shell(compare + kVehicle + " " + set("pmm") + " --over --manoeuvre circle");
+  CHECK_MESSAGE(over.code == 0, over.text);
+  CHECK_MESSAGE(!over.says("diverges"), over.text);
+  // What the line alone identified has no drag at all, and K_vq of another size than the hull's.
+  const auto alone = shell(compare + set("line") + " " + set("pmm") + " --manoeuvre zigzag --vehicle " + kVehicle);
+  CHECK_MESSAGE(alone.code == 0, alone.text);
+  CHECK_MESSAGE(alone.says("pap104_line.yaml diverges at "), alone.text);
+  CHECK_MESSAGE(alone.says(" along p "), alone.text);
+  CHECK_MESSAGE(alone.says("driven by K_vq"), alone.text);
+  for (const char* name : {"circle", "zigzag"}) {
+    const auto flown = shell(compare + kVehicle + " " + set(name) + " --over --manoeuvre " + name);
+    CHECK_MESSAGE(flown.code == 0, flown.text);
+    CHECK_MESSAGE(flown.says("difference, largest"), flown.text);
+  }
+  const auto homeless = shell(compare + set("line") + " " + set("pmm") + " --manoeuvre line");
+  CHECK(homeless.code == 1);
+  CHECK_MESSAGE(homeless.says("coefficients alone; name the vehicle that they are for (--vehicle)"), homeless.text);
 }
 
 TEST_CASE("fathom methods: both methods on the same recording, judged on another") {
@@ -146,6 +174,30 @@ TEST_CASE("fathom methods: against a truth it tells what each estimate was worth
   for (const char* row : {"complementary filter", "Kalman filter", "Kalman smoother", "parameter error"}) {
     CHECK_MESSAGE(ran.says(row), ran.text);
   }
+}
+
+TEST_CASE("scripts/pap104: three manoeuvres flown, smoothed, drawn and regressed, on one page") {
+  if (shell("unshare -rn ip link set lo up").code != 0) {
+    MESSAGE("skipped: this machine allows no private network (unshare -rn)");
+    return;
+  }
+  const Scratch scratch;
+  const auto ran = shell("FATHOM_BIN='" + std::string{FATHOM_BINARY_DIR} + "/bin' " + file("scripts/pap104") + " " +
+                         scratch.path("out") + " 3");
+  REQUIRE_MESSAGE(ran.code == 0, ran.text);
+  const auto text = [&](const std::string& name) {
+    std::ifstream from{scratch.path("out/" + name)};
+    return std::string{std::istreambuf_iterator<char>{from}, {}};
+  };
+  for (const char* manoeuvre : {"line", "zigzag", "circle"}) {
+    const std::string page = text(std::string{manoeuvre} + ".html");
+    CHECK(page.find("6. Derivative of v in the body: line smoother, dashed truth.") != std::string::npos);
+    CHECK(page.find("which the filter never saw") != std::string::npos);
+  }
+  CHECK(text("circle.html").find("degrees ahead of U") != std::string::npos);
+  const std::string report = text("report.html");
+  CHECK(report.find("X (surge): dimensionless") != std::string::npos);
+  CHECK(report.find("circle.html") != std::string::npos);
 }
 
 TEST_CASE("fathom smooth: a table with a column map, from motion capture and gyro") {

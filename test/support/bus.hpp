@@ -37,6 +37,14 @@ class Bus {
     const double end = link::wall_seconds() + seconds;
     while (link::wall_seconds() < end) lcm_.handleTimeout(10);
   }
+  /// Listens until `enough`, for so long [s] at most, since machines are slow at times; whether it came to that.
+  template <class Enough>
+  bool until(const Enough& enough, double longest = 30.0) {
+    for (const double end = link::wall_seconds() + longest; !enough(); listen(0.02)) {
+      if (link::wall_seconds() > end) return false;
+    }
+    return true;
+  }
   template <class Message>
   void publish(const std::string& channel, const Message& message) {
     lcm_.publish(channel, &message);
@@ -112,5 +120,17 @@ class Background {
 };
 
 inline Utime now() { return static_cast<Utime>(1e6 * link::wall_seconds()); }
+
+/// HEALTH of a process on a host of its own, numbered as a process numbers its words.
+inline fathom_lcm::health_t word_of(const std::string& process, const std::string& state = "running") {
+  static std::int64_t words = 0;
+  fathom_lcm::health_t message{};
+  message.utime = now();
+  message.process = process;
+  message.host = "vehicle";
+  message.sequence = ++words;
+  message.state = state;
+  return message;
+}
 
 }  // namespace fathom::test

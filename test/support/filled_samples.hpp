@@ -110,8 +110,8 @@ inline void fill(Fill& f, Truth& s) {
        f.matrix<Vector3>(), f.matrix<Vector6d>()};
 }
 inline void fill(Fill& f, Health& s) {
-  s = {f.utime(), f.word(),  f.word(),   f.whole(),  f.word(),  f.whole(), f.whole(),
-       f.whole(), f.whole(), f.number(), f.number(), f.whole(), f.word(),  {}};
+  s = {f.utime(), f.word(),  f.word(),  f.whole(),  f.whole(),  f.whole(), f.word(), f.whole(),
+       f.whole(), f.whole(), f.whole(), f.number(), f.number(), f.whole(), f.word(), {}};
   for (int i = 0; i < 2; ++i) s.channels.push_back({f.word(), f.number(), f.number()});
 }
 inline void fill(Fill& f, ProcessInfo& s) { s = {f.utime(), f.word(), f.word(), f.word(), f.word()}; }

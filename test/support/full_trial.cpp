@@ -58,11 +58,36 @@ void foretell(const std::map<Utime, Truth>& truths, Utime from, Utime until, con
   progress.moment = std::sqrt(error.tail<3>().sum() / applied.tail<3>().sum());
 }
 
+/// A file as PROCESS_INFO tells it.
+std::string told_file(const std::string& path) {
+  std::ifstream file{path};
+  return "# file " + path + "\n" + std::string{std::istreambuf_iterator<char>{file}, {}};
+}
+
+void keep(const simulation::Sample& sample, Recording& recording) {
+  const auto into = [&](const auto& one) {
+    using T = std::decay_t<decltype(one)>;
+    if constexpr (std::is_same_v<T, Ahrs>) recording.ahrs.push_back(one);
+    if constexpr (std::is_same_v<T, Dvl>) recording.dvl.push_back(one);
+    if constexpr (std::is_same_v<T, Depth>) recording.depth.push_back(one);
+    if constexpr (std::is_same_v<T, Usbl>) recording.usbl.push_back(one);
+    if constexpr (std::is_same_v<T, Ranges>) recording.ranges.push_back(one);
+    if constexpr (std::is_same_v<T, Loads>) recording.loads.push_back(one);
+    if constexpr (std::is_same_v<T, TagPose>) recording.tag_pose.push_back(one);
+    if constexpr (std::is_same_v<T, OpticalFlow>) recording.optical_flow.push_back(one);
+    if constexpr (std::is_same_v<T, LaserRange>) recording.laser_range.push_back(one);
+    if constexpr (std::is_same_v<T, Thrusters>) recording.thrusters.push_back(one);
+    if constexpr (std::is_same_v<T, Battery>) recording.battery.push_back(one);
+    if constexpr (std::is_same_v<T, Truth>) recording.truth.push_back(one);
+  };
+  std::visit(into, sample);
+}
+
 }  // namespace
 
 FullTrial run_trial(const FullTrialOptions& options) {
-  const auto& [seed, optimal, diagnose, joint, times, limit, site_name, hide, vehicle, changes, of_simulation] =
-      options;
+  const auto& [seed, optimal, diagnose, joint, times, limit, site_name, hide, vehicle, changes, of_simulation,
+               recording] = options;
   const std::string root = FATHOM_SOURCE_DIR;
   auto all_changes = changes;
   if (optimal) {
@@ -129,8 +154,15 @@ FullTrial run_trial(const FullTrialOptions& options) {
       told.emplace_back(state.utime, identifier.model());
   };
   std::map<Utime, StateEstimate> states;
+  if (recording != nullptr) {
+    recording->process_info.push_back({.process = "estimator",
+                                       .config = told_file(root + "/config/pipelines/" + site_name + ".yaml") +
+                                                 told_file(root + "/config/vehicles/" + vehicle + ".yaml") +
+                                                 told_file(root + "/config/sites/" + site_name + ".yaml")});
+  }
   while (seconds_between(1'700'000'000'000'000, simulator.now()) < limit) {
     for (const simulation::Sample& sample : simulator.step()) {
+      if (recording != nullptr) keep(sample, *recording);
       std::visit(
           [&](const auto& one) {
             using T = std::decay_t<decltype(one)>;
@@ -141,6 +173,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
               }
               for (const StateEstimate& state : navigator.step(one)) {
                 use(state);
+                if (recording != nullptr) recording->state.push_back(state);
                 states[state.utime] = state;
               }
             } else if constexpr (std::is_same_v<T, Thrusters>) {

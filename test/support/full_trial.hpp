@@ -9,6 +9,7 @@
 
 #include "common/excitation/supervisor.hpp"
 #include "common/samples/estimates.hpp"
+#include "common/samples/recording.hpp"
 #include "common/simulation/simulator.hpp"
 
 namespace fathom::test {
@@ -59,6 +60,8 @@ struct FullTrialOptions {
   std::vector<std::pair<std::string, std::string>> pipeline{};
   /// The same for config/simulation/VEHICLE.yaml: which error of an instrument makes which error of the model.
   std::vector<std::pair<std::string, std::string>> simulation{};
+  /// Takes what a recorder would: instruments, thrusters, STATE, TRUTH, and PROCESS_INFO of the estimator.
+  Recording* recording{};
 };
 
 /// From the simulator's first command to the schedule's end or the limit.

@@ -9,6 +9,7 @@
 #include "common/base/operator_key.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
 #include "common/wire/signature.hpp"
@@ -27,15 +28,13 @@ int main(int argc, char** argv) {
       armed_by = order->sequence;
       challenge = order->challenge;
     });
-    process.on<fathom_lcm::ahrs_t>(wire::kAhrs, [&](const auto& message) {
-      const auto ahrs = wire::decode(message);
-      if (!ahrs) return process.reject(wire::kAhrs);
+    process.on<fathom_lcm::ahrs_t>(wire::kAhrs, wire::kDecode, [&](const Ahrs& ahrs) {
       if (++count % 2 != 0) return;
-      const double t = seconds_between(1'700'000'000'000'000, ahrs->utime);
+      const double t = seconds_between(1'700'000'000'000'000, ahrs.utime);
       WrenchCommand command{
-          .utime = ahrs->utime, .life = 0.3, .armed_by = armed_by, .challenge = challenge, .sequence = count};
+          .utime = ahrs.utime, .life = 0.3, .armed_by = armed_by, .challenge = challenge, .sequence = count};
       command.tau << 5.0 * std::sin(2.0 * t), 3.0 * std::cos(1.7 * t), 1.2, 0.0, 0.0,
-          0.3 * std::sin(1.1 * t) - 0.5 * ahrs->w_WB_B.z();
+          0.3 * std::sin(1.1 * t) - 0.5 * ahrs.w_WB_B.z();
       process.publish(wire::kWrenchCommand, wire::encode_signed(command, keys.command));
     });
     process.run();

@@ -69,11 +69,11 @@ TEST_CASE("launch: with --allow a deputy runs no command line that its own file 
   test::write_bytes(scratch.path("evil.cfg"), kEvil);
   const auto ran =
       on_a_network(scratch,
-                   "$deputy -i vehicle --allow good.cfg 2>deputy.txt & d=$!; up deputy.txt\n"
+                   "vehicle --allow good.cfg\n"
                    "for i in shell sleeper; do $sheriff evil.cfg --script $i; echo \"evil $?\"; done; ls taken\n"
                    "$sheriff good.cfg --script go; echo \"good $?\"\n"
                    "$sheriff good.cfg --status; kill $d; wait $d\n"
-                   "$deputy -i vehicle 2>open.txt & d=$!; up open.txt; $sheriff good.cfg --status; kill $d; wait $d\n"
+                   "vehicle; $sheriff good.cfg --status; kill $d; wait $d\n"
                    "FATHOM_ALLOW=good.cfg $deputy -i topside; echo \"topside $?\"\n");
   CHECK_MESSAGE(ran.says("shell on vehicle failed: exit 126"), ran.text);
   CHECK(ran.says("refused: this command line is not in good.cfg (--allow) on this host"));
@@ -109,7 +109,7 @@ TEST_CASE("launch: orders on a bus of their own are obeyed there alone; the prog
   const auto ran =
       on_a_network(scratch,
                    "own='udpm://239.255.76.68:7668?ttl=0'\n"
-                   "$deputy -i vehicle -u $own 2>deputy.txt & d=$!; up deputy.txt\n"
+                   "vehicle -u $own\n"
                    "$sheriff x.cfg --script go; echo \"other bus $?\"; ls bus.txt\n"
                    "$sheriff x.cfg --script go -u $own; echo \"own bus $?\"; cat bus.txt; kill $d; wait $d\n");
   CHECK_MESSAGE(ran.says("other bus 1"), ran.text);

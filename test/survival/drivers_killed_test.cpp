@@ -143,7 +143,7 @@ TEST_CASE("drivers: each that is killed or stands still in a trial comes back, a
   const Scratch scratch;
   const auto ran = on_a_network(
       scratch,
-      trials("optimal", 84, "FATHOM_LIVE_WHOLE=yes",
+      trials("optimal", 100, "FATHOM_LIVE_WHOLE=yes",
              "in_mode total; sleep 2\n"
              "for d in load range usbl depth dvl ahrs; do slay ${d}_driver; sleep 2.5; done\n"
              "in_mode total; sleep 6\n"  // beyond the simulated operator's last order
@@ -151,7 +151,7 @@ TEST_CASE("drivers: each that is killed or stands still in a trial comes back, a
              "slay supervisor; sleep 3; arm; sleep 3\n"
              "slay thruster_driver STOP; sleep 2; arm; sleep 3\n"
              "slay dvl_driver STOP\n"),
-      200);
+      260);
   constexpr std::size_t kKills = 10;
   check(scratch, ran, kKills);
   // The supervisor does not go on in vain: it is told that its thrusters obey nobody.

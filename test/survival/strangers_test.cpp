@@ -34,9 +34,9 @@ constexpr char kTwoHosts[] =
     "cat >send <<'END'\n"
     "for i in 1 2 3 4 5; do printf \"LC02\\\\0\\\\0\\\\0\\\\$i$1\\\\00012345678\" >/dev/udp/$2/7667; sleep 0.02; done\n"
     "END\n"
-    "listens() { within 20 grep -q ':1DF3 ' /proc/net/udp; sleep 0.5; }\n"  // port 7667
+    "listens() { within 20 grep -q ':1DF3 ' /proc/net/udp; sleep 1; }\n"  // port 7667
     "attack() { bash send OWN 239.255.76.67; on_stranger bash send PAST_THE_BUS 10.77.0.1; "
-    "on_stranger bash send FROM_OUTSIDE 239.255.76.67; bash send OWN 239.255.76.67; sleep 0.5; }\n"
+    "on_stranger bash send FROM_OUTSIDE 239.255.76.67; bash send OWN 239.255.76.67; sleep 1; }\n"
     "record() { LCM_DEFAULT_URL=\"udpm://239.255.76.67:7667?ttl=$2\" ${deputy%deputy}recorder --file $1 & r=$!; "
     "listens; attack; kill $r; wait $r; }\n";
 

@@ -201,7 +201,8 @@ void recovery(int seeds, double cell_gain) {
   for (const auto& one : base.vehicle.hydrodynamics->coefficients) truth[std::string{one.term->name}] = one.value;
   std::map<std::string, std::vector<double>> errors;  // share of the truth
   Rates rates;
-  int absent = 0;
+  int absent = 0, selected = 0, acting = 0, covered = 0, covered_white = 0, standing = 0, standing_false = 0;
+  double squares = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
     std::vector<identification::ManoeuvreRows> runs;
     for (const char* name : {"line", "zigzag", "circle"}) {
@@ -218,6 +219,19 @@ void recovery(int seeds, double cell_gain) {
       for (const auto& term : axis.together.terms) {
         const std::string& name = axis.candidates.names[static_cast<std::size_t>(term.column)];
         const auto acts = truth.find(name);
+        // An interval is asked for the true number, which is zero of a term that does not act.
+        const double off = std::abs(term.value - (acts == truth.end() ? 0.0 : acts->second));
+        ++selected;
+        covered += off < 1.96 * term.total() ? 1 : 0;
+        covered_white += off < 1.96 * term.sigma ? 1 : 0;
+        squares += std::pow(off / term.total(), 2);
+        acting += acts == truth.end() ? 0 : 1;
+        standing += term.stands() ? 1 : 0;
+        standing_false += term.stands() && acts == truth.end() ? 1 : 0;
+        if (std::getenv("FATHOM_TRIALS_TERMS") != nullptr)
+          std::printf("seed %d %-8s %9.4f truth %9.4f scatter %.4f unseen %.4f %s\n", seed, name.c_str(), term.value,
+                      acts == truth.end() ? 0.0 : acts->second, term.sigma, term.unseen,
+                      term.stands() ? "" : "may be none");
         if (acts == truth.end()) {
           ++rates.false_ones;
           ++rates.hits[name];
@@ -236,7 +250,14 @@ void recovery(int seeds, double cell_gain) {
   std::printf("%d of %d that do not act are selected (%.1f %%):", rates.false_ones, absent,
               100.0 * rates.false_ones / absent);
   for (const auto& [name, count] : rates.hits) std::printf(" %s %.0f%%", name.c_str(), 100.0 * count / seeds);
-  std::printf("\n");
+  const auto share = [](int part, int whole) { return 100.0 * part / std::max(whole, 1); };
+  std::printf(
+      "\n%d terms selected, %d of them act; 95 %% intervals hold the truth in %.0f %% (by scatter alone %.0f %%), "
+      "rms of error over stated %.2f; %d stand beyond their errors, %.1f %% of these do not act (%.1f %% of what "
+      "does not act)\n",
+      selected, acting, share(covered, selected), share(covered_white, selected),
+      std::sqrt(squares / std::max(selected, 1)), standing, share(standing_false, standing),
+      share(standing_false, absent));
 }
 
 }  // namespace fathom::trials

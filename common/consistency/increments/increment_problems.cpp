@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWindow = 0.8;  // s: long enough to beat noise, short enough to keep a 0.5 Hz motion
 constexpr double kStride = 0.2;  // s
-constexpr double kGravity = 9.81;
+constexpr double kNominalGravity = 9.81;
 
 constexpr double kRateAgreed =
     0.9;  // squared correlation of turns by rates and by attitude: the rest is noise in either
@@ -234,7 +234,7 @@ IncrementProblem acceleration_problem(const PoseSeries& pose) {
         fixed = -R_BW * ((rotation(i1) - rotation(im)) / late - (rotation(im) - rotation(i0)) / early) / half;
         const Eigen::Vector3d y =
             R_BW * (((pose.p_WB[i1] - pose.p_WB[im]) / late - (pose.p_WB[im] - pose.p_WB[i0]) / early) / half -
-                    kGravity * Eigen::Vector3d::UnitZ());
+                    kNominalGravity * Eigen::Vector3d::UnitZ());
         frame.add(first, count, y, fixed);
       });
   frame.problem.lever = 0;

@@ -18,9 +18,10 @@ struct Row {
 
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): a row of the table
 #define MAVLINK_MESSAGE(id, name, extra, fields) Row{id, #name, extra, fields},
-constexpr std::array kRows{
+// Not std::array's own deduction: for so many rows it nests deeper than clang goes.
+constexpr auto kRows = std::to_array<Row>({
 #include "common/devices/mavlink/messages.def"
-};
+});
 #undef MAVLINK_MESSAGE
 
 std::string_view type_name(char letter) {

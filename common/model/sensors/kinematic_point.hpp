@@ -11,7 +11,7 @@
 namespace fathom::model {
 
 /// Where the groups of three begin: position and velocity in W; roll, pitch, yaw; acceleration of Bo in W seen in B
-/// (inertial: v_dot + w x v); rates and their derivatives in B; six sensor biases.
+/// (inertial: v_dot + w x v); rates and their derivatives in B; biases of accelerometers, gyros and velocity log in B.
 namespace at {
 inline constexpr int kPosition = 0;
 inline constexpr int kVelocity = 3;
@@ -20,10 +20,11 @@ inline constexpr int kAcceleration = 9;
 inline constexpr int kRates = 12;
 inline constexpr int kRateSlopes = 15;
 inline constexpr int kBias = 18;
+inline constexpr int kLogBias = 24;
 }  // namespace at
 inline constexpr int kKinematicStates = 18;
-inline constexpr int kBiasStates = 6;
-inline constexpr int kMostStates = kKinematicStates + kBiasStates;
+inline constexpr int kInertialStates = kKinematicStates + 6;  ///< with the biases of accelerometers and gyros
+inline constexpr int kMostStates = kInertialStates + 3;       ///< with that of a velocity log
 inline constexpr double kGravity = 9.80665;                           ///< m/s^2
 inline constexpr double kSteepest = 85.0 * std::numbers::pi / 180.0;  ///< rad, pitch beyond which roll and yaw blur
 

@@ -3,7 +3,7 @@
 namespace fathom::model {
 
 std::array<Observation, 3> observe_velocity(const KinematicPoint& point, const Eigen::Vector3d& p_BD,
-                                            const Eigen::Vector3d& measured, double variance) {
+                                            const Eigen::Vector3d& measured, double variance, bool biased) {
   const Eigen::Vector3d v_B = point.R_WB.transpose() * point.group(at::kVelocity);
   const Eigen::Vector3d innovation = measured - v_B - point.group(at::kRates).cross(p_BD);
   const Eigen::Matrix3d by_euler = point.turned_in(v_B), by_rates = -skew(p_BD);
@@ -15,6 +15,7 @@ std::array<Observation, 3> observe_velocity(const KinematicPoint& point, const E
     one.set(at::kVelocity, point.R_WB.col(i));
     one.set(at::kEuler, by_euler.row(i).transpose());
     if (!p_BD.isZero(0.0)) one.set(at::kRates, by_rates.row(i).transpose());
+    if (biased) one.add_bias(point.x, at::kLogBias - at::kBias + i);
   }
   return result;
 }

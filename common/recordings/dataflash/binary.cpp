@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/recordings/dataflash/dataflash.hpp"
 #include "common/recordings/dataflash/kinds.hpp"
@@ -21,14 +20,6 @@ constexpr std::int64_t kNear = 2'000'000;  // us: what stands without a follower
 std::string_view words(Bytes bytes, std::size_t at, std::size_t count) {
   const char* begin = reinterpret_cast<const char*>(bytes.data() + at);
   return {begin, static_cast<std::size_t>(std::find(begin, begin + count, '\0') - begin)};
-}
-
-double half(std::uint16_t bits) {
-  const int exponent = bits >> 10U & 0x1F;
-  const double fraction = bits & 0x3FFU;
-  const double sign = (bits & 0x8000U) != 0 ? -1.0 : 1.0;
-  if (exponent == 31) return fraction == 0.0 ? sign * std::numeric_limits<double>::infinity() : std::nan("");
-  return sign * (exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024.0 + fraction, exponent - 25));
 }
 
 /// One number; 'L' and the letters of hundredths are scaled, as the format defines them.
@@ -127,7 +118,7 @@ class Reader {
 
   /// Whether the record's time goes with those before: what makes a record that nothing follows believable.
   [[nodiscard]] bool fits(const Kind& kind, Bytes bytes) const {
-    if (kind.time < 0 || last_ == kNoTime) return bytes[2] == kFmt && kind.name == "FMT";
+    if (kind.time < 0 || !kind.readable || last_ == kNoTime) return bytes[2] == kFmt && kind.name == "FMT";
     const std::int64_t time = time_of(kind, bytes);
     return time != kNoTime && std::abs(time - last_) < kNear;
   }
@@ -136,7 +127,7 @@ class Reader {
     std::size_t at = kHeader;
     for (int i = 0; i < kind.time; ++i) at += size_of(kind.letters[static_cast<std::size_t>(i)]);
     const double time = kind.time_factor * number(kind.letters[static_cast<std::size_t>(kind.time)], bytes, at);
-    return time < 9e15 ? static_cast<std::int64_t>(time) : kNoTime;
+    return std::abs(time) < 9e15 ? static_cast<std::int64_t>(time) : kNoTime;
   }
 
   std::string complaint(Bytes bytes, std::uint64_t left) {
@@ -160,11 +151,11 @@ class Reader {
   void take(Bytes bytes) {
     const int type = bytes[2];
     Kind& kind = *kinds_.find(type);
-    learn(kind, bytes);
     if (!kind.readable) {
       damage_.add("records of kind " + kind.name + " whose description does not fit its length");
       return;
     }
+    learn(kind, bytes);
     if (!kind.settled) kinds_.settle(kind);
     Stamp stamp{.log = kind.time < 0 ? last_ : time_of(kind, bytes)};
     if (stamp.log != kNoTime) last_ = stamp.log;
@@ -172,10 +163,10 @@ class Reader {
     if (kind.instance >= 0) {
       std::size_t at = kHeader;
       for (int i = 0; i < kind.instance; ++i) at += size_of(kind.letters[static_cast<std::size_t>(i)]);
-      instance = static_cast<int>(number(kind.letters[static_cast<std::size_t>(kind.instance)], bytes, at));
+      const double said = number(kind.letters[static_cast<std::size_t>(kind.instance)], bytes, at);
+      if (std::abs(said) < 1e6) instance = static_cast<int>(said);
     }
-    bool wanted = false;
-    const std::size_t topic = kinds_.topic(kind, instance, wanted);
+    const auto [topic, wanted] = kinds_.topic(kind, instance);
     values_.clear();
     if (wanted) decode(kind, topic, bytes);
     sink_.message(topic, stamp, values_);

@@ -155,12 +155,8 @@ std::string Kinds::unit_of(const Kind& kind, std::size_t column) const {
                                         : plain(*factor) + " " + label;
 }
 
-std::size_t Kinds::topic(Kind& kind, int instance, bool& wanted) {
-  const auto found = kind.topics.find(instance);
-  if (found != kind.topics.end()) {
-    wanted = kind.wanted[static_cast<std::size_t>(std::distance(kind.topics.begin(), found))];
-    return found->second;
-  }
+Kind::Own Kinds::topic(Kind& kind, int instance) {
+  if (const auto found = kind.topics.find(instance); found != kind.topics.end()) return found->second;
   Topic topic{.name = kind.name + (instance < 0 ? "" : "[" + std::to_string(instance) + "]"), .type = kind.name};
   for (std::size_t i = 0; i < kind.letters.size(); ++i) {
     if (is_words(kind.letters[i])) continue;
@@ -176,19 +172,13 @@ std::size_t Kinds::topic(Kind& kind, int instance, bool& wanted) {
   // The same name with other columns (another firmware in the same file) is another topic.
   std::string key = topic.name + " " + kind.letters;
   for (const std::string& column : kind.columns) key += "," + column;
-  auto known = named_.find(key);
-  if (known == named_.end()) {
-    while (std::any_of(named_.begin(), named_.end(),
-                       [&](const auto& one) { return one.first.starts_with(topic.name + " "); }))
-      topic.name += "'";
-    known =
-        named_.emplace(topic.name + key.substr(key.find(' ')), std::pair{topics_, sink_.topic(topics_, topic)}).first;
-    ++topics_;
+  const auto [known, added] = named_.try_emplace(key);
+  if (added) {
+    while (!names_.insert(topic.name).second) topic.name += "'";
+    const std::size_t number = named_.size() - 1;
+    known->second = {number, sink_.topic(number, topic)};
   }
-  const auto placed = kind.topics.emplace(instance, known->second.first).first;
-  kind.wanted.insert(kind.wanted.begin() + std::distance(kind.topics.begin(), placed), known->second.second);
-  wanted = known->second.second;
-  return known->second.first;
+  return kind.topics[instance] = known->second;
 }
 
 }  // namespace fathom::recordings::dataflash

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,8 +31,11 @@ struct Kind {
   int instance{-1};                ///< column that tells instances apart
   int period{-1}, shift{-1};  ///< VISO: columns of the time and of the first of three shifts, which make a velocity
   bool settled{};             ///< instance and topics are decided: the first record has come
-  std::map<int, std::size_t> topics;  ///< by instance; -1 where there is none
-  std::vector<bool> wanted;           ///< by topic number, of this kind's topics
+  struct Own {
+    std::size_t topic{};
+    bool wanted{};  ///< somebody wants its numbers
+  };
+  std::map<int, Own> topics;  ///< by instance; -1 where there is none
 };
 
 class Kinds {
@@ -46,8 +50,8 @@ class Kinds {
   [[nodiscard]] Kind* find(int type) { return kinds_[static_cast<std::size_t>(type & 0xFF)].get(); }
   /// The kind of this name, for the text form.
   [[nodiscard]] Kind* find(std::string_view name);
-  /// The topic of an instance, made when it is first asked for; `wanted` tells whether anybody wants its numbers.
-  std::size_t topic(Kind& kind, int instance, bool& wanted);
+  /// The topic of an instance, made when it is first asked for.
+  Kind::Own topic(Kind& kind, int instance);
   /// Decides which column is the instance, once FMTU has had its say.
   void settle(Kind& kind);
 
@@ -59,10 +63,9 @@ class Kinds {
   std::vector<std::unique_ptr<Kind>> former_;  ///< replaced by another of the same type
   std::array<std::string, 256> labels_;
   std::array<std::optional<double>, 256> factors_;
-  std::map<std::string, std::pair<std::size_t, bool>>
-      named_;  ///< topic of a name and letters, and whether it is wanted
+  std::map<std::string, Kind::Own> named_;  ///< by name, letters and columns
+  std::set<std::string> names_;             ///< of topics
   std::map<std::string, int, std::less<>> by_name_;
-  std::size_t topics_{};
 };
 
 }  // namespace fathom::recordings::dataflash

@@ -76,8 +76,7 @@ class TextReader {
     }
     if (stamp.log != kNoTime) last_ = stamp.log;
     const double instance = kind->instance < 0 ? -1.0 : column(kind->instance);
-    bool wanted = false;
-    const std::size_t topic = kinds_.topic(*kind, std::abs(instance) < 1e6 ? static_cast<int>(instance) : -1, wanted);
+    const auto [topic, wanted] = kinds_.topic(*kind, std::abs(instance) < 1e6 ? static_cast<int>(instance) : -1);
     if (said_.size() <= topic) said_.resize(topic + 1);
     for (std::size_t i = 0; wanted && !said_[topic] && i < words_.size(); ++i) {
       if (!is_words(kind->letters[i])) continue;

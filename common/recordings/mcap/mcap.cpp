@@ -89,6 +89,11 @@ class Reader {
       const std::uint64_t left = file_.size() - at;
       if (!lost && known(head)) {
         const auto length = little<std::uint64_t>(head, 1);
+        if (length > left - kHeader && goes_on_behind(at)) {  // its length is damaged
+          lost_from = at++;
+          lost = true;
+          continue;
+        }
         if (length > left - kHeader) {
           cut_off(at, left);
           return;
@@ -137,6 +142,16 @@ class Reader {
     const auto size = cursor.number<std::uint64_t>();
     return cursor.good() && begin <= end && packing_of(packing) &&
            8 + 8 + 8 + 4 + 4 + packing.size() + 8 + size == length;
+  }
+
+  /// Whether a whole chunk begins somewhere behind.
+  bool goes_on_behind(std::uint64_t at) {
+    for (++at; at < file_.size(); ++at) {
+      const Bytes rest = file_.rest(at);
+      at += static_cast<std::uint64_t>(std::find(rest.begin(), rest.end(), std::uint8_t{kChunk}) - rest.begin());
+      if (at < file_.size() && begins_chunk(at, file_.size() - at)) return true;
+    }
+    return false;
   }
 
   /// What the end of the file cuts off: of a chunk all that can be unpacked is kept.

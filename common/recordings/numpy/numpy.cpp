@@ -25,14 +25,6 @@ T value_of(Bytes bytes, std::size_t at, bool is_big) {
   return is_big ? big<T>(bytes, at) : little<T>(bytes, at);
 }
 
-double half(std::uint16_t bits) {
-  const int exponent = bits >> 10U & 0x1F;
-  const double fraction = bits & 0x3FFU;
-  const double sign = (bits & 0x8000U) != 0 ? -1.0 : 1.0;
-  if (exponent == 31) return fraction == 0.0 ? sign * std::numeric_limits<double>::infinity() : std::nan("");
-  return sign * (exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024.0 + fraction, exponent - 25));
-}
-
 bool readable(const Member& member) {
   switch (member.kind) {
     case 'b':

@@ -12,7 +12,8 @@ namespace fathom::recordings::ros {
 namespace {
 
 constexpr int kMostDepth = 32;
-constexpr std::size_t kMostFixed = 100'000;  // elements of a list of fixed length
+constexpr std::size_t kMostFixed = 100'000;    // elements of a list of fixed length
+constexpr std::size_t kMostParts = 1'000'000;  // of a type: a few lines can claim more than a file can hold
 
 constexpr std::array<std::pair<std::string_view, Basic>, 25> kBasics{{{"bool", Basic::kBool},
                                                                       {"boolean", Basic::kBool},
@@ -82,6 +83,12 @@ class Builder {
         made.basic = Basic::kStruct;
         made.type = build(of, depth + 1, reason);
         if (made.type == nullptr) return nullptr;
+      }
+      const std::size_t each = made.type == nullptr ? 1 : made.type->parts;
+      type.parts += each * (made.type == nullptr ? 1 : std::max<std::size_t>(made.count, 1));
+      if (type.parts > kMostParts) {
+        reason = "type " + name + " has too many members";
+        return nullptr;
       }
       type.members.push_back(std::move(made));
     }

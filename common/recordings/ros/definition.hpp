@@ -46,6 +46,7 @@ struct Member {
 struct Type {
   std::string name;  ///< "sensor_msgs/Imu"
   std::vector<Member> members;
+  std::size_t parts{1};  ///< members with all that they hold, fixed lists counted through: what a reader must visit
 };
 
 /// All types that a message needs. Types are owned here and refer to each other.

@@ -51,6 +51,18 @@ void Messages::prepare(const Type& type, const std::string& path, Slots& slots, 
   }
 }
 
+bool Messages::of_header(const Path* path) {
+  return path != nullptr && (path->member->name.find("header") != std::string::npos || of_header(path->outer));
+}
+
+std::string Messages::prefix(const Path* path) {
+  return path == nullptr ? "" : name_of(path->outer, *path->member, path->index) + ".";
+}
+
+std::string Messages::name_of(const Path* path, const Member& member, std::size_t index) {
+  return prefix(path) + member.name + (member.list ? "[" + std::to_string(index) + "]" : "");
+}
+
 std::size_t Messages::field(const std::string& name) {
   fields_.push_back({name});
   if (announced_) sink_.further_field(topic_, fields_.back());
@@ -105,7 +117,7 @@ bool Messages::attempt(Bytes message, std::size_t origin) {
     bytes_ = message.subspan(origin == kEncapsulation ? kEncapsulation : 0);
     at_ = kEncapsulation - origin;
   }
-  if (!structure(definitions_->root(), "", &slots_, 0)) return false;
+  if (!structure(definitions_->root(), nullptr, &slots_, 0)) return false;
   return left() <= (layout_ == Layout::kCdr ? kMostLeft : 0);
 }
 
@@ -149,7 +161,7 @@ double Messages::number(Basic basic, std::size_t at) const {
   }
 }
 
-bool Messages::structure(const Type& type, const std::string& path, Slots* slots, int depth) {
+bool Messages::structure(const Type& type, const Path* path, Slots* slots, int depth) {
   if (depth > kMostDepth) return false;
   if (type.members.empty() && layout_ == Layout::kCdr) {  // a struct holds a byte at least
     if (left() < 1) return false;
@@ -157,7 +169,7 @@ bool Messages::structure(const Type& type, const std::string& path, Slots* slots
     return true;
   }
   if (slots != nullptr && slots->members.size() < type.members.size()) slots->members.resize(type.members.size());
-  const bool header = depth == 1 && path == "header." && type.name == "std_msgs/Header";
+  const bool header = depth == 1 && path->member->name == "header" && type.name == "std_msgs/Header";
   for (std::size_t i = 0; i < type.members.size(); ++i) {
     const std::size_t before = at_;
     if (!member(type.members[i], path, slots == nullptr ? nullptr : &slots->members[i], depth)) return false;
@@ -171,7 +183,7 @@ bool Messages::structure(const Type& type, const std::string& path, Slots* slots
   return true;
 }
 
-bool Messages::member(const Member& member, const std::string& path, MemberSlots* slots, int depth) {
+bool Messages::member(const Member& member, const Path* path, MemberSlots* slots, int depth) {
   if (!member.list) return one(member, path, slots, 0, depth);
   std::size_t elements = member.count;
   if (elements == 0) {
@@ -179,7 +191,7 @@ bool Messages::member(const Member& member, const std::string& path, MemberSlots
     if (!count(stated)) return false;
     elements = stated;
     if (slots != nullptr) {
-      if (!slots->length && fields_.size() < kMostFields) slots->length = field(path + member.name + ".length");
+      if (!slots->length && fields_.size() < kMostFields) slots->length = field(prefix(path) + member.name + ".length");
       if (slots->length) put(*slots->length, static_cast<double>(elements));
     }
   }
@@ -189,7 +201,7 @@ bool Messages::member(const Member& member, const std::string& path, MemberSlots
     for (std::size_t k = 0; k < std::min(elements, kMostElements) && slots != nullptr; ++k) {
       if (slots->numbers.size() <= k) {
         if (fields_.size() >= kMostFields) break;
-        slots->numbers.push_back(field(path + member.name + "[" + std::to_string(k) + "]"));
+        slots->numbers.push_back(field(name_of(path, member, k)));
       }
       put(slots->numbers[k], number(member.basic, at_ + k * size));
     }
@@ -203,9 +215,8 @@ bool Messages::member(const Member& member, const std::string& path, MemberSlots
   return true;
 }
 
-bool Messages::one(const Member& member, const std::string& path, MemberSlots* slots, std::size_t index, int depth) {
-  // A name is made only where a field is: the hot path does not allocate.
-  const auto named = [&] { return path + member.name + (member.list ? "[" + std::to_string(index) + "]" : ""); };
+bool Messages::one(const Member& member, const Path* path, MemberSlots* slots, std::size_t index, int depth) {
+  const auto named = [&] { return name_of(path, member, index); };
   switch (member.basic) {
     case Basic::kStruct: {
       Slots* nested = nullptr;
@@ -214,12 +225,13 @@ bool Messages::one(const Member& member, const std::string& path, MemberSlots* s
           slots->nested.push_back(std::make_unique<Slots>());
         if (index < slots->nested.size()) nested = slots->nested[index].get();
       }
-      return structure(*member.type, named() + ".", nested, depth + 1);
+      const Path own{path, &member, index};
+      return structure(*member.type, &own, nested, depth + 1);
     }
     case Basic::kString: {
       std::uint32_t length = 0;
       if (!count(length) || length > left()) return false;
-      if (!said_ && announced_ && length > 1 && path.find("header") == std::string::npos) {
+      if (!said_ && announced_ && length > 1 && !of_header(path)) {
         std::string words{reinterpret_cast<const char*>(bytes_.data() + at_), length};
         while (!words.empty() && words.back() == '\0') words.pop_back();
         sink_.text(topic_, named(), words);

@@ -41,11 +41,21 @@ class Messages {
     std::vector<MemberSlots> members;
   };
 
+  /// The members that lead to one: a name is made of them only where a field is, since messages are many.
+  struct Path {
+    const Path* outer{};  ///< null: the message itself
+    const Member* member{};
+    std::size_t index{};  ///< of a list's element
+  };
+  [[nodiscard]] static bool of_header(const Path* path);
+  static std::string prefix(const Path* path);
+  static std::string name_of(const Path* path, const Member& member, std::size_t index);
+
   void prepare(const Type& type, const std::string& path, Slots& slots, int depth);
   bool attempt(Bytes message, std::size_t origin);
-  bool structure(const Type& type, const std::string& path, Slots* slots, int depth);
-  bool member(const Member& member, const std::string& path, MemberSlots* slots, int depth);
-  bool one(const Member& member, const std::string& path, MemberSlots* slots, std::size_t index, int depth);
+  bool structure(const Type& type, const Path* path, Slots* slots, int depth);
+  bool member(const Member& member, const Path* path, MemberSlots* slots, int depth);
+  bool one(const Member& member, const Path* path, MemberSlots* slots, std::size_t index, int depth);
   std::size_t field(const std::string& name);
   void put(std::size_t number, double value);
   bool align(std::size_t size);

@@ -112,6 +112,11 @@ class Words {
   std::size_t at_{};
 };
 
+/// Stands for a type that cannot be read, so that its message is refused and not misread.
+constexpr const char* kListOfLists = "a list of lists";
+constexpr const char* kUnknownLength = "a list whose length is no number";
+constexpr std::size_t kMostElements = std::size_t{1} << 30U;  // of a fixed list: more is as much too many
+
 /// Recursive descent through modules and structs.
 class Idl {
  public:
@@ -150,7 +155,9 @@ class Idl {
     if (word_ == "sequence") {
       step();  // <
       step();
-      member = type();
+      const bool nested = word_ == "sequence";
+      if (!nested) member = type();
+      if (nested || member.list) member.type = kListOfLists;
       member.list = true;
       member.count = 0;
       while (!word_.empty() && word_ != ">") step();
@@ -181,13 +188,21 @@ class Idl {
     return member;
   }
 
+  /// "[3]" and "[3][3]": elements stand one behind the other, however they are numbered.
   void dimension(RawMember& member) {
-    if (word_ != "[") return;
-    step();
+    std::size_t count = 1;
+    bool any = false;
+    for (; word_ == "["; any = true) {
+      step();
+      count = std::min(count * std::min(whole_number(word_), kMostElements), kMostElements);
+      while (!word_.empty() && word_ != "]") step();
+      step();
+    }
+    if (!any) return;
+    if (member.list) member.type = kListOfLists;
+    if (count == 0) member.type = kUnknownLength;
     member.list = true;
-    member.count = whole_number(word_);
-    while (!word_.empty() && word_ != "]") step();
-    step();
+    member.count = count;
   }
 
   void alias() {

@@ -197,7 +197,7 @@ class Reader {
       }
       if (kind.rate) add_rate();
     }
-    sink_.message(kind.topic, {static_cast<std::int64_t>(frame.stamp), measured(kind, frame)}, values_);
+    sink_.message(kind.topic, {static_cast<std::int64_t>(frame.stamp), measured(kind)}, values_);
   }
 
  private:
@@ -256,9 +256,8 @@ class Reader {
     for (std::size_t i = 0; i < 3; ++i) values_.push_back(seconds > 0.0 ? values_[5 + i] / seconds : std::nan(""));
   }
 
-  std::int64_t measured(Kind& kind, const Frame& frame) const {
+  std::int64_t measured(Kind& kind) const {
     if (kind.time == nullptr) return kNoTime;
-    (void)frame;
     const std::size_t at = kind.time->offset;
     std::uint64_t time = kind.time->letter == 'Q' ? little<std::uint64_t>(padded_, at)
                                                   : std::uint64_t{little<std::uint32_t>(padded_, at)};

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "common/base/error.hpp"
+#include "common/base/printable.hpp"
 #include "processes/fathom/operator/orders.hpp"
 
 namespace fathom::tool {
@@ -31,10 +32,26 @@ double strongest(const Thrusters& thrusters) {
   return most;
 }
 
+constexpr double kVehicle = 0.7;  // s in which VEHICLE comes, twice a second, where the driver has one behind it
+
 constexpr char kByHand[] =
     "By hand, now: 1. the vehicle's kill switch, or its power; 2. disarm it in the ground station; 3. pull it in by "
-    "the "
-    "tether. Then fathom abort again, until it is confirmed.";
+    "the tether. Then fathom abort again, until it is confirmed.";
+
+/// A line that leads nowhere is asked for zero like any other, and THRUSTERS says what was sent: then nobody knows what
+/// the vehicle does. Empty: it reports what it applies, or is alive, or there is none (a simulator, a dry run).
+std::string silence_of(const VehicleCondition& vehicle) {
+  const auto heartbeat =
+      std::ranges::find_if(vehicle.lines, [](const ConditionLine& line) { return line.name == "heartbeat"; });
+  if (vehicle.has_applied || heartbeat == vehicle.lines.end() || heartbeat->ok) return {};
+  return "zero was sent, but nobody knows what the vehicle does: " + heartbeat->text;
+}
+
+/// What THRUSTERS' zero is worth.
+const char* meaning(const std::optional<VehicleCondition>& vehicle) {
+  const bool as_sent = vehicle && !vehicle->has_applied && vehicle->heartbeat_age >= 0.0;
+  return as_sent ? " (as it was sent: the vehicle does not report what it applies)" : "";
+}
 
 }  // namespace
 
@@ -62,21 +79,25 @@ void abort_now(Console& console, bool checked) {
     console.listen(kAgain, done);
   }
   console.on_thrusters = {};
-  for (const auto& [process, each] : console.answers) std::printf("%-16s %s\n", process.c_str(), each.text.c_str());
-  if (done()) {
-    std::printf("aborted, confirmed after %.1f s: THRUSTERS says zero%s\n", passed(),
-                checked ? "" : " (with --operator the answer's signature is checked, too)");
-    return;
-  }
-  std::string why;
-  if (answered() == nullptr) {
-    why = "no thruster driver answered within 2 s";
-  } else if (!last) {
-    why = "the driver asks for zero, but nothing says on THRUSTERS what the vehicle does";
-  } else {
+  for (const auto& [process, each] : console.answers)
+    std::printf("%-16s %s\n", printable(process).c_str(), printable(each.text).c_str());
+  const double after = passed();
+  const bool simulated = answered() != nullptr && answered()->process == "simulator";
+  if (done() && !simulated) console.listen(kVehicle, [&] { return console.vehicle.has_value(); });
+  const auto doubt = [&]() -> std::string {
+    if (answered() == nullptr) return "no thruster driver answered within 2 s";
+    if (!last) return "the driver asks for zero, but nothing says on THRUSTERS what the vehicle does";
+    if (done()) return console.vehicle ? silence_of(*console.vehicle) : "";
+    if (is_zero(*last)) return "THRUSTERS says zero, but not three times in 2 s";
     char text[100];
     std::snprintf(text, sizeof text, "THRUSTERS still says %.3g (N or N m) after 2 s", strongest(*last));
-    why = text;
+    return text;
+  };
+  const std::string why = doubt();
+  if (why.empty()) {
+    std::printf("aborted, confirmed after %.1f s: THRUSTERS says zero%s%s\n", after, meaning(console.vehicle),
+                checked ? "" : " (with --operator the answer's signature is checked, too)");
+    return;
   }
   std::fflush(stdout);
   throw InputError("abort NOT CONFIRMED: " + why + ". " + kByHand);

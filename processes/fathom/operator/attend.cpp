@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "common/base/error.hpp"
+#include "common/base/printable.hpp"
 #include "common/runtime/stop_signal.hpp"
 #include "processes/fathom/operator/orders.hpp"
 
@@ -14,7 +15,7 @@ double promised(const OperatorOptions& options, const Console& console) {
   return console.over_a_link() ? kOverALink : 0.0;
 }
 
-void attend(Console& console, Orders& orders, double promised) {
+void attend(Console& console, Orders& orders, double promised, bool supervised) {
   constexpr double kSigns = 4.0;  // within what was promised: three may be lost
   runtime::StopSignal stop;
   std::printf("stays with it, a sign of life every %.2g s; Ctrl-C aborts\n", promised / kSigns);
@@ -28,16 +29,16 @@ void attend(Console& console, Orders& orders, double promised) {
       abort_now(console, true);
       throw InputError("aborted by Ctrl-C");
     }
-    if (!console.excitation) continue;
-    const Excitation& e = *console.excitation;
-    const std::string now = e.phase + ": " + e.reason;
+    const bool silent = supervised && console.silence() > kNobody;
+    if (!silent && !console.excitation) continue;
+    const std::string now = silent ? kNobodySays : console.excitation->phase + ": " + console.excitation->reason;
     if (now != said) {
-      std::printf("%s\n", now.c_str());
+      std::printf("%s\n", printable(now).c_str());
       std::fflush(stdout);
       said = now;
     }
-    if (!e.mode.empty()) continue;
-    if (e.phase == "done") return;
+    if (silent || !console.excitation->mode.empty()) continue;
+    if (console.excitation->phase == "done") return;
     throw InputError("the trial has ended: " + now);
   }
 }

@@ -11,6 +11,7 @@
 #include <fathom_lcm/vehicle_condition_t.hpp>
 
 #include "common/base/error.hpp"
+#include "common/runtime/bus_filter.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/minds.hpp"
 #include "common/wire/sensors.hpp"
@@ -60,10 +61,9 @@ std::optional<Utime> Console::vehicle_time() const {
   return utime_after(gate->utime, std::chrono::duration<double>(Clock::now() - gate_at_).count());
 }
 
-bool Console::over_a_link() const {
-  const auto at = url_.text.find("ttl=");
-  return at != std::string::npos && url_.text.substr(at + 4, 1) != "0";
-}
+double Console::silence() const { return std::chrono::duration<double>(Clock::now() - excitation_came_).count(); }
+
+bool Console::over_a_link() const { return !runtime::BusAddress::of(url_.text).one_host; }
 
 void Console::hear(Answer answer) {
   if (!answer.authentic && keys_) {
@@ -88,10 +88,11 @@ void Console::hear(const runtime::LiveInput::Message& message) {
     if (auto heard = one ? wire::open(*one, keys_ ? keys_->answer : Key{}) : std::nullopt) hear(std::move(*heard));
   } else if (channel == wire::kExcitation) {
     if (const auto one = runtime::message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
+    excitation_came_ = Clock::now();
   } else if (channel == wire::kHealth) {
     if (const auto one = runtime::message_of<fathom_lcm::health_t>(message.bytes)) {
       const auto heard = wire::decode(*one);
-      if (!heard) return;
+      if (!heard || !speakers_.believes(*one)) return;
       health[heard->process] = *heard;
       health_came_[heard->process] = Clock::now();
     }

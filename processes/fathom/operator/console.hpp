@@ -11,6 +11,8 @@
 #include "common/base/operator_key.hpp"
 #include "common/excitation/preflight.hpp"
 #include "common/runtime/bus.hpp"
+#include "common/runtime/self.hpp"
+#include "common/runtime/speakers.hpp"
 #include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/health.hpp"
@@ -32,6 +34,8 @@ class Console {
   void say(const Operator& order);
   /// The vehicle's time now, by its last word; nothing while none was heard.
   [[nodiscard]] std::optional<Utime> vehicle_time() const;
+  /// s since EXCITATION was heard last, or since nobody has: it comes with every STATE.
+  [[nodiscard]] double silence() const;
   /// Messages leave this host: somebody may be at the far end of a cable.
   [[nodiscard]] bool over_a_link() const;
 
@@ -58,7 +62,8 @@ class Console {
   runtime::LiveInput input_;
   runtime::Output output_;
   std::map<std::string, Clock::time_point> health_came_;
-  Clock::time_point gate_at_{}, state_came_{}, vehicle_came_{};
+  runtime::Speakers speakers_{runtime::host_name(), runtime::Speakers::Home::kAnywhere};
+  Clock::time_point gate_at_{}, state_came_{}, vehicle_came_{}, excitation_came_{Clock::now()};
 };
 
 }  // namespace fathom::tool

@@ -56,19 +56,21 @@ void Orders::give(Operator wanted, bool supervisor) {
       console_.say(order);
       console_.listen(kAgain, all);
     }
+    // What is armed when its order is answered may have been aborted meanwhile, and that was an answer, too.
+    const auto done = [&](const Answer& one) { return one.done && (one.armed || !wanted.enable); };
     const Answer* gate = answer(true);
     const auto was_late = [](const Answer* one) { return one != nullptr && !one->done && one->text == "heard before"; };
     if ((was_late(gate) || (supervisor && was_late(answer(false)))) && i + 1 < kTries) continue;
     for (const auto& [process, each] : console_.answers) {
-      std::printf("%-16s %s%s\n", process.c_str(), each.done ? "" : "REFUSED: ", each.text.c_str());
+      std::printf("%-16s %s%s\n", process.c_str(), done(each) ? "" : "REFUSED: ", each.text.c_str());
     }
     if (gate == nullptr) throw InputError(std::string{"NOT CONFIRMED: the thrusters did not answer; "} + kGo);
-    if (!gate->done) throw InputError("refused by " + gate->process + ": " + gate->text);
+    if (!done(*gate)) throw InputError("refused by " + gate->process + ": " + gate->text);
     if (!supervisor) return;
     const Answer* other = answer(false);
     if (other == nullptr)
       throw InputError(std::string{"NOT CONFIRMED: no supervisor answered (is it running? has it this key?); "} + kGo);
-    if (!other->done) throw InputError("refused by " + other->process + ": " + other->text);
+    if (!done(*other)) throw InputError("refused by " + other->process + ": " + other->text);
     return;
   }
 }

@@ -46,11 +46,17 @@ class Orders {
   std::int64_t challenge_{};
 };
 
+/// Told once, who stays or steers, when EXCITATION has ceased for kNobody.
+inline constexpr double kNobody = 2.0;  // s
+inline constexpr char kNobodySays[] =
+    "nothing is heard of the supervisor: is it running, does STATE come? Without its commands there is no thrust";
+
 /// s between signs of life that this operator promises; 0: none. Over a link they are given unless told otherwise.
 [[nodiscard]] double promised(const OperatorOptions& options, const Console& console);
-/// Stays with a vehicle that was armed: signs of life, and a line whenever the supervisor says something new. Returns
-/// when the trial is done; InputError when it ended otherwise. Ctrl-C aborts.
-void attend(Console& console, Orders& orders, double promised);
+/// Stays with a vehicle that was armed: signs of life, and a line whenever the supervisor says something new, or, where
+/// one commands (`supervised`), nothing any more. Returns when the trial is done; InputError when it ended otherwise.
+/// Ctrl-C aborts.
+void attend(Console& console, Orders& orders, double promised, bool supervised);
 /// Line by line what must hold before anything moves; InputError where it does not.
 void go_through(Console& console, const std::vector<std::string>& needs);
 /// Thrusters to zero. InputError "NOT CONFIRMED" unless THRUSTERS says within two seconds that they are.

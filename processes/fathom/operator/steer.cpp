@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/orders/hand.hpp"
@@ -121,12 +122,17 @@ void steer(const OperatorOptions& options) {
   full << Eigen::Vector3d::Constant(options.force), Eigen::Vector3d::Constant(options.moment);
   bool holds = false;  // the hand was on it
   double spoke = 0.0;
+  bool silent = false;
   while (true) {
     console.listen(kPeriod, {}, stop.descriptor());
     const double now = seconds();
     if (stop.raised() || !hand.look(now)) break;
     if (console.excitation && console.excitation->mode.empty())
       throw InputError("no longer armed: " + console.excitation->reason);
+    if (const bool was = std::exchange(silent, console.silence() > kNobody); silent && !was) {
+      std::printf("%s\n", kNobodySays);
+      std::fflush(stdout);
+    }
     if (const auto shares = hand.shares(now)) {
       orders.say({.order = "manual", .tau = shares->cwiseProduct(full)});
       holds = true;

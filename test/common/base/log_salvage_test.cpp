@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <random>
 
 #include "common/base/error.hpp"
@@ -146,6 +147,12 @@ TEST_CASE("salvage: recordings that were joined go to files of their own, for a 
   CHECK(test::read_bytes(scratch.path("part-2.lcmlog")) == kA + kB);
   CHECK(test::read_bytes(scratch.path("part-3.lcmlog")) == kA);
   CHECK(test::read_bytes(scratch.path("part.lcmlog")).empty());
+  // Where a later part has no place, nothing of the others stays.
+  const std::string refused =
+      test::complaint_of<InputError>([&] { (void)salvage(scratch.path("joined"), scratch.path("part.lcmlog")); });
+  CHECK(refused.ends_with("part-1.lcmlog: exists already; name another file"));
+  CHECK_FALSE(std::filesystem::exists(scratch.path("part.lcmlog")));
+  CHECK(test::read_bytes(scratch.path("part-1.lcmlog")) == kA + kB + kC);
   // Events that are missing are damage, and no other recording.
   CHECK(Kept{kA + kC}.result.parts.size() == 1);
   EventLog log{scratch.path("joined")};

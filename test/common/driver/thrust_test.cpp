@@ -249,6 +249,20 @@ TEST_CASE("gate: an abort needs no key, is at once, and holds until it is armed 
   CHECK(gate.wrench(at(3.2))(0) == 10.0);
 }
 
+TEST_CASE("gate: an order to arm that was given before an abort and comes after it does not arm") {
+  ThrusterGate gate{kChallenge};
+  gate.hear(arm(kArmed), at(kArmed));
+  gate.hear(surge(1.0), at(1.0));
+  gate.hear(Operator{.abort = true}, at(2.0));
+  const Answer late = gate.hear(arm(1.9), at(2.1));  // it was lost, and is said again; or somebody kept it back
+  CHECK_FALSE(late.done);
+  CHECK(late.text.find("before the abort") != std::string::npos);
+  CHECK_FALSE(gate.armed());
+  gate.hear(surge(2.2, "supervisor", 1.9), at(2.2));
+  CHECK(gate.wrench(at(2.2)).isZero());
+  CHECK(gate.hear(arm(2.5), at(2.5)).done);
+}
+
 TEST_CASE("gate: who asks for thrust in vain is told, until it is armed; what is on its way at an abort is not meant") {
   ThrusterGate successor{kChallenge};  // of a driver that had been armed
   double t = 1.0;

@@ -14,6 +14,7 @@
 #include "common/model/sensors/heading.hpp"
 #include "common/model/sensors/pressure.hpp"
 #include "common/model/sensors/range.hpp"
+#include "common/model/sensors/velocity_log.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -84,6 +85,12 @@ Matrix noise_of(const Vector& x, double dt, const ProcessNoise& noise, Kinematic
       wider.block<3, 3>(21, 12) = noise.gyro_bias * Eigen::Matrix3d::Identity();
       G = wider;
     }
+    if (n > 24) {
+      Matrix wider = Matrix::Zero(n, 18);
+      wider.leftCols(15) = G;
+      wider.block<3, 3>(24, 15) = noise.log_bias * Eigen::Matrix3d::Identity();
+      G = wider;
+    }
     return Matrix(Phi * G * G.transpose() * Phi.transpose());
   };
   constexpr int kParts = 4;  // exact for the chains' polynomials but their highest power
@@ -100,8 +107,10 @@ struct Dense {
   std::vector<Matrix> P, P_predicted, F;
 };
 
-/// What an inertial package, a compass, a depth gauge and two transponders see of a random walk about a circle.
-std::vector<model::Observation> look(const model::KinematicPoint& point, int k, std::mt19937& random) {
+/// What an inertial package, a compass, a depth gauge and two transponders see of a random walk about a circle; `log`:
+/// and a velocity log with a bias.
+std::vector<model::Observation> look(const model::KinematicPoint& point, int k, std::mt19937& random,
+                                     bool log = false) {
   std::normal_distribution<double> normal;
   std::vector<model::Observation> rows;
   const double yaw = 0.1 * 0.05 * k;
@@ -115,6 +124,10 @@ std::vector<model::Observation> look(const model::KinematicPoint& point, int k, 
   }
   rows.push_back(model::observe_heading(point, 0.0, yaw + 0.02 * normal(random), 4e-4));
   rows.push_back(model::observe_depth(point, {0, 0, 0}, 3.0 + 0.02 * normal(random), 4e-4));
+  if (log && k % 3 == 0) {
+    for (const auto& row : model::observe_velocity(point, {0, 0, 0}, {0.5, 0.01, -0.01}, 4e-4, true))
+      rows.push_back(row);
+  }
   if (k % 5 == 0) {
     const Eigen::Vector3d p{5.0 * std::sin(yaw), 5.0 - 5.0 * std::cos(yaw), 3.0};
     for (const Eigen::Vector3d& T :
@@ -134,7 +147,7 @@ void against_textbook(KinematicModel model) {
   x0[7] = -0.2;
   x0[12] = 0.3;
   x0.template segment<3>(9) << 0.3, -0.2, 0.1;
-  if constexpr (N > 18) sigma.template tail<6>().setConstant(0.02);
+  if constexpr (N > 18) sigma.template tail<N - 18>().setConstant(0.02);
   KalmanFilter<N> filter;
   filter.start(x0, sigma);
   FilterRecord<N> record;
@@ -155,7 +168,7 @@ void against_textbook(KinematicModel model) {
     const double difference = (filter.covariance() - dense.P_predicted.back()).norm() / dense.P_predicted.back().norm();
     REQUIRE(difference < kSlope);
     State moved_by = State::Zero();
-    const auto rows = look(filter.point(), k, random);
+    const auto rows = look(filter.point(), k, random, N > 24);
     Matrix H(rows.size(), N);
     Vector innovation(rows.size()), variance(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -199,6 +212,7 @@ void against_textbook(KinematicModel model) {
 TEST_CASE("Kalman filter and smoother: the numbers of the textbook, printed and coupled, with and without biases") {
   against_textbook<24>(KinematicModel::kCoupled);
   against_textbook<24>(KinematicModel::kPrinted);
+  against_textbook<27>(KinematicModel::kCoupled);  // a velocity log's bias as well
 }
 
 TEST_CASE("Kalman filter: an infinite variance changes nothing, an outlier is refused") {
@@ -246,7 +260,9 @@ TEST_CASE("Kalman filter and smoother: consistent over 50 seeds when the motion 
       truth = x + parts.eigenvectors() * draw;
       truths.push_back(truth);
       filter.predict(dt, noise, KinematicModel::kCoupled);
-      const model::KinematicPoint point = filter.point(), there{truth};
+      model::KinematicVector wide = model::KinematicVector::Zero();
+      wide.head<24>() = truth;
+      const model::KinematicPoint point = filter.point(), there{wide};
       KalmanFilter<24>::State moved_by = KalmanFilter<24>::State::Zero();
       const auto take = [&](model::Observation row, double said) {
         row.innovation = said + std::sqrt(row.variance) * normal(random);

@@ -145,6 +145,23 @@ TEST_CASE_FIXTURE(Fixture, "noise: a rest gives what the instruments have, and a
   CHECK(notes.front().find("no stretch") != std::string::npos);
 }
 
+TEST_CASE_FIXTURE(Fixture,
+                  "noise: a vehicle that drifts without a turn is not at rest, whichever instrument sees it go") {
+  auto trial = record(4);
+  REQUIRE(find_rest(trial.recording));
+  const Rest rest = *find_rest(trial.recording);
+  const auto seconds = [&](Utime utime) { return seconds_between(rest.from, utime); };
+  Recording sinking = trial.recording;
+  for (Depth& one : sinking.depth) one.z += 0.02 * seconds(one.utime);  // m/s: 0.1 m in the rest, five of its noises
+  const auto later = find_rest(sinking);
+  CHECK((!later || later->from > rest.to || later->to - later->from < rest.to - rest.from));
+  Recording carried = trial.recording;  // by a current: the log tells a steady speed, and the hull feels none of it
+  for (const Ahrs& one : trial.recording.ahrs) carried.dvl.push_back({.utime = one.utime, .v_WB_B = {0.1, 0.0, 0.0}});
+  CHECK_FALSE(find_rest(carried));
+  for (Dvl& one : carried.dvl) one.v_WB_B.setZero();
+  CHECK(find_rest(carried));
+}
+
 TEST_CASE_FIXTURE(Fixture, "bad input: two transponders only are not enough to begin, and the line says what is") {
   auto trial = record(1);
   KalmanSettings settings = instruments;

@@ -35,7 +35,10 @@ TEST_CASE("supervisor: nothing is commanded before the operator has armed, and n
   loop.run(0.5);
   CHECK(loop.supervisor.hear(good).text == answer.text);  // said again, since its answer was lost
   CHECK(loop.commands > 5);
+  const Operator kept = order_to_arm(loop.plant.utime());  // on its way when it is aborted
+  loop.run(0.1);
   loop.supervisor.hear(Operator{.abort = true});
+  CHECK(loop.supervisor.hear(kept).text.find("before the abort") != std::string::npos);
   loop.run(2.0);
   loop.supervisor.hear(good);  // replayed
   loop.run(0.5);

@@ -97,6 +97,7 @@ struct Rates {
 
 Rates rates(const model::Vehicle& vehicle, const std::vector<ManoeuvreRows>& runs, bool honest, unsigned seeds) {
   RegressionSettings settings;
+  settings.errors = false;  // instruments are exact here, and it is scatter that is judged
   settings.stepwise.autoregressive = settings.stepwise.effective_samples = honest;
   const auto truth = truth_of(vehicle);
   Rates result;
@@ -160,6 +161,47 @@ TEST_CASE("regress: of three manoeuvres what acts is selected and the rest refus
   CHECK(honest.square > 0.7);
   CHECK(honest.square < 1.4);
   CHECK(plain.square > 4.0);  // one sample in twenty is independent
+}
+
+TEST_CASE("regress: a gain that a load cell has wrong is inside the error that is told, and not in the scatter") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("pap104_half");
+  auto runs = three_manoeuvres(vehicle);
+  disturb(runs, 1, 0.0, 0.1);
+  for (ManoeuvreRows& run : runs) {
+    run.cells = 1;  // one for both thrusters and all else
+    for (auto& row : run.stretches.front()) {
+      row.known *= 1.06;  // two of its standard deviations
+      row.parts = {row.known};
+    }
+  }
+  const auto axes = regress(vehicle, runs, {});
+  const double truth = truth_of(vehicle).at("X_uu");
+  const SelectedTerm* term = find(axes, "X_uu");
+  REQUIRE(term != nullptr);
+  CHECK(std::abs(term->value - truth) > 1.96 * term->sigma);
+  CHECK(std::abs(term->value - truth) < 2.5 * term->total());
+  RegressionSettings exact;
+  exact.cell_gain = 1e-9;
+  const auto without = regress(vehicle, runs, exact);
+  CHECK(find(without, "X_uu")->total() < term->total());
+  exact.errors = false;
+  CHECK(find(regress(vehicle, runs, exact), "X_uu")->total() == find(axes, "X_uu")->sigma);
+}
+
+TEST_CASE("regress: a term that another would explain as well is told with it") {
+  // In a steady turn u, v and r keep their ratios: products of them are one column but for the beginning.
+  const model::Vehicle vehicle = test::vehicle_from_repository("pap104_half");
+  std::vector<ManoeuvreRows> runs{exact_rows(vehicle, ManoeuvreKind::kCircle)};
+  disturb(runs, 2, kMemory);
+  int told = 0;
+  for (const AxisRegression& axis : regress(vehicle, runs, {})) {
+    for (const SelectedTerm& term : axis.together.terms) {
+      told += static_cast<int>(term.equivalents.size());
+      for (const int column : term.equivalents)
+        CHECK(find(axis.together, axis.candidates, axis.candidates.names[static_cast<std::size_t>(column)]) == nullptr);
+    }
+  }
+  CHECK(told > 0);
 }
 
 TEST_CASE("regress: the water's velocity is found from how surge, sway and yaw feel it") {

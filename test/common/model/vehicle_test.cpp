@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <regex>
 #include <stdexcept>
 #include <string>
@@ -15,6 +14,7 @@
 #include "common/model/parameters.hpp"
 #include "common/model/physical_bounds.hpp"
 #include "common/tables/import.hpp"
+#include "test/support/scratch.hpp"
 
 using fathom::InputError;
 using fathom::Vector6d;
@@ -37,8 +37,9 @@ const std::string kThrusters =
     "  - {name: bow, position: 0.3 0 0 m, axis: 0 1 0}\n";
 
 Vehicle parse(const std::string& yaml) {
-  const std::string path = std::string(FATHOM_BINARY_DIR) + "/vehicle_test.yaml";
-  std::ofstream(path) << yaml;
+  const fathom::test::Scratch scratch;  // cases run side by side
+  const std::string path = scratch.path("vehicle_test.yaml");
+  fathom::test::write_bytes(path, yaml);
   return Vehicle::load(path);
 }
 

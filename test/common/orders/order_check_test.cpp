@@ -74,3 +74,26 @@ TEST_CASE("orders: a new life of the gate begins with its own numbers; who comes
   order.challenge = 78;
   CHECK(said(check, order).empty());
 }
+
+TEST_CASE("orders: what was given before an abort and comes after it is not obeyed, whoever kept it back") {
+  OrderCheck check{5.0};
+  check.begin(77);
+  check.accept(good(1));
+  const Utime aborted = utime_after(kNow, -1.0);
+  check.abort(aborted);
+  Operator order = good(2);
+  for (const double before : {0.0, 0.1, 3.0}) {
+    order.utime = utime_after(aborted, -before);
+    CHECK(said(check, order).find("before the abort") != std::string::npos);
+  }
+  order.utime = utime_after(aborted, 0.1);
+  CHECK(said(check, order).empty());
+  check.abort(utime_after(kNow, 3600.0));  // by a clock that has been set back since
+  CHECK(said(check, order).empty());
+  check.abort(aborted);
+  check.begin(78);  // a new life knows of no abort, and has a challenge of its own
+  order = good(1);
+  order.challenge = 78;
+  order.utime = utime_after(aborted, -0.1);
+  CHECK(said(check, order).empty());
+}

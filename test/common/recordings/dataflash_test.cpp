@@ -90,6 +90,33 @@ TEST_CASE("dataflash: instances are topics of their own") {
   CHECK(file.heard.of("BARO[1]").column("Alt") == std::vector<double>{0.5, 0.5, 0.5});
 }
 
+TEST_CASE("dataflash: descriptions that take turns, as in joined logs, are two topics and no more") {
+  test::DataFlashLog log;
+  for (unsigned i = 0; i < 4; ++i) {
+    const bool second = i % 2 == 1;
+    log.format(6, second ? 19 : 15, "BARO", second ? "Qff" : "Qf", second ? "TimeUS,Alt,Press" : "TimeUS,Alt");
+    const std::string payload = packed(std::uint64_t{1'000'000} + 1000U * i, static_cast<float>(i));
+    log.record(6, second ? payload + packed(9.0F) : payload);
+  }
+  const auto file = test::hear(log.bytes);
+  CHECK(file.heard.of("BARO").column("Alt") == std::vector<double>{0.0, 2.0});
+  CHECK(file.heard.of("BARO'").column("Alt") == std::vector<double>{1.0, 3.0});
+}
+
+TEST_CASE("dataflash: a description of units, or of an instance, that cannot be is not obeyed") {
+  test::DataFlashLog log;
+  log.format(20, 8, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds");  // 8 bytes where 44 are needed
+  log.format(6, 19, "BARO", "QIf", "TimeUS,I,Alt");
+  log.record(20, std::string(5, '\1'));
+  log.record(6, packed(std::uint64_t{1'000'000}, std::uint32_t{4'000'000'000U}, 2.0F));
+  log.record(20, std::string(5, '\1'));
+  log.record(6, packed(std::uint64_t{1'000'100}, std::uint32_t{4'000'000'000U}, 3.0F));
+  log.record(20, std::string(5, '\1'));  // behind which nothing stands, and whose time would lie beyond the file
+  const auto file = test::hear(log.bytes);
+  CHECK(file.heard.of("BARO").column("Alt") == std::vector<double>{2.0, 3.0});
+  CHECK(file.damage.places("records of kind FMTU whose description does not fit its length") == 2);
+}
+
 TEST_CASE("dataflash: a velocity log's shifts become a velocity, unless their time is in a unit that cannot be") {
   test::DataFlashLog log;
   log.format(8, 3 + 8 + 32, "VISO", "Qffffffff", "TimeUS,dt,AngDX,AngDY,AngDZ,PosDX,PosDY,PosDZ,conf");

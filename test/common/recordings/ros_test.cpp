@@ -98,6 +98,21 @@ TEST_CASE("mcap: a wrong checksum costs its chunk alone, the end of the file wha
   CHECK(tail.damage.places("stretches of bytes that are no record") == 1);
 }
 
+TEST_CASE("mcap: a chunk whose length is damaged costs nothing behind it") {
+  test::McapLog log = mcap_of("ros2msg", kReading);
+  log.message(1, 1.0, reading(1.0, 1.0));
+  log.chunk();
+  const std::size_t second = log.bytes.size();
+  log.message(1, 2.0, reading(2.0, 2.0));
+  log.chunk();
+  log.message(1, 3.0, reading(3.0, 3.0));
+  log.chunk();
+  log.bytes[second + 4] = '\x7F';  // of the length
+  const auto file = test::hear(log.bytes);
+  CHECK(file.heard.of("/reading").column("value") == std::vector<double>{1.0, 3.0});
+  CHECK(file.damage.places("stretches of bytes that are no record") == 1);
+}
+
 TEST_CASE("mcap: what is not ROS is named and counted; a message that does not fit its definition gives no number") {
   test::McapLog log = mcap_of("ros2msg", kReading);
   log.channel(2, 0, "/other", "protobuf");
@@ -122,6 +137,24 @@ TEST_CASE("ros: a writer that counts alignment from the first byte is understood
   log.plain();
   const auto file = test::hear(log.bytes);
   CHECK(file.heard.of("/two").column("b") == std::vector<double>{2.5, 4.5});
+}
+
+TEST_CASE("ros: lists of lists are refused, lists of several dimensions are read through, and no definition grows") {
+  using recordings::ros::Definitions;
+  std::string reason;
+  const auto grid = Definitions::parse("a/A", "module a { struct A { double x[2][3]; }; };", true, reason);
+  REQUIRE(grid != nullptr);
+  CHECK(grid->root().members.at(0).count == 6);
+  for (const char* members : {"sequence<sequence<double>> x;", "sequence<nine> x;", "nine x[2];", "double x[SIZE];"}) {
+    CAPTURE(members);
+    const std::string text = std::string{"module a { typedef double nine[9]; struct A { "} + members + " }; };";
+    CHECK(Definitions::parse("a/A", text, true, reason) == nullptr);
+  }
+  std::string bomb;  // each type holds the next twice
+  for (int i = 0; i < 25; ++i)
+    bomb += "T" + std::to_string(i) + " a\nT" + std::to_string(i) + " b" + kRule + "a/T" + std::to_string(i) + "\n";
+  CHECK(Definitions::parse("a/A", bomb, false, reason) == nullptr);
+  CHECK(reason.find("too many members") != std::string::npos);
 }
 
 TEST_CASE("ros: a type that is missing or holds itself is said, not followed") {
@@ -172,7 +205,7 @@ TEST_CASE("rosbag 2: usual types without definitions, nothing left beside the fi
         "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);"
         "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);"
         "INSERT INTO topics VALUES(4, '/pressure', 'sensor_msgs/FluidPressure', 'cdr');"
-        "INSERT INTO topics VALUES(5, '/own', 'my_msgs/msg/Own', 'cdr');";
+        "INSERT INTO topics VALUES(5, '/own', 'my_msgs/msg/Own', 'cdr'); BEGIN;";
     REQUIRE(sqlite3_exec(database, tables, nullptr, nullptr, nullptr) == SQLITE_OK);
     for (int i = 0; i < 300; ++i) {
       test::CdrMessage cdr;
@@ -186,6 +219,7 @@ TEST_CASE("rosbag 2: usual types without definitions, nothing left beside the fi
       REQUIRE(sqlite3_step(row) == SQLITE_DONE);
       sqlite3_finalize(row);
     }
+    REQUIRE(sqlite3_exec(database, "COMMIT;", nullptr, nullptr, nullptr) == SQLITE_OK);  // a disk waits once
     sqlite3_close(database);
   };
   make(scratch.path("run_0.db3"), 1000.0);

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/runtime/bus.hpp"
 
@@ -91,6 +92,47 @@ TEST_CASE("channel filter: leaves alone what it cannot judge") {
   CHECK(to.next() == "no LCM at all");
 }
 
+namespace {
+
+std::string number(std::uint32_t value, int bytes) {
+  std::string text;
+  for (int i = bytes - 1; i >= 0; --i) text += static_cast<char>(value >> (8 * i));
+  return text;
+}
+
+/// Part `index` of two of a message of 1000 bytes, as LCM writes it.
+std::string part(std::uint32_t index, std::uint32_t offset, const std::string& rest) {
+  return "LC03" + number(7, 4) + number(1000, 4) + number(offset, 4) + number(index, 2) + number(2, 2) + rest;
+}
+
+std::string named(const std::string& channel) { return channel + std::string(1, '\0'); }
+
+}  // namespace
+
+TEST_CASE("bus filter: what liblcm would follow beyond a packet or a message does not reach it") {
+  const BusAddress here{.group = 0x7f000001, .port = 1, .one_host = true};
+  for (const std::vector<std::string>& channels : {std::vector<std::string>{}, std::vector<std::string>{"DEPTH"}}) {
+    CAPTURE(channels.size());
+    Socket from, to;
+    REQUIRE(filter(to.descriptor(), bus_program(here, channels)));
+    const std::string data(500, 'x'), longest(63, 'A');
+    for (const std::string& good : {part(0, 0, named("DEPTH") + data), part(0, 0, named(longest) + data),
+                                    part(1, 500, data), part(1, 1U << 28U, data), message("DEPTH", "")}) {
+      from.send_to(to, good);
+      CHECK(to.next() == good);
+    }
+    for (const std::string& bad :
+         {part(1, 0xffffff00, data), part(0, 0xffffff00, named("DEPTH") + data), part(1, (1U << 28U) + 1, data),
+          part(0, 0, data), part(0, 0, "DEPTH"), part(0, 0, ""), part(0, 0, named(longest + "A") + data),
+          part(1, 0, "").substr(0, 19), part(1, 0, "").substr(0, 8), message("DEPTH", "").substr(0, 13),
+          message("", "").substr(0, 8)}) {
+      CAPTURE(bad.size());
+      from.send_to(to, bad);
+      CHECK_FALSE(to.next());
+    }
+  }
+}
+
 TEST_CASE("channel filter: too many channels are not filtered") {
   std::vector<std::string> channels(60, std::string(60, 'A'));
   CHECK(channel_program(channels).empty());
@@ -101,8 +143,8 @@ TEST_CASE("channel filter: too many channels are not filtered") {
 namespace {
 
 Url own_bus() {
-  return Url::parse(
-      "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0&recv_buf_size=2097152", "--in");
+  return Url::parse("udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0&recv_buf_size=2097152",
+                    "--in");
 }
 
 /// Channels that come within a second, or until there are so many.
@@ -133,6 +175,24 @@ TEST_CASE("bus filter: reads group, port and ttl as liblcm does") {
   is("udpm://", kLcm, 7667, true);
   is("udpm://?recv_buf_size=2097152", kLcm, 7667, true);
   is("udpm://239.255.76.67:7667", kLcm, 7667, true);  // liblcm's own choice
+}
+
+TEST_CASE("bus filter: a part of a message that belongs 4 GB behind it kills no listener") {
+  const Url url = own_bus();
+  LiveInput input{{url}, {{"DEPTH", 100}}};
+  const BusAddress bus = BusAddress::of(url.text);
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in there{};
+  there.sin_family = AF_INET;
+  there.sin_port = htons(bus.port);
+  there.sin_addr.s_addr = htonl(bus.group);
+  // The second one is written only into what the first has begun.
+  for (const std::string& each : {part(0, 0, named("DEPTH") + std::string(500, 'x')),
+                                  part(1, 0xffffff00, std::string(500, 'x')), message("DEPTH", "12345678")}) {
+    CHECK(sendto(socket, each.data(), each.size(), 0, reinterpret_cast<const sockaddr*>(&there), sizeof there) > 0);
+  }
+  CHECK(heard(input, 1).size() == 1);
+  close(socket);
 }
 
 TEST_CASE("bus filter: what is sent to this host past the bus is not believed, for one channel or for all") {

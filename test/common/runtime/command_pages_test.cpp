@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,21 +18,21 @@ namespace fathom::runtime {
 namespace {
 
 struct Example {
-  CLI::App app{"Weighs fish. More is in docs/fish.md; it's \\ and -1.", "fish"};
-  CLI::App* weigh{app.add_subcommand("weigh", "the weight of one")};
-  CLI::App* elsewhere{app.add_subcommand("paint", "run by another program")};
+  CommandLine app{"Weighs fish. More is in docs/fish.md; it's \\ and -1.", "fish"};
+  CommandLine* weigh{app.add_subcommand("weigh", "the weight of one")};
+  CommandLine* elsewhere{app.add_subcommand("paint", "run by another program")};
   std::string scale, file;
   std::vector<std::string> nets;
   double limit{};
   bool quiet{};
 
   Example() {
-    weigh->add_option("-s,--scale", scale, "which scale")->check(CLI::IsMember({"old", "new"}));
+    weigh->add_option("-s,--scale", scale, "which scale")->one_of({"old", "new"});
     weigh->add_option("--net", nets, "where from")->required();
     weigh->add_option("--limit", limit, "kg");
     weigh->add_flag("--quiet", quiet, ".silent");
     weigh->add_option("fish", file, "the fish")->required();
-    elsewhere->prefix_command();
+    elsewhere->hand_on([](const std::vector<std::string>&) {});
   }
 };
 
@@ -49,7 +50,7 @@ std::vector<std::string> files_in(const std::filesystem::path& folder) {
 
 TEST_CASE("manual page: of a subcommand, with what must be there, what may, values and choices") {
   const Example example;
-  const std::string page = manual_page(*example.weigh, "fish");
+  const std::string page = manual_page(example.weigh->cli(), "fish");
   CHECK(has(page, ".TH \"FISH-WEIGH\" 1 \"\" \"Fathom " + std::string{version()}));
   CHECK(has(page, ".SH NAME\nfish\\-weigh \\- the weight of one\n"));
   CHECK(has(page, "\\fBfish weigh\\fR \\fB\\-\\-net\\fR \\fITEXT...\\fR [\\fIOPTION\\fR]... \\fIfish\\fR\n"));
@@ -61,7 +62,7 @@ TEST_CASE("manual page: of a subcommand, with what must be there, what may, valu
 
 TEST_CASE("manual page: of a program, with its commands; signs of troff stand for themselves") {
   const Example example;
-  const std::string page = manual_page(example.app, "fathom-fish");
+  const std::string page = manual_page(example.app.cli(), "fathom-fish");
   CHECK(has(page, "fathom\\-fish \\- Weighs fish\n"));
   CHECK(has(page, "it's \\e and \\-1."));
   CHECK(has(page, "\\fBfish\\-weigh\\fR(1)\nthe weight of one\n"));
@@ -70,8 +71,8 @@ TEST_CASE("manual page: of a program, with its commands; signs of troff stand fo
 
 TEST_CASE("completion: words that may follow, and which options take a value") {
   const Example example;
-  CHECK(completion_table(example.app, "fathom-fish") == "_fathom_words['fathom-fish']='weigh paint -h --help'\n");
-  CHECK(completion_table(*example.weigh, "fish") ==
+  CHECK(completion_table(example.app.cli(), "fathom-fish") == "_fathom_words['fathom-fish']='weigh paint -h --help'\n");
+  CHECK(completion_table(example.weigh->cli(), "fish") ==
         "_fathom_words['fish weigh']='-h --help -s --scale --net --limit --quiet'\n"
         "_fathom_values['fish weigh -s']='old new'\n"
         "_fathom_values['fish weigh --scale']='old new'\n"
@@ -84,23 +85,40 @@ TEST_CASE("pages: written by the command line itself, except those of another pr
   const test::Scratch scratch;
   const std::string folder = scratch.path("pages");
   const std::vector<const char*> words{"fish", "--pages", folder.c_str(), "fathom-fish"};
-  CHECK_THROWS_AS(parse(example.app, 4, words.data()), CLI::Success);
+  CHECK_FALSE(example.app.parse(4, words.data()));
   CHECK(files_in(folder) == std::vector<std::string>{"fathom-fish.1", "fathom-fish.completion", "fish-weigh.1"});
-  CHECK_THROWS_AS(write_pages(example.app, "fish", "/proc/no/such/folder"), InputError);
+  CHECK_THROWS_AS(write_pages(example.app.cli(), "fish", "/proc/no/such/folder"), InputError);
 }
 
 TEST_CASE("command line: numbers are finite, --version names program and build") {
   Example example;
   const std::vector<const char*> words{"fish", "weigh", "--net", "a", "--limit", "nan", "cod"};
-  CHECK_THROWS_AS(parse(example.app, static_cast<int>(words.size()), words.data()), CLI::ValidationError);
+  CHECK_THROWS_AS((void)example.app.parse(static_cast<int>(words.size()), words.data()), UsageError);
+  CHECK(example.app.parse_or_tell(static_cast<int>(words.size()), words.data()) == 2);
   Example other;
   const std::vector<const char*> asked{"fish", "--version"};
-  try {
-    parse(other.app, 2, asked.data());
-    FAIL("went on");
-  } catch (const CLI::CallForVersion& answer) {
-    CHECK(answer.what() == "fish " + std::string{version()});
-  }
+  std::ostringstream answer;
+  CHECK_FALSE(other.app.parse(2, asked.data(), answer));
+  CHECK(answer.str() == "fish " + std::string{version()} + "\n");
+}
+
+TEST_CASE("command line: what a subcommand throws is bad input, what the words lack is a bad command line") {
+  Example example;
+  example.weigh->callback([] { throw InputError("no fish"); });
+  const std::vector<const char*> good{"fish", "weigh", "--net", "a", "cod"}, bad{"fish", "weigh", "cod"},
+      none{"fish", "wiegh"};
+  CHECK(example.app.run(static_cast<int>(good.size()), good.data()) == 1);
+  CHECK(Example{}.app.run(static_cast<int>(bad.size()), bad.data()) == 2);
+  CHECK(Example{}.app.run(static_cast<int>(none.size()), none.data()) == 2);
+}
+
+TEST_CASE("command line: words behind a command of another program go on unread") {
+  Example example;
+  std::vector<std::string> rest;
+  example.elsewhere->hand_on([&](const std::vector<std::string>& words) { rest = words; });
+  const std::vector<const char*> words{"fish", "paint", "--help", "-x", "red"};
+  CHECK(example.app.run(static_cast<int>(words.size()), words.data()) == 0);
+  CHECK(rest == std::vector<std::string>{"--help", "-x", "red"});
 }
 
 }  // namespace fathom::runtime

@@ -13,6 +13,7 @@
 #include <fathom_lcm/process_info_t.hpp>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <optional>
 #include <thread>
 
 #include "common/runtime/process.hpp"
@@ -62,16 +63,20 @@ Outcome converse(lcm::LCM& bus, bool throws, const std::function<void(std::atomi
   std::thread thread{[&] {
     outcome.code = runtime::main("echo", static_cast<int>(argv.size()), argv.data(), [&](runtime::Process& process) {
       process.publishes<fathom_lcm::depth_t>("ECHO");
-      process.on<fathom_lcm::depth_t>("DEPTH", [&](const auto& message) {
-        if (throws) throw std::runtime_error("broken handler");
-        if (!started.exchange(true)) return;  // says that it hears
-        if (outcome.depths++ == 0) sent.wait(false);
-        process.publish("ECHO", message);
-      });
-      process.on_latest<fathom_lcm::battery_t>("BATTERY", [&](const auto& message) {
-        ++outcome.batteries;
-        outcome.last_battery = message.utime;
-      });
+      process.on<fathom_lcm::depth_t>(
+          "DEPTH", [](const auto& message) { return std::optional{message}; },
+          [&](const auto& message) {
+            if (throws) throw std::runtime_error("broken handler");
+            if (!started.exchange(true)) return;  // says that it hears
+            if (outcome.depths++ == 0) sent.wait(false);
+            process.publish("ECHO", message);
+          });
+      process.on_latest<fathom_lcm::battery_t>(
+          "BATTERY", [](const auto& message) { return std::optional{message}; },
+          [&](const auto& message) {
+            ++outcome.batteries;
+            outcome.last_battery = message.utime;
+          });
       process.on_end([&] { ++outcome.ends; });
       process.run();
     });

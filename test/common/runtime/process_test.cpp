@@ -7,12 +7,14 @@
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <iostream>
+#include <limits>
 #include <sstream>
 
 #include "common/base/error.hpp"
 #include "common/base/version.hpp"
 #include "common/runtime/bus.hpp"
 #include "common/wire/channels.hpp"
+#include "common/wire/decode.hpp"
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
 #include "common/wire/minds.hpp"
@@ -37,19 +39,18 @@ void echo(Process& process, Seen& seen) {
   double sum = 0.0;
   Utime newest = 0;
   process.publishes<fathom_lcm::state_t>(wire::kState);
-  process.on<fathom_lcm::depth_t>(wire::kDepth, [&](const auto& message) {
-    const auto depth = wire::decode(message);
-    if (!depth) return process.reject(wire::kDepth);
-    seen.order += "d" + std::to_string(depth->utime) + " ";
-    if (depth->z < 0.0) throw std::runtime_error("flying");
-    sum += depth->z;
-    newest = depth->utime;
-    StateEstimate state{.utime = depth->utime};
-    state.p_WB.z() = depth->z;
+  process.on<fathom_lcm::depth_t>(wire::kDepth, wire::kDecode, [&](const Depth& depth) {
+    seen.order += "d" + std::to_string(depth.utime) + " ";
+    if (depth.z < 0.0) throw std::runtime_error("flying");
+    sum += depth.z;
+    newest = depth.utime;
+    StateEstimate state{.utime = depth.utime};
+    state.p_WB.z() = depth.z;
     process.publish(wire::kState, wire::encode(state));
   });
-  process.on_latest<fathom_lcm::battery_t>(
-      wire::kBattery, [&](const auto& message) { seen.order += "b" + std::to_string(message.utime) + " "; });
+  process.on_latest<fathom_lcm::battery_t>(wire::kBattery, wire::kDecode, [&](const Battery& battery) {
+    seen.order += "b" + std::to_string(battery.utime) + " ";
+  });
   process.on_restart([&] { ++seen.restarts; });
   process.on_end([&] {
     ++seen.ends;
@@ -164,6 +165,29 @@ TEST_CASE("process: a jump back by more than a second is one restart, a late mes
   CHECK(restarts == 0);
 }
 
+TEST_CASE("process: what is refused for its numbers moves no clock, however early or late it is stamped") {
+  const Scratch scratch;
+  constexpr Utime kSecond = 1'000'000;
+  for (const Utime stamp : {1 * kSecond, 1000 * kSecond}) {
+    CAPTURE(stamp);
+    runtime::Output log{runtime::Url::parse(in(scratch.path("all.lcmlog")), "--out")};
+    const auto say = [&](Utime utime, double z) {
+      fathom_lcm::depth_t message{};
+      message.utime = utime;
+      message.z = z;
+      runtime::say(log, wire::kDepth, message);
+    };
+    say(10 * kSecond, 1.0);
+    say(stamp, std::numeric_limits<double>::quiet_NaN());
+    say(11 * kSecond, 2.0);
+    log.finish();
+    Seen seen;
+    CHECK(run_echo({"--in", in(scratch.path("all.lcmlog")), "--out", in(scratch.path("out.lcmlog"))}, seen) == 0);
+    CHECK(seen.order == "d10000000 d11000000 ");
+    CHECK(seen.restarts == 0);
+  }
+}
+
 TEST_CASE("process: an exception in a handler ends the process with exit code 1 and without on_end") {
   const Scratch scratch;
   write_depths(scratch.path("a.lcmlog"), {{10, 1.0}, {20, -1.0}, {30, 1.0}});
@@ -268,8 +292,9 @@ TEST_CASE("process: saying what was not declared is a programming error that doe
   write_depths(scratch.path("a.lcmlog"), {{10, 1.0}});
   const int code =
       run({"--in", in(scratch.path("a.lcmlog")), "--out", in(scratch.path("o.lcmlog"))}, [](Process& process) {
-        process.on<fathom_lcm::depth_t>(wire::kDepth,
-                                        [&](const auto& message) { process.publish(wire::kState, message); });
+        process.on<fathom_lcm::depth_t>(wire::kDepth, wire::kDecode, [&](const Depth& depth) {
+          process.publish(wire::kState, wire::encode(depth));
+        });
         process.run();
       });
   CHECK(code == 1);

@@ -167,7 +167,7 @@ TEST_CASE("import: a map that does not fit is refused with its own line") {
   CHECK(complaint("t,u,v,w\n0,1,,3\n1,,2,3\n", dvl("{columns: [u, v, w], unit: m/s, frame: FLU}")) ==
         "run.csv: not one whole sample of dvl");
   CHECK(complaint(csv, kAbout + "thrusters: {invalid_where: [u]}\n") ==
-        "map.yaml:4: 'thrusters' needs pwm, force or wrench");
+        "map.yaml:4: 'thrusters' needs pwm, command, force, speed or wrench");
 }
 
 TEST_CASE("beluga: every run is imported with the counts that its flag columns state") {
@@ -251,4 +251,61 @@ TEST_CASE("import: angles in another unit than said are named by what carries th
   // A wrong compass is not a wrong unit, though read as degrees a held heading would lie along the track.
   CHECK(complaint_about(table(1.0, 0.1, 2.0), "rad") == "no complaint");
   CHECK(complaint_about(table(1.0, 1.5, 2.0), "rad") == "no complaint");
+}
+
+TEST_CASE(
+    "import: a table in slices gives what it gives whole, and never more samples at once than rows are asked for") {
+  std::string csv = "t,x,y,z,roll,pitch,yaw,u,v,w,p,q,r,d,f1,f2\n";
+  for (int k = 0; k < 200; ++k) {
+    const double t = 0.1 * k, held = std::floor(0.5 * k);  // every second velocity repeats the one before
+    for (const double number : {t, std::sin(t), t, 2.0, 0.1, 0.0, 0.3 * t, held, 0.0, 0.0, 0.0, 0.0, 0.3, t})
+      csv += std::to_string(number) + ",";
+    csv += k % 7 == 0 ? ",2\n" : "1,2\n";
+  }
+  const std::string map = kAbout +
+                          "pose_capture:\n  position: {columns: [x, y, z], unit: m, frame: NED}\n"
+                          "  euler: {columns: [roll, pitch, yaw], unit: rad, world: NED, body: FRD}\n"
+                          "ahrs:\n  rates: {columns: [p, q, r], unit: rad/s, frame: FRD}\n"
+                          "dvl:\n  velocity: {columns: [u, v, w], unit: m/s, frame: FRD}\n  held: detect\n"
+                          "depth: {column: d, unit: m, direction: down}\n"
+                          "thrusters:\n  force: {columns: [f1, f2], unit: N}\n";
+  const CsvTable table = parse_csv(csv, "run.csv");
+  const Imported whole = import_table(table, ColumnMap::parse(map, "map.yaml"));
+  constexpr std::size_t kRows = 9;
+  TableImport import{table, ColumnMap::parse(map, "map.yaml"), {}};
+  Recording all;
+  std::size_t slices = 0;
+  for (Recording part; import.next(kRows, part); part = {}) {
+    ++slices;
+    CHECK(part.pose_capture.size() <= kRows);
+    CHECK(part.ahrs.size() <= kRows);
+    CHECK(part.dvl.size() <= kRows);
+    CHECK(part.thrusters.size() <= kRows);
+    all.pose_capture.insert(all.pose_capture.end(), part.pose_capture.begin(), part.pose_capture.end());
+    all.dvl.insert(all.dvl.end(), part.dvl.begin(), part.dvl.end());
+    all.thrusters.insert(all.thrusters.end(), part.thrusters.begin(), part.thrusters.end());
+    all.depth.insert(all.depth.end(), part.depth.begin(), part.depth.end());
+  }
+  CHECK(slices == 23);
+  CHECK(import.finish() == whole.notes);
+  CHECK(noted(whole, "dvl: 100 samples repeat the one before (held)"));
+  REQUIRE(all.dvl.size() == whole.recording.dvl.size());
+  for (std::size_t i = 0; i < all.dvl.size(); ++i) CHECK(all.dvl[i].held == whole.recording.dvl[i].held);
+  REQUIRE(all.pose_capture.size() == whole.recording.pose_capture.size());
+  CHECK(all.pose_capture.back().p_WB == whole.recording.pose_capture.back().p_WB);
+  CHECK(all.thrusters.size() == whole.recording.thrusters.size());
+  CHECK(all.depth.back().z == whole.recording.depth.back().z);
+}
+
+TEST_CASE("import: what an attitude turns is not cut, since attitudes lie on both sides of it") {
+  const CsvTable table = parse_csv("t,psi,vn,ve,vd\n0,0,1,0,0\n0.1,,1,0,0\n0.2,0.4,1,0,0\n0.3,0.4,1,0,0\n", "run.csv");
+  const std::string map = kAbout +
+                          "ahrs:\n  euler: {columns: [none, none, psi], unit: rad, world: NED, body: FRD}\n"
+                          "dvl:\n  velocity: {columns: [vn, ve, vd], unit: m/s, frame: NED}\n";
+  TableImport import{table, ColumnMap::parse(map, "map.yaml"), SimulatedAxes{true, true, true, false, false, true}};
+  Recording part;
+  REQUIRE(import.next(1, part));
+  REQUIRE(part.dvl.size() == 4);
+  CHECK(part.dvl[1].v_WB_B.isApprox(Vector3d(std::cos(0.2), -std::sin(0.2), 0.0), 1e-12));
+  CHECK_FALSE(import.next(1, part));
 }

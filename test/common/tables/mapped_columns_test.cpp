@@ -167,9 +167,9 @@ TEST_CASE("columns: a map that is written is read as the same map") {
                            "ahrs:\n  rates: {columns: [p, q, r], unit: deg/s, frame: NED}\n"
                            "  specific_force: {columns: [\"a x\", ay, az], unit: m/s^2, frame: FLU}\n"
                            "dvl:\n  velocity: {columns: [u, v, none], unit: kn, frame: NWU}\n  invalid_where: [bad]\n"
-                           "depth: {column: d, unit: m, direction: up}\n"
+                           "depth: {column: d, unit: m, direction: up, invalid_where: [flooded]}\n"
                            "thrusters:\n  wrench: {columns: [X, Y, N], force_unit: N, moment_unit: N m, frame: FRD}\n"
-                           "battery: {column: volts, unit: mV}\n";
+                           "battery: {column: \"volts 'main'\", unit: mV, valid_where: [on]}\n";
   const ColumnMap map = ColumnMap::parse(text, "map.yaml");
   const std::string once = to_yaml(map);
   CHECK(to_yaml(ColumnMap::parse(once, "again.yaml")) == once);
@@ -183,4 +183,76 @@ TEST_CASE("columns: a map that is written is read as the same map") {
   CHECK(again.ahrs->specific_force->columns[0].name == "a x");
   CHECK(again.dvl->velocity.columns[2].absent);
   CHECK(again.depth->group.factor == doctest::Approx(-1.0));
+  CHECK(again.depth->invalid_where.at(0).name == "flooded");
+  CHECK(again.battery->group.columns[0].name == "volts 'main'");
+  CHECK(again.battery->invalid_where.at(0).negated);
+}
+
+TEST_CASE("columns: a depth by its pressure is written as one") {
+  const ColumnMap map = ColumnMap::parse(
+      kAbout + "depth: {pressure: {column: p, unit: mbar, surface: 1013.25 mbar, density: 1025 kg/m^3}}\n", "map.yaml");
+  const ColumnMap again = ColumnMap::parse(to_yaml(map), "again.yaml");
+  CHECK(again.depth->group.factor == doctest::Approx(map.depth->group.factor).epsilon(1e-9));
+  CHECK(again.depth->offset == doctest::Approx(map.depth->offset).epsilon(1e-9));
+  CHECK(to_yaml(map).find("unit: hPa") != std::string::npos);
+}
+
+TEST_CASE("columns: shaft speeds become forces by k n |n|, commands between -1 and 1 become pulses") {
+  const std::string csv = "t,port,starboard,a,b\n0,600,-600,0,1\n0.1,0,300,-0.5,0.25\n";
+  const std::string map =
+      "thrusters:\n  speed: {columns: [port, starboard], unit: rpm, ahead: 0.0111 N/(rad/s)^2, astern: 0.0064 "
+      "N/(rad/s)^2}\n"
+      "  command: {columns: [a, b], neutral: 1500 us, full: 400 us}\n";
+  const Imported imported = import_text(csv, map);
+  REQUIRE(imported.recording.thrusters.size() == 2);
+  const double n = 600.0 * 2.0 * std::numbers::pi / 60.0;  // rad/s
+  CHECK(imported.recording.thrusters[0].force[0] == doctest::Approx(0.0111 * n * n));
+  CHECK(imported.recording.thrusters[0].force[1] == doctest::Approx(-0.0064 * n * n));
+  CHECK(imported.recording.thrusters[1].force[1] == doctest::Approx(0.0111 * n * n / 4.0));
+  CHECK(imported.recording.thrusters[0].pwm_us == std::vector<double>{1500.0, 1900.0});
+  CHECK(imported.recording.thrusters[1].pwm_us == std::vector<double>{1300.0, 1600.0});
+  const ColumnMap parsed = ColumnMap::parse(kAbout + map, "map.yaml");
+  const ColumnMap again = ColumnMap::parse(to_yaml(parsed), "again.yaml");
+  CHECK(again.thrusters->speed->astern == doctest::Approx(0.0064).epsilon(1e-9));
+  CHECK(again.thrusters->command->full == 400.0);
+  CHECK(to_yaml(again) == to_yaml(parsed));
+  CHECK_THROWS_AS((void)ColumnMap::parse(kAbout + map + "  pwm: {columns: [a, b], unit: us}\n", "map.yaml"),
+                  InputError);
+}
+
+TEST_CASE("columns: acoustic fixes, ranges and loads come in from tables; an empty range is no echo") {
+  const std::string csv = "t,e,n,up,good,ra,rb,l1\n0,1,2,-3,1,10,,5\n1,1,2,-3,0,0,12,\n2,,,,1,,,6\n";
+  const std::string map =
+      "usbl:\n  position: {columns: [e, n, up], unit: m, frame: ENU}\n  sigma: 0.5 m\n  valid_where: [good]\n"
+      "ranges: {columns: [ra, rb], unit: m}\nloads: {columns: [l1], unit: N}\n";
+  const Imported imported = import_text(csv, map);
+  const Recording& r = imported.recording;
+  REQUIRE(r.usbl.size() == 2);
+  CHECK(r.usbl[0].p_WB == Vector3d(2, 1, 3));
+  CHECK(r.usbl[0].sigma == Vector3d(0.5, 0.5, 0.5));
+  CHECK(r.usbl[0].valid);
+  CHECK_FALSE(r.usbl[1].valid);
+  REQUIRE(r.ranges.size() == 2);
+  CHECK(r.ranges[0].range == std::vector<double>{10.0, 0.0});
+  CHECK(r.ranges[0].valid == std::vector<std::uint8_t>{1, 0});
+  CHECK(r.ranges[1].valid == std::vector<std::uint8_t>{0, 1});
+  REQUIRE(r.loads.size() == 2);
+  CHECK(r.loads[1].utime == 2'000'000);
+  const ColumnMap parsed = ColumnMap::parse(kAbout + map, "map.yaml");
+  const std::string once = to_yaml(parsed);
+  CHECK(to_yaml(ColumnMap::parse(once, "again.yaml")) == once);
+  CHECK(once.find("sigma: 0.5 m") != std::string::npos);
+  // Standard deviations of their own stand along the position's axes.
+  const Imported own = import_text("t,e,n,up,se,sn,su\n0,1,2,3,0.1,0.2,0.3\n",
+                                   "usbl:\n  position: {columns: [e, n, up], unit: m, frame: ENU}\n"
+                                   "  sigma: {columns: [se, sn, su], unit: m}\n");
+  CHECK(own.recording.usbl.at(0).sigma == Vector3d(0.2, 0.1, 0.3));
+}
+
+TEST_CASE("columns: ranges and loads by their names need no map") {
+  const CsvTable table = parse_csv("t,range_A,range_B,load_x\n0,1,2,3\n1,1,,3\n", "run.csv");
+  const Imported imported = import_table(table, canonical_map(table));
+  CHECK(imported.notes.empty());
+  CHECK(imported.recording.ranges.at(1).valid == std::vector<std::uint8_t>{1, 0});
+  CHECK(imported.recording.loads.size() == 2);
 }

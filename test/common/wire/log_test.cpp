@@ -1,9 +1,11 @@
 // Logs: what is written comes back, the same recording gives the same bytes, and damage is named with its place.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fathom_lcm/camera_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
+#include <filesystem>
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/base/error.hpp"
@@ -126,6 +128,46 @@ TEST_CASE("log: a sample that a reader would refuse is refused by the writer, wi
   CHECK_FALSE(std::filesystem::exists(scratch.path("a.lcmlog")));
 }
 
+TEST_CASE("log: parts that follow one another give the bytes of the whole; what is not finished replaces nothing") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("a.lcmlog");
+  Recording whole = depths({10, 20, 30, 40}), first = depths({10, 20}), second = depths({30, 40});
+  whole.battery = {{.utime = 20, .voltage = 12.0}, {.utime = 40, .voltage = 11.0}};
+  first.battery = {whole.battery[0]};
+  second.battery = {whole.battery[1]};
+  wire::write_log(whole, scratch.path("whole.lcmlog"));
+  {
+    wire::LogWriter log{path};
+    log.append(first);
+    log.append(second);
+    CHECK_FALSE(std::filesystem::exists(path));
+    CHECK(log.finish() == 6);
+    CHECK(log.counts() == "BATTERY 2, DEPTH 4");
+  }
+  const std::string bytes = test::read_bytes(path);
+  CHECK(bytes == test::read_bytes(scratch.path("whole.lcmlog")));
+  {
+    wire::LogWriter log{path};
+    log.append(depths({50}));
+    Recording bad = depths({60});
+    bad.depth[0].z = std::nan("");
+    CHECK_THROWS_AS(log.append(bad), InputError);
+  }
+  CHECK(test::read_bytes(path) == bytes);
+  CHECK_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+TEST_CASE("log: a stream that is out of order is put into the order of time") {
+  const test::Scratch scratch;
+  Recording mixed = depths({30, 10, 20});
+  mixed.battery = {{.utime = 15, .voltage = 12.0}};
+  wire::write_log(mixed, scratch.path("a.lcmlog"));
+  lcm::LogFile log{scratch.path("a.lcmlog"), "r"};
+  std::string order;
+  while (const auto* event = log.readNextEvent()) order += std::to_string(event->timestamp) + " ";
+  CHECK(order == "10 15 20 30 ");
+}
+
 TEST_CASE("log: a cut-off last event is a warning with the number of events recovered") {
   const test::Scratch scratch;
   const std::string path = scratch.path("a.lcmlog");
@@ -219,6 +261,24 @@ TEST_CASE("log: another version of a message type is named, not skipped") {
   write_raw(scratch.path("a.lcmlog"), "DEPTH", bytes);
   const auto text = complaint_of<InputError>([&] { (void)wire::read_log(scratch.path("a.lcmlog")); });
   CHECK(contains(text, "channel DEPTH does not hold this version's depth_t"));
+}
+
+TEST_CASE("log: of another version, what says nothing of the motion is left out and counted, and the rest is read") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("a.lcmlog");
+  write_raw(path, "DEPTH", depth_bytes(1.0));
+  for (const char* channel : {"ANSWER", "HEALTH", "OPERATOR", "PROCESS_INFO", "WRENCH_COMMAND"}) {
+    write_raw(path, channel, depth_bytes(1.0));  // a fingerprint that is not theirs
+  }
+  const auto contents = wire::read_log(path);
+  CHECK(contents.recording.depth.size() == 1);
+  CHECK(contents.recording.health.empty());
+  const auto& count = contents.report.channels.at("HEALTH");
+  CHECK(count.other_version == 1);
+  CHECK(count.rejected == 0);
+  const std::string said = wire::complaints(path, contents.report);
+  CHECK(contains(said, "channel HEALTH: 1 messages of another version of Fathom left out"));
+  CHECK(std::ranges::count(said, '\n') == 5);
 }
 
 TEST_CASE("log: messages that were logged late are sorted into place and counted") {

@@ -12,6 +12,7 @@
 #include "common/model/sensors/attitude.hpp"
 #include "common/model/sensors/gyro.hpp"
 #include "common/model/sensors/heading.hpp"
+#include "common/model/sensors/level_floor.hpp"
 #include "common/model/sensors/position.hpp"
 #include "common/model/sensors/pressure.hpp"
 #include "common/model/sensors/range.hpp"
@@ -28,7 +29,7 @@ constexpr double kSmallTurn = 2e-3;   // a rotation vector's derivative away fro
 KinematicVector some_state() {
   KinematicVector x;
   x << 3.0, 10.0, 2.0, 0.4, -0.2, 0.05, 0.1, -0.2, 1.3, 0.05, 0.1, -0.04, 0.1, -0.2, 0.3, 0.4, 0.5, -0.6, 0.02, -0.01,
-      0.03, 0.001, 0.002, -0.003;
+      0.03, 0.001, 0.002, -0.003, 0.004, -0.005, 0.006;
   return x;
 }
 
@@ -125,6 +126,25 @@ TEST_CASE("tag: a pose in the camera becomes the pose of the hull, whatever the 
   CHECK(back.q.angularDistance(X_WB.q) < 1e-7);  // an arc cosine near one
 }
 
+TEST_CASE("floor: a level camera 0.5 m above it at 0.2 m/s ahead sees the scene go back, and a dot at 0.5 m") {
+  KinematicVector x = KinematicVector::Zero();
+  x[2] = 1.0;
+  x[at::kVelocity] = 0.2;
+  // The camera's x axis points to starboard, its y axis aft: read with the bow upward.
+  const Pose X_BC{{0.0, 0.0, 0.1}, Eigen::Quaterniond{Eigen::AngleAxisd{std::acos(0.0), Eigen::Vector3d::UnitZ()}}};
+  const KinematicPoint level{x};
+  CHECK(distance_to_floor(level, 1.6, X_BC, Eigen::Vector3d::UnitZ()).value() == doctest::Approx(0.5).epsilon(kExact));
+  const auto flow = observe_flow(level, 1.6, X_BC, {0.0, 0.4}, 1.0);  // v_C = (0, -0.2), so z = +0.2 / 0.5
+  REQUIRE(flow);
+  for (const auto& one : *flow) CHECK(one.innovation == doctest::Approx(0.0).epsilon(kExact).scale(1.0));
+  const auto dot = observe_floor_point(level, 1.6, X_BC, {0.0, 0.0, 0.53}, 1.0);
+  REQUIRE(dot);
+  CHECK(dot->innovation == doctest::Approx(0.03).epsilon(1e-9));
+  x[at::kEuler] = 3.0;  // bottom up: there is no floor in sight
+  CHECK_FALSE(observe_flow(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.4}, 1.0));
+  CHECK_FALSE(observe_floor_point(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.0, 0.53}, 1.0));
+}
+
 TEST_CASE("observations: every row is the derivative of what is predicted") {
   const Eigen::Vector3d arm{0.3, -0.1, 0.2}, d = Eigen::Vector3d(0.6, 0.64, 0.48);
   check_row("accelerometer", [&](const auto& p) { return observe(p, Accelerometer{arm, d, 1}, 0.3, 1.0); });
@@ -141,10 +161,17 @@ TEST_CASE("observations: every row is the derivative of what is predicted") {
   for (std::size_t i = 0; i < 3; ++i) {
     check_row("position", [&](const auto& p) { return observe_position(p, arm, {3, 9, 2}, {1, 1, 1})[i]; });
     check_row("velocity", [&](const auto& p) { return observe_velocity(p, arm, {0.3, 0.1, 0}, 1.0)[i]; });
+    check_row("velocity with bias", [&](const auto& p) {
+      return observe_velocity(p, arm, {0.3, 0.1, 0}, 1.0, true)[i];
+    });
     check_row(
         "attitude", [&](const auto& p) { return observe_attitude(p, near, 1.0)[i]; }, kSmallTurn);
     check_row("tag", [&](const auto& p) { return observe_tag(p, X_WT, X_BC, X_CT, 1.0, 1.0, 1.0)[i]; });
   }
+  const Pose down{arm, quaternion_from_rotation_vector({0.1, -0.2, 1.4})};
+  for (std::size_t i = 0; i < 2; ++i)
+    check_row("flow", [&](const auto& p) { return (*observe_flow(p, 3.5, down, {0.1, -0.2}, 1.0))[i]; });
+  check_row("floor point", [&](const auto& p) { return *observe_floor_point(p, 3.5, down, {0.2, -0.1, 1.1}, 1.0); });
 }
 
 }  // namespace fathom::model

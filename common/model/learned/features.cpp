@@ -1,12 +1,17 @@
-#include "common/likelihood/features.hpp"
+#include "common/model/learned/features.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fathom::likelihood {
+namespace fathom::model {
 namespace {
 
 double square(double x) { return x * x; }
+
+constexpr std::array<std::string_view, 16> kWords{"velocity",   "speed",         "wrench",         "wrench_size",
+                                                  "thruster",   "thruster_size", "slow_wrench",    "slow_velocity",
+                                                  "depth_bump", "plan_bump",     "heading_cosine", "heading_sine",
+                                                  "after",      "tone_cosine",   "tone_sine",      "flow_speed"};
 
 double factor_value(const Factor& f, const FeatureState& s) {
   const auto bank = static_cast<std::size_t>(f.bank);
@@ -43,11 +48,21 @@ double factor_value(const Factor& f, const FeatureState& s) {
       return std::cos(f.a * s.t);
     case Quantity::kToneSine:
       return std::sin(f.a * s.t);
+    case Quantity::kFlowSpeed:
+      return s.nu.head<3>().norm();
   }
   return 0.0;
 }
 
 }  // namespace
+
+std::string_view word(Quantity quantity) { return kWords[static_cast<std::size_t>(quantity)]; }
+
+std::optional<Quantity> quantity_from(std::string_view word) {
+  const auto found = std::ranges::find(kWords, word);
+  if (found == kWords.end()) return std::nullopt;
+  return static_cast<Quantity>(found - kWords.begin());
+}
 
 double Feature::value(const FeatureState& state) const {
   double product = scale;
@@ -57,7 +72,19 @@ double Feature::value(const FeatureState& state) const {
 
 bool Feature::moves_with_velocity() const {
   return std::any_of(factors.begin(), factors.begin() + count, [](const Factor& f) {
-    return f.quantity == Quantity::kVelocity || f.quantity == Quantity::kSpeed;
+    return f.quantity == Quantity::kVelocity || f.quantity == Quantity::kSpeed || f.quantity == Quantity::kFlowSpeed;
+  });
+}
+
+bool Feature::depends_on_time() const {
+  return std::any_of(factors.begin(), factors.begin() + count, [](const Factor& f) {
+    return f.quantity == Quantity::kAfter || f.quantity == Quantity::kToneCosine || f.quantity == Quantity::kToneSine;
+  });
+}
+
+bool Feature::remembers() const {
+  return std::any_of(factors.begin(), factors.begin() + count, [](const Factor& f) {
+    return f.quantity == Quantity::kSlowWrench || f.quantity == Quantity::kSlowVelocity;
   });
 }
 
@@ -76,4 +103,4 @@ Vector6d FreeForce::wrench(const FeatureState& state) const {
   return sum;
 }
 
-}  // namespace fathom::likelihood
+}  // namespace fathom::model

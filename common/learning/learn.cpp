@@ -1,0 +1,245 @@
+#include "common/learning/learn.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/learning/wording.hpp"
+
+namespace fathom::learning {
+namespace {
+
+using likelihood::Fit;
+using likelihood::Problem;
+
+constexpr double kVisitedShare = 0.998;  // of the samples: what is larger may be a spike
+
+/// A stretch of a run that is left out together with others of its fold.
+struct Stretch {
+  std::size_t run{};
+  double from{}, to{};  // s
+  int fold{};
+};
+
+/// Stretches side by side, dealt out to the folds in turn; shorter ones where the recording is short.
+std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving) {
+  double whole = 0.0;
+  for (const likelihood::RunData& run : problem.runs) whole += run.last_time() - run.first_time();
+  const double length = std::min(leaving.stretch, whole / leaving.folds);
+  std::vector<Stretch> stretches;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    const likelihood::RunData& run = problem.runs[r];
+    const double span = run.last_time() - run.first_time();
+    const int count = std::max(1, static_cast<int>(std::lround(span / length)));
+    for (int i = 0; i < count; ++i) {
+      stretches.push_back({r, run.first_time() + span * i / count, run.first_time() + span * (i + 1) / count,
+                           static_cast<int>(stretches.size()) % leaving.folds});
+    }
+    stretches.back().to = run.last_time() + run.dt();
+  }
+  return stretches;
+}
+
+struct Judged {
+  Compared whole, carried;
+};
+
+std::shared_ptr<const model::LearnedForce> made(const Fit& fit, const model::FreeForce& force,
+                                                const model::Visited& visited) {
+  return std::make_shared<const model::LearnedForce>(force, visited, fit.hypothesis.model.allocation);
+}
+
+/// Weights and all other numbers fitted to the rest, predictions compared where nothing was fitted.
+Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, const Fit& base, const Fit& with,
+                         const model::Visited& visited, const Leaving& leaving, int threads) {
+  const std::vector<Stretch> stretches = stretches_of(problem, leaving);
+  const model::Model plain = as_model(base.hypothesis, problem.input_step);
+  Judged judged;
+  for (int fold = 0; fold < leaving.folds; ++fold) {
+    Problem rest = problem;
+    std::vector<model::Window> windows;
+    for (const Stretch& stretch : stretches) {
+      if (stretch.fold != fold) continue;
+      rest.runs[stretch.run].leave_out(stretch.from, stretch.to);
+      const auto within = windows_within(trials[stretch.run], stretch.from, stretch.to, leaving);
+      windows.insert(windows.end(), within.begin(), within.end());
+    }
+    if (windows.empty()) continue;
+    const Fit fitted =
+        likelihood::fit(rest, with.hypothesis, with.noise,
+                        {.noise_rounds = 1, .steps = 2, .enough = 0.3, .fit_noise = false, .threads = threads});
+    if (!fitted.finite) continue;
+    const auto compare_with = [&](const model::FreeForce& force, Compared& compared) {
+      const auto learned = made(fitted, force, visited);
+      compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), windows, leaving, compared);
+    };
+    compare_with(fitted.hypothesis.force, judged.whole);
+    compare_with(model::without_time(fitted.hypothesis.force), judged.carried);
+  }
+  return judged;
+}
+
+bool passes(const Ratio& ratio, double most, const Limits& limits) {
+  return ratio.windows >= limits.fewest_windows && ratio.value <= most &&
+         std::log(ratio.value) + limits.sure * ratio.log_error < 0.0;
+}
+
+/// Numbers that predict ten seconds, where they do so no worse than those of one step.
+Fit reported(const Problem& problem, std::span<const Trial> trials, const Fit& fit, const model::Visited& visited,
+             const Leaving& leaving, int threads) {
+  const Fit far = likelihood::fit(problem, fit.hypothesis, fit.noise,
+                                  {.noise_rounds = 1,
+                                   .steps = 3,
+                                   .enough = 1.0,
+                                   .fit_noise = false,
+                                   .horizon = likelihood::Horizon{},
+                                   .threads = threads});
+  if (!far.finite) return fit;
+  const auto near_force = made(fit, fit.hypothesis.force, visited),
+             far_force = made(far, far.hypothesis.force, visited);
+  const Ratio ratio = error_over(as_model(fit.hypothesis, problem.input_step, near_force.get()),
+                                 as_model(far.hypothesis, problem.input_step, far_force.get()), trials, leaving);
+  return ratio.value <= 1.0 ? far : fit;
+}
+
+void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& given) {
+  const model::FreeForce& force = fit.hypothesis.force;
+  std::vector<Eigen::Index> at;
+  for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+    if (fit.numbers[j].kind == likelihood::NumberKind::kWeight) at.push_back(static_cast<Eigen::Index>(j));
+  }
+  const Eigen::Index p = fit.information.rows();
+  const Eigen::MatrixXd covariance = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  for (const model::FeatureGroup& group : force.groups) {
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      const auto k = static_cast<std::size_t>(j);
+      const model::Feature& feature = force.features[k];
+      CorrectionTerm term{
+          .group = group.kind, .axis = feature.axis, .scale = feature.scale, .weight = force.weights[k]};
+      if (k < at.size()) term.sigma = std::sqrt(std::max(covariance(at[k], at[k]), 0.0));
+      for (int f = 0; f < feature.count; ++f) {
+        const model::Factor& factor = feature.factors[static_cast<std::size_t>(f)];
+        term.factors.push_back(
+            {std::string{word(factor.quantity)}, factor.index, factor.bank, factor.a, factor.b, factor.c});
+      }
+      given.terms.push_back(std::move(term));
+    }
+  }
+  for (const Eigen::Index i : at) {
+    given.covariance.emplace_back();
+    for (const Eigen::Index j : at) given.covariance.back().push_back(covariance(i, j));
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    given.visited_nu[i] = visited.nu[static_cast<Eigen::Index>(i)];
+    given.visited_tau[i] = visited.tau[static_cast<Eigen::Index>(i)];
+  }
+  given.visited_force.assign(visited.force.begin(), visited.force.end());
+  for (std::size_t i = 0; i < 3; ++i) {
+    given.visited_low[i] = visited.p_low[static_cast<Eigen::Index>(i)];
+    given.visited_high[i] = visited.p_high[static_cast<Eigen::Index>(i)];
+  }
+}
+
+}  // namespace
+
+model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step, const model::LearnedForce* force) {
+  model::Model model = hypothesis.model;
+  double offset = 0.0;
+  for (const likelihood::RunNumbers& run : hypothesis.runs)
+    offset += run.command_offset / static_cast<double>(hypothesis.runs.size());
+  if (input_step > 0.0) model.input_hold = std::clamp(offset / input_step, -0.5, 0.5);
+  if (force != nullptr && !force->force().empty()) model.add({.effect = force});
+  return model;
+}
+
+model::Visited visited_by(const Problem& problem, const likelihood::Hypothesis& hypothesis) {
+  model::Visited visited;
+  visited.force.setZero(hypothesis.model.allocation.cols());
+  visited.p_low.setConstant(1e300);
+  visited.p_high.setConstant(-1e300);
+  std::array<std::vector<double>, 6> sizes;
+  const std::vector<likelihood::Number> none;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    const likelihood::RunData& run = problem.runs[r];
+    const likelihood::Plant plant{hypothesis, none, run, r, false};
+    const Eigen::MatrixXd& forces = plant.mean_forces();
+    visited.force = visited.force.cwiseMax(forces.cwiseAbs().rowwise().maxCoeff());
+    visited.tau = visited.tau.cwiseMax((hypothesis.model.allocation * forces).cwiseAbs().rowwise().maxCoeff());
+    for (std::size_t k = 0; k < run.trial().size(); ++k) {
+      for (std::size_t i = 0; i < 6; ++i) sizes[i].push_back(std::abs(run.trial().nu[k][static_cast<Eigen::Index>(i)]));
+      visited.p_low = visited.p_low.cwiseMin(run.trial().p_WB[k]);
+      visited.p_high = visited.p_high.cwiseMax(run.trial().p_WB[k]);
+    }
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (sizes[i].empty()) continue;
+    const auto place = static_cast<std::ptrdiff_t>(kVisitedShare * static_cast<double>(sizes[i].size() - 1));
+    std::ranges::nth_element(sizes[i], sizes[i].begin() + place);
+    visited.nu[static_cast<Eigen::Index>(i)] = sizes[i][static_cast<std::size_t>(place)];
+  }
+  return visited;
+}
+
+Learned learn(const Problem& problem, std::span<const Trial> of, const inference::Conclusion& conclusion,
+              const Settings& settings, int threads) {
+  Learned learned;
+  CorrectionGiven& given = learned.given;
+  const auto& free = conclusion.found.free_force;
+  const Limits& limits = settings.limits;
+  if (!settings.learn || !free || !free->fit.finite || conclusion.verdict != inference::Verdict::unexplained)
+    return learned;
+  given.asked = true;
+  given.log_odds = free->log_odds;
+  given.size = free->size.share;
+  if (free->log_odds < limits.odds) {
+    given.refused = too_little("log odds", free->log_odds, "at least", limits.odds);
+  } else if (free->size.share < limits.size) {
+    given.refused = too_little("its share of the applied acceleration", free->size.share, "at least", limits.size);
+  }
+  if (!given.refused.empty()) return learned;
+
+  const Fit& base = conclusion.found.best.fit;
+  const model::Visited visited = visited_by(problem, free->fit.hypothesis);
+  const Judged judged = leave_out_in_turn(problem, of, base, free->fit, visited, settings.leaving, threads);
+  const Ratio whole = ratio_of(judged.whole), carried = ratio_of(judged.carried);
+  given.held_out = whole.value;
+  given.held_out_carried = carried.value;
+  given.windows = whole.windows;
+  given.shortened = judged.whole.shortened;
+  if (whole.windows < limits.fewest_windows) {
+    given.refused = too_little("predictions where it was not fitted", whole.windows, "at least", limits.fewest_windows);
+  } else if (!passes(whole, limits.error, limits)) {
+    given.refused = too_little("error where it was not fitted, over the model's without it", whole.value,
+                               "surely below", limits.error);
+  }
+  if (!given.refused.empty()) return learned;
+
+  Fit chosen = reported(problem, of, free->fit, visited, settings.leaving, threads);
+  const auto here = made(chosen, chosen.hypothesis.force, visited);
+  const Fit& plain = conclusion.reported.finite ? conclusion.reported : base;
+  const Ratio at_home = error_over(as_model(plain.hypothesis, problem.input_step),
+                                   as_model(chosen.hypothesis, problem.input_step, here.get()), of, settings.leaving);
+  if (at_home.value > limits.error) {
+    given.refused = too_little("error over the best numbers' without it", at_home.value, "at most", limits.error);
+    return learned;
+  }
+  given.adopted = true;
+  learned.fit = std::move(chosen);
+  learned.here = here;
+  const model::FreeForce lasting = model::without_time(learned.fit.hypothesis.force);
+  given.carried = !lasting.empty() && passes(carried, limits.carried, limits);
+  if (given.carried) learned.elsewhere = made(learned.fit, lasting, visited);
+  describe(free->fit, visited, given);
+  given.input_is_wrench = of.front().input_is_wrench;
+  for (std::size_t k = 0; k < given.terms.size(); ++k) given.terms[k].weight = learned.fit.hypothesis.force.weights[k];
+  for (const inference::RandomForce& random : conclusion.random) {
+    const auto i = static_cast<std::size_t>(std::ranges::find(problem.axes, random.axis) - problem.axes.begin());
+    if (i >= free->fit.noise.size() || !(random.sigma > 0.0)) continue;
+    given.left.push_back({model::kAxisNames[static_cast<std::size_t>(random.axis)],
+                          random.share * free->fit.noise[i][likelihood::kForce] / random.sigma, random.share});
+  }
+  given.words = correction_sentence(*free, given);
+  return learned;
+}
+
+}  // namespace fathom::learning

@@ -1,0 +1,25 @@
+// Every number at which learning decides, with its reason.
+#pragma once
+
+namespace fathom::learning {
+
+struct Limits {
+  double odds{20.0};    ///< nats over the best listed model: features are chosen among hundreds
+  double size{0.01};    ///< share of the applied acceleration on its worst axis: below, complete models have such rests
+  double error{0.98};   ///< most of the base model's open-loop error on what was left out, geometric mean
+  double carried{1.0};  ///< the same of the part that other runs are told
+  double sure{1.3};     ///< standard errors by which the logarithm of that ratio lies below 0: one-sided 90 %
+  int fewest_windows{4};
+};
+
+/// How the recording is left out in turn, and predicted where it was.
+struct Leaving {
+  int folds{4};
+  double stretch{20.0};       ///< s left out at a time: two predictions of ten seconds
+  double horizon{10.0};       ///< s
+  double shortest{1.0};       ///< s of a horizon that is cut
+  double growth{5.0};         ///< of a small change of the start, beyond which a motion counts as chaotic
+  double start_change{1e-3};  ///< of the velocities' rms
+};
+
+}  // namespace fathom::learning

@@ -1,0 +1,15 @@
+// What is said of a learned force: a correction with arguments, never a cause.
+#pragma once
+
+#include <string>
+
+#include "common/inference/free_force.hpp"
+#include "common/samples/correction.hpp"
+
+namespace fathom::learning {
+
+[[nodiscard]] std::string correction_sentence(const inference::FreeForceFound& found, const CorrectionGiven& given);
+/// "log odds 8.1, at least 20 needed"
+[[nodiscard]] std::string too_little(const std::string& what, double value, const std::string& how, double needed);
+
+}  // namespace fathom::learning

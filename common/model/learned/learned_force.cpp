@@ -1,0 +1,167 @@
+#include "common/model/learned/learned_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::model {
+namespace {
+
+constexpr double kFadeWidth = 0.5;  // of the visited size: half of it beyond the reach leaves 61 %, all of it 14 %
+constexpr double kLeastVisited = 1e-6;
+constexpr Eigen::Index kTaps = kThrustMemories.size(), kSlow = kVelocityMemories.size();
+
+double beyond(double x, double visited) {
+  const double over = std::abs(x) / std::max(visited, kLeastVisited) - kVisitedReach;
+  return over <= 0.0 ? 1.0 : std::exp(-0.5 * over * over / (kFadeWidth * kFadeWidth));
+}
+
+double clipped(double x, double visited) {
+  const double most = kVisitedReach * std::max(visited, kLeastVisited);
+  return std::clamp(x, -most, most);
+}
+
+void clip(Vector6d& x, const Vector6d& visited) {
+  for (Eigen::Index i = 0; i < 6; ++i) x[i] = clipped(x[i], visited[i]);
+}
+
+}  // namespace
+
+LearnedForce::LearnedForce(FreeForce force, Visited visited, Allocation allocation)
+    : force_{std::move(force)}, visited_{std::move(visited)}, allocation_{std::move(allocation)} {
+  for (const Feature& feature : force_.features) {
+    part_.push_back(feature.remembers()             ? Part::kRemembers
+                    : feature.moves_with_velocity() ? Part::kMoves
+                                                    : Part::kStill);
+    remembers_ = remembers_ || feature.remembers();
+  }
+}
+
+FeatureState LearnedForce::state_of(const Motion& motion) const {
+  FeatureState state{.t = motion.t, .p_WB = motion.p_WB, .R_WB = motion.R_WB, .nu = motion.nu, .force = motion.force};
+  const double across = std::hypot(motion.R_WB(0, 0), motion.R_WB(1, 0));
+  state.heading_cosine = across > 0.0 ? motion.R_WB(0, 0) / across : 1.0;
+  state.heading_sine = across > 0.0 ? motion.R_WB(1, 0) / across : 0.0;
+  state.tau = allocation_ * motion.force;
+  return state;
+}
+
+double LearnedForce::fade(const Feature& feature, const FeatureState& state) const {
+  double left = 1.0;
+  for (int i = 0; i < feature.count; ++i) {
+    const Factor& factor = feature.factors[static_cast<std::size_t>(i)];
+    const auto bank = static_cast<std::size_t>(factor.bank);
+    switch (factor.quantity) {
+      case Quantity::kVelocity:
+      case Quantity::kSpeed:
+        left *= beyond(state.nu[factor.index], visited_.nu[factor.index]);
+        break;
+      case Quantity::kSlowVelocity:
+        left *= beyond(state.slow_nu[bank][factor.index], visited_.nu[factor.index]);
+        break;
+      case Quantity::kWrench:
+      case Quantity::kWrenchSize:
+        left *= beyond(state.tau[factor.index], visited_.tau[factor.index]);
+        break;
+      case Quantity::kSlowWrench:
+        left *= beyond(state.slow_tau[bank][factor.index], visited_.tau[factor.index]);
+        break;
+      case Quantity::kThruster:
+      case Quantity::kThrusterSize:
+        left *= beyond(state.force[factor.index], visited_.force[factor.index]);
+        break;
+      case Quantity::kFlowSpeed:
+        left *= beyond(state.nu.head<3>().norm(), visited_.nu.head<3>().norm());
+        break;
+      default:  // bumps fade by themselves; all headings are near one that was visited
+        break;
+    }
+  }
+  return left;
+}
+
+Vector6d LearnedForce::sum(const FeatureState& state, Part part) const {
+  FeatureState inside = state;
+  clip(inside.nu, visited_.nu);
+  clip(inside.tau, visited_.tau);
+  for (auto& slow : inside.slow_tau) clip(slow, visited_.tau);
+  for (auto& slow : inside.slow_nu) clip(slow, visited_.nu);
+  for (Eigen::Index i = 0; i < inside.force.size(); ++i)
+    inside.force[i] = clipped(inside.force[i], i < visited_.force.size() ? visited_.force[i] : 0.0);
+  Vector6d wrench = Vector6d::Zero();
+  for (std::size_t j = 0; j < force_.features.size(); ++j) {
+    if (part_[j] != part) continue;
+    force_.features[j].add(inside, fade(force_.features[j], state) * force_.weights[j], wrench);
+  }
+  return wrench;
+}
+
+void LearnedForce::feel(Motion& motion, EffectTheta, int, std::span<const double> z) const {
+  if (!remembers_) return;
+  FeatureState state = state_of(motion);
+  const Eigen::Map<const Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
+  for (Eigen::Index b = 0; b < kTaps; ++b) state.slow_tau[static_cast<std::size_t>(b)] = memory.col(b);
+  for (Eigen::Index b = 0; b < kSlow; ++b) state.slow_nu[static_cast<std::size_t>(b)] = memory.col(kTaps + b);
+  motion.w_memory += sum(state, Part::kRemembers);
+}
+
+void LearnedForce::load(const Motion& motion, EffectTheta, int, Load& load) const {
+  const FeatureState state = state_of(motion);
+  load.wrench += sum(state, Part::kStill);
+  Vector6d moving = sum(state, Part::kMoves);
+  const Vector6d nu_r = motion.nu_r();
+  const double given = nu_r.dot(moving), taken = -nu_r.dot(load.drag);  // W
+  if (given > 0.0 && given > taken) moving *= std::max(taken, 0.0) / given;
+  load.wrench += moving;
+}
+
+int LearnedForce::state_size(const Vehicle&, int) const { return remembers_ ? 6 * static_cast<int>(kTaps + kSlow) : 0; }
+
+void LearnedForce::settle(const Motion& motion, EffectTheta, int, std::span<double> z) const {
+  if (!remembers_) return;
+  Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
+  memory.leftCols<kTaps>().colwise() = Vector6d{allocation_ * motion.force};
+  memory.rightCols<kSlow>().colwise() = motion.nu;
+}
+
+void LearnedForce::advance(const Motion& motion, EffectTheta, int, double dt, std::span<double> z) const {
+  if (!remembers_) return;
+  Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
+  const Vector6d tau = allocation_ * motion.force;
+  for (Eigen::Index b = 0; b < kTaps; ++b)
+    memory.col(b) += -std::expm1(-dt / kThrustMemories[static_cast<std::size_t>(b)]) * (tau - memory.col(b));
+  for (Eigen::Index b = 0; b < kSlow; ++b)
+    memory.col(kTaps + b) +=
+        -std::expm1(-dt / kVelocityMemories[static_cast<std::size_t>(b)]) * (motion.nu - memory.col(kTaps + b));
+}
+
+double LearnedForce::run_in(EffectTheta) const {
+  double longest = 0.0;  // s
+  for (const Feature& feature : force_.features) {
+    for (int i = 0; i < feature.count; ++i) {
+      const Factor& factor = feature.factors[static_cast<std::size_t>(i)];
+      const auto bank = static_cast<std::size_t>(factor.bank);
+      if (factor.quantity == Quantity::kSlowVelocity) longest = std::max(longest, kVelocityMemories[bank]);
+      if (factor.quantity == Quantity::kSlowWrench) longest = std::max(longest, kThrustMemories[bank]);
+    }
+  }
+  return longest > 0.0 ? run_in_for(longest) : 0.0;
+}
+
+FreeForce without_time(const FreeForce& force) {
+  FreeForce rest;
+  for (const FeatureGroup& group : force.groups) {
+    FeatureGroup kept = group;
+    kept.first = static_cast<int>(rest.features.size());
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      if (force.features[at].depends_on_time()) continue;
+      rest.features.push_back(force.features[at]);
+      rest.weights.push_back(force.weights[at]);
+    }
+    kept.count = static_cast<int>(rest.features.size()) - kept.first;
+    if (kept.count > 0) rest.groups.push_back(std::move(kept));
+  }
+  return rest;
+}
+
+}  // namespace fathom::model

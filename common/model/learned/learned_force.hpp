@@ -1,0 +1,58 @@
+// A free force as a part of a model: predictions, the simulator and reports meet it as they meet any effect, while the
+// list of effects does not hold it. Beyond what its recording has visited it fades, and what of it goes with the
+// velocity never gives the hull more power than its drag takes.
+#pragma once
+
+#include "common/model/effect.hpp"
+#include "common/model/learned/features.hpp"
+
+namespace fathom::model {
+
+/// Largest sizes that the recording has shown of what features read.
+struct Visited {
+  Vector6d nu{Vector6d::Zero()};                                                    ///< m/s, rad/s
+  Vector6d tau{Vector6d::Zero()};                                                   ///< N, N m
+  ActuatorForces force{};                                                           ///< N
+  Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
+};
+
+constexpr double kVisitedReach = 1.15;  ///< times the visited size, up to which features are taken at their word
+
+class LearnedForce final : public Effect {
+ public:
+  LearnedForce(FreeForce force, Visited visited, Allocation allocation);
+
+  [[nodiscard]] std::string_view name() const override { return "learned_force"; }
+  [[nodiscard]] std::string_view sentence() const override { return "A force learned from the recording acts."; }
+  [[nodiscard]] std::string_view revealed_by() const override { return "the motion of the recording that showed it"; }
+  [[nodiscard]] std::span<const EffectParameter> parameters() const override { return {}; }
+  [[nodiscard]] std::vector<std::string> variants(const Scene&) const override { return {}; }
+  [[nodiscard]] bool feels_place() const override { return true; }
+
+  void feel(Motion& motion, EffectTheta, int, std::span<const double> z) const override;
+  void load(const Motion& motion, EffectTheta, int, Load& load) const override;
+  [[nodiscard]] int state_size(const Vehicle&, int) const override;
+  void settle(const Motion& motion, EffectTheta, int, std::span<double> z) const override;
+  void advance(const Motion& motion, EffectTheta, int, double dt, std::span<double> z) const override;
+  [[nodiscard]] double run_in(EffectTheta) const override;
+
+  [[nodiscard]] const FreeForce& force() const { return force_; }
+  [[nodiscard]] const Visited& visited() const { return visited_; }
+
+ private:
+  enum class Part { kRemembers, kMoves, kStill };
+  [[nodiscard]] FeatureState state_of(const Motion& motion) const;
+  [[nodiscard]] Vector6d sum(const FeatureState& state, Part part) const;
+  [[nodiscard]] double fade(const Feature& feature, const FeatureState& state) const;
+
+  FreeForce force_;
+  std::vector<Part> part_;  // of each feature
+  Visited visited_;
+  Allocation allocation_;
+  bool remembers_{false};
+};
+
+/// The same without what depends on time: what another run may be told. Empty where nothing else is in it.
+[[nodiscard]] FreeForce without_time(const FreeForce& force);
+
+}  // namespace fathom::model

@@ -1,0 +1,113 @@
+#include "common/report/correction.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/report/text.hpp"
+
+namespace fathom::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+constexpr std::array<const char*, 9> kDirections{"X", "Y", "Z", "K", "M", "N", "north", "east", "down"};
+
+std::string factor_words(const CorrectionFactor& factor) {
+  constexpr std::array<const char*, 6> kVelocities{"u", "v", "w", "p", "q", "r"};
+  const auto index = static_cast<std::size_t>(factor.index);
+  const auto axis = [&](const char* const* names) { return index < 6 ? std::string{names[index]} : std::string{"?"}; };
+  const std::string& q = factor.quantity;
+  if (q == "velocity") return axis(kVelocities.data());
+  if (q == "speed") return "|" + axis(kVelocities.data()) + "|";
+  if (q == "slow_velocity") return axis(kVelocities.data()) + " a moment ago";
+  if (q == "wrench") return "tau_" + axis(kDirections.data());
+  if (q == "wrench_size") return "|tau_" + axis(kDirections.data()) + "|";
+  if (q == "slow_wrench") return "tau_" + axis(kDirections.data()) + " a moment ago";
+  if (q == "thruster") return "f_" + std::to_string(index);
+  if (q == "thruster_size") return "|f_" + std::to_string(index) + "|";
+  if (q == "depth_bump") return "near depth " + number(factor.a) + " m";
+  if (q == "plan_bump") return "near (" + number(factor.a) + ", " + number(factor.b) + ") m";
+  if (q == "heading_cosine") return "cos " + std::to_string(index) + " psi";
+  if (q == "heading_sine") return "sin " + std::to_string(index) + " psi";
+  if (q == "after") return "after " + number(factor.a) + " s";
+  if (q == "tone_cosine") return "cos(" + number(factor.a) + " t)";
+  if (q == "tone_sine") return "sin(" + number(factor.a) + " t)";
+  if (q == "flow_speed") return "speed";
+  return q;
+}
+
+}  // namespace
+
+Json correction_json(const CorrectionGiven& given) {
+  Json terms = Json::array();
+  for (const CorrectionTerm& term : given.terms) {
+    Json factors = Json::array();
+    for (const CorrectionFactor& f : term.factors)
+      factors.push_back(
+          {{"quantity", f.quantity}, {"index", f.index}, {"bank", f.bank}, {"a", f.a}, {"b", f.b}, {"c", f.c}});
+    terms.push_back({{"group", term.group},
+                     {"axis", term.axis},
+                     {"factors", factors},
+                     {"scale", term.scale},
+                     {"weight", term.weight},
+                     {"std", finite(term.sigma)}});
+  }
+  Json left = Json::array();
+  for (const CorrectionLeft& one : given.left)
+    left.push_back({{"axis", one.axis}, {"share", finite(one.share)}, {"share_without", finite(one.before)}});
+  Json json;
+  json["adopted"] = given.adopted;
+  json["carried_to_other_runs"] = given.carried;
+  json["refused"] = given.refused;
+  json["words"] = given.words;
+  json["log_odds"] = finite(given.log_odds);
+  json["size"] = finite(given.size);
+  json["error_where_not_fitted"] = {{"ratio", finite(given.held_out)},
+                                    {"ratio_without_time", finite(given.held_out_carried)},
+                                    {"predictions", given.windows},
+                                    {"with_shortened_horizon", given.shortened}};
+  if (!given.adopted) return json;
+  json["terms"] = terms;
+  json["covariance"] = given.covariance;
+  json["input_is_wrench"] = given.input_is_wrench;
+  json["visited"] = {{"nu", given.visited_nu},
+                     {"tau", given.visited_tau},
+                     {"force", given.visited_force},
+                     {"p_low", given.visited_low},
+                     {"p_high", given.visited_high}};
+  json["left"] = left;
+  return json;
+}
+
+std::string correction_words(const DiagnosisResult& result) {
+  if (!result.correction || !result.correction->asked) return "";
+  const CorrectionGiven& given = *result.correction;
+  if (given.adopted) return given.words;
+  return "What no listed effect explains could not be made a part of the model: " + given.refused + ".";
+}
+
+std::string correction_section(const DiagnosisResult& result) {
+  const std::string words = correction_words(result);
+  if (words.empty()) return "";
+  std::string html = "<section><h2>A correction, not a cause</h2>\n<p class=\"lead\">" + escape(words) + "</p>\n";
+  const CorrectionGiven& given = *result.correction;
+  if (!given.adopted) return html + "</section>\n";
+  html +=
+      "<p>Each term is its weight times a scale times what it goes with; it fades where the recording has not been. "
+      "result.json holds all of it, with the weights' covariance.</p>\n<details><summary>Terms</summary><table><tr>"
+      "<th>along</th><th>goes with</th><th>amplitude [N, N m per product]</th><th>its deviation</th></tr>\n";
+  for (const CorrectionTerm& term : given.terms) {
+    std::string product;
+    for (const CorrectionFactor& factor : term.factors)
+      product += (product.empty() ? "" : " · ") + factor_words(factor);
+    const auto axis = static_cast<std::size_t>(term.axis);
+    html += "<tr><td>" + std::string{axis < kDirections.size() ? kDirections[axis] : "?"} + "</td><td>" +
+            escape(product.empty() ? "always" : product) + "</td><td>" + number(term.weight * term.scale) +
+            "</td><td>" + number(term.sigma * term.scale) + "</td></tr>\n";
+  }
+  return html + "</table></details></section>\n";
+}
+
+}  // namespace fathom::report

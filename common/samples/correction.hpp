@@ -1,0 +1,52 @@
+// A force that was learned and adopted, or not, as result.json holds it: a correction with arguments, kept apart from
+// causes.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace fathom {
+
+/// One factor of a feature; names, places and widths as common/model/learned/features.hpp has them.
+struct CorrectionFactor {
+  std::string quantity;
+  int index{}, bank{};
+  double a{}, b{}, c{};
+};
+
+/// weight times scale times the product of the factors, along an axis: N or N m.
+struct CorrectionTerm {
+  std::string group;  ///< in words
+  int axis{};         ///< 0..5 X..N of the body; 6..8 north, east, down of the world
+  std::vector<CorrectionFactor> factors;
+  double scale{}, weight{}, sigma{};
+};
+
+/// What is left of an axis' acceleration beside the model with the correction.
+struct CorrectionLeft {
+  std::string axis;  ///< X Y Z K M N
+  double share{};    ///< random force over the applied acceleration
+  double before{};   ///< the same without the correction
+};
+
+struct CorrectionGiven {
+  bool asked{false};    ///< something unlisted was there to be learned
+  bool adopted{false};  ///< it is part of the model that is reported and exported
+  bool carried{false};  ///< and of what is told of other runs, without what depends on time
+  std::string refused;  ///< why it is not adopted, with numbers
+  std::string words;    ///< a sentence
+  double log_odds{}, size{};
+  double held_out{1.0};          ///< error over the base model's, geometric mean over what no weight was fitted to
+  double held_out_carried{1.0};  ///< the same without what depends on time
+  int windows{}, shortened{};    ///< predictions compared; of them with a horizon cut where the motion is chaotic
+  std::vector<CorrectionTerm> terms;
+  std::vector<std::vector<double>> covariance;  ///< of the weights
+  std::array<double, 6> visited_nu{}, visited_tau{};
+  std::vector<double> visited_force;  ///< N per thruster, or the wrench
+  bool input_is_wrench{false};
+  std::array<double, 3> visited_low{}, visited_high{};  ///< m
+  std::vector<CorrectionLeft> left;
+};
+
+}  // namespace fathom

@@ -1,0 +1,129 @@
+#include "common/learning/learn.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+
+#include "test/common/likelihood/noisy_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::learning;
+
+namespace {
+
+const model::Vehicle& bluerov() {
+  static const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  return vehicle;
+}
+
+/// Samples [from, to) of a trial.
+Trial part_of(const Trial& whole, std::size_t from, std::size_t to) {
+  Trial part = whole;
+  const auto cut = [&](auto& series) {
+    if (series.size() != whole.size()) return;
+    using Series = std::remove_reference_t<decltype(series)>;
+    series =
+        Series(series.begin() + static_cast<std::ptrdiff_t>(from), series.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  cut(part.p_WB), cut(part.q_WB), cut(part.nu), cut(part.pose_valid), cut(part.velocity_valid), cut(part.rates_valid);
+  cut(part.input), cut(part.input_valid), cut(part.held), cut(part.told), cut(part.voltage), cut(part.t);
+  return part;
+}
+
+/// A recording with a base model fitted to it and whatever no list holds sought beside it.
+struct Case {
+  /// `fitted`: share of the dive that is fitted, its beginning.
+  explicit Case(const test::NoisyDive& settings, bool seek = true, double fitted = 1.0)
+      : dive{test::fly(bluerov(), settings)},
+        trial{part_of(dive.trial, 0, static_cast<std::size_t>(fitted * static_cast<double>(dive.trial.size())))},
+        rest{part_of(dive.trial, trial.size(), dive.trial.size())},
+        problem{likelihood::make_problem(bluerov(), {&trial, 1})} {
+    conclusion.verdict = inference::Verdict::unexplained;
+    conclusion.found.base.fit = conclusion.found.best.fit =
+        likelihood::fit(problem, likelihood::nominal_hypothesis(problem), likelihood::prior_noise(problem),
+                        {.noise_rounds = 3, .threads = 2});
+    if (!seek) return;
+    conclusion.found.free_force = inference::find_free_force(
+        problem, inference::see(problem, conclusion.found.best.fit, 2), model::scene_of(bluerov(), {&trial, 1}), {}, 2);
+  }
+  [[nodiscard]] Learned learned() const { return learn(problem, {&trial, 1}, conclusion, {}, 2); }
+
+  test::VirtualDive dive;
+  Trial trial, rest;
+  likelihood::Problem problem;
+  inference::Conclusion conclusion;
+};
+
+void show(const char* what, const CorrectionGiven& given) {
+  if (std::getenv("FATHOM_SHOW") == nullptr) return;
+  std::printf(
+      "%s: adopted %d carried %d odds %.1f size %.4f held out %.4f carried %.4f windows %d cut %d\n  %s\n  %s\n", what,
+      given.adopted, given.carried, given.log_odds, given.size, given.held_out, given.held_out_carried, given.windows,
+      given.shortened, given.refused.c_str(), given.words.c_str());
+}
+
+Vector6d cross_drag(double, const Vector6d& nu) { return {0.0, 0.4 * nu[0] * std::abs(nu[0]), 0.0, 0.0, 0.0, 0.0}; }
+
+}  // namespace
+
+TEST_CASE("learning: an unlisted force is adopted, and what was not recorded yet is foretold better by it") {
+  const Case sway{{.duration = 160.0, .seed = 3, .force = 0.01, .outside = cross_drag}, true, 0.5};
+  const Learned learned = sway.learned();
+  show("cross drag", learned.given);
+  REQUIRE(learned.given.adopted);
+  REQUIRE(learned.given.carried);
+  const double step = sway.problem.input_step;
+  const model::Model better = as_model(learned.fit.hypothesis, step, learned.elsewhere.get());
+  const Ratio over_base =
+      error_over(as_model(sway.conclusion.found.best.fit.hypothesis, step), better, {&sway.rest, 1}, Leaving{});
+  // The law itself, told and fitted to the same half.
+  likelihood::Hypothesis told = sway.conclusion.found.best.fit.hypothesis;
+  model::Feature law{.axis = 1, .count = 2, .scale = 20.0};
+  law.factors[0] = {.quantity = model::Quantity::kVelocity, .index = 0};
+  law.factors[1] = {.quantity = model::Quantity::kSpeed, .index = 0};
+  told.force = {.features = {law}, .groups = {{.kind = "told", .axis = 1, .count = 1, .sigma = 1.0}}, .weights = {0.0}};
+  const likelihood::Fit fit =
+      likelihood::fit(sway.problem, told, learned.fit.noise, {.noise_rounds = 2, .steps = 3, .threads = 2});
+  const model::LearnedForce exact{fit.hypothesis.force, visited_by(sway.problem, fit.hypothesis),
+                                  fit.hypothesis.model.allocation};
+  const Ratio over_told = error_over(as_model(fit.hypothesis, step, &exact), better, {&sway.rest, 1}, Leaving{});
+  if (std::getenv("FATHOM_SHOW") != nullptr)
+    std::printf("  second half: %.4f of base, %.4f of told\n", over_base.value, over_told.value);
+  CHECK(over_base.value < 0.75);
+  CHECK(over_told.value < 1.3);
+}
+
+TEST_CASE("learning: where nothing is hidden, or a random force acts alone, nothing is adopted") {
+  for (const double force : {0.0, 0.1}) {
+    const Case clean{{.duration = 60.0, .seed = 5, .force = force}};
+    const Learned learned = clean.learned();
+    show("nothing hidden", learned.given);
+    CHECK_FALSE(learned.given.adopted);
+    CHECK_FALSE(learned.given.refused.empty());
+    CHECK(learned.here == nullptr);
+  }
+}
+
+TEST_CASE("learning: weights that only fit the random force are refused, whatever their odds") {
+  Case noisy{{.duration = 60.0, .seed = 6, .force = 0.2, .force_memory = 3.0}, false};
+  likelihood::Hypothesis with = noisy.conclusion.found.best.fit.hypothesis;
+  constexpr int kSteps = 40;
+  for (int j = 0; j < kSteps; ++j) {
+    model::Feature step{.axis = 0, .count = 1, .scale = 10.0};
+    step.factors[0] = {.quantity = model::Quantity::kAfter, .a = 60.0 * j / kSteps, .b = 1.5};
+    with.force.features.push_back(step);
+    with.force.weights.push_back(0.0);
+  }
+  with.force.groups.push_back({.kind = "time", .axis = 0, .first = 0, .count = kSteps, .sigma = 1.0});
+  likelihood::Noise noise = noisy.conclusion.found.best.fit.noise;
+  for (likelihood::AxisNoise& axis : noise) axis.log[likelihood::kForce] -= std::log(10.0);
+  inference::FreeForceFound found{.groups = {{"time", 0, 100.0}}, .log_odds = 653.0, .size = {0.1, 0}};
+  found.fit =
+      likelihood::fit(noisy.problem, with, noise, {.noise_rounds = 1, .steps = 2, .fit_noise = false, .threads = 2});
+  REQUIRE(found.fit.finite);
+  noisy.conclusion.found.free_force = found;
+  const Learned learned = noisy.learned();
+  show("overfit", learned.given);
+  CHECK_FALSE(learned.given.adopted);
+  CHECK(learned.given.held_out > 1.0);
+}

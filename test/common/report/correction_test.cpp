@@ -1,0 +1,88 @@
+#include "common/report/correction.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/model/learned/learned_file.hpp"
+#include "common/report/json.hpp"
+#include "common/report/table.hpp"
+
+using namespace fathom;
+
+namespace {
+
+DiagnosisResult diagnosed() {
+  DiagnosisResult result;
+  result.vehicle = "BlueROV2";
+  result.verdict = "unexplained";
+  result.parameters_after = {{"m_X", 21.5, 0.1, "kg"}, {"command offset", 0.01, 0.001, "s"}};
+  CorrectionGiven given{.asked = true, .adopted = true, .carried = true, .words = "A correction, not a cause."};
+  given.terms.push_back(
+      {"velocity", 1, {{"velocity", 0, 0, 0.0, 1.0, 1.0}, {"speed", 0, 0, 0.0, 1.0, 1.0}}, 2.5, -0.125, 0.01});
+  given.terms.push_back({"place, toward north", 6, {{"plan_bump", 0, 0, 1.0, -2.0, 0.75}}, 1.5, 0.5, 0.01});
+  given.terms.push_back({"time", 0, {{"after", 0, 0, 12.0, 0.3, 1.0}}, 1.0, 2.0, 0.1});
+  given.covariance = {{1e-4, 0.0, 0.0}, {0.0, 1e-4, 0.0}, {0.0, 0.0, 1e-2}};
+  given.visited_nu.fill(0.8);
+  given.visited_tau.fill(30.0);
+  given.visited_force.assign(6, 20.0);
+  result.correction = given;
+  return result;
+}
+
+struct Written {
+  explicit Written(const std::string& text) : path{std::filesystem::temp_directory_path() / "fathom_correction.json"} {
+    std::ofstream{path} << text;
+  }
+  ~Written() { std::filesystem::remove(path); }
+  std::filesystem::path path;
+};
+
+}  // namespace
+
+TEST_CASE("correction: what result.json holds is read back as the same force, without what depends on time") {
+  const model::Vehicle vehicle =
+      model::Vehicle::load(std::string(FATHOM_SOURCE_DIR) + "/config/vehicles/bluerov2.yaml");
+  const Written file{report::to_json(diagnosed())};
+  const model::LearnedModel read = model::read_learned(file.path.string(), vehicle);
+  REQUIRE(read.parameters.size() == 1);
+  CHECK(read.parameters[0] == std::pair<std::string, double>{"m_X", 21.5});
+  REQUIRE(read.force != nullptr);
+  REQUIRE(read.force->force().features.size() == 2);
+  model::Motion motion{
+      .p_WB = {1.0, -2.0, 3.0}, .nu = Vector6d::Unit(0) * 0.4, .force = model::ActuatorForces::Zero(6)};
+  model::Load load;
+  load.clear();
+  load.drag = Vector6d::Constant(-100.0);
+  read.force->load(motion, {}, 0, load);
+  CHECK(load.wrench[1] == doctest::Approx(-0.125 * 2.5 * 0.16));
+  CHECK(load.wrench[0] == doctest::Approx(0.5 * 1.5));
+}
+
+TEST_CASE("correction: a file of another vehicle, or no result at all, is refused with its line") {
+  const model::Vehicle vehicle =
+      model::Vehicle::load(std::string(FATHOM_SOURCE_DIR) + "/config/vehicles/bluerov2.yaml");
+  DiagnosisResult other = diagnosed();
+  other.vehicle = "Hydrone";
+  const Written foreign{report::to_json(other)};
+  CHECK_THROWS_WITH_AS((void)model::read_learned(foreign.path.string(), vehicle),
+                       doctest::Contains("this is a model of Hydrone"), InputError);
+  DiagnosisResult short_of_thrusters = diagnosed();
+  short_of_thrusters.correction->visited_force.pop_back();
+  const Written five{report::to_json(short_of_thrusters)};
+  CHECK_THROWS_WITH_AS((void)model::read_learned(five.path.string(), vehicle),
+                       doctest::Contains("learned with 5 thrusters"), InputError);
+}
+
+TEST_CASE("correction: it stands apart from causes, and a refused one says why") {
+  DiagnosisResult result = diagnosed();
+  CHECK(report::correction_section(result).find("A correction, not a cause") != std::string::npos);
+  CHECK(report::to_table(result).find("Correction: no cause") != std::string::npos);
+  result.correction->adopted = result.correction->carried = false;
+  result.correction->refused = "log odds 8, at least 20 needed";
+  CHECK(report::correction_section(result).find("at least 20 needed") != std::string::npos);
+  result.correction.reset();
+  CHECK(report::correction_section(result).empty());
+}
