@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/base/version.hpp"
 #include "common/report/correction.hpp"
+#include "common/report/json_origin.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -13,37 +13,33 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchema = 1;
-
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json named(const std::vector<NamedValue>& values) {
   Json object = Json::object();
   for (const auto& v : values) {
     const auto [low, high] = v.range95();
-    object[v.name] = {{"value", finite(v.value)},
-                      {"std", finite(v.std)},
+    object[v.name] = {{"value", number_or_null(v.value)},
+                      {"std", number_or_null(v.std)},
                       {"unit", v.unit},
-                      {"interval_95", {finite(low), finite(high)}}};
+                      {"interval_95", {number_or_null(low), number_or_null(high)}}};
   }
   return object;
 }
 
 Json per_axis(const std::array<double, 6>& values) {
   Json object = Json::object();
-  for (std::size_t i = 0; i < values.size(); ++i) object[kAxes[i].velocity] = finite(values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) object[kAxes[i].velocity] = number_or_null(values[i]);
   return object;
 }
 
 // 1 s is written 1, as the schema shows it.
 Json horizon(double seconds) {
   if (seconds == std::floor(seconds) && std::abs(seconds) < 1e9) return static_cast<long>(seconds);
-  return finite(seconds);
+  return number_or_null(seconds);
 }
 
 Json error(const ModelError& error) {
   Json force = Json::object();
-  for (const auto& [axis, rmse] : error.force_rmse) force[axis] = finite(rmse);
+  for (const auto& [axis, rmse] : error.force_rmse) force[axis] = number_or_null(rmse);
   Json prediction = Json::array();
   for (const auto& p : error.prediction) {
     prediction.push_back({{"horizon_s", horizon(p.horizon_s)},
@@ -58,9 +54,9 @@ Json error(const ModelError& error) {
 Json whiteness(const std::vector<AxisWhiteness>& axes) {
   Json object = Json::object();
   for (const auto& axis : axes) {
-    object[axis.axis] = {{"p_value", finite(axis.p_value)},
-                         {"autocorrelation_time_s", finite(axis.autocorrelation_time_s)},
-                         {"explained", finite(axis.explained)}};
+    object[axis.axis] = {{"p_value", number_or_null(axis.p_value)},
+                         {"autocorrelation_time_s", number_or_null(axis.autocorrelation_time_s)},
+                         {"explained", number_or_null(axis.explained)}};
   }
   return object;
 }
@@ -72,7 +68,7 @@ Json consistency(const std::vector<ConsistencyFinding>& findings) {
                      {"signal", f.signal},
                      {"reference", f.reference},
                      {"finding", f.finding},
-                     {"size", finite(f.size)},
+                     {"size", number_or_null(f.size)},
                      {"unit", f.unit},
                      {"evidence", f.evidence},
                      {"action", f.action}});
@@ -85,25 +81,25 @@ Json effects(const std::vector<EffectFound>& found) {
   for (const auto& e : found) {
     Json told_apart = Json::array();
     for (const auto& t : e.told_apart)
-      told_apart.push_back({{"name", t.name}, {"segment", t.segment}, {"seconds", finite(t.seconds)}});
+      told_apart.push_back({{"name", t.name}, {"segment", t.segment}, {"seconds", number_or_null(t.seconds)}});
     Json names = Json::array(), rivals = Json::array();
     for (const Alternative& other : e.alternatives) {
       names.push_back(other.name);
       rivals.push_back({{"name", other.name},
-                        {"log_odds", finite(other.log_odds)},
+                        {"log_odds", number_or_null(other.log_odds)},
                         {"corrupts", other.corrupts},
-                        {"corruption", finite(other.corruption)}});
+                        {"corruption", number_or_null(other.corruption)}});
     }
     array.push_back({{"name", e.name},
                      {"variant", e.variant},
                      {"accepted", e.accepted},
                      {"parameters", named(e.parameters)},
-                     {"log_odds", finite(e.log_odds)},
-                     {"error_reduction", finite(e.error_reduction)},
+                     {"log_odds", number_or_null(e.log_odds)},
+                     {"error_reduction", number_or_null(e.error_reduction)},
                      {"alternatives", names},
                      {"rivals", rivals},
                      {"corrupts", e.corrupts},
-                     {"corruption", finite(e.corruption)},
+                     {"corruption", number_or_null(e.corruption)},
                      {"unlisted_alternative", e.unlisted},
                      {"told_apart_by", told_apart},
                      {"other_forms", e.other_forms},
@@ -118,16 +114,17 @@ Json candidates(const std::vector<CandidateTried>& tried, const VerdictGiven& gi
   for (const auto& c : tried) {
     array.push_back({{"name", c.name},
                      {"variant", c.variant},
-                     {"log_odds", finite(c.log_odds)},
-                     {"error_reduction", finite(c.error_reduction)},
+                     {"log_odds", number_or_null(c.log_odds)},
+                     {"error_reduction", number_or_null(c.error_reduction)},
                      {"aliased_with", c.aliased_with},
                      {"reason", c.reason}});
     const auto found = given.refusals.find(c.name);
     if (found == given.refusals.end()) continue;
     Json refusals = Json::array();
     for (const auto& refusal : found->second)
-      refusals.push_back(
-          {{"rule", refusal.rule}, {"value", finite(refusal.value)}, {"needed", finite(refusal.needed)}});
+      refusals.push_back({{"rule", refusal.rule},
+                          {"value", number_or_null(refusal.value)},
+                          {"needed", number_or_null(refusal.needed)}});
     array.back()["refusals"] = refusals;
   }
   return array;
@@ -137,8 +134,8 @@ Json causes(const std::vector<CauseGiven>& given) {
   Json array = Json::array();
   for (const auto& cause : given) {
     array.push_back({{"cause", cause.cause},
-                     {"value", finite(cause.value)},
-                     {"threshold", finite(cause.threshold)},
+                     {"value", number_or_null(cause.value)},
+                     {"threshold", number_or_null(cause.threshold)},
                      {"of", cause.of}});
   }
   return array;
@@ -176,23 +173,49 @@ Json associations(const std::vector<Association>& left) {
   for (const auto& a : left) {
     array.push_back({{"axis", a.axis},
                      {"with", a.with},
-                     {"share", finite(a.share)},
-                     {"log_odds", finite(a.log_odds)},
-                     {"of_wrench", finite(a.of_wrench)}});
+                     {"share", number_or_null(a.share)},
+                     {"log_odds", number_or_null(a.log_odds)},
+                     {"of_wrench", number_or_null(a.of_wrench)}});
   }
   return array;
 }
 
+/// Covariance of parameters.after and of the effects' numbers, under names that say whose they are.
+Json covariance(const VerdictGiven& given) {
+  const std::size_t n = given.covariance_of.size();
+  if (n == 0 || given.covariance.size() != n * n) return nullptr;
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < n; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < n; ++j) row.push_back(number_or_null(given.covariance[i * n + j]));
+    rows.push_back(row);
+  }
+  return {{"names", given.covariance_of}, {"matrix", rows}};
+}
+
+/// What to fly next: in words, and the segments of a site that were computed to tell look-alikes apart.
+Json next(const DiagnosisResult& result) {
+  Json segments = Json::array();
+  for (const EffectFound& effect : result.effects) {
+    for (const ToldApart& told : effect.told_apart) {
+      segments.push_back({{"segment", told.segment},
+                          {"seconds", number_or_null(told.seconds)},
+                          {"tells", effect.name},
+                          {"from", told.name}});
+    }
+  }
+  return {{"words", result.manoeuvre}, {"segments", segments}};
+}
+
 }  // namespace
 
-std::string to_json(const DiagnosisResult& result, const VerdictGiven& given) {
+std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, const ResultOrigin& origin) {
   Json improvement;
-  improvement["value"] = finite(result.improvement.value);
-  improvement["ci95"] = Json::array({finite(result.improvement.low), finite(result.improvement.high)});
+  improvement["value"] = number_or_null(result.improvement.value);
+  improvement["ci95"] = Json::array({number_or_null(result.improvement.low), number_or_null(result.improvement.high)});
 
   Json file;
-  file["schema"] = kSchema;
-  file["fathom_version"] = version();
+  begin_result(file, "diagnosis", origin);
   file["vehicle"] = result.vehicle;
   file["train"] = result.train;
   file["validate"] = result.validate;
@@ -200,11 +223,12 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given) {
   file["verdict"] = result.verdict;
   if (!given.core.empty()) {
     file["core"] = given.core;
-    file["causes"] = causes(given.causes);
     file["skill"] = skill(given.skill);
     file["explainable"] = explainable(given.explainable);
-    file["paragraph"] = result.paragraph;
   }
+  file["causes"] = causes(given.causes);
+  file["paragraph"] = result.paragraph;
+  file["next"] = next(result);
   file["effects"] = effects(result.effects);
   if (result.correction && result.correction->asked) file["correction"] = correction_json(*result.correction);
   file["candidates"] = candidates(result.candidates, given);
@@ -214,6 +238,7 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given) {
   file["error"]["improvement"] = improvement;
   file["parameters"]["before"] = named(result.parameters_before);
   file["parameters"]["after"] = named(result.parameters_after);
+  file["covariance"] = covariance(given);
   file["explained"] = result.explained;
   if (!result.own_in_validation.empty()) file["own_in_validation"] = result.own_in_validation;
   if (result.wiring)

@@ -4,12 +4,15 @@
 #include <string>
 
 #include "common/samples/diagnosis_result.hpp"
+#include "common/samples/result_origin.hpp"
 #include "common/samples/verdict_given.hpp"
 
 namespace fathom::report {
 
-/// `given`: causes and refusals of the likelihood's core, where it answered.
-/// JSON text, schema 1, SI units and radians; numbers that do not exist are null.
-[[nodiscard]] std::string to_json(const DiagnosisResult& result, const VerdictGiven& given = {});
+/// `given`: causes, covariance, and the refusals of the likelihood's core where it answered.
+/// JSON text as docs/schema/diagnosis-1.schema.json describes it: SI units and radians; numbers that do not exist are
+/// null.
+[[nodiscard]] std::string to_json(const DiagnosisResult& result, const VerdictGiven& given = {},
+                                  const ResultOrigin& origin = {});
 
 }  // namespace fathom::report

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/base/version.hpp"
+#include "common/report/json_origin.hpp"
 #include "common/report/live_trial.hpp"
 #include "common/report/text.hpp"
 
@@ -10,10 +10,6 @@ namespace fathom::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int kSchema = 1;
-
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json truth_of(const LiveTrialResult& result) {
   const TruthComparison& truth = *result.truth;
@@ -23,16 +19,16 @@ Json truth_of(const LiveTrialResult& result) {
     if (found == truth.parameters.end()) continue;
     const double error = p.value - found->second;
     parameters[p.name] = {{"truth", found->second},
-                          {"error", finite(error)},
-                          {"relative_error", finite(error / std::abs(found->second))},
+                          {"error", number_or_null(error)},
+                          {"relative_error", number_or_null(error / std::abs(found->second))},
                           {"inside_interval", std::abs(error) <= kNormal95 * p.std}};
   }
   Json state = Json::object();
   constexpr std::array kNames{"x", "y", "z", "u", "v", "w"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    state[kNames[i]] = {{"rms", finite(truth.state_rms[i])},
-                        {"largest", finite(truth.state_worst[i])},
-                        {"normalised_square", finite(truth.state_normalised[i])}};
+    state[kNames[i]] = {{"rms", number_or_null(truth.state_rms[i])},
+                        {"largest", number_or_null(truth.state_worst[i])},
+                        {"normalised_square", number_or_null(truth.state_normalised[i])}};
   }
   return {{"parameters", parameters},
           {"state_error", state},
@@ -43,19 +39,23 @@ Json truth_of(const LiveTrialResult& result) {
 
 }  // namespace
 
-std::string to_json(const LiveTrialResult& result) {
-  Json json{{"schema", kSchema},       {"kind", "live trial"},       {"vehicle", result.vehicle},
-            {"site", result.site},     {"seconds", result.seconds},  {"phase", result.phase},
-            {"reason", result.reason}, {"settled", result.settled()}};
-  json["fathom_version"] = version();
+std::string to_json(const LiveTrialResult& result, const ResultOrigin& origin) {
+  Json json;
+  begin_result(json, "live trial", origin);
+  json["vehicle"] = result.vehicle;
+  json["site"] = result.site;
+  json["seconds"] = result.seconds;
+  json["phase"] = result.phase;
+  json["reason"] = result.reason;
+  json["settled"] = result.settled();
   json["modes"] = Json::array();
   for (const ModeVisit& visit : result.visits) {
     json["modes"].push_back({{"mode", visit.mode},
                              {"begun_s", visit.begun},
                              {"ended_s", visit.ended},
                              {"settled", visit.left},
-                             {"metric", visit.metric < 0.0 ? Json(nullptr) : finite(visit.metric)},
-                             {"threshold", finite(visit.threshold)},
+                             {"metric", visit.metric < 0.0 ? Json(nullptr) : number_or_null(visit.metric)},
+                             {"threshold", number_or_null(visit.threshold)},
                              {"missing", visit.missing}});
   }
   json["flights"] = Json::array();
@@ -69,34 +69,36 @@ std::string to_json(const LiveTrialResult& result) {
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const NamedValue& p = result.parameters[i];
     json["parameters"][p.name] = {
-        {"value", finite(p.value)},
-        {"std", finite(p.std)},
-        {"interval_95", {finite(p.value - kNormal95 * p.std), finite(p.value + kNormal95 * p.std)}},
+        {"value", number_or_null(p.value)},
+        {"std", number_or_null(p.std)},
+        {"interval_95", {number_or_null(p.value - kNormal95 * p.std), number_or_null(p.value + kNormal95 * p.std)}},
         {"unit", p.unit},
-        {"variance_inflation", i < inflation.size() ? finite(inflation[i]) : Json(nullptr)}};
+        {"variance_inflation", i < inflation.size() ? number_or_null(inflation[i]) : Json(nullptr)}};
   }
-  json["condition_of_correlations"] = inflation.empty() ? Json(nullptr) : finite(result.entangled.condition);
+  json["condition_of_correlations"] = inflation.empty() ? Json(nullptr) : number_or_null(result.entangled.condition);
   json["adopted_effects"] = result.adopted;
   json["effect_parameters"] = Json::object();
   for (const NamedValue& p : result.effect_numbers) {
-    json["effect_parameters"][p.name] = {{"value", finite(p.value)}, {"std", finite(p.std)}, {"unit", p.unit}};
+    json["effect_parameters"][p.name] = {
+        {"value", number_or_null(p.value)}, {"std", number_or_null(p.std)}, {"unit", p.unit}};
   }
   json["diagnosis"] = {{"verdict", result.ranking.verdict},
                        {"against", result.ranking.against},
                        {"segment", result.ranking.segment},
                        {"candidates", Json::array()}};
   for (const EffectEvidence& one : result.ranking.candidates) {
-    json["diagnosis"]["candidates"].push_back(
-        {{"name", one.name}, {"log_odds", finite(one.log_odds)}, {"error_reduction", finite(one.error_reduction)}});
+    json["diagnosis"]["candidates"].push_back({{"name", one.name},
+                                               {"log_odds", number_or_null(one.log_odds)},
+                                               {"error_reduction", number_or_null(one.error_reduction)}});
   }
   if (result.afterwards) {
     Json effects = Json::array();
     for (const EffectEvidence& one : result.afterwards->effects)
-      effects.push_back({{"name", one.name}, {"log_odds", finite(one.log_odds)}});
+      effects.push_back({{"name", one.name}, {"log_odds", number_or_null(one.log_odds)}});
     const std::optional<double>& improvement = result.afterwards->improvement;
     json["closed_loop"] = {{"verdict", result.afterwards->verdict},
                            {"effects", effects},
-                           {"improvement", improvement ? finite(*improvement) : Json(nullptr)},
+                           {"improvement", improvement ? number_or_null(*improvement) : Json(nullptr)},
                            {"report", result.afterwards->page}};
   }
   json["complaints"] = Json::object();

@@ -9,6 +9,7 @@
 #include "common/model/vehicle.hpp"
 #include "common/samples/live_trial.hpp"
 #include "common/samples/recording.hpp"
+#include "common/samples/result_origin.hpp"
 #include "common/samples/vision.hpp"
 
 namespace fathom::estimation {
@@ -33,8 +34,8 @@ namespace fathom::report {
 /// First time stamp of the states: zero of every time axis.
 [[nodiscard]] Utime trial_origin(const Recording& recording);
 
-/// JSON text for programs.
-[[nodiscard]] std::string to_json(const LiveTrialResult& result);
+/// JSON text for programs, as docs/schema/live_trial-1.schema.json describes it.
+[[nodiscard]] std::string to_json(const LiveTrialResult& result, const ResultOrigin& origin = {});
 /// Plain text for a terminal, at most 100 columns.
 [[nodiscard]] std::string to_table(const LiveTrialResult& result);
 /// The page: one HTML file that opens without a network. InputError when gnuplot cannot draw. `pictures`: of its

@@ -1,6 +1,7 @@
 // Sections of the report page that are mostly tables: sensors, candidates, parameters, certainty.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
@@ -8,9 +9,6 @@
 
 namespace fathom::report {
 namespace {
-
-// Odds run from fractions to e^500; asinh keeps sign and order and shows the small ones too.
-double compressed(double log_odds) { return std::asinh(log_odds); }
 
 struct Scale {
   double low{};
@@ -29,15 +27,6 @@ std::string bar(const Scale& scale, double value) {
             "\"></span>";
   }
   return html + "<u style=\"left:" + per_cent(zero) + "\"></u></div>";
-}
-
-// "10^23 : 1" with a raised exponent.
-std::string odds_html(double log_odds) {
-  std::string html = escape(odds(log_odds));
-  const std::size_t hat = html.find('^');
-  if (hat == std::string::npos) return html;
-  const std::size_t end = std::min(html.find(' ', hat), html.size());
-  return html.substr(0, hat) + "<sup>" + html.substr(hat + 1, end - hat - 1) + "</sup>" + html.substr(end);
 }
 
 /// "tether tension (3 : 1 against it)", one after the other, and what each falsifies unnoticed.
@@ -138,28 +127,21 @@ std::string candidate_section(const DiagnosisResult& result) {
   std::string html = "<section><h2>Which causes were suspected</h2>\n";
   if (result.candidates.empty()) return html + "<p>No cause was tried.</p></section>\n";
   html +=
-      "<p>Each known effect was asked: could you be what the base model lacks? Bars to the right of the line speak for "
-      "it, to the left against it (the scale is compressed). \"Error removed\" is the share of the error that goes "
-      "when "
-      "the effect joins the model.</p>\n<table>" +
-      heading_cells({"Suspected cause", "evidence: log odds (odds)", "error removed", "why"}, {});
+      "<p>Each known effect was asked two questions. <b>It helps</b>: the share of the error that goes when it joins "
+      "the "
+      "model, which a stand-in does too. <b>It is this cause</b>: how likely the name is right, beside nothing and "
+      "beside "
+      "every other name; asked of what was kept alone.</p>\n<table>" +
+      heading_cells({"Suspected cause", "it helps: error removed", "it is this cause", "why"}, {});
   std::vector<const CandidateTried*> ranked;
   for (const auto& candidate : result.candidates) ranked.push_back(&candidate);
-  // Not a number ranks last, so that the order stays strict.
-  const auto rank = [](const CandidateTried* c) { return std::isnan(c->log_odds) ? -1e300 : c->log_odds; };
+  // Kept rows first. Not a number ranks last, so that the order stays strict.
+  const auto rank = [&](const CandidateTried* c) {
+    const double helps = std::isnan(c->error_reduction) ? -1e300 : c->error_reduction;
+    return std::pair{accepted_form(result, *c) != nullptr, helps};
+  };
   std::ranges::stable_sort(ranked, std::ranges::greater{}, rank);
-  Scale evidence{-0.5, 1.0};
-  Scale error{0.0, 0.05};
-  for (const auto* c : ranked) {
-    if (std::isfinite(c->log_odds)) {
-      evidence.low = std::min(evidence.low, 1.08 * compressed(c->log_odds));
-      evidence.high = std::max(evidence.high, 1.08 * compressed(c->log_odds));
-    }
-    if (std::isfinite(c->error_reduction)) {
-      error.low = std::min(error.low, c->error_reduction);
-      error.high = std::max(error.high, c->error_reduction);
-    }
-  }
+  constexpr Scale kWhole{0.0, 1.0};
   for (const auto* c : ranked) {
     const EffectFound* found = accepted_form(result, *c);
     std::string why = escape(c->reason);
@@ -170,13 +152,15 @@ std::string candidate_section(const DiagnosisResult& result) {
     const std::string mark = !found                            ? "<span class=\"mark no\">refused</span>"
                              : result.verdict == "unexplained" ? "<span class=\"mark\">kept</span>"
                                                                : "<span class=\"mark\">accepted</span>";
-    const std::string score = std::isnan(c->log_odds)
-                                  ? "not scored"
-                                  : escape(log_odds_text(c->log_odds)) + " (" + odds_html(c->log_odds) + ")";
+    const double probability = found ? probability_of(*found) : std::nan("");
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
             cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
-            cell(bar(evidence, compressed(c->log_odds)) + "<div>" + score + "</div>", "bars") +
-            cell(bar(error, c->error_reduction) + "<div>" + escape(percent(c->error_reduction)) + "</div>", "bars") +
+            (found && c->error_reduction == 0.0  // the likelihood's core does not ask this of what it keeps
+                 ? cell("<span class=\"soft\">not asked</span>", "bars")
+                 : cell(bar(kWhole, c->error_reduction) + "<div>" + escape(percent(c->error_reduction)) + "</div>",
+                        "bars")) +
+            (found ? cell(bar(kWhole, probability) + "<div>" + escape(sure(probability)) + "</div>", "bars")
+                   : cell("<span class=\"soft\">not asked</span>", "bars")) +
             cell(why) + "</tr>\n";
   }
   return html + "</table></section>\n";
@@ -231,8 +215,8 @@ std::string certainty_section(const DiagnosisResult& result) {
   std::string open;
   for (const auto& effect : result.effects) {
     if (!effect.sentence.empty()) {
-      html += "<p class=\"note\">" + escape(effect.sentence) + " <b>Evidence: " + escape(strength(effect.log_odds)) +
-              " (" + odds_html(effect.log_odds) + ").</b></p>\n";
+      html += "<p class=\"note\">" + escape(effect.sentence) +
+              " <b>It is this cause: " + escape(sure(probability_of(effect))) + ".</b></p>\n";
     }
     if (!effect.alternatives.empty()) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +

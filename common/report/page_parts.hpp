@@ -22,7 +22,14 @@ class Album {
 };
 
 /// The sections, in the order of the page. Each is complete HTML; empty when there is nothing to say.
-[[nodiscard]] std::string verdict_section(const DiagnosisReport& report);
+/// The first screen: verdict, a line per cause, error before and after, the picture that shows it, what to do next.
+[[nodiscard]] std::string front_section(const DiagnosisReport& report, Album& album);
+/// One line per effect: what it is, with number, interval and place. HTML.
+[[nodiscard]] std::string cause_line(const EffectFound& effect);
+/// 0.93 becomes "93 %"; what is nearly certain "> 99.9 %".
+[[nodiscard]] std::string sure(double probability);
+/// Probability that the name is right, beside nothing and beside every rival.
+[[nodiscard]] double probability_of(const EffectFound& effect);
 [[nodiscard]] std::string error_section(const DiagnosisResult& result, Album& album);
 [[nodiscard]] std::string motion_section(const DiagnosisReport& report, Album& album);
 [[nodiscard]] std::string sensor_section(const DiagnosisReport& report);

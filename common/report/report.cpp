@@ -19,13 +19,14 @@ void save(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-Written write(const DiagnosisReport& report, const std::string& folder, const VerdictGiven& given) {
+Written write(const DiagnosisReport& report, const std::string& folder, const VerdictGiven& given,
+              const ResultOrigin& origin) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(folder + ": cannot be made (" + failed.message() + "); choose another --out");
   const std::filesystem::path base(folder);
   Written paths{(base / "result.json").string(), (base / "report.html").string()};
-  save(paths.json, to_json(report.result, given));
+  save(paths.json, to_json(report.result, given, origin));
   save(paths.html, to_html(report));
   return paths;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/samples/diagnosis_result.hpp"
+#include "common/samples/result_origin.hpp"
 #include "common/samples/verdict_given.hpp"
 
 namespace fathom::report {
@@ -15,6 +16,7 @@ struct Written {
 
 /// Makes `folder` where needed and writes both files; result.json first, so that it stands even when gnuplot is
 /// missing. InputError when a file cannot be written or the pictures cannot be drawn.
-Written write(const DiagnosisReport& report, const std::string& folder, const VerdictGiven& given = {});
+Written write(const DiagnosisReport& report, const std::string& folder, const VerdictGiven& given = {},
+              const ResultOrigin& origin = {});
 
 }  // namespace fathom::report

@@ -43,9 +43,15 @@ tr.yes td{background:#eaf2fa}tr.sub td{background:#f4f6f8;font-weight:600}
 details{margin:8px 0;border:1px solid var(--line);border-radius:8px;padding:6px 14px}
 summary{cursor:pointer;font-weight:600}td details{border:0;padding:0;margin:0}td summary{font-weight:400;color:var(--after)}
 .note{border-left:4px solid var(--after);background:#f1f6fb;padding:8px 14px;border-radius:0 6px 6px 0}
+details.section{background:var(--paper);padding:12px 26px;margin:0 0 12px}
+details.section>summary h2{display:inline;font-size:18px}
+ul.causes{font-size:19px;margin:12px 0 4px;padding-left:22px}ul.causes li{margin:4px 0}ul.causes .soft{font-size:15px}
 dt{font-weight:600}dd{margin:0 0 8px;color:var(--soft)}dl{font-size:14px;margin:4px 0;columns:2;column-gap:36px}dl div{break-inside:avoid}
-@media(max-width:800px){.grid,.grid.pair,.tiles{grid-template-columns:1fr}dl{columns:1}section,header{padding:14px;overflow-x:auto}}
-@media print{.key{position:static}section{break-inside:auto}body{background:#fff}}
+@media(max-width:800px){.grid,.grid.pair{grid-template-columns:1fr}.tiles{grid-template-columns:1fr 1fr}dl{columns:1}
+ main{padding:8px}section,header,details.section{padding:12px;overflow-x:auto}.badge{font-size:19px}.tile b{font-size:18px}
+ h1{font-size:21px}ul.causes{font-size:17px}td.bars,td.name{width:auto}.key{padding:6px 12px}}
+@media print{.key{position:static}section{break-inside:auto}body{background:#fff;font-size:12px}main{padding:0}
+ details.section:not([open]){padding:4px 12px;margin:0 0 4px}figure,tr{break-inside:avoid}}
 )css";
 
 }  // namespace fathom::report

@@ -91,14 +91,6 @@ std::string odds(double log_odds) {
 
 std::string log_odds_text(double log_odds) { return number(std::abs(log_odds) < 0.01 ? 0.0 : log_odds); }
 
-std::string strength(double log_odds) {
-  if (std::isnan(log_odds)) return "not scored";
-  if (log_odds > std::log(100.0)) return "decisive";
-  if (log_odds > std::log(20.0)) return "strong";
-  if (log_odds > 1.0) return "weak";
-  return log_odds > -1.0 ? "none either way" : "against";
-}
-
 std::string effect_title(const std::string& name, const std::string& variant) {
   std::string title = name;
   std::ranges::replace(title, '_', ' ');

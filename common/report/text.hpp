@@ -38,8 +38,6 @@ extern const std::array<Axis, 6> kAxes;
 [[nodiscard]] std::string odds(double log_odds);
 /// Three digits; what differs from even odds by less than a hundredth is 0.
 [[nodiscard]] std::string log_odds_text(double log_odds);
-/// "decisive", "strong", "weak", "none either way", "against".
-[[nodiscard]] std::string strength(double log_odds);
 /// "thruster_lag", "thruster 3" become "thruster lag (thruster 3)".
 [[nodiscard]] std::string effect_title(const std::string& name, const std::string& variant = "");
 /// "value ± half width of the 95 % interval unit", or "value (low to high) unit" where the sides differ.

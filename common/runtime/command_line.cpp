@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/base/error.hpp"
+#include "common/base/near_name.hpp"
 #include "common/base/version.hpp"
 #include "common/runtime/command_pages.hpp"
 
@@ -24,6 +25,17 @@ void expect_finite_numbers(CLI::App& app) {
   const auto takes_real = [](const CLI::Option* option) { return option->get_type_name().starts_with("FLOAT"); };
   for (CLI::Option* option : app.get_options(takes_real)) option->check(refuse);
   for (CLI::App* command : app.get_subcommands({})) expect_finite_numbers(*command);
+}
+
+/// ", but check is"; nothing where no command is near.
+std::string meant(const CLI::App& app, std::string_view word) {
+  std::string near;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string& name = command->get_name();
+    const bool begins = word.size() > 2 && name.starts_with(word);
+    if (begins || looks_like(name, word)) near += (near.empty() ? "" : " or ") + name;
+  }
+  return near.empty() ? "" : ", but " + near + " is";
 }
 
 Option* with(Option* self, CLI::Option* option, const CLI::Validator& rule) {
@@ -81,6 +93,18 @@ Option* CommandLine::add_flag(const std::string& names, bool& value, const std::
 
 void CommandLine::callback(std::function<void()> what) { app_->callback(std::move(what)); }
 
+void CommandLine::example(const std::string& words) {
+  const std::string program = app_->get_parent() == nullptr ? "" : app_->get_parent()->get_name() + " ";
+  app_->footer("Example: " + program + app_->get_name() + (words.empty() ? "" : " ") + words);
+}
+
+CommandLine* CommandLine::subcommand(const std::string& name) {
+  for (CommandLine& each : commands_) {
+    if (each.app_->get_name() == name) return &each;
+  }
+  return nullptr;
+}
+
 void CommandLine::hand_on(std::function<void(const std::vector<std::string>&)> what) {
   app_->prefix_command();
   app_->set_help_flag();
@@ -121,7 +145,7 @@ int CommandLine::run(int argc, const char* const* argv) {
   const auto is_first = [&](const CLI::App* known) { return known->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app_->get_subcommands(is_first).empty()) {
     const char* name = app_->get_name().c_str();
-    std::fprintf(stderr, "%s: %s is no command; see %s --help\n", name, argv[1], name);
+    std::fprintf(stderr, "%s: %s is no command%s; see %s --help\n", name, argv[1], meant(*app_, argv[1]).c_str(), name);
     return 2;
   }
   try {

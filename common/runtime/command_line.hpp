@@ -64,6 +64,10 @@ class CommandLine {
   Option* add_flag(const std::string& names, bool& value, const std::string& description = {});
   /// Run by run() when this subcommand was asked for.
   void callback(std::function<void()> what);
+  /// The last line of --help, and a section of the manual page: "Example: PROGRAM NAME words".
+  void example(const std::string& words);
+  /// Null where there is none of that name.
+  [[nodiscard]] CommandLine* subcommand(const std::string& name);
   /// All words behind its name go on unread, --help too; `what` is given them.
   void hand_on(std::function<void(const std::vector<std::string>& words)> what);
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "common/base/error.hpp"
@@ -161,6 +162,9 @@ std::string manual_page(const CLI::App& app, const std::string& program) {
   if (!subcommands(app).empty()) text += ".SH COMMANDS\n";
   for (const CLI::App* each : subcommands(app))
     text += ".TP\n" + bold(app.get_name() + "-" + each->get_name()) + "(1)\n" + troff(each->get_description()) + "\n";
+  constexpr std::string_view kExample = "Example: ";
+  if (const std::string example = app.get_footer(); example.starts_with(kExample))
+    text += ".SH EXAMPLE\n" + troff(example.substr(kExample.size())) + "\n";
   text +=
       ".SH EXIT STATUS\n0 when what was asked for was done; otherwise another number, and a line on standard error "
       "that "

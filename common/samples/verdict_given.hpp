@@ -1,5 +1,5 @@
-// A verdict's causes and the refusals of candidates as data: what result.json holds beside DiagnosisResult where the
-// likelihood's core has answered.
+// A verdict's causes, the refusals of candidates and the covariance as data: what result.json holds beside
+// DiagnosisResult.
 #pragma once
 
 #include <map>
@@ -38,11 +38,13 @@ struct ExplainableGiven {
 };
 
 struct VerdictGiven {
-  std::string core;  ///< "likelihood"; empty: nothing is given
+  std::string core;  ///< "likelihood"; empty: trajectories
   std::vector<CauseGiven> causes;
   std::map<std::string, std::vector<RefusalGiven>> refusals;  ///< by the candidate's name
-  std::vector<SkillGiven> skill;
-  std::vector<ExplainableGiven> explainable;
+  std::vector<std::string> covariance_of{};                   ///< names of rows: "X_u", "thruster_lag.time_constant"
+  std::vector<double> covariance{};  ///< row by row, in the product of the names' units; empty: not known
+  std::vector<SkillGiven> skill{};
+  std::vector<ExplainableGiven> explainable{};
 };
 
 }  // namespace fathom

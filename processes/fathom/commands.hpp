@@ -34,5 +34,9 @@ void add_trial(runtime::CommandLine& app);
 void add_watch(runtime::CommandLine& app);
 void add_bus(runtime::CommandLine& app);
 void add_vehicle(runtime::CommandLine& app);
+void add_explain(runtime::CommandLine& app);
+void add_export(runtime::CommandLine& app);
+/// To commands that are there already.
+void add_examples(runtime::CommandLine& app);
 
 }  // namespace fathom::tool

@@ -31,10 +31,12 @@
 #include "common/report/folds.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
+#include "common/result/causes.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/verdict/by_likelihood.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
+#include "processes/fathom/origin.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/rehearsals.hpp"
 #include "processes/fathom/search_progress.hpp"
@@ -149,8 +151,30 @@ bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double
   return event.t < first + share * (last - first);
 }
 
+/// Hashes of all that is read, and the command with the recordings in the order of their time.
+ResultOrigin origin_of(const DiagnoseOptions& options, std::span<const std::string> paths, std::size_t fitted,
+                       std::span<const Recording> recordings) {
+  ResultOrigin origin{.command = "fathom diagnose", .files = {}};
+  add_file(origin, "vehicle", options.vehicle);
+  add_file(origin, "map", options.map);
+  add_file(origin, "site", options.site);
+  add_file(origin, "config", options.config);
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    add_recording(origin, i < fitted ? "train" : "validate", paths[i], recordings[i]);
+  add_words(origin, "--vehicle", options.vehicle);
+  add_words(origin, "--map", options.map);
+  add_words(origin, "--site", options.site);
+  add_words(origin, "--config", options.config);
+  if (options.core != kTrajectories) add_words(origin, "--core", options.core);
+  add_words(origin, "--without", options.without);
+  if (options.no_learning) origin.command += " --no-learning";
+  add_words(origin, "--train", paths.first(fitted));
+  add_words(origin, "--validate", paths.subspan(fitted));
+  return origin;
+}
+
 DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
-                         VerdictGiven& given) {
+                         VerdictGiven& given, ResultOrigin& origin) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
@@ -174,6 +198,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
   sort_by_time(std::span{recordings}.first(fitted_runs), std::span{paths}.first(fitted_runs));
   sort_by_time(std::span{recordings}.subspan(fitted_runs), std::span{paths}.subspan(fitted_runs));
+  origin = origin_of(options, paths, fitted_runs, recordings);
   for (Recording& recording : recordings) {
     if (!estimation::take_state_as_measured(recording)) continue;
     notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
@@ -283,6 +308,10 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
         " %.0f %% of the recordings was left out: what drove the vehicle was not recorded there.", 100.0 * left_out);
   }
   given = std::move(explained.given);
+  if (options.core == kTrajectories) {
+    given.causes = result::causes_of(report.result);
+    result::put_covariance(explained.fitted, given);
+  }
   return std::move(explained.report);
 }
 
@@ -290,14 +319,15 @@ DiagnosisResult run_once(const DiagnoseOptions& options) {
   std::vector<std::string> notes;
   DiagnosisReport report;
   VerdictGiven given;
+  ResultOrigin origin;
   report::Written written;
   double elapsed = 0.0;
   {
     ProgressLine line;
     const Progress progress = line.progress();
-    report = diagnose(options, notes, progress, given);
+    report = diagnose(options, notes, progress, given, origin);
     progress.begin(kReport, "drawing the report");
-    written = report::write(report, options.out, given);
+    written = report::write(report, options.out, given, origin);
     elapsed = line.elapsed();
   }
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());

@@ -7,6 +7,8 @@ int main(int argc, char** argv) {
   fathom::tool::add_import(app);
   fathom::tool::add_check(app);
   fathom::tool::add_diagnose(app);
+  fathom::tool::add_explain(app);
+  fathom::tool::add_export(app);
   fathom::tool::add_compare(app);
   fathom::tool::add_smooth(app);
   fathom::tool::add_regress(app);
@@ -22,5 +24,6 @@ int main(int argc, char** argv) {
   fathom::tool::add_bus(app);
   fathom::tool::add_trial(app);
   fathom::tool::add_vehicle(app);
+  fathom::tool::add_examples(app);
   return app.run(argc, argv);
 }

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -13,6 +14,7 @@
 #include "common/wire/channels.hpp"
 #include "common/wire/log_reader.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/origin.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -37,6 +39,21 @@ std::optional<estimation::NavigatorSettings> filters_in(const std::string& pipel
   return estimation::NavigatorSettings::from(config);
 }
 
+ResultOrigin origin_of(const TrialOptions& options, const Recording& recording) {
+  ResultOrigin origin{.command = "fathom trial", .files = {}};
+  add_recording(origin, "log", options.log, recording);
+  add_words(origin, "", options.log);
+  const std::pair<const char*, const std::string&> files[] = {
+      {"vehicle", options.vehicle}, {"site", options.site}, {"pipeline", options.pipeline}, {"truth", options.truth}};
+  for (const auto& [role, path] : files) {
+    add_file(origin, role, path);
+    add_words(origin, std::string{"--"} + role, path);
+  }
+  if (!options.diagnosis.empty()) add_file(origin, "diagnosis", options.diagnosis + "/result.json");
+  add_words(origin, "--diagnosis", options.diagnosis);
+  return origin;
+}
+
 void run_trial(const TrialOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const model::Site site = model::Site::load(options.site);
@@ -53,7 +70,7 @@ void run_trial(const TrialOptions& options) {
     result.afterwards = report::read_afterwards(options.diagnosis, beside.generic_string());
   }
   if (!options.truth.empty()) result.truth = report::compare_truth(options.truth, contents.recording);
-  save(options.out + "/result.json", report::to_json(result));
+  save(options.out + "/result.json", report::to_json(result, origin_of(options, contents.recording)));
   save(options.out + "/report.html",
        report::to_html(result, contents.recording, vehicle, site,
                        wire::read_pictures(options.log, wire::kCameraDebug, kSheet), filters ? &*filters : nullptr));

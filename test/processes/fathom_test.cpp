@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/tables/writer.hpp"
+#include "test/support/schema.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 #include "test/support/timing.hpp"
@@ -55,6 +56,8 @@ TEST_CASE("fathom: a bad command line is one line and exit code 2") {
   one_line(shell(kTool + " diagnose --trian x"), 2, "--help");
   one_line(shell(kTool), 2, "subcommand");
   one_line(shell(kTool + " nonsense"), 2, "nonsense is no command");
+  one_line(shell(kTool + " diganose"), 2, "diganose is no command, but diagnose is");
+  one_line(shell(kTool + " diag"), 2, "diag is no command, but diagnose is");
   CHECK(shell(kTool + " --help").code == 0);
   CHECK(shell(kTool + " diagnose --help").says("--validate"));
 }
@@ -231,6 +234,21 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   }
   CHECK(result.at("error").at("improvement").contains("ci95"));
   CHECK(test::read_bytes(scratch.path("out/report.html")).size() > 10'000);
+  CHECK(test::against_schema(scratch, scratch.path("out/result.json"), "diagnosis-1") == "");
+  CHECK_FALSE(result.at("causes").empty());
+  CHECK(result.at("command") == "fathom diagnose --vehicle " + scratch.path("v.yaml") + " --train " +
+                                    scratch.path("run1.lcmlog") + " --validate " + scratch.path("run2.csv"));
+  REQUIRE(result.at("files").size() == 3);
+  CHECK(shell("sha256sum " + scratch.path("run1.lcmlog"))
+            .text.starts_with(result.at("files").at(1).at("sha256").get<std::string>()));
+  const auto& covariance = result.at("covariance");
+  const auto& rows = covariance.at("matrix");
+  REQUIRE(rows.size() == covariance.at("names").size());
+  REQUIRE(rows.size() > 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    CHECK(rows[i][i].get<double>() > 0.0);
+    for (std::size_t j = 0; j < i; ++j) CHECK(rows[i][j].get<double>() == doctest::Approx(rows[j][i].get<double>()));
+  }
 
   const Ran held = shell(common + scratch.path("run1.lcmlog") + " --out " + scratch.path("held"));
   REQUIRE_MESSAGE(held.code == 0, held.text);

@@ -11,6 +11,7 @@
 
 #include "common/base/event_log.hpp"
 #include "common/wire/log_reader.hpp"
+#include "test/support/schema.hpp"
 
 namespace fathom {
 namespace {
@@ -72,6 +73,9 @@ TEST_CASE("live: a trial that is cut short still gives table, result, page and t
   CHECK(result["modes"].size() >= 1);
   CHECK(result["modes"][0]["mode"] == "yaw");
   CHECK(result["compared_with_truth"]["states_compared"].get<int>() > 500);
+  CHECK(result["files"][0]["role"] == "log");
+  CHECK(test::against_schema(scratch, scratch.path("out/result.json"), "live_trial-1") == "");
+  CHECK(test::against_schema(scratch, scratch.path("out/diagnosis/result.json"), "diagnosis-1") == "");
   const std::string page = test::read_bytes(scratch.path("out/report.html"));
   for (const char* words : {"Table 1.1", "Figure 1.11", "Figure 1.12", "Figure 1.13", "Figure 1.14", "Figure 1.15",
                             "Figure 1.16", "Figure 1.19", "None of the processes heard"}) {

@@ -7,6 +7,7 @@
 
 #include "common/base/version.hpp"
 #include "test/support/diagnosis_fixture.hpp"
+#include "test/support/schema.hpp"
 
 using fathom::report::to_json;
 using nlohmann::json;
@@ -25,9 +26,10 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("result.json holds exactly the promised names") {
   const json file = json::parse(to_json(fathom::test::made_up_report({.samples = 0}).result));
-  CHECK(keys(file) == Names{"candidates", "consistency", "effects", "error", "explained", "fathom_version",
-                            "not_measured", "parameters", "residual", "schema", "train", "validate", "vehicle",
-                            "verdict"});
+  CHECK(keys(file) == Names{"candidates", "causes",       "command",   "consistency",    "covariance", "data",
+                            "effects",    "error",        "explained", "fathom_version", "files",      "kind",
+                            "next",       "not_measured", "paragraph", "parameters",     "residual",   "schema",
+                            "train",      "validate",     "vehicle",   "verdict"});
   CHECK(file["schema"] == 1);
   CHECK(file["fathom_version"] == fathom::version());
   CHECK(file["vehicle"] == "Beluga <test>");
@@ -147,4 +149,74 @@ TEST_CASE("result.json holds the causes of a verdict and the refusals of candida
   CHECK(file["causes"][0] == json{{"cause", "free_force"}, {"value", 12.5}, {"threshold", 5.0}, {"of", "depth in Z"}});
   CHECK(file["candidates"][0]["refusals"][0] == json{{"rule", "odds"}, {"value", 3.0}, {"needed", 10.0}});
   CHECK_FALSE(file["candidates"][1].contains("refusals"));
+}
+
+TEST_CASE("result.json says where it comes from, how sure its numbers are together, and what to fly next") {
+  auto result = fathom::test::made_up_report({.samples = 0}).result;
+  result.manoeuvre = "Turn on the spot.";
+  result.effects[1].told_apart = {{"tether_tension", "yaw steps", 62.0}};
+  const fathom::VerdictGiven given{.core = "",
+                                   .causes = {},
+                                   .refusals = {},
+                                   .covariance_of = {"X_u", "m_X"},
+                                   .covariance = {4.0, -0.5, -0.5, std::nan("")}};
+  constexpr fathom::Utime kNoon = 1'716'811'200'000'000;  // 2024-05-27 12:00 UTC
+  const fathom::ResultOrigin origin{
+      .command = "fathom diagnose --vehicle v.yaml --train a.csv",
+      .files = {{.role = "vehicle", .run = "", .path = "v.yaml", .sha256 = std::string(64, 'a'), .bytes = 12},
+                {.role = "train",
+                 .run = "a",
+                 .path = "a.csv",
+                 .sha256 = std::string(64, 'b'),
+                 .bytes = 34,
+                 .begin = kNoon,
+                 .end = kNoon + 61'500'000}}};
+  const std::string text = to_json(result, given, origin);
+  const json file = json::parse(text);
+  CHECK(file["command"] == origin.command);
+  CHECK(file["data"]["begin"] == "2024-05-27T12:00:00.000Z");
+  CHECK(file["data"]["end"] == "2024-05-27T12:01:01.500Z");
+  CHECK(file["files"][1]["seconds"] == 61.5);
+  CHECK_FALSE(file["files"][0].contains("run"));
+  CHECK(file["covariance"]["names"] == json{"X_u", "m_X"});
+  CHECK(file["covariance"]["matrix"][0] == json{4.0, -0.5});
+  CHECK(file["covariance"]["matrix"][1][1].is_null());
+  CHECK(file["next"]["words"] == "Turn on the spot.");
+  CHECK(file["next"]["segments"][0] ==
+        json{{"segment", "yaw steps"}, {"seconds", 62.0}, {"tells", "current"}, {"from", "tether_tension"}});
+  const fathom::test::Scratch scratch;
+  fathom::test::write_bytes(scratch.path("result.json"), text);
+  CHECK(fathom::test::against_schema(scratch, scratch.path("result.json"), "diagnosis-1") == "");
+}
+
+TEST_CASE("Every result.json is as its schema says, and a wrong one is not") {
+  const fathom::test::Scratch scratch;
+  const std::string path = scratch.path("result.json");
+  if (!fathom::test::python_has("jsonschema")) return;
+  auto full = fathom::test::made_up_report({.samples = 0}).result;
+  full.wiring = fathom::WiringFault{{"T1 and T2 exchanged"}, 0.97};
+  full.not_measured = {{"attitude", {"current"}, "It is not known."}};
+  full.own_in_validation = {"current"};
+  full.correction = fathom::CorrectionGiven{.asked = true, .adopted = true};
+  full.correction->terms = {{"depth", 2, {{"depth_bump", 0, 1, 2.0, 0.5, 0.0}}, 1.5, 0.3, 0.1}};
+  full.correction->covariance = {{0.01}};
+  full.correction->visited_force = {10.0};
+  full.correction->left = {{"Z", 0.02, 0.2}};
+  const fathom::VerdictGiven given{.core = "likelihood",
+                                   .causes = {{"free_force", 12.5, 5.0, "depth in Z"}},
+                                   .refusals = {{full.candidates[3].name, {{"odds", 3.0, 10.0}}}}};
+  for (const std::string& text : {to_json(full, given), to_json({})}) {
+    json file = json::parse(text);
+    if (file["verdict"] == "") file["verdict"] = "adequate";  // a result that nobody has concluded
+    fathom::test::write_bytes(path, file.dump());
+    CHECK(fathom::test::against_schema(scratch, path, "diagnosis-1") == "");
+  }
+  json wrong = json::parse(to_json(full, given));
+  wrong["causes"][0]["cause"] = "the weather";
+  fathom::test::write_bytes(path, wrong.dump());
+  CHECK(fathom::test::against_schema(scratch, path, "diagnosis-1") != "");
+  wrong = json::parse(to_json(full, given));
+  wrong["mood"] = "good";  // a key that the schema does not describe
+  fathom::test::write_bytes(path, wrong.dump());
+  CHECK(fathom::test::against_schema(scratch, path, "diagnosis-1") != "");
 }

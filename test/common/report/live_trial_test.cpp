@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/health_words.hpp"
 #include "common/estimation/navigator.hpp"
+#include "test/support/schema.hpp"
 #include "test/support/scratch.hpp"
 
 using namespace fathom;
@@ -115,6 +116,9 @@ TEST_CASE("live trial: a segment that was flown is no mode, and hides none that 
     CHECK(result.visits[2].mode == "total");
     CHECK(to_table(result).find("full steps in surge") != std::string::npos);
     CHECK(nlohmann::json::parse(to_json(result)).at("flights").size() == 1);
+    const test::Scratch scratch;
+    test::write_bytes(scratch.path("result.json"), to_json(result));
+    CHECK(test::against_schema(scratch, scratch.path("result.json"), "live_trial-1") == "");
     CHECK(to_html(result, flown, vehicle(), site()).find("flown: full steps in surge") != std::string::npos);
   }
 }

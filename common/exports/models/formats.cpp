@@ -1,0 +1,75 @@
+#include "common/exports/models/formats.hpp"
+
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <sstream>
+
+#include "common/base/error.hpp"
+#include "common/model/parameters.hpp"
+#include "common/report/text.hpp"
+
+namespace fathom::exports {
+
+std::string exact(double value) {
+  if (value == 0.0) return "0";  // no minus
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string identifier(const std::string& name) {
+  std::string text;
+  for (const unsigned char c : name) text += std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '_';
+  return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) != 0 ? "vehicle_" + text : text;
+}
+
+std::string comment(const ModelFile& file, std::string_view mark) {
+  std::string text;
+  for (const std::string& note : file.unsaid) {
+    text += mark;
+    for (std::size_t i = 0; i < note.size(); ++i) {  // "--" ends a comment of XML
+      text += note[i];
+      if (note[i] == '-' && i + 1 < note.size() && note[i + 1] == '-') text += ' ';
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+ModelFile to_vehicle(const Craft& craft, const result::Stored& stored, const std::string& vehicle_text) {
+  ModelFile file{.extension = "yaml", .text = {}, .unsaid = craft.notes};
+  std::istringstream lines{vehicle_text};
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool top = !line.empty() && line[0] != ' ' && line[0] != '#' && line[0] != '\t';
+    if (top) inside = line.starts_with("priors:");
+    if (!inside) file.text += line + "\n";
+  }
+  file.text += "\n# Identified by fathom " + stored.version + " from: " + report::join(stored.result.train, ", ") +
+               " (" + stored.path + ").\n" + comment(file, "# ") + "priors:\n";
+  for (const NamedValue& number : stored.result.parameters_after) {
+    if (!model::parameter_from_name(number.name)) continue;  // of an effect
+    const double sigma = std::isfinite(number.std) && number.std > 0.0 ? number.std : 0.0;
+    if (sigma <= 0.0) continue;  // it was not moved: its prior stays as wide as it was
+    file.text += "  " + number.name + ": {mean: " + exact(number.value) + " " + number.unit +
+                 ", sigma: " + exact(sigma) + " " + number.unit + "}\n";
+  }
+  return file;
+}
+
+std::vector<std::string> model_formats() { return {"vehicle", "gz", "uuv", "stonefish", "holoocean", "mss", "json"}; }
+
+ModelFile model_file(const std::string& to, const Craft& craft, const result::Stored& stored,
+                     const std::string& vehicle_text) {
+  if (to == "vehicle") return to_vehicle(craft, stored, vehicle_text);
+  if (to == "gz") return to_gazebo(craft);
+  if (to == "uuv") return to_uuv_simulator(craft);
+  if (to == "stonefish") return to_stonefish(craft);
+  if (to == "holoocean") return to_holoocean(craft);
+  if (to == "mss") return to_mss(craft);
+  if (to == "json") return to_json(craft, stored);
+  throw InputError("--to " + to + ": no such format; known are " + report::join(model_formats(), ", "));
+}
+
+}  // namespace fathom::exports

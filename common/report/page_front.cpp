@@ -1,0 +1,249 @@
+// The first screen of the report: what it comes to, one line per cause, the error before and after, the picture that
+// shows it, and what to do next.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "common/report/page_parts.hpp"
+#include "common/report/pictures.hpp"
+#include "common/report/text.hpp"
+
+namespace fathom::report {
+namespace {
+
+constexpr double kHorizon = 5.0;           // s
+constexpr double kCloseUp = 60.0;          // s: six windows of 10 s
+constexpr std::size_t kMostPoints = 1200;  // one per pixel of a wide screen is plenty
+constexpr std::size_t kMostCauses = 5;     // lines where nothing is named: what the residual goes with
+
+struct Meaning {
+  std::string css;
+  std::string words;
+};
+
+Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
+  if (wiring) return {"unexplained", "The vehicle's file seems to have other thrusters than the vehicle"};
+  if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
+  if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
+  if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
+  if (verdict == "unexplained" && partly)
+    return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
+  if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
+  if (verdict == "no_model") return {"unexplained", "The model does not follow its thrust: its numbers are withheld"};
+  if (verdict == "unjudged" || verdict == "not_judged") return {"ambiguous", "These runs show too little to judge by"};
+  return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
+}
+
+/// Both parts of a divided run are one.
+std::string recordings(const DiagnosisResult& result) {
+  std::set<std::string> runs;
+  for (const auto* names : {&result.train, &result.validate}) {
+    for (const std::string& name : *names) runs.insert(name.substr(0, name.find(" (")));
+  }
+  return std::to_string(runs.size()) + (runs.size() == 1 ? " recorded run" : " recorded runs");
+}
+
+std::string tile(const std::string& big, const std::string& small) {
+  return "<div class=\"tile\"><b>" + escape(big) + "</b>" + escape(small) + "</div>";
+}
+
+std::string lines(const std::string& text) {
+  std::string html;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end > begin) html += "<p>" + escape(text.substr(begin, end - begin)) + "</p>\n";
+    begin = end + 1;
+  }
+  return html;
+}
+
+const PredictionError* at_horizon(const ModelError& error) {
+  const auto found = std::ranges::find(error.prediction, kHorizon, &PredictionError::horizon_s);
+  return found == error.prediction.end() ? nullptr : &*found;
+}
+
+/// The axis whose prediction has changed most, by the ratio of its errors; none where nothing was predicted.
+std::optional<std::size_t> telling_axis(const DiagnosisResult& result) {
+  const PredictionError *before = at_horizon(result.error_before), *after = at_horizon(result.error_after);
+  std::optional<std::size_t> best;
+  double most = -1.0;
+  for (std::size_t axis = 0; before != nullptr && after != nullptr && axis < kAxes.size(); ++axis) {
+    const double change = std::abs(std::log(after->rmse[axis] / before->rmse[axis]));
+    if (!std::isfinite(change) || change <= most) continue;
+    most = change;
+    best = axis;
+  }
+  return best;
+}
+
+/// "11 %", "0.35 s": the two ends share the unit.
+std::string between(double value, double low, double high, double scale, const std::string& unit) {
+  std::string text = number(scale * value, 3);
+  if (std::isfinite(low) && std::isfinite(high) && high > low)
+    text += " (" + number(scale * low, 3) + " to " + number(scale * high, 3) + ")";
+  return text + (unit.empty() ? "" : " " + unit);
+}
+
+const NamedValue* find(const EffectFound& effect, const std::string& name) {
+  const auto found = std::ranges::find(effect.parameters, name, &NamedValue::name);
+  return found == effect.parameters.end() ? nullptr : &*found;
+}
+
+/// A share that is more or less than one: "29 % (27.5 to 30.5) less".
+std::string more_or_less(const NamedValue& value) {
+  const auto [low, high] = value.range95();
+  const bool less = value.value < 0.0;
+  return less ? between(-value.value, -high, -low, 100.0, "%") + " less"
+              : between(value.value, low, high, 100.0, "%") + " more";
+}
+
+std::string plain_value(const NamedValue& value) {
+  const auto [low, high] = value.range95();
+  return between(value.value, low, high, 1.0, value.unit);
+}
+
+/// "FL" becomes "Thruster FL"; "thruster 3" "Thruster 3".
+std::string thruster(const std::string& variant) {
+  constexpr std::string_view kWord = "thruster ";
+  return "Thruster " + (variant.starts_with(kWord) ? variant.substr(kWord.size()) : variant);
+}
+
+/// Symbols stay as they are ("v_N"), words lose their underscores ("time constant").
+std::string number_title(const std::string& name) {
+  constexpr std::size_t kSymbol = 4;  // letters
+  return name.size() <= kSymbol ? name : effect_title(name);
+}
+
+/// In the words of whoever repairs it; empty where no sentence was written for the effect.
+std::string in_words(const EffectFound& effect) {
+  if (const NamedValue* gain = find(effect, "gain_change"); gain != nullptr && effect.parameters.size() == 1)
+    return thruster(effect.variant) + " gives " + more_or_less(*gain) + " than the file says";
+  if (const NamedValue* lost = find(effect, "share_lost")) {
+    const auto [low, high] = lost->range95();
+    std::string text =
+        thruster(effect.variant) + " lost " + between(lost->value, low, high, 100.0, "%") + " of its thrust";
+    if (const NamedValue* onset = find(effect, "onset")) text += " at " + plain_value(*onset);
+    return text;
+  }
+  if (const NamedValue* reverse = find(effect, "reverse_change"))
+    return "Thrusters in reverse give " + more_or_less(*reverse) + " than ahead";
+  if (effect.name == "thruster_lag") {
+    if (const NamedValue* time = find(effect, "time_constant"))
+      return "Thrust follows its command with a time constant of " + plain_value(*time);
+  }
+  if (effect.name == "thruster_delay") {
+    if (const NamedValue* time = find(effect, "delay")) return "Thrust comes late by " + plain_value(*time);
+  }
+  if (const NamedValue* width = find(effect, "half_width"); width != nullptr && effect.name == "thruster_deadband")
+    return "Commands below " + plain_value(*width) + " give no thrust";
+  return "";
+}
+
+std::string picture(const DiagnosisReport& report, Album& album) {
+  const auto axis = telling_axis(report.result);
+  if (!axis) return "";
+  for (const PredictionTrace& trace : report.traces) {
+    const std::size_t size = trace.t.size();
+    const auto finite = [&](const auto& row) { return std::isfinite(row[*axis]); };
+    if (size < 2 || trace.measured.size() != size || std::ranges::none_of(trace.before, finite)) continue;
+    Figure drawn = draw_motion(trace, *axis, kMostPoints, typical_stretch(trace, kCloseUp));
+    drawn.alt = std::string{"What shows it: "} + velocity_label(kAxes[*axis]) + " measured, before and after";
+    return figure(album.place(std::move(drawn)),
+                  escape("A typical stretch of " + trace.run + ", " + kAxes[*axis].name +
+                         ": measured dark, before orange, after blue. At each light line the simulation starts anew."));
+  }
+  return "";
+}
+
+std::string causes(const DiagnosisResult& result) {
+  std::string items;
+  if (result.wiring) items += "<li>" + escape(join(result.wiring->readings, ", or ")) + "</li>\n";
+  for (const EffectFound& effect : result.effects) {
+    if (!effect.accepted) continue;
+    std::string others;
+    for (const Alternative& other : effect.alternatives)
+      others += (others.empty() ? "" : ", ") + effect_title(other.name);
+    if (!effect.unlisted.empty()) others += (others.empty() ? "" : ", ") + effect.unlisted;
+    const bool measured = effect.error_reduction > 0.0;
+    items += "<li>" + cause_line(effect) + " <span class=\"soft\">" +
+             (measured ? "removes " + escape(percent(effect.error_reduction)) + " of the error; " : std::string{}) +
+             "it is this cause: " + escape(sure(probability_of(effect))) +
+             (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
+  }
+  if (result.correction && result.correction->adopted)
+    items += "<li>A correction, not a cause: " + escape(result.correction->words) + "</li>\n";
+  if (items.empty()) {
+    for (std::size_t i = 0; i < std::min(result.goes_with.size(), kMostCauses); ++i) {
+      const Association& one = result.goes_with[i];
+      items += "<li>unexplained: " + escape(one.axis + " goes with " + one.with) + " <span class=\"soft\">(" +
+               escape(percent(one.share)) + " of what is left there)</span></li>\n";
+    }
+  }
+  return items.empty() ? "" : "<ul class=\"causes\">" + items + "</ul>\n";
+}
+
+}  // namespace
+
+std::string sure(double probability) {
+  constexpr double kNearly = 0.999;
+  if (!std::isfinite(probability)) return "-";
+  return probability > kNearly ? "> 99.9 %" : percent(probability);
+}
+
+double probability_of(const EffectFound& effect) {
+  double odds = effect.log_odds;
+  for (const Alternative& other : effect.alternatives) odds = std::min(odds, other.log_odds);
+  return 1.0 / (1.0 + std::exp(-odds));
+}
+
+std::string cause_line(const EffectFound& effect) {
+  const std::string title = effect_title(effect.name, effect.variant), words = in_words(effect);
+  if (!words.empty()) return "<b>" + escape(words) + "</b> <span class=\"soft\">(" + escape(title) + ")</span>";
+  std::string numbers;
+  for (const NamedValue& value : effect.parameters)
+    numbers += (numbers.empty() ? ": " : ", ") + number_title(value.name) + " " + plain_value(value);
+  std::string line = title + numbers;
+  if (!line.empty()) line[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line[0])));
+  return "<b>" + escape(line) + "</b>";
+}
+
+std::string front_section(const DiagnosisReport& report, Album& album) {
+  const DiagnosisResult& result = report.result;
+  const Meaning said =
+      meaning(result.verdict, !result.effects.empty() && result.explained < 1.0, result.wiring.has_value());
+  std::string html = "<header><h1>Why does " + escape(result.vehicle) +
+                     " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
+                     "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +
+                     "<div class=\"tiles\">";
+  const bool added =
+      std::ranges::any_of(result.effects, &EffectFound::accepted) || (result.correction && result.correction->adopted);
+  if (std::isfinite(result.improvement.value) && !added) {
+    html += tile("0 %", "change of the prediction error: nothing was added to the model");
+  } else if (std::isfinite(result.improvement.value)) {
+    html += tile(percent(-result.improvement.value),
+                 "change of the prediction error 5 s ahead (95 %: " + percent(-result.improvement.high) + " to " +
+                     percent(-result.improvement.low) + ")");
+  }
+  if (const auto axis = telling_axis(result)) {
+    const Axis& a = kAxes[*axis];
+    const auto rmse = [&](const ModelError& error) { return number(a.scale * at_horizon(error)->rmse[*axis], 3); };
+    html += tile(rmse(result.error_before) + " → " + rmse(result.error_after) + " " + a.unit,
+                 std::string{"error of "} + a.name + " 5 s ahead, before → after");
+  }
+  const std::size_t doubts = group_findings(result.consistency).size();
+  html += tile(std::to_string(doubts), doubts == 1 ? "doubt about a sensor" : "doubts about sensors");
+  const bool judged = !result.error_after.prediction.empty();
+  html += tile(join(result.validate, ", "), judged ? "judged on, not used in the fit" : "too short to judge on");
+  html += "</div>\n" + picture(report, album);
+  if (!result.manoeuvre.empty()) html += "<p class=\"note\"><b>Next.</b> " + escape(result.manoeuvre) + "</p>\n";
+  if (!result.paragraph.empty())
+    html += "<details><summary>The whole verdict in words</summary>" + lines(result.paragraph) + "</details>\n";
+  return html + "</header>\n";
+}
+
+}  // namespace fathom::report

@@ -1,0 +1,40 @@
+#include "common/result/cause_words.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace fathom::result {
+namespace {
+
+constexpr std::array kWords{
+    CauseWords{"nothing_found", "log odds", "No effect has the odds that a name needs", false},
+    CauseWords{"named", "probability", "The evidence sets an effect apart from every other"},
+    CauseWords{"rivals", "probability", "The data fits more than one name", false},
+    CauseWords{"free_force", "log odds", "A force acts that no listed effect explains"},
+    CauseWords{"slow_random_force", "memory [s]", "A random force remembers itself for too long to be noise"},
+    CauseWords{"not_following", "fraction of the acceleration", "The model does not follow its thrust", false},
+    CauseWords{"absurd_number", "size over its prior's", "A number lies where none can be"},
+    CauseWords{"too_short", "s of data", "The runs are too short to judge by", false},
+    CauseWords{"not_finite", "", "The filter diverged"},
+    CauseWords{"scores_disagree", "standard deviations", "Numbers fitted one step ahead and many ahead disagree"},
+    CauseWords{"wiring", "fraction of the error", "The thrusters seem to be others than the vehicle's file says"},
+    CauseWords{"no_prediction", "R2 of 5 s predictions", "The model foretells less than the average does", false},
+    CauseWords{"thrust_not_followed", "fraction of the applied wrench",
+               "Less than half of the applied force is accounted for", false},
+    CauseWords{"residual_goes_with", "fraction of the residual's variance",
+               "The residual goes with something that was measured"},
+    CauseWords{"not_carried_over", "log odds", "An effect helped the runs that it was fitted to, and not the others"},
+    CauseWords{"promising", "fraction of the error", "A refused effect would remove much of the error"},
+    CauseWords{"part_only", "fraction of the lasting error", "The accepted effects explain only a part", false},
+    CauseWords{"free_curve", "", "A force of a form that no listed effect has would explain more"}};
+
+}  // namespace
+
+std::span<const CauseWords> cause_words() { return kWords; }
+
+const CauseWords* words_of(std::string_view cause) {
+  const auto found = std::ranges::find(kWords, cause, &CauseWords::cause);
+  return found == kWords.end() ? nullptr : &*found;
+}
+
+}  // namespace fathom::result

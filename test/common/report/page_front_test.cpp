@@ -1,0 +1,98 @@
+// The first screen of the report says what it comes to; all else is folded, and does not contradict itself.
+#include <doctest/doctest.h>
+
+#include <sstream>
+
+#include "common/report/page.hpp"
+#include "common/report/page_parts.hpp"
+#include "test/support/diagnosis_fixture.hpp"
+
+using fathom::EffectFound;
+using fathom::report::cause_line;
+using fathom::report::to_html;
+
+namespace {
+
+constexpr int kMostWords = 300;  // that are seen before anything is unfolded, labels of the picture included
+
+bool has(const std::string& page, const std::string& words) { return page.find(words) != std::string::npos; }
+
+/// What a reader sees of the page: without tags, style, and what is folded.
+std::string seen(const std::string& page) {
+  std::string text;
+  int folded = 0;
+  bool tag = false, summary = false;
+  for (std::size_t i = page.find("<main>"); i < page.size(); ++i) {
+    if (page.compare(i, 8, "<details") == 0) ++folded;
+    if (page.compare(i, 10, "</details>") == 0) --folded;
+    if (page.compare(i, 8, "<summary") == 0) summary = true;
+    if (page.compare(i, 10, "</summary>") == 0) summary = false;
+    if (page[i] == '<') tag = true;
+    if (!tag && (folded == 0 || (summary && folded == 1))) text += page[i];
+    if (page[i] == '>') {
+      tag = false;
+      text += ' ';
+    }
+  }
+  return text;
+}
+
+int words_in(const std::string& text) {
+  std::istringstream stream{text};
+  int count = 0;
+  for (std::string word; stream >> word;) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("The first screen has a line for every cause, with number and interval") {
+  const auto report = fathom::test::made_up_report({.samples = 600});
+  const std::string text = seen(to_html(report));
+  CHECK(has(text, "Something was missing, and it was found"));
+  CHECK(has(text, "Thrust follows its command with a time constant of 0.352 (0.328 to 0.376) s"));
+  CHECK(has(text, "removes 31 % of the error; it is this cause: &gt; 99.9 %"));
+  CHECK(has(text, "it is this cause: 75 %; or else tether tension"));  // 3 : 1 against its rival
+  CHECK(has(text, "error of surge 5 s ahead, before → after"));
+  CHECK(has(text, "Next."));
+  CHECK(words_in(text) < kMostWords);
+  CHECK_FALSE(has(text, report.result.paragraph.substr(0, 40)));  // folded
+}
+
+TEST_CASE("A cause says which thruster, how much, and in which direction") {
+  EffectFound gain{.name = "thruster_gain", .variant = "FL", .parameters = {{"gain_change", -0.29, 0.0075, ""}}};
+  CHECK(has(cause_line(gain), "Thruster FL gives 29.0 (27.5 to 30.5) % less than the file says"));
+  gain.parameters[0].value = 0.1;
+  gain.variant = "thruster 3";
+  CHECK(has(cause_line(gain), "Thruster 3 gives 10.0 (8.53 to 11.5) % more than the file says"));
+  const EffectFound failure{.name = "thruster_failure",
+                            .variant = "T5",
+                            .parameters = {{"share_lost", 0.5, 0.0, ""}, {"onset", 40.0, 0.0, "s"}}};
+  CHECK(has(cause_line(failure), "Thruster T5 lost 50.0 % of its thrust at 40.0 s"));
+  const EffectFound current{.name = "current", .variant = "", .parameters = {{"v_N", 0.1, 0.0, "m/s"}}};
+  CHECK(has(cause_line(current), "<b>Current: v_N 0.100 m/s</b>"));
+  const EffectFound odd{.name = "<odd>", .variant = "", .parameters = {}};
+  CHECK(has(cause_line(odd), "&lt;odd&gt;"));
+}
+
+TEST_CASE("Whether a cause helps and whether it is the cause are two columns, what was kept first") {
+  auto report = fathom::test::made_up_report({.samples = 0});
+  report.result.effects[1].log_odds = -6.3;     // in a part only
+  report.result.candidates[3].log_odds = 7.89;  // against nothing, and refused
+  report.result.candidates[3].error_reduction = 0.5;
+  const std::string section = fathom::report::candidate_section(report.result);
+  CHECK(has(section, "it helps: error removed"));
+  CHECK(has(section, "it is this cause"));
+  CHECK_FALSE(has(section, "7.89"));
+  CHECK_FALSE(has(section, "-6.3"));
+  CHECK(section.find("accepted</span>") < section.find("refused</span>"));
+  CHECK(section.rfind("accepted</span>") < section.find("refused</span>"));
+  CHECK(section.find("not asked") > section.find("refused</span>"));
+}
+
+TEST_CASE("Where nothing is named, the first screen says what the residual goes with") {
+  fathom::DiagnosisReport report;
+  report.result.verdict = "unexplained";
+  report.result.goes_with = {{"X", "depth", 0.4, 9.0, 0.2}};
+  CHECK(has(seen(to_html(report)), "unexplained: X goes with depth"));
+}
