@@ -385,7 +385,7 @@ void add_diagnose(runtime::CommandLine& app) {
   command
       ->add_option("--time-budget", options->time_budget,
                    "with --core likelihood: s for the search; what is not asked by then is said to be open")
-      ->check(CLI::PositiveNumber);
+      ->within(1.0, 1e6);
   command->add_flag("--no-learning", options->no_learning,
                     "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
