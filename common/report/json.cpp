@@ -146,18 +146,18 @@ Json skill(const std::vector<SkillGiven>& rows) {
   for (const auto& row : rows) {
     array.push_back({{"horizon_s", row.horizon_s},
                      {"axis", row.axis},
-                     {"rmse", finite(row.rmse)},
-                     {"rmse_unchanged", finite(row.rmse_unchanged)},
-                     {"rmse_plain", finite(row.rmse_plain)},
-                     {"over_unchanged", finite(row.over_unchanged)},
-                     {"over_plain", finite(row.over_plain)}});
+                     {"rmse", number_or_null(row.rmse)},
+                     {"rmse_unchanged", number_or_null(row.rmse_unchanged)},
+                     {"rmse_plain", number_or_null(row.rmse_plain)},
+                     {"over_unchanged", number_or_null(row.over_unchanged)},
+                     {"over_plain", number_or_null(row.over_plain)}});
   }
   return array;
 }
 
 Json explainable(const std::vector<ExplainableGiven>& rows) {
   Json array = Json::array();
-  for (const auto& row : rows) array.push_back({{"axis", row.axis}, {"share", finite(row.share)}});
+  for (const auto& row : rows) array.push_back({{"axis", row.axis}, {"share", number_or_null(row.share)}});
   return array;
 }
 
