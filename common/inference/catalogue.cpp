@@ -23,6 +23,8 @@ bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle) {
   return model::stopped_at_limit(*active.effect, active.variant, active.theta, vehicle);
 }
 
+bool asked_first(const Law& law) { return law.name == "lever_arm"; }
+
 bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {
   return a.effect == b.effect && a.effect->rules_out(a.variant, b.variant);
 }
@@ -40,7 +42,6 @@ std::vector<Law> catalogue(const model::Scene& scene, const std::vector<std::str
       law.grid = effect->starts(scene, variant);
       if (law.grid.empty()) continue;
       law.seed = {.effect = effect, .variant = variant, .variant_name = forms[v], .theta = law.grid.front()};
-      law.stage = likelihood::stage_of(law.seed);
       const std::size_t leading =
           effect->amplitudes() > 0 ? static_cast<std::size_t>(effect->amplitudes()) : effect->parameters().size();
       for (std::size_t c = 0; c < effect->parameters().size(); ++c) {

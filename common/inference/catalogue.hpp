@@ -11,8 +11,7 @@ namespace fathom::inference {
 
 struct Law {
   std::string name, form;
-  model::ActiveEffect seed;  ///< with some numbers
-  likelihood::Stage stage{};
+  model::ActiveEffect seed;               ///< with some numbers
   std::vector<std::vector<double>> grid;  ///< values of all its numbers
   std::vector<std::size_t> linear;        ///< numbers that get columns of their own; the others shape them
   int onset{-1};                          ///< place of a time of an event among its numbers; -1: none
@@ -29,6 +28,9 @@ struct Law {
 [[nodiscard]] bool moves(const model::ActiveEffect& active, std::size_t number);
 /// Whether a search for its numbers was stopped by a limit that says nothing: it has found no effect.
 [[nodiscard]] bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle);
+/// Whether it is asked before all others: where a sensor sits is the recording's business, and a force would stand in
+/// for it.
+[[nodiscard]] bool asked_first(const Law& law);
 /// Whether two effects may stand in one model.
 [[nodiscard]] bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b);
 

@@ -6,8 +6,13 @@ namespace fathom::inference {
 
 using likelihood::Stage;
 
-EffectColumns::EffectColumns(const likelihood::Problem& problem, const Seen& seen, std::size_t run)
-    : problem_{problem}, seen_{seen}, run_{run}, plant_{seen.fit.hypothesis, none_, problem.runs[run], run, false} {
+EffectColumns::EffectColumns(const likelihood::Problem& problem, const Seen& seen,
+                             const likelihood::Hypothesis& hypothesis, std::size_t run)
+    : problem_{problem},
+      seen_{seen},
+      command_offset_{hypothesis.runs[run].command_offset},
+      run_{run},
+      plant_{hypothesis, none_, problem.runs[run], run, false} {
   plant_.begin(problem.runs[run].start());
 }
 
@@ -16,21 +21,15 @@ void EffectColumns::add(const model::ActiveEffect& effect, const std::vector<dou
   model::ActiveEffect active = effect;
   active.theta = theta;
   column.stage = likelihood::stage_of(active);
-  column.model = plant_.model();
+  if (column.stage != Stage::kHull) column.model = plant_.model();
   const likelihood::RunData& run = problem_.runs[run_];
   switch (column.stage) {
     case Stage::kThrust: {
       column.model.add(active);
       Eigen::MatrixXd forces;
-      thrust_forces(column.model, run, seen_.fit.hypothesis.runs[run_].command_offset, forces);
-      const auto& blocks = run.blocks();
-      column.thrust.resize(forces.rows(), static_cast<Eigen::Index>(blocks.size()));
-      for (std::size_t b = 0; b < blocks.size(); ++b) {
-        const auto first = static_cast<Eigen::Index>(blocks[b].first) * run.substeps();
-        const auto count = static_cast<Eigen::Index>(blocks[b].last - blocks[b].first) * run.substeps();
-        column.thrust.col(static_cast<Eigen::Index>(b)) =
-            forces.middleCols(first, count).rowwise().mean() - plant_.mean_forces().col(static_cast<Eigen::Index>(b));
-      }
+      thrust_forces(column.model, run, command_offset_, forces);
+      plant_.mean_over_blocks(forces, column.thrust);
+      column.thrust -= plant_.mean_forces();
       break;
     }
     case Stage::kMemory: {
@@ -46,8 +45,9 @@ void EffectColumns::add(const model::ActiveEffect& effect, const std::vector<dou
       column.model.add(active);
       break;
     case Stage::kHull:
-      column.model.add(active);
+      break;
   }
+  column.effect = std::move(active);
   columns_.push_back(std::move(column));
   Column& added = columns_.back();
   // Of the model where it now stands: what reads it keeps its place.
@@ -90,7 +90,7 @@ void EffectColumns::at(std::size_t block, likelihood::RowMatrix& acceleration, l
         put(c, inverse * column.memory.back().wrench());
         break;
       case Stage::kHull:
-        put(c, plant_.acceleration_of(column.model, nu) - plain);
+        put(c, plant_.added_by(column.effect, plain, inverse));
         break;
       case Stage::kSensor: {
         put(c, Vector6d::Zero());

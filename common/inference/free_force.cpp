@@ -14,6 +14,8 @@ constexpr double kLeastSigma = 1e-4;
 constexpr int kTurns = 5;               // of the variances
 constexpr std::size_t kShortlist = 14;  // groups whose products with all others are worked out
 constexpr double kFactor = 4.0;         // by which the second start's random force is smaller
+constexpr int kBatch = 48;              // columns that pass through the filter together
+constexpr double kSettled = 4.0;        // times the odds that are needed: no second start could change the verdict
 
 using Range = std::pair<Eigen::Index, Eigen::Index>;
 
@@ -49,6 +51,21 @@ Screen screen(const likelihood::Problem& problem, const Seen& seen, const likeli
   screen.gram -= X.transpose() * (seen.covariance * X);
   screen.gradient = sums.gradient;
   return screen;
+}
+
+/// Groups that pass through the filter together.
+std::vector<std::vector<std::size_t>> batches_of(const likelihood::FreeForce& library) {
+  std::vector<std::vector<std::size_t>> batches;
+  int columns = kBatch;
+  for (std::size_t g = 0; g < library.groups.size(); ++g) {
+    if (columns + library.groups[g].count > kBatch) {
+      batches.emplace_back();
+      columns = 0;
+    }
+    batches.back().push_back(g);
+    columns += library.groups[g].count;
+  }
+  return batches;
 }
 
 double price(const likelihood::FeatureGroup& group, std::size_t of, const Thresholds& thresholds) {
@@ -139,7 +156,7 @@ std::string words(const GroupFound& group) {
 }
 
 FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene,
-                               const Thresholds& thresholds, int threads) {
+                               const Thresholds& thresholds, int threads, const Deadline& deadline) {
   FreeForceFound found;
   const likelihood::FreeForce library = feature_library(problem, seen, scene);
   const std::size_t all = library.groups.size();
@@ -147,10 +164,15 @@ FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& s
 
   // Each group alone; the best of them with all their products.
   std::vector<double> alone(all, 0.0);
-  for_each_index(all, threads, [&](std::size_t g) {
-    const Screen one = screen(problem, seen, library, {g}, true);
-    alone[g] = group_evidence(one.gram, one.gradient, one.ranges, {kStartSigma}).log_bayes_factor -
-               price(library.groups[g], all, thresholds);
+  const std::vector<std::vector<std::size_t>> batches = batches_of(library);
+  for_each_index(batches.size(), threads, [&](std::size_t b) {
+    const Screen several = screen(problem, seen, library, batches[b], false);
+    for (std::size_t k = 0; k < batches[b].size(); ++k) {
+      const std::size_t g = batches[b][k];
+      alone[g] = group_evidence(several.gram, several.gradient, std::span{several.ranges}.subspan(k, 1), {kStartSigma})
+                     .log_bayes_factor -
+                 price(library.groups[g], all, thresholds);
+    }
   });
   std::vector<std::size_t> shortlist(all);
   for (std::size_t g = 0; g < all; ++g) shortlist[g] = g;
@@ -199,17 +221,20 @@ FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& s
   found.log_odds = found.at_fixed_noise;
 
   // Noise fitted anew beside it, from the noise as it is and from a smaller random force.
-  std::vector<likelihood::Fit> fits(2);
+  const bool settled = found.at_fixed_noise > kSettled * thresholds.free_force_odds;
+  std::vector<likelihood::Fit> fits(deadline.over() ? 0 : settled ? 1 : 2);
   for_each_index(fits.size(), threads, [&](std::size_t start) {
     likelihood::Hypothesis hypothesis = seen.fit.hypothesis;
     hypothesis.force = chosen(library, whole, picked, evidence);
     likelihood::Noise noise = seen.fit.noise;
     for (likelihood::AxisNoise& axis : noise) axis.log[likelihood::kForce] -= start == 0 ? 0.0 : std::log(kFactor);
-    likelihood::Fit fitted = likelihood::fit(problem, hypothesis, noise, {.noise_rounds = 2, .steps = 2});
+    likelihood::FitOptions options{.noise_rounds = 2, .steps = 2, .enough = 0.3};
+    if (fits.size() == 1) options.threads = threads;
+    likelihood::Fit fitted = likelihood::fit(problem, hypothesis, noise, options);
     if (fitted.finite) {
       renew_sigmas(fitted);
-      const likelihood::Fit again =
-          likelihood::fit(problem, fitted.hypothesis, fitted.noise, {.noise_rounds = 2, .steps = 2});
+      options.noise_rounds = 1;
+      const likelihood::Fit again = likelihood::fit(problem, fitted.hypothesis, fitted.noise, options);
       if (again.finite) fitted = again;
     }
     fits[start] = std::move(fitted);
@@ -222,6 +247,10 @@ FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& s
     found.fit = std::move(fit);
   }
 
+  for (std::size_t i = 0; i < static_cast<std::size_t>(problem.simulated) && found.fit.finite; ++i) {
+    const double left = found.fit.noise[i][likelihood::kForce] / seen.fit.noise[i][likelihood::kForce];
+    found.explainable.push_back(std::max(0.0, 1.0 - left * left));
+  }
   // Its size at the seen states.
   std::vector<double> weights(evidence.weight.begin(), evidence.weight.end());
   if (found.fit.finite) weights = found.fit.hypothesis.force.weights;

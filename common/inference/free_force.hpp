@@ -2,6 +2,7 @@
 // priors per group, noise fitted anew beside it. The force found is part of the hypothesis, ready to be adopted.
 #pragma once
 
+#include "common/base/deadline.hpp"
 #include "common/inference/feature_library.hpp"
 
 namespace fathom::inference {
@@ -14,15 +15,17 @@ struct GroupFound {
 };
 
 struct FreeForceFound {
-  std::vector<GroupFound> groups;  ///< in the order of acceptance
-  double log_odds{};               ///< over the model without it, prices paid: the larger of both ways
-  double at_fixed_noise{};         ///< of the linear screen alone
-  Size size{};                     ///< share of the applied acceleration
-  likelihood::Fit fit{};           ///< with the force; finite only where it was fitted
+  std::vector<GroupFound> groups;   ///< in the order of acceptance
+  double log_odds{};                ///< over the model without it, prices paid: the larger of both ways
+  double at_fixed_noise{};          ///< of the linear screen alone
+  std::vector<double> explainable;  ///< per simulated axis: share of the random force's variance that it takes away
+  Size size{};                      ///< share of the applied acceleration
+  likelihood::Fit fit{};            ///< with the force; finite only where it was fitted
 };
 
 [[nodiscard]] FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& seen,
-                                             const model::Scene& scene, const Thresholds& thresholds, int threads);
+                                             const model::Scene& scene, const Thresholds& thresholds, int threads,
+                                             const Deadline& deadline = {});
 
 /// "depth in Z", "place, toward north": the group in words.
 [[nodiscard]] std::string words(const GroupFound& group);

@@ -38,9 +38,13 @@ double disagreement(const likelihood::Fit& one, const likelihood::Fit& other) {
 }
 
 likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood::Fit& fit, int threads) {
-  likelihood::Fit reported = likelihood::fit(
-      problem, fit.hypothesis, fit.noise,
-      {.noise_rounds = 1, .steps = 6, .fit_noise = false, .horizon = likelihood::Horizon{}, .threads = threads});
+  likelihood::Fit reported = likelihood::fit(problem, fit.hypothesis, fit.noise,
+                                             {.noise_rounds = 1,
+                                              .steps = 3,
+                                              .enough = 1.0,
+                                              .fit_noise = false,
+                                              .horizon = likelihood::Horizon{},
+                                              .threads = threads});
   return reported.finite ? reported : fit;
 }
 
@@ -68,8 +72,12 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   }
 
   const likelihood::Fit& fit = found.best.fit;
+  // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
+  const bool beside =
+      found.free_force && found.free_force->fit.finite && found.free_force->log_odds >= thresholds.free_force_odds;
+  const likelihood::Noise& noise = beside ? found.free_force->fit.noise : fit.noise;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
-    const double share = explained(problem, fit.noise[axis], axis);
+    const double share = explained(problem, noise[axis], axis);
     if (share < thresholds.following)
       reasons.push_back({Cause::kNotFollowing, share, thresholds.following,
                          model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});
@@ -105,11 +113,14 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     unexplained = true;
   }
   const bool any = !found.best.names.empty();
+  if (found.cut_short) reasons.push_back({Cause::kOutOfTime, 0.0, 0.0, ""});
   if (any) {
     const double least = *std::ranges::min_element(found.probability);
     const bool sure = least >= thresholds.name_probability;
     reasons.push_back({sure ? Cause::kNamed : Cause::kRivals, least, thresholds.name_probability, ""});
-    conclusion.verdict = unexplained ? Verdict::unexplained : sure ? Verdict::effect : Verdict::ambiguous;
+    conclusion.verdict = unexplained                ? Verdict::unexplained
+                         : sure && !found.cut_short ? Verdict::effect
+                                                    : Verdict::ambiguous;
     return;
   }
   if (unexplained) {
@@ -118,7 +129,7 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   }
   const double promised = found.refused.empty() ? 0.0 : found.refused.front().promised;
   reasons.push_back({Cause::kNothingFound, promised, thresholds.name_odds, ""});
-  conclusion.verdict = Verdict::adequate;
+  conclusion.verdict = found.cut_short ? Verdict::not_judged : Verdict::adequate;
 }
 
 Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, const Settings& settings,
@@ -130,7 +141,10 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
     conclude(problem, settings.thresholds, conclusion);
     return conclusion;
   }
-  conclusion.found = search(problem, scene, settings.without, settings.thresholds, settings.threads, progress);
+  progress.expect(kHorizonFit.phase, 1, kHorizonFit.weight);
+  const Deadline deadline{settings.time_budget};
+  conclusion.found =
+      search(problem, scene, settings.without, settings.thresholds, settings.threads, progress, deadline);
   const Found& found = conclusion.found;
   if (found.best.fit.finite) {
     const Seen seen = see(problem, found.best.fit, settings.threads);
@@ -140,10 +154,15 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
                                    noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
     }
-    progress("numbers that predict ten seconds", 0.95);
-    conclusion.reported = by_horizon(problem, found.best.fit, settings.threads);
-    conclusion.reported_base =
-        found.best.names.empty() ? conclusion.reported : by_horizon(problem, found.base.fit, settings.threads);
+    const auto reported = [&](const likelihood::Fit& fit) {
+      progress.begin(kHorizonFit.phase, kHorizonFit.what);
+      likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
+      progress.done(kHorizonFit.phase);
+      return by;
+    };
+    if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
+    conclusion.reported = reported(found.best.fit);
+    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit);
   }
   conclude(problem, settings.thresholds, conclusion);
   return conclusion;

@@ -1,6 +1,8 @@
 // From runs to a verdict: search, free force, both scores, and the causes as data.
 #pragma once
 
+#include <limits>
+
 #include "common/inference/search.hpp"
 
 namespace fathom::inference {
@@ -8,6 +10,8 @@ namespace fathom::inference {
 struct Settings {
   std::vector<std::string> without{};  ///< effects that are not asked
   int threads{2};
+  double time_budget{
+      std::numeric_limits<double>::infinity()};  ///< s by the clock on the wall: what is left is not asked
   Thresholds thresholds{};
   likelihood::RunSettings runs{};
 };

@@ -70,7 +70,7 @@ class Scanner {
     return promises;
   }
 
-  std::vector<PairPromise> pairs(const std::vector<Question>& questions, const std::vector<Promise>& promises) const {
+  std::vector<PairPromise> pairs(const std::vector<Question>& questions) const {
     std::vector<std::size_t> groups;
     if (questions.size() < 2) return {};
     const likelihood::ResponseSums sums = sums_of(questions, 0, questions.size(), groups, true);
@@ -101,7 +101,6 @@ class Scanner {
       }
     }
     std::ranges::sort(found, std::greater{}, &PairPromise::score);
-    (void)promises;
     return found;
   }
 
@@ -110,7 +109,7 @@ class Scanner {
                                    std::vector<std::size_t>& groups, bool all) const {
     likelihood::ResponseSums sums;
     for (std::size_t r = 0; r < problem_.runs.size(); ++r) {
-      EffectColumns columns{problem_, seen_, r};
+      EffectColumns columns{problem_, seen_, seen_.fit.hypothesis, r};
       groups.clear();
       for (std::size_t q = from; q < to; ++q) {
         groups.push_back(columns.size());
@@ -249,7 +248,7 @@ Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vecto
   }
   std::vector<Question> pairing;
   for (std::size_t k = 0; k < std::min(order.size(), kPairsOf); ++k) pairing.push_back(questions[order[k]]);
-  scan.pairs = scanner.pairs(pairing, promises);
+  scan.pairs = scanner.pairs(pairing);
   return scan;
 }
 

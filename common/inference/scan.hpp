@@ -43,10 +43,12 @@ struct Scan {
 /// taken out, on its worst axis. An effect on the sensors: of the velocity.
 [[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect);
 
-/// Accelerations that an effect adds to the seen model at its filtered velocities: axes x blocks, `shown` likewise.
+/// Accelerations that an effect adds to a hypothesis at the seen model's filtered velocities: axes x blocks, `shown`
+/// likewise.
 class EffectColumns {
  public:
-  EffectColumns(const likelihood::Problem& problem, const Seen& seen, std::size_t run);
+  EffectColumns(const likelihood::Problem& problem, const Seen& seen, const likelihood::Hypothesis& hypothesis,
+                std::size_t run);
   /// Columns to come; all must be added before the first block. `theta`: the effect's numbers of the column.
   void add(const model::ActiveEffect& effect, const std::vector<double>& theta);
   [[nodiscard]] std::size_t size() const { return columns_.size(); }
@@ -54,7 +56,8 @@ class EffectColumns {
 
  private:
   struct Column {
-    model::Model model;
+    model::ActiveEffect effect;
+    model::Model model;  // with it, where its stage asks for one
     likelihood::Stage stage{};
     Eigen::MatrixXd thrust;                        ///< change of the mean forces, actuators x blocks
     std::vector<likelihood::MotionMemory> memory;  ///< one at most
@@ -62,6 +65,7 @@ class EffectColumns {
   };
   const likelihood::Problem& problem_;
   const Seen& seen_;
+  double command_offset_;
   std::size_t run_;
   std::vector<likelihood::Number> none_;
   likelihood::Plant plant_;

@@ -1,5 +1,6 @@
 #include "common/inference/search.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,71 +11,92 @@
 namespace fathom::inference {
 namespace {
 
-constexpr std::array kCountPrior{0.5, 0.3, 0.13, 0.05, 0.02};  // of 0 to 4 effects
-constexpr std::size_t kOtherForms = 4;                         // of one effect, tried in its place
-constexpr double kLouder = 5.0;                                // by which the second scan's random force is smaller
-
-std::vector<std::string> names_of(const std::vector<model::ActiveEffect>& effects) {
-  std::vector<std::string> names;
-  for (const model::ActiveEffect& active : effects) names.emplace_back(active.effect->name());
-  std::ranges::sort(names);
-  return names;
-}
+constexpr std::size_t kOtherForms = 4;     // of one effect, tried in its place
+constexpr double kLouder = 5.0;            // by which the second scan's random force is smaller
+constexpr std::array kLeaning{1.0, 10.0};  // times the noise's prior mean, where the base model's fits begin
+// Of the best promise: what promises less has never been the true one. Promises are linear, so that a law's own is
+// wrong by a factor of two where its numbers are far from its grid.
+constexpr double kFarBehind = 0.2;
 
 struct Proposal {
   std::vector<model::ActiveEffect> added;
-  double promised{};
   likelihood::Noise noise;  ///< from which its fit begins
+  bool first{};             ///< asked before the others
 };
 
 class Search {
  public:
   Search(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
-         const Thresholds& thresholds, int threads, const Progress& progress)
+         const Thresholds& thresholds, int threads, const Progress& progress, const Deadline& deadline)
       : problem_{problem},
         scene_{scene},
         laws_{catalogue(scene, without)},
         thresholds_{thresholds},
         threads_{threads},
-        progress_{progress} {}
+        progress_{progress},
+        deadline_{deadline},
+        models_{problem, laws_, threads, progress} {}
 
   Found run() {
-    progress_("fitting the base model", 0.02);
-    found_.base =
-        judged(likelihood::fit(problem_, likelihood::nominal_hypothesis(problem_), likelihood::prior_noise(problem_),
-                               {.noise_rounds = 5, .choose_tail = true, .threads = threads_}));
+    expect(kBaseFit, 1);
+    expect_rounds(2);
+    expect(kFreeForceFit, 1);
+    begin(kBaseFit);
+    found_.base = models_.add(fit_base());
+    progress_.done(kBaseFit.phase);
     found_.best = found_.base;
-    fitted_.push_back(found_.base);
     if (!found_.base.fit.finite) return std::move(found_);
-    for (int round = 0; round < thresholds_.most_effects; ++round) {
-      progress_("asking every effect", 0.1 + 0.15 * round);
-      if (!add_one()) break;
-      progress_("taking effects out again", 0.2 + 0.15 * round);
-      simplify();
+    for (int round = 0; round < thresholds_.most_effects && goes_on(); ++round) {
+      expect_rounds(std::min(2, thresholds_.most_effects - round));  // this one, and one that finds nothing
+      if (!add_some()) break;
       drop();
     }
-    if (found_.best.fit.hypothesis.model.effects.size() > 1) {
-      progress_("asking for others in place of each", 0.75);
-      swap();
-    }
+    expect_rounds(0);
+    swap();
     judge_effects();
-    progress_("looking for a force that no list holds", 0.85);
+    expect_rounds(0);
+    begin(kFreeForceFit);
     found_.free_force =
-        find_free_force(problem_, see(problem_, found_.best.fit, threads_), scene_, thresholds_, threads_);
+        find_free_force(problem_, see(problem_, found_.best.fit, threads_), scene_, thresholds_, threads_, deadline_);
+    progress_.done(kFreeForceFit.phase);
     list_refused();
-    found_.fits = fitted_.size();
+    found_.fits = models_.size();
     return std::move(found_);
   }
 
  private:
-  Fitted judged(likelihood::Fit fit) const {
-    Fitted fitted{.fit = std::move(fit)};
-    fitted.names = names_of(fitted.fit.hypothesis.model.effects);
-    fitted.score = fitted.fit.log_evidence + log_prior_of_set(fitted.fit.hypothesis.model.effects, laws_);
-    if (!fitted.fit.finite) fitted.score = -1e300;
-    return fitted;
+  /// The better of two: begun from the noise's prior means, and with random forces as large as the motion's own. There
+  /// the filter leans on the measurements: whatever the numbers it begins from, it does not run away, and the first
+  /// steps are a fit of accelerations.
+  [[nodiscard]] likelihood::Fit fit_base() const {
+    std::array<likelihood::Fit, kLeaning.size()> fits;
+    for_each_index(fits.size(), threads_, [&](std::size_t i) {
+      likelihood::Noise noise = likelihood::prior_noise(problem_);
+      for (likelihood::AxisNoise& axis : noise) {
+        axis.log[likelihood::kForce] += std::log(kLeaning[i]);
+        axis.log[likelihood::kWhiteForce] += std::log(kLeaning[i]);
+      }
+      fits[i] = likelihood::fit(problem_, likelihood::nominal_hypothesis(problem_), noise,
+                                {.noise_rounds = 5, .steps = 3, .enough = 0.2, .choose_tail = true});
+    });
+    const bool leaning = !fits[0].finite || (fits[1].finite && fits[1].log_evidence > fits[0].log_evidence);
+    return std::move(fits[leaning ? 1 : 0]);
   }
-
+  void expect(const Step& step, double units) const { progress_.expect(step.phase, units, step.weight); }
+  void begin(const Step& step) const { progress_.begin(step.phase, step.what); }
+  /// Scans and fits of so many rounds, this one included.
+  void expect_rounds(double rounds) {
+    models_.expect(rounds * (thresholds_.fits_per_round + thresholds_.pairs_per_round));
+    expect(kScan, rounds);
+  }
+  /// There is time for more.
+  bool goes_on() {
+    if (deadline_.over()) found_.cut_short = true;
+    return !found_.cut_short;
+  }
+  [[nodiscard]] const std::vector<model::ActiveEffect>& effects() const {
+    return found_.best.fit.hypothesis.model.effects;
+  }
   [[nodiscard]] model::ActiveEffect effect_of(std::size_t law, const std::vector<double>& theta) const {
     model::ActiveEffect active = laws_[law].seed;
     active.theta = theta;
@@ -82,31 +104,32 @@ class Search {
   }
 
   /// What promises most beside a model: the best laws and pairs, seen at its noise and, where a random force may have
-  /// swallowed something slow, at a fifth of it.
-  std::vector<Proposal> proposals(const Fitted& from) {
+  /// swallowed something slow, at a fifth of it. `least`: what a promise must come to, in nats.
+  std::vector<Proposal> proposals(const Fitted& from, double least, bool with_pairs) {
     std::vector<Proposal> proposals;
+    promised_.clear();
     const auto take = [&](const Scan& scan, const likelihood::Noise& noise) {
+      const double best = scan.promises.empty() ? 0.0 : scan.promises.front().score;
       int singles = 0;
       std::map<std::string, int> of_name;
       for (const Promise& promise : scan.promises) {
         note(promise);
-        if (singles >= thresholds_.fits_per_round || promise.score < thresholds_.score_worth) continue;
+        const bool first = asked_first(laws_[promise.law]);
+        if (promise.score < least || (!first && promise.score < kFarBehind * best)) continue;
         if (of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
-        proposals.push_back({{effect_of(promise.law, promise.theta)}, promise.score, noise});
-        ++singles;
+        if (!first && singles++ >= thresholds_.fits_per_round) continue;
+        proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first});
       }
       int pairs = 0;
-      const double best = scan.promises.empty() ? 0.0 : scan.promises.front().score;
       for (const PairPromise& pair : scan.pairs) {
-        if (pairs >= thresholds_.pairs_per_round || pair.score < best + thresholds_.pair_gain) break;
-        if (from.names.size() + 2 > static_cast<std::size_t>(thresholds_.most_effects)) break;
+        if (!with_pairs || pairs >= thresholds_.pairs_per_round || pair.score < best + thresholds_.pair_gain) break;
         proposals.push_back({{effect_of(scan.promises[pair.first].law, pair.theta_first),
                               effect_of(scan.promises[pair.second].law, pair.theta_second)},
-                             pair.score,
                              noise});
         ++pairs;
       }
     };
+    begin(kScan);
     const Seen seen = see(problem_, from.fit, threads_);
     take(scan(problem_, seen, laws_, thresholds_, threads_), from.fit.noise);
     bool large = false;
@@ -122,6 +145,7 @@ class Search {
       const Seen again = see(problem_, louder, threads_);
       take(scan(problem_, again, laws_, thresholds_, threads_), louder.noise);
     }
+    progress_.done(kScan.phase);
     // One fit of each set of forms.
     std::vector<Proposal> unlike;
     for (Proposal& proposal : proposals) {
@@ -136,189 +160,204 @@ class Search {
     return unlike;
   }
 
-  std::vector<Fitted> fit_all(const Fitted& from, const std::vector<Proposal>& proposals) {
-    std::vector<Fitted> fits(proposals.size());
-    for_each_index(proposals.size(), threads_, [&](std::size_t i) {
-      likelihood::Hypothesis hypothesis = from.fit.hypothesis;
-      for (const model::ActiveEffect& active : proposals[i].added) hypothesis.model.add(active);
-      fits[i] = judged(likelihood::fit(problem_, hypothesis, proposals[i].noise, {}));
-    });
-    fitted_.insert(fitted_.end(), fits.begin(), fits.end());
-    return fits;
+  static std::vector<Start> starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals) {
+    std::vector<Start> starts;
+    for (const Proposal& proposal : proposals) {
+      starts.push_back({from, proposal.noise});
+      for (const model::ActiveEffect& active : proposal.added) starts.back().hypothesis.model.add(active);
+    }
+    return starts;
+  }
+  [[nodiscard]] static Start without(const Fitted& from, std::size_t effect) {
+    Start start{from.fit.hypothesis, from.fit.noise};
+    auto& effects = start.hypothesis.model.effects;
+    effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(effect));
+    return start;
   }
 
-  bool add_one() {
-    const std::vector<Proposal> proposed = proposals(found_.best);
-    const std::vector<Fitted> fits = fit_all(found_.best, proposed);
-    const Fitted* best = nullptr;
-    for (const Fitted& fitted : fits) {
-      if (!fitted.fit.finite || fitted.score < found_.best.score + thresholds_.name_odds) continue;
-      if (best != nullptr && fitted.score <= best->score) continue;
+  /// Takes the best of these where it is a name's worth better; else false.
+  bool take_best(std::vector<Fitted> fits) {
+    std::ranges::sort(fits, std::greater{}, &Fitted::score);
+    for (Fitted& fitted : fits) {
+      if (!fitted.fit.finite || fitted.score < found_.best.score + thresholds_.name_odds) return false;
       if (!counts(fitted)) continue;
-      best = &fitted;
-    }
-    if (best == nullptr) return false;
-    found_.best = *best;
-    return true;
-  }
-
-  [[nodiscard]] bool held(const model::ActiveEffect& active) const {
-    return std::ranges::any_of(found_.best.fit.hypothesis.model.effects, [&](const auto& other) {
-      return other.effect == active.effect && other.variant == active.variant;
-    });
-  }
-
-  /// Every effect that the best model does not hold yet has the smallest practical size and numbers of its own.
-  [[nodiscard]] bool counts(const Fitted& fitted) const {
-    const Seen seen = see(problem_, fitted.fit, threads_);
-    const auto& effects = seen.fit.hypothesis.model.effects;
-    for (std::size_t e = 0; e < effects.size(); ++e) {
-      if (held(effects[e])) continue;
-      if (stopped(effects[e], *problem_.vehicle)) return false;
-      if (size_of_effect(problem_, seen, e) < thresholds_.smallest_size) return false;
-    }
-    return true;
-  }
-
-  /// What another effect has made small, or pushed to a limit, goes.
-  bool drop_small() {
-    const Seen seen = see(problem_, found_.best.fit, threads_);
-    const auto& effects = seen.fit.hypothesis.model.effects;
-    for (std::size_t e = 0; e < effects.size() && effects.size() > 1; ++e) {
-      if (!stopped(effects[e], *problem_.vehicle) && size_of_effect(problem_, seen, e) >= thresholds_.smallest_size)
-        continue;
-      std::vector<Fitted> fits(effects.size());
-      Fitted rest = without(found_.best, e, fits);
-      if (!rest.fit.finite) continue;
-      fitted_.push_back(rest);
-      found_.best = std::move(rest);
+      const std::vector<model::ActiveEffect> before = effects();
+      found_.best = std::move(fitted);
+      simplify(before);
       return true;
     }
     return false;
   }
 
-  Fitted without(const Fitted& from, std::size_t effect, std::vector<Fitted>& fits) const {
-    likelihood::Hypothesis hypothesis = from.fit.hypothesis;
-    hypothesis.model.effects.erase(hypothesis.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-    fits[effect] = judged(likelihood::fit(problem_, hypothesis, from.fit.noise, {}));
-    return fits[effect];
+  bool add_some() {
+    const bool pairs = found_.best.names.size() + 2 <= static_cast<std::size_t>(thresholds_.most_effects);
+    std::vector<Proposal> all = proposals(found_.best, thresholds_.score_worth, pairs), first;
+    std::ranges::copy_if(all, std::back_inserter(first), &Proposal::first);
+    std::erase_if(all, [](const Proposal& proposal) { return proposal.first; });
+    const likelihood::Hypothesis from = found_.best.fit.hypothesis;
+    if (take_best(models_.race(starts(from, first), found_.best.score))) return true;
+    return take_best(models_.race(starts(from, all), found_.best.score));
   }
 
-  /// Other forms of the effects that were found, begun from their shared numbers: the simplest that does as well stays.
-  void simplify() {
-    const std::vector<model::ActiveEffect> effects = found_.best.fit.hypothesis.model.effects;
-    for (const model::ActiveEffect& active : effects) {
+  static bool held(const std::vector<model::ActiveEffect>& effects, const model::ActiveEffect& active) {
+    return std::ranges::any_of(
+        effects, [&](const auto& other) { return other.effect == active.effect && other.variant == active.variant; });
+  }
+
+  /// Every effect that the best model does not hold yet has the smallest practical size and numbers of its own; else
+  /// it is noted why not.
+  [[nodiscard]] bool counts(const Fitted& fitted) {
+    const Seen seen = see(problem_, fitted.fit, threads_);
+    const auto& those = seen.fit.hypothesis.model.effects;
+    for (std::size_t e = 0; e < those.size(); ++e) {
+      if (held(effects(), those[e])) continue;
+      const double size = size_of_effect(problem_, seen, e);
+      const bool at_limit = stopped(those[e], *problem_.vehicle);
+      if (!at_limit && size >= thresholds_.smallest_size) continue;
+      failed_[std::string(those[e].effect->name())] =
+          at_limit ? Refusal{Rule::kBound, fitted.score - found_.best.score, thresholds_.name_odds}
+                   : Refusal{Rule::kSize, size, thresholds_.smallest_size};
+      return false;
+    }
+    return true;
+  }
+
+  /// Other forms of the effects that were just found, begun from their shared numbers, where the score promised at
+  /// least half as much: the best stays.
+  void simplify(const std::vector<model::ActiveEffect>& before) {
+    const std::vector<model::ActiveEffect> now = effects();
+    for (const model::ActiveEffect& active : now) {
+      if (held(before, active) || forms_matter(active)) continue;
+      double promised = 0.0;
+      for (std::size_t l = 0; l < laws_.size(); ++l) {
+        if (laws_[l].seed.effect == active.effect && promised_.contains(l)) promised = std::max(promised, promised_[l]);
+      }
       std::vector<Proposal> others;
-      for (const Law& law : laws_) {
+      for (std::size_t l = 0; l < laws_.size() && others.size() < kOtherForms; ++l) {
+        const Law& law = laws_[l];
         if (law.seed.effect != active.effect || law.seed.variant == active.variant) continue;
-        if (forms_matter(active) || others.size() >= kOtherForms) continue;
-        others.push_back({{law.seed}, 0.0, found_.best.fit.noise});
+        if (!promised_.contains(l) || promised_[l] < 0.5 * promised) continue;
+        others.push_back({{law.seed}, found_.best.fit.noise});
+        std::vector<double>& theta = others.back().added.front().theta;
         for (std::size_t c = 0; c < active.theta.size(); ++c) {
-          if (moves(law.seed, c) && moves(active, c)) others.back().added.front().theta[c] = active.theta[c];
-          if (!moves(law.seed, c)) others.back().added.front().theta[c] = 0.0;
+          if (moves(law.seed, c) && moves(active, c)) theta[c] = active.theta[c];
+          if (!moves(law.seed, c)) theta[c] = 0.0;
         }
       }
-      if (others.empty()) continue;
-      Fitted rest = found_.best;
-      std::erase_if(rest.fit.hypothesis.model.effects, [&](const auto& other) {
+      likelihood::Hypothesis rest = found_.best.fit.hypothesis;
+      std::erase_if(rest.model.effects, [&](const auto& other) {
         return other.effect == active.effect && other.variant == active.variant;
       });
-      for (const Fitted& other : fit_all(rest, others)) {
+      for (const Fitted& other : models_.race(starts(rest, others), found_.base.score)) {
         if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
       }
     }
   }
 
-  void drop() {
-    while (drop_small()) {
+  /// Nats that the best model would lose without the effect, by Wald's test of its leading numbers: a linear guess.
+  [[nodiscard]] double guessed_loss(const Seen& seen, std::size_t effect) const {
+    const auto& active = seen.fit.hypothesis.model.effects[effect];
+    const auto law = std::ranges::find_if(
+        laws_, [&](const Law& one) { return one.seed.effect == active.effect && one.seed.variant == active.variant; });
+    std::vector<Eigen::Index> places;
+    std::vector<double> values;
+    for (std::size_t j = 0; j < seen.fit.numbers.size(); ++j) {
+      const likelihood::Number& number = seen.fit.numbers[j];
+      if (number.kind != likelihood::NumberKind::kEffect || number.index != static_cast<int>(effect)) continue;
+      if (law != laws_.end() &&
+          std::ranges::find(law->linear, static_cast<std::size_t>(number.component)) == law->linear.end())
+        continue;
+      places.push_back(static_cast<Eigen::Index>(j));
+      values.push_back(value(seen.fit.hypothesis, number));
     }
-    while (found_.best.fit.hypothesis.model.effects.size() > 1) {
-      std::vector<Fitted> fits(found_.best.fit.hypothesis.model.effects.size());
-      for_each_index(fits.size(), threads_, [&](std::size_t e) { (void)without(found_.best, e, fits); });
-      fitted_.insert(fitted_.end(), fits.begin(), fits.end());
+    if (places.empty()) return 0.0;
+    const Eigen::MatrixXd covariance = seen.covariance(places, places);
+    const Eigen::Map<const Eigen::VectorXd> theta{values.data(), static_cast<Eigen::Index>(values.size())};
+    return 0.5 * theta.dot(covariance.ldlt().solve(theta));
+  }
+
+  /// What another effect has made small or worthless, or pushed to a limit, goes.
+  void drop() {
+    while (effects().size() > 1) {
+      const Seen seen = see(problem_, found_.best.fit, threads_);
+      std::vector<Start> small, weak;
+      for (std::size_t e = 0; e < effects().size(); ++e) {
+        if (stopped(effects()[e], *problem_.vehicle) || size_of_effect(problem_, seen, e) < thresholds_.smallest_size) {
+          small.push_back(without(found_.best, e));
+        } else if (guessed_loss(seen, e) < kDoubtful * thresholds_.name_odds) {
+          weak.push_back(without(found_.best, e));
+        }
+      }
+      const std::vector<Fitted> fits = models_.fit_all(small.empty() ? weak : small);
       const auto best = std::ranges::max_element(fits, {}, &Fitted::score);
+      if (best == fits.end() || !best->fit.finite) return;
       // What stands by less than a name needs is no name.
-      if (best->score + thresholds_.name_odds <= found_.best.score) return;
+      if (small.empty() && best->score + thresholds_.name_odds <= found_.best.score) return;
       found_.best = *best;
     }
   }
 
-  /// For each effect: leave it out, scan, fit the best in its place.
+  /// For each of several effects: leave it out, scan, fit in its place what promises about as much.
   void swap() {
-    for (std::size_t e = 0; e < found_.best.fit.hypothesis.model.effects.size(); ++e) {
-      std::vector<Fitted> fits(found_.best.fit.hypothesis.model.effects.size());
-      const Fitted rest = without(found_.best, e, fits);
-      fitted_.push_back(rest);
-      if (!rest.fit.finite) continue;
-      std::vector<Proposal> proposed = proposals(rest);
-      std::erase_if(proposed, [](const Proposal& proposal) { return proposal.added.size() > 1; });
-      for (const Fitted& other : fit_all(rest, proposed)) {
+    const std::size_t count = effects().size();
+    if (count < 2) return;
+    expect_rounds(static_cast<double>(count));
+    for (std::size_t e = 0; e < effects().size(); ++e) {
+      const Fitted rest = models_.fit_all({without(found_.best, e)}).front();
+      if (!rest.fit.finite || !goes_on()) continue;
+      const model::ActiveEffect active = effects()[e];
+      std::vector<Proposal> proposed = proposals(rest, thresholds_.score_worth, false);
+      std::erase_if(proposed, [&](const Proposal& proposal) { return proposal.added.front().effect == active.effect; });
+      for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score)) {
         if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
       }
     }
   }
 
   void judge_effects() {
-    const auto& effects = found_.best.fit.hypothesis.model.effects;
-    if (effects.empty()) return;
+    if (effects().empty()) return;
     const Seen seen = see(problem_, found_.best.fit, threads_);
-    double sum = 0.0;
-    std::map<std::vector<std::string>, double> of_set;  // the best of each set of names
-    for (const Fitted& fitted : fitted_) {
-      const auto [place, fresh] = of_set.try_emplace(fitted.names, fitted.score);
-      if (!fresh) place->second = std::max(place->second, fitted.score);
-    }
-    for (const auto& [names, score] : of_set) sum += std::exp(score - found_.best.score);
-    for (std::size_t e = 0; e < effects.size(); ++e) {
-      const std::string name{effects[e].effect->name()};
+    for (std::size_t e = 0; e < effects().size(); ++e) {
       found_.size.push_back(size_of_effect(problem_, seen, e));
-      double with = 0.0, rest = -1e300, rival = -1e300;
-      std::string rival_name;
-      std::vector<std::string> others = found_.best.names;
-      others.erase(std::ranges::find(others, name));
-      for (const auto& [names, score] : of_set) {
-        const bool holds = std::ranges::find(names, name) != names.end();
-        if (holds) with += std::exp(score - found_.best.score);
-        if (names == others) rest = score;
-        if (holds || names.size() != found_.best.names.size() || score <= rival) continue;
-        rival = score;
-        for (const std::string& other : names) {
-          if (std::ranges::find(found_.best.names, other) == found_.best.names.end()) rival_name = other;
-        }
-      }
-      found_.probability.push_back(with / sum);
-      found_.odds.push_back(rest > -1e299 ? found_.best.score - rest : found_.best.score - found_.base.score);
-      found_.rival.push_back(rival_name);
+      const Standing standing =
+          models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()));
+      found_.probability.push_back(standing.probability);
+      found_.odds.push_back(standing.odds);
+      found_.rival.push_back(standing.rival);
     }
   }
 
   void note(const Promise& promise) {
-    const Law& law = laws_[promise.law];
-    auto [place, fresh] = noted_.try_emplace(law.name, promise);
+    auto [place, fresh] = noted_.try_emplace(laws_[promise.law].name, promise);
     if (!fresh && promise.score > place->second.score) place->second = promise;
+    auto [of_form, new_form] = promised_.try_emplace(promise.law, promise.score);
+    if (!new_form) of_form->second = std::max(of_form->second, promise.score);
+  }
+
+  /// By its best fit: beside all that was found it lacks odds, size or numbers of its own; in place of something that
+  /// was found it is less probable.
+  [[nodiscard]] Refusal refusal(const std::string& name, double promised) const {
+    const Fitted* best = models_.best_with(name);
+    if (best == nullptr) return {Rule::kScore, promised, thresholds_.score_worth};
+    const double odds = best->score - found_.best.score;
+    if (!std::ranges::includes(best->names, found_.best.names))
+      return {Rule::kProbability, 1.0 / (1.0 + std::exp(-odds)), thresholds_.name_probability};
+    if (odds < thresholds_.name_odds) return {Rule::kOdds, odds, thresholds_.name_odds};
+    const auto failed = failed_.find(name);
+    return failed != failed_.end() ? failed->second : Refusal{Rule::kOdds, odds, thresholds_.name_odds};
   }
 
   void list_refused() {
     for (const auto& [name, promise] : noted_) {
       if (std::ranges::find(found_.best.names, name) != found_.best.names.end()) continue;
       Refused refused{.name = name, .form = laws_[promise.law].form, .promised = promise.score};
-      const Fitted* best = nullptr;
-      for (const Fitted& fitted : fitted_) {
-        if (std::ranges::find(fitted.names, name) == fitted.names.end()) continue;
-        if (best == nullptr || fitted.score > best->score) best = &fitted;
-      }
-      if (best == nullptr) {
-        refused.refusals.push_back({Rule::kScore, promise.score, thresholds_.score_worth});
-      } else if (best->score < found_.base.score + thresholds_.name_odds) {
-        refused.refusals.push_back({Rule::kOdds, best->score - found_.base.score, thresholds_.name_odds});
-      } else {
-        refused.refusals.push_back({Rule::kProbability, std::exp(std::min(0.0, best->score - found_.best.score)),
-                                    thresholds_.name_probability});
-      }
+      refused.refusals.push_back(refusal(name, promise.score));
       found_.refused.push_back(std::move(refused));
     }
     std::ranges::sort(found_.refused, std::greater{}, &Refused::promised);
   }
+
+  static constexpr double kDoubtful = 5.0;  // times a name's odds: a guess of less is asked of a fit
 
   const likelihood::Problem& problem_;
   const model::Scene& scene_;
@@ -326,32 +365,19 @@ class Search {
   const Thresholds& thresholds_;
   int threads_;
   const Progress& progress_;
+  const Deadline& deadline_;
+  FittedModels models_;
   Found found_;
-  std::vector<Fitted> fitted_;
   std::map<std::string, Promise> noted_;
+  std::map<std::size_t, double> promised_;  // by law, in the last look
+  std::map<std::string, Refusal> failed_;   // what evidence alone would have named
 };
 
 }  // namespace
 
-double log_prior_of_set(const std::vector<model::ActiveEffect>& effects, const std::vector<Law>& laws) {
-  std::map<std::string, int> forms;
-  for (const Law& law : laws) forms[law.name] = law.forms;
-  const std::size_t n = effects.size();
-  double log_prior = std::log(kCountPrior[std::min(n, kCountPrior.size() - 1)]);
-  // One of (names over n) sets.
-  for (std::size_t k = 0; k < n; ++k)
-    log_prior -= std::log(std::max(1.0, static_cast<double>(forms.size() - std::min(k, forms.size() - 1))) /
-                          static_cast<double>(k + 1));
-  for (const model::ActiveEffect& active : effects) {
-    const auto found = forms.find(std::string(active.effect->name()));
-    log_prior -= std::log(static_cast<double>(found != forms.end() ? found->second : 1));
-  }
-  return log_prior;
-}
-
 Found search(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
-             const Thresholds& thresholds, int threads, const Progress& progress) {
-  return Search{problem, scene, without, thresholds, threads, progress}.run();
+             const Thresholds& thresholds, int threads, const Progress& progress, const Deadline& deadline) {
+  return Search{problem, scene, without, thresholds, threads, progress, deadline}.run();
 }
 
 }  // namespace fathom::inference

@@ -1,25 +1,20 @@
 // The search: scan, fit what promises most, take the best, drop and swap, until nothing of practical size is left.
 #pragma once
 
-#include <functional>
 #include <optional>
 
+#include "common/base/deadline.hpp"
+#include "common/inference/fitted_models.hpp"
 #include "common/inference/free_force.hpp"
 #include "common/inference/verdict.hpp"
 
 namespace fathom::inference {
 
-using Progress = std::function<void(const std::string&, double)>;
-
-/// A set of effects that was fitted in full.
-struct Fitted {
-  likelihood::Fit fit;
-  std::vector<std::string> names;  ///< of its effects, sorted: what a posterior is about
-  double score{};                  ///< log evidence and log prior of the set
-};
-
-/// Log prior of a set: of their number, and uniform over sets and over the forms of each.
-[[nodiscard]] double log_prior_of_set(const std::vector<model::ActiveEffect>& effects, const std::vector<Law>& laws);
+/// What the work tells of itself, with guessed costs in fits of one candidate.
+constexpr Step kBaseFit{"base fit", "fitting the base model", 3.0};
+constexpr Step kScan{"scans", "asking every effect", 2.0};
+constexpr Step kFreeForceFit{"free force", "looking for a force that no list holds", 5.0};
+constexpr Step kHorizonFit{"horizon", "numbers that predict ten seconds", 4.0};
 
 /// Why a candidate was not taken, at its best.
 struct Refused {
@@ -37,10 +32,11 @@ struct Found {
   std::vector<Refused> refused;
   std::optional<FreeForceFound> free_force;
   std::size_t fits{};
+  bool cut_short{};  ///< the time was over before all was asked
 };
 
 [[nodiscard]] Found search(const likelihood::Problem& problem, const model::Scene& scene,
                            const std::vector<std::string>& without, const Thresholds& thresholds, int threads,
-                           const Progress& progress);
+                           const Progress& progress, const Deadline& deadline = {});
 
 }  // namespace fathom::inference

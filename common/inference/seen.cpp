@@ -78,14 +78,13 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
 
 double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect) {
   // The model without it, with what it adds as a column.
-  Seen without = seen;
-  const model::ActiveEffect active = seen.fit.hypothesis.model.effects[effect];
-  without.fit.hypothesis.model.effects.erase(without.fit.hypothesis.model.effects.begin() +
-                                             static_cast<std::ptrdiff_t>(effect));
+  likelihood::Hypothesis without = seen.fit.hypothesis;
+  const model::ActiveEffect active = without.model.effects[effect];
+  without.model.effects.erase(without.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
   std::vector<Eigen::MatrixXd> accelerations;
   double shown_square = 0.0, moved_square = 0.0;
   for (std::size_t r = 0; r < problem.runs.size(); ++r) {
-    EffectColumns columns{problem, without, r};
+    EffectColumns columns{problem, seen, without, r};
     columns.add(active, active.theta);
     const auto blocks = problem.runs[r].blocks().size();
     const int axes = seen.reference[r].axes;

@@ -6,10 +6,9 @@ namespace fathom::inference {
 
 struct Thresholds {
   double smallest_size{
-      0.01};  ///< of an effect or a free force, over the applied acceleration on its worst axis: timing of
-              ///< thrust edges inside a sample is worth .003, complete models left at most .009
-  double promised_size{0.7};  ///< of the smallest: what promises less is not fitted
-  double name_odds{10.0};     ///< nats over the model without it: numbers and noise are fitted in turn, exact to a few
+      0.01};               ///< of an effect or a free force, over the applied acceleration on its worst axis: timing of
+                           ///< thrust edges inside a sample is worth .003, complete models left at most .009
+  double name_odds{10.0};  ///< nats over the model without it: numbers and noise are fitted in turn, exact to a few
   double name_probability{0.9};  ///< against other names
   double free_force_odds{5.0};   ///< nats of the free force over the best listed model, after its own prices
   double pair_gain{8.0};         ///< nats that a pair must promise beyond its best single to be fitted
@@ -25,6 +24,9 @@ struct Thresholds {
   double swallowing_memory{2.0};  ///< s: and its memory, above which it may have swallowed what is slow
   double slow_memory{10.0};       ///< s: a random force that remembers for longer, above the smallest size, is no noise
   double following{0.0};          ///< least share of an axis' acceleration that the model must explain
+  double no_skill{1e-3};          ///< p-value over windows of a model that is no worse than "nothing changes"
+  double idle_input{3.0};         ///< Student's t below which an axis' thrust does not act on it
+  double foreign_unit{5.0};       ///< fitted over expected inertia, or its inverse: thrust in another unit
   double absurd{10.0};            ///< times its prior's mean and sigma together: a number that nothing can have
   double shortest{20.0};          ///< s of data to judge at all: ten blocks for each number of an ordinary model
   double disagreement{5.0};       ///< median over numbers of the difference of both scores, in standard deviations

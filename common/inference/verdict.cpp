@@ -34,12 +34,22 @@ std::string_view word(Cause cause) {
       return "slow_random_force";
     case Cause::kNotFollowing:
       return "not_following";
+    case Cause::kNoSkill:
+      return "no_skill";
+    case Cause::kWiring:
+      return "wiring";
+    case Cause::kForceUnit:
+      return "force_unit";
+    case Cause::kInputIdle:
+      return "input_idle";
     case Cause::kAbsurdNumber:
       return "absurd_number";
     case Cause::kTooShort:
       return "too_short";
     case Cause::kNotFinite:
       return "not_finite";
+    case Cause::kOutOfTime:
+      return "out_of_time";
     case Cause::kScoresDisagree:
       return "scores_disagree";
   }
@@ -54,8 +64,6 @@ std::string_view word(Rule rule) {
       return "size";
     case Rule::kProbability:
       return "probability";
-    case Rule::kFit:
-      return "fit";
     case Rule::kBound:
       return "bound";
     case Rule::kScore:

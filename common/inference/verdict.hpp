@@ -24,18 +24,22 @@ enum class Cause {
   kFreeForce,        ///< log odds of a force that no list holds
   kSlowRandomForce,  ///< memory [s] of a random force of practical size: no noise
   kNotFollowing,     ///< share of an axis' acceleration that the model explains
-  kAbsurdNumber,     ///< a base number on its bound, over its prior's size
-  kTooShort,         ///< s of data
-  kNotFinite,        ///< the filter diverged
-  kScoresDisagree    ///< standard deviations between the numbers of the one-step and of the multi-horizon score
+  kNoSkill,          ///< 1 - (error / error where nothing changes)^2 of an axis at 5 s, on runs that no fit has seen
+  kWiring,         ///< share of the error that thrusters exchanged or reversed take away: likeliest reason of no_model
+  kForceUnit,      ///< fitted inertias over those that the vehicle's file expects, median: another one
+  kInputIdle,      ///< Student's t of an axis' thrust in an equation of its own: another one
+  kAbsurdNumber,   ///< a base number on its bound, over its prior's size
+  kTooShort,       ///< s of data
+  kNotFinite,      ///< the filter diverged
+  kOutOfTime,      ///< the search was cut short: what it did not ask may be there too
+  kScoresDisagree  ///< standard deviations between the numbers of the one-step and of the multi-horizon score
 };
 
 enum class Rule {
   kOdds,         ///< log odds over the model without it
   kSize,         ///< share of the applied acceleration
   kProbability,  ///< against other names
-  kFit,          ///< the full fit did not reach what the score test promised
-  kBound,        ///< numbers on a bound that nothing can have
+  kBound,        ///< odds of numbers that stopped on a limit which says nothing
   kScore         ///< promised too little to be fitted
 };
 

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/learning/formula.hpp"
 #include "common/learning/wording.hpp"
+#include "common/model/rollout.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -200,43 +202,55 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
 
   const Fit& base = conclusion.found.best.fit;
   const model::Visited visited = visited_by(problem, free->fit.hypothesis);
-  const Judged judged = leave_out_in_turn(problem, of, base, free->fit, visited, settings.leaving, threads);
-  const Ratio whole = ratio_of(judged.whole), carried = ratio_of(judged.carried);
-  given.held_out = whole.value;
-  given.held_out_carried = carried.value;
-  given.windows = whole.windows;
-  given.shortened = judged.whole.shortened;
-  if (whole.windows < limits.fewest_windows) {
-    given.refused = too_little("predictions where it was not fitted", whole.windows, "at least", limits.fewest_windows);
-  } else if (!passes(whole, limits.error, limits)) {
-    given.refused = too_little("error where it was not fitted, over the model's without it", whole.value,
-                               "surely below", limits.error);
-  }
-  if (!given.refused.empty()) return learned;
-
-  Fit chosen = reported(problem, of, free->fit, visited, settings.leaving, threads);
-  const auto here = made(chosen, chosen.hypothesis.force, visited);
-  const Fit& plain = conclusion.reported.finite ? conclusion.reported : base;
-  const Ratio at_home = error_over(as_model(plain.hypothesis, problem.input_step),
-                                   as_model(chosen.hypothesis, problem.input_step, here.get()), of, settings.leaving);
-  if (at_home.value > limits.error) {
-    given.refused = too_little("error over the best numbers' without it", at_home.value, "at most", limits.error);
-    return learned;
-  }
-  given.adopted = true;
-  learned.fit = std::move(chosen);
-  learned.here = here;
-  const model::FreeForce lasting = model::without_time(learned.fit.hypothesis.force);
-  given.carried = !lasting.empty() && passes(carried, limits.carried, limits);
-  if (given.carried) learned.elsewhere = made(learned.fit, lasting, visited);
-  describe(free->fit, visited, given);
+  const auto adopt = [&](const Fit& with) {
+    given.refused.clear();
+    const Judged judged = leave_out_in_turn(problem, of, base, with, visited, settings.leaving, threads);
+    const Ratio whole = ratio_of(judged.whole), carried = ratio_of(judged.carried);
+    given.held_out = whole.value;
+    given.held_out_carried = carried.value;
+    given.windows = whole.windows;
+    given.shortened = judged.whole.shortened;
+    if (whole.windows < limits.fewest_windows) {
+      given.refused =
+          too_little("predictions where it was not fitted", whole.windows, "at least", limits.fewest_windows);
+    } else if (!passes(whole, limits.error, limits)) {
+      given.refused = too_little("error where it was not fitted, over the model's without it", whole.value,
+                                 "surely below", limits.error);
+    }
+    if (!given.refused.empty()) return false;
+    Fit chosen = reported(problem, of, with, visited, settings.leaving, threads);
+    const auto here = made(chosen, chosen.hypothesis.force, visited);
+    const Fit& plain = conclusion.reported.finite ? conclusion.reported : base;
+    const Ratio at_home = error_over(as_model(plain.hypothesis, problem.input_step),
+                                     as_model(chosen.hypothesis, problem.input_step, here.get()), of, settings.leaving);
+    if (at_home.value > limits.error) {
+      given.refused = too_little("error over the best numbers' without it", at_home.value, "at most", limits.error);
+      return false;
+    }
+    given.adopted = true;
+    learned.fit = std::move(chosen);
+    learned.here = here;
+    const model::FreeForce lasting = model::without_time(learned.fit.hypothesis.force);
+    given.carried = !lasting.empty() && passes(carried, limits.carried, limits);
+    if (given.carried) learned.elsewhere = made(learned.fit, lasting, visited);
+    return true;
+  };
+  // A law in closed form first, where it is as likely: it has fewer numbers to err with.
+  std::optional<FormulaFound> formula =
+      find_formula(problem, base, model::scene_of(*problem.vehicle, of), *free, threads);
+  if (formula && formula->over_learned < -limits.form) formula.reset();
+  if (formula && !adopt(formula->fit)) formula.reset();
+  if (!formula && !adopt(free->fit)) return learned;
+  if (formula) given.formula = given_of(*formula);
+  const Fit& with = formula ? formula->fit : free->fit;
+  describe(with, visited, given);
   given.input_is_wrench = of.front().input_is_wrench;
   for (std::size_t k = 0; k < given.terms.size(); ++k) given.terms[k].weight = learned.fit.hypothesis.force.weights[k];
   for (const inference::RandomForce& random : conclusion.random) {
     const auto i = static_cast<std::size_t>(std::ranges::find(problem.axes, random.axis) - problem.axes.begin());
-    if (i >= free->fit.noise.size() || !(random.sigma > 0.0)) continue;
+    if (i >= with.noise.size() || !(random.sigma > 0.0)) continue;
     given.left.push_back({model::kAxisNames[static_cast<std::size_t>(random.axis)],
-                          random.share * free->fit.noise[i][likelihood::kForce] / random.sigma, random.share});
+                          random.share * with.noise[i][likelihood::kForce] / random.sigma, random.share});
   }
   given.words = correction_sentence(*free, given);
   return learned;

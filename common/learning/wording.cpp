@@ -28,7 +28,8 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
                              "A force that no listed effect explains, %.1f %% of the applied force in %s, was learned "
                              "and added to the model. It goes with ",
                              100.0 * given.size, model::kAxisNames[static_cast<std::size_t>(found.size.axis)]) +
-                         with + ". It is a correction with arguments, not a cause.";
+                         with + "." + (given.formula ? " " + given.formula->words : "") +
+                         " It is a correction with arguments, not a cause.";
   const double fall = 100.0 * (1.0 - given.held_out);
   sentence += text(" Where its weights were not fitted, the open-loop error is %.0f %% lower (%d predictions).", fall,
                    given.windows);

@@ -126,6 +126,7 @@ PassResult pass(const Problem& problem, const Hypothesis& hypothesis, const std:
     sum.finite = sum.finite && result.finite;
     sum.information += result.information;
     sum.gradient += result.gradient;
+    if (options.per_run) sum.per_run.push_back({result.information, result.gradient});
     if (options.reduced) sum.reduced.push_back(std::move(result.reduced.front()));
   }
   sum.finite = sum.finite && std::isfinite(sum.log_likelihood);

@@ -75,8 +75,15 @@ using Reference = std::vector<RunReference>;
 struct PassOptions {
   bool derivatives{true};
   bool reduced{false};
+  bool per_run{false};
   std::optional<Horizon> horizon{};
   int threads{1};  ///< over runs
+};
+
+/// Of one run: without the prior.
+struct RunInformation {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
 };
 
 struct PassResult {
@@ -86,6 +93,7 @@ struct PassResult {
   Eigen::MatrixXd information;                                  ///< of the numbers, without the prior
   Eigen::VectorXd gradient;                                     ///< of the log likelihood
   std::vector<std::vector<std::vector<ReducedBlock>>> reduced;  ///< per run, axis, block
+  std::vector<RunInformation> per_run;
 };
 
 [[nodiscard]] PassResult pass(const Problem& problem, const Hypothesis& hypothesis, const std::vector<Number>& numbers,

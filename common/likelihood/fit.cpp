@@ -14,8 +14,9 @@ namespace fathom::likelihood {
 namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
-constexpr int kTrials = 6;          // of damping, for one step
-constexpr double kTailGain = 10.0;  // nats that a tail must be worth over the Gaussian: it costs what it cannot know
+constexpr int kTrials = 6;           // of damping, for one step
+constexpr double kMostFactor = 2.0;  // of an inertia, in one step
+constexpr double kTailGain = 10.0;   // nats that a tail must be worth over the Gaussian: it costs what it cannot know
 
 double noise_density(const Problem& problem, const Noise& noise) {
   double sum = 0.0;
@@ -143,6 +144,10 @@ class Fitting {
       if (promised < 0.1 * options_.enough) return 0.0;
       Hypothesis moved = hypothesis_;
       set_values(moved, numbers_, x + step);
+      for (Eigen::Index j = 0; j < x.size(); ++j) {  // an inertia near zero makes all else look right: not in one step
+        const Number& number = numbers_[static_cast<std::size_t>(j)];
+        if (number.low > 0.0) at(moved, number) = std::clamp(x[j] + step[j], x[j] / kMostFactor, x[j] * kMostFactor);
+      }
       clamp(moved);
       PassResult there = look(moved, noise_);
       const double value = objective(there, moved, noise_);

@@ -10,7 +10,8 @@ namespace fathom::likelihood {
 namespace {
 
 constexpr int kLanes = 8;  // filters run side by side: the numbers themselves and one moved in each, or trial steps
-using Lanes = Eigen::Array<double, kLanes, 1>;
+/// One number of each filter: arithmetic on it runs through the processor's vectors.
+typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
 using LaneLogs = std::array<NoiseLogs, kLanes>;
 using Information = Eigen::Matrix<double, kNoiseNumbers, kNoiseNumbers>;
 
@@ -18,33 +19,79 @@ constexpr double kStep = 1e-3;                                // of a logarithm,
 constexpr double kLongest = 1.5;                              // of a logarithm, in one step
 constexpr double kEnough = 0.02;                              // nats: what one iteration must gain
 constexpr double kMemory = 1.0, kFloor = 0.05, kMost = 25.0;  // FollowedScale's
+constexpr int kTogether = 8;  // factors of one logarithm: variances of 1e-30 do not yet underflow
 
 struct Scored {
-  Lanes log_likelihood{Lanes::Zero()};
+  std::array<double, kLanes> log_likelihood{};
   Information information{Information::Zero()};
 };
 
-/// The filter of filter_pass.hpp for one axis. `information`: expected, from lane 0 and the six lanes behind it.
+/// Sum of logarithms as logarithms of products.
+class LogSum {
+ public:
+  void times(const Lanes& factor, std::array<double, kLanes>& sum, double weight) {
+    product_ *= factor;
+    if (++count_ < kTogether) return;
+    flush(sum, weight);
+  }
+  void flush(std::array<double, kLanes>& sum, double weight) {
+    for (std::size_t l = 0; l < kLanes; ++l) sum[l] += weight * std::log(product_[l]);
+    product_ = 1.0 - Lanes{};
+    count_ = 0;
+  }
+
+ private:
+  Lanes product_{1.0 - Lanes{}};
+  int count_{};
+};
+
+/// What the noise numbers come to over a block, per lane.
+struct LaneNoise {
+  Lanes force{}, memory{}, white{}, sensor{}, colour{}, rho{}, rho_c{};
+  LaneNoise(const LaneLogs& logs, double dt) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const auto of = [&](NoiseNumber number) { return std::exp(logs[l][number]); };
+      force[l] = of(kForce) * of(kForce);
+      memory[l] = of(kForceMemory);
+      white[l] = of(kWhiteForce) * of(kWhiteForce) * dt;
+      sensor[l] = of(kSensor) * of(kSensor);
+      colour[l] = of(kColoured) * of(kColoured);
+      rho[l] = std::exp(-dt / memory[l]);
+      rho_c[l] = std::exp(-dt / of(kColourMemory));
+    }
+  }
+};
+
+/// Expected information of the numbers, from lane 0 and the six lanes behind it.
+void add_information(const Lanes& e, const Lanes& S, double of_location, double of_scale, Information& information) {
+  std::array<double, kNoiseNumbers> de{}, dS{};
+  for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
+    de[j] = (e[j + 1] - e[0]) / kStep;
+    dS[j] = (S[j + 1] - S[0]) / kStep;
+  }
+  for (std::size_t i = 0; i < kNoiseNumbers; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      information(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
+          de[i] * de[j] * of_location + dS[i] * dS[j] * of_scale;
+}
+
+/// The filter of filter_pass.hpp for one axis.
 void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, const Tail& tail, bool with_information,
                Scored& scored) {
   if (blocks.empty()) return;
-  const auto lane = [&](NoiseNumber number) {
-    Lanes values;
-    for (int l = 0; l < kLanes; ++l) values[l] = std::exp(logs[static_cast<std::size_t>(l)][number]);
-    return values;
-  };
   const double dt = blocks.front().dt;
-  const Lanes force = lane(kForce).square(), memory = lane(kForceMemory), colour = lane(kColoured).square();
-  const Lanes rho = (-dt / memory).exp(), rho_c = (-dt / lane(kColourMemory)).exp();
-  const Lanes mean_force = (1.0 - rho) * memory / dt, fresh = force * (1.0 - rho.square());
-  const Lanes own_white = lane(kWhiteForce).square() * dt;
-  const Lanes Q_c = colour * (1.0 - rho_c.square()), R = lane(kSensor).square();
-  Lanes nn = 4.0 * R + colour, nd = Lanes::Zero(), nc = -colour, dd = force, dc = nd, cc = colour;
-  Lanes n = nd, d = nd, c = nd, hv = Lanes::Ones();
+  const LaneNoise noise{logs, dt};
+  const Lanes rho = noise.rho, rho_c = noise.rho_c, R = noise.sensor;
+  const Lanes mean_force = (1.0 - rho) * noise.memory / dt, fresh = noise.force * (1.0 - rho * rho);
+  const Lanes Q_c = noise.colour * (1.0 - rho_c * rho_c);
+  Lanes nn = 4.0 * R + noise.colour, nd{}, nc = -noise.colour, dd = noise.force, dc{}, cc = noise.colour;
+  Lanes n{}, d{}, c{}, followed = 1.0 - Lanes{}, squares{};
   const double keep = std::exp(-dt / kMemory);
   const double freedom = tail.freedom;
   const double gain_location = freedom > 0.0 ? (freedom + 1.0) / (freedom + 3.0) : 1.0;
   const double gain_scale = 0.5 * (freedom > 0.0 ? freedom / (freedom + 3.0) : 1.0);
+  Lanes least = nn;  // a filter whose variance is not positive has failed
+  LogSum of_variance, of_tail;
   for (const ReducedBlock& block : blocks) {
     const double F = block.F, lag = block.lag, late = 1.0 - block.lag;
     const Lanes g = block.G * mean_force;
@@ -54,11 +101,11 @@ void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, co
     nn = F * T_nn + g * T_nd;
     nd = rho * T_nd;
     nc = rho_c * T_nc;
-    dd = rho.square() * dd;
+    dd = rho * rho * dd;
     dc = rho * rho_c * dc;
-    cc = rho_c.square() * cc;
+    cc = rho_c * rho_c * cc;
     const Lanes D_n = nn + nc, D_d = nd + dc, D_c = nc + cc;
-    const Lanes white = own_white + block.others;
+    const Lanes white = noise.white + block.others;
     nn += white + fresh * (dt * dt / 3.0);
     nd += (0.5 * dt) * fresh;
     dd += fresh;
@@ -67,33 +114,23 @@ void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, co
     d *= rho;
     c *= rho_c;
     if (block.n <= 0.0) continue;
-    const Lanes S = late * late * (D_n + D_c) + lag * lag * Z + 2.0 * late * lag * (C_n + C_c) +
+    const Lanes S = late * late * (D_n + D_c) + lag * lag * Z + (2.0 * late * lag) * (C_n + C_c) +
                     block.walk * (white + Q_c) + (block.force_mean * dt * dt) * fresh + R / block.n;
-    const Lanes e = block.z - lag * before - late * (n + c), inverse = 1.0 / S, square = e.square() * inverse;
+    const Lanes e = block.z - lag * before - late * (n + c), inverse = 1.0 / S, square = e * e * inverse;
+    least = S < least ? S : least;
     if (block.scored) {
-      const Lanes scale = tail.follows ? Lanes{kFloor + (1.0 - kFloor) * hv} : Lanes{Lanes::Ones()};
+      const Lanes scale = tail.follows ? kFloor + (1.0 - kFloor) * followed : 1.0 - Lanes{};
+      of_variance.times(S * scale, scored.log_likelihood, -0.5);
       if (freedom > 0.0) {
-        scored.log_likelihood -=
-            0.5 * (freedom + 1.0) * (1.0 + square / (freedom * scale)).log() + 0.5 * (S * scale).log();
+        of_tail.times(1.0 + square / (freedom * scale), scored.log_likelihood, -0.5 * (freedom + 1.0));
       } else {
-        scored.log_likelihood -= 0.5 * (square / scale + (S * scale).log());
+        squares += square / scale;
       }
-      if (with_information) {
-        std::array<double, kNoiseNumbers> de{}, dS{};
-        for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
-          const auto l = static_cast<Eigen::Index>(j) + 1;
-          de[j] = (e[l] - e[0]) / kStep;
-          dS[j] = (S[l] - S[0]) / kStep;
-        }
-        const double of_location = gain_location * inverse[0] / scale[0],
-                     of_scale = gain_scale * inverse[0] * inverse[0];
-        for (std::size_t i = 0; i < kNoiseNumbers; ++i)
-          for (std::size_t j = 0; j <= i; ++j)
-            scored.information(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
-                de[i] * de[j] * of_location + dS[i] * dS[j] * of_scale;
-      }
+      if (with_information)
+        add_information(e, S, gain_location * inverse[0] / scale[0], gain_scale * inverse[0] * inverse[0],
+                        scored.information);
     }
-    if (tail.follows) hv = keep * hv + (1.0 - keep) * square.min(kMost);
+    if (tail.follows) followed = keep * followed + (1.0 - keep) * (square < kMost ? square : kMost + Lanes{});
     const Lanes K_n = (late * D_n + lag * C_n + late * white + (block.force_end * dt * dt) * fresh) * inverse,
                 K_d = (late * D_d + lag * C_d + (block.force_walk * dt) * fresh) * inverse,
                 K_c = (late * D_c + lag * C_c + late * Q_c) * inverse;
@@ -106,6 +143,12 @@ void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, co
     dd -= K_d * K_d * S;
     dc -= K_d * K_c * S;
     cc -= K_c * K_c * S;
+  }
+  of_variance.flush(scored.log_likelihood, -0.5);
+  of_tail.flush(scored.log_likelihood, -0.5 * (freedom + 1.0));
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    scored.log_likelihood[l] -= 0.5 * squares[l];
+    if (!(least[l] > 0.0)) scored.log_likelihood[l] = -std::numeric_limits<double>::infinity();
   }
 }
 
@@ -145,9 +188,10 @@ NoiseFit fit_noise(std::span<const std::vector<ReducedBlock>* const> runs, const
     for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       const double weight = 1.0 / (prior.sigma[j] * prior.sigma[j]);
-      gradient[i] = (here.log_likelihood[i + 1] - here.log_likelihood[0]) / kStep - weight * (at[j] - prior.mean[j]);
+      gradient[i] = (here.log_likelihood[j + 1] - here.log_likelihood[0]) / kStep - weight * (at[j] - prior.mean[j]);
       information(i, i) += weight;
     }
+    if (0.5 * gradient.dot(information.ldlt().solve(gradient)) < 0.1 * kEnough) break;
     // Trial steps, each with its own damping, all in one pass.
     LaneLogs trials;
     for (int l = 0; l < kLanes; ++l) {
@@ -165,7 +209,7 @@ NoiseFit fit_noise(std::span<const std::vector<ReducedBlock>* const> runs, const
     NoiseLogs found = at;
     for (int l = 0; l < kLanes; ++l) {
       const NoiseLogs& trial = trials[static_cast<std::size_t>(l)];
-      const double value = or_never(tried.log_likelihood[l]) + prior.log_density(trial);
+      const double value = or_never(tried.log_likelihood[static_cast<std::size_t>(l)]) + prior.log_density(trial);
       if (value <= best) continue;
       best = value;
       found = trial;

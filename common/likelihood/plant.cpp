@@ -1,5 +1,6 @@
 #include "common/likelihood/plant.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -25,8 +26,9 @@ Plant::Plant(const Hypothesis& hypothesis, const std::vector<Number>& numbers, c
       run_{run},
       run_index_{run_index},
       memory_{model_, with_columns ? numbers : std::vector<Number>{}},
-      feels_{has_stage(model_, Stage::kHull)},
       slope_of_(numbers.size(), -1) {
+  for (const model::ActiveEffect& active : model_.effects) stages_.push_back(stage_of(active));
+  feels_ = std::ranges::find(stages_, Stage::kHull) != stages_.end();
   free_moves_ = std::ranges::any_of(free_.features, [](const Feature& f) { return f.moves_with_velocity(); });
   thrust_forces(model_, run_, own_.command_offset, forces_);
   mean_over_blocks(forces_, mean_);
@@ -74,7 +76,7 @@ void Plant::begin(const Vector6d& nu) {
   motion_.nu = nu;
   motion_.v_WF_B.setZero();
   if (!memory_.empty()) {
-    feel_hull(model_, motion_);
+    feel();
     memory_.begin(motion_);
   }
   for (auto& slow : features_.slow_nu) slow = nu;
@@ -113,6 +115,13 @@ void Plant::at_middle(std::size_t block) {
   show_features();
 }
 
+void Plant::feel() {
+  for (std::size_t e = 0; e < stages_.size(); ++e) {
+    const model::ActiveEffect& active = model_.effects[e];
+    if (stages_[e] == Stage::kHull) active.effect->feel(motion_, active.theta, active.variant, {});
+  }
+}
+
 Vector6d Plant::outside_wrench(const Vector6d& nu) {
   Vector6d wrench = memory_.empty() ? Vector6d{Vector6d::Zero()} : memory_.wrench();
   if (!own_.world_force.isZero(0.0)) wrench.head<3>() += motion_.R_WB.transpose() * own_.world_force;
@@ -129,21 +138,29 @@ Vector6d Plant::acceleration(const Vector6d& nu) {
   motion_.w_memory = outside_wrench(nu);
   if (feels_) {
     motion_.force = force_;
-    feel_hull(model_, motion_);
+    feel();
   }
   return model::acceleration(model_, motion_);
 }
 
-Vector6d Plant::acceleration_of(const model::Model& other, const Vector6d& nu) {
-  motion_.nu = nu;
-  motion_.v_WF_B.setZero();
-  motion_.a_WF_B.setZero();
-  motion_.w_memory = outside_wrench(nu);
-  motion_.force = force_;
-  feel_hull(other, motion_);
-  const Vector6d nu_dot = model::acceleration(other, motion_);
-  motion_.force = force_;
-  return nu_dot;
+Vector6d Plant::added_by(const model::ActiveEffect& effect, const Vector6d& nu_dot, const Matrix6d& inverse) {
+  const Eigen::Vector3d v = motion_.v_WF_B, a = motion_.a_WF_B;
+  const model::ActuatorForces force = motion_.force;
+  effect.effect->feel(motion_, effect.theta, effect.variant, {});
+  Vector6d there = nu_dot;
+  if (motion_.v_WF_B != v || motion_.a_WF_B != a || motion_.force != force)
+    there = model::acceleration(model_, motion_);
+  model::Load load;
+  load.drag = model::hull_drag(model_, motion_.nu_r());
+  effect.effect->load(motion_, effect.theta, effect.variant, load);
+  motion_.v_WF_B = v;
+  motion_.a_WF_B = a;
+  motion_.force = force;
+  if (!load.has_inertia()) return there - nu_dot + inverse * load.wrench;
+  // (M + m) x = M there + wrench, with axes that are not simulated as measured.
+  const Matrix6d m = load.inertia();
+  const Vector6d change = inverse * (load.wrench - m * (there + motion_.nu_dot_told));
+  return there - nu_dot + (Matrix6d::Identity() + inverse * m).partialPivLu().solve(change);
 }
 
 Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {
@@ -161,15 +178,17 @@ Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {
 Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
   Matrix6d inverse = Matrix6d::Zero();
   motion_.nu = nu;
+  const Vector6d remembered = outside_wrench(nu);
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
     motion_.v_WF_B.setZero();
     motion_.a_WF_B.setZero();
-    motion_.w_memory = outside_wrench(nu) + Vector6d::Unit(i);
+    motion_.w_memory = remembered + Vector6d::Unit(i);
     motion_.force = force_;
-    if (feels_) feel_hull(model_, motion_);
+    if (feels_) feel();
     inverse.col(i) = model::acceleration(model_, motion_) - nu_dot;
   }
+  motion_.w_memory = remembered;
   return inverse;
 }
 
@@ -205,7 +224,7 @@ void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_do
       case NumberKind::kEffect: {
         const auto e = static_cast<std::size_t>(number.index);
         const Vector6d* remembered = memory_.slope(j);
-        const Stage stage = stage_of(model_.effects[e]);
+        const Stage stage = stages_[e];
         if (remembered != nullptr) {
           out.col(column) = inverse * *remembered;
         } else if (stage != Stage::kHull) {
@@ -244,7 +263,7 @@ void Plant::end_block(std::size_t block, const Vector6d& nu) {
     motion_.v_WF_B.setZero();
     motion_.a_WF_B.setZero();
     motion_.w_memory.setZero();
-    feel_hull(model_, motion_);
+    feel();
     memory_.advance(motion_, here.dt);
   }
   const Vector6d tau = model_.allocation * mean_.col(static_cast<Eigen::Index>(block));

@@ -28,8 +28,9 @@ class Plant {
   void at_middle(std::size_t block);
   /// nu_dot where the plant is; zero on axes that are not simulated.
   [[nodiscard]] Vector6d acceleration(const Vector6d& nu);
-  /// The same of another model with the same thrust.
-  [[nodiscard]] Vector6d acceleration_of(const model::Model& other, const Vector6d& nu);
+  /// What one more effect on the hull would add to `nu_dot`, the acceleration that was asked for last; `inverse`: that
+  /// of the inertia there.
+  [[nodiscard]] Vector6d added_by(const model::ActiveEffect& effect, const Vector6d& nu_dot, const Matrix6d& inverse);
   /// d acceleration / d nu, at `nu` where it is `nu_dot`; columns of axes that are not simulated stay zero.
   [[nodiscard]] Matrix6d slope(const Vector6d& nu, const Vector6d& nu_dot);
   /// d acceleration / d wrench: the inverse of the inertia.
@@ -44,18 +45,18 @@ class Plant {
   [[nodiscard]] bool remembers() const { return !memory_.empty(); }
   [[nodiscard]] const model::Model& model() const { return model_; }
   [[nodiscard]] const RunData& run() const { return run_; }
+  /// Mean over every block of what is given at substeps, column after column.
+  void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
   [[nodiscard]] const Eigen::MatrixXd& mean_forces() const { return mean_; }  ///< actuators x blocks
   [[nodiscard]] const FeatureState& features() const { return features_; }
   [[nodiscard]] const model::Motion& motion() const { return motion_; }
-  /// The same place with another force of the actuators: for who asks what other thrust would do.
-  void replace_force(const Eigen::Ref<const Eigen::VectorXd>& force) { force_ = force; }
 
  private:
   void set(const Interval& interval, double t);
   /// What the free force and the learned features are functions of, of the moment that was set.
   void show_features();
   [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
-  void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
+  void feel();
 
   model::Model model_;
   FreeForce free_;
@@ -64,6 +65,7 @@ class Plant {
   const RunData& run_;
   std::size_t run_index_;
   MotionMemory memory_;
+  std::vector<Stage> stages_;            // of the model's effects
   bool feels_{};                         // some hull effect alters what is felt
   bool free_moves_{};                    // some feature goes with the velocity
   Eigen::MatrixXd forces_, mean_;        // actuators x substeps, x blocks

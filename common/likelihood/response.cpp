@@ -1,6 +1,7 @@
 #include "common/likelihood/response.hpp"
 
-#include "common/likelihood/filter_pass.hpp"
+#include "common/likelihood/gathered_rows.hpp"
+#include "common/likelihood/sensitivity.hpp"
 
 namespace fathom::likelihood {
 namespace {
@@ -24,6 +25,42 @@ struct Gains {
   }
 };
 
+/// Sums over gathered rows of responses and of the numbers' derivatives.
+class Products {
+ public:
+  Products(std::span<const std::size_t> groups, Eigen::Index numbers, Eigen::Index columns, ResponseSums& sums)
+      : groups_{groups}, of_numbers_{numbers}, of_columns_{columns}, sums_{sums} {}
+
+  template <typename Numbers, typename Columns>
+  void add(const Numbers& J, const Columns& W, double weight) {
+    of_numbers_.add(J, weight);
+    of_columns_.add(W, weight);
+    if (of_columns_.full()) flush();
+  }
+  void flush() {
+    if (of_columns_.empty()) return;
+    const auto rows = of_columns_.rows();
+    sums_.with_numbers.noalias() += of_numbers_.rows().transpose() * rows;
+    of_numbers_.clear();
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const auto first = static_cast<Eigen::Index>(groups_[g]);
+      const auto end = g + 1 < groups_.size() ? static_cast<Eigen::Index>(groups_[g + 1]) : rows.cols();
+      const auto group = rows.middleCols(first, end - first);
+      sums_.gram.block(first, first, end - first, end - first).noalias() += group.transpose() * group;
+    }
+    if (groups_.empty()) {
+      of_columns_.add_to(sums_.gram);
+    } else {
+      of_columns_.clear();
+    }
+  }
+
+ private:
+  std::span<const std::size_t> groups_;
+  GatheredRows of_numbers_, of_columns_;
+  ResponseSums& sums_;
+};
+
 template <int N>
 void respond_with(const Problem& problem, const RunReference& reference, std::size_t run, std::size_t columns,
                   std::span<const std::size_t> groups, const ColumnSource& source, ResponseSums& sums) {
@@ -34,6 +71,7 @@ void respond_with(const Problem& problem, const RunReference& reference, std::si
   typename Response<N>::Wide pushed = Response<N>::Wide::Zero(N, m), W = pushed;
   const Vector rho = reference.rho, rho_colour = reference.rho_colour;
   const Eigen::Matrix<double, N, N> H = Eigen::Matrix<double, N, N>::Identity();
+  Products products{groups, reference.numbers, m, sums};
   const auto& blocks = problem.runs[run].blocks();
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto at = static_cast<Eigen::Index>(b);
@@ -44,31 +82,18 @@ void respond_with(const Problem& problem, const RunReference& reference, std::si
     response.predict(gains.E, gains.G, gains.Gamma, rho, rho_colour, H, pushed);
     Vector lag;
     for (int i = 0; i < N; ++i) lag[i] = blocks[b].lag[problem.axes[static_cast<std::size_t>(i)]];
-    (void)response.shown(lag, H);
-    response.shown() += shown;
+    response.show(lag, H) += shown;
     if (reference.information.col(at).maxCoeff() > 0.0) {
       times<N, false>((-gains.L_inverse).eval(), response.shown(), W);
       sums.gradient.noalias() -= W.transpose().lazyProduct(reference.slope.col(at));
       for (int i = 0; i < N; ++i) {
-        const double weight = reference.information(i, at);
-        if (weight == 0.0) continue;
-        const auto row = W.row(i);
-        for (Eigen::Index j = 0; j < reference.numbers; ++j)
-          sums.with_numbers.row(j) += (weight * reference.J(N * at + i, j)) * row;
-        if (groups.empty()) {
-          sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(row.transpose(), weight);
-          continue;
-        }
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-          const auto first = static_cast<Eigen::Index>(groups[g]);
-          const auto end = g + 1 < groups.size() ? static_cast<Eigen::Index>(groups[g + 1]) : m;
-          for (Eigen::Index c = first; c < end; ++c)
-            for (Eigen::Index d = first; d <= c; ++d) sums.gram(c, d) += weight * row[c] * row[d];
-        }
+        if (reference.information(i, at) > 0.0)
+          products.add(reference.J.row(N * at + i), W.row(i), reference.information(i, at));
       }
     }
     response.update(gains.K_n, gains.K_d, gains.K_c);
   }
+  products.flush();
 }
 
 template <int N>

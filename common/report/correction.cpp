@@ -35,6 +35,10 @@ std::string factor_words(const CorrectionFactor& factor) {
   if (q == "tone_cosine") return "cos(" + number(factor.a) + " t)";
   if (q == "tone_sine") return "sin(" + number(factor.a) + " t)";
   if (q == "flow_speed") return "speed";
+  if (q == "power_odd")
+    return "sign(" + axis(kVelocities.data()) + ") |" + axis(kVelocities.data()) + "|^" + number(factor.a);
+  if (q == "power_even") return "|" + axis(kVelocities.data()) + "|^" + number(factor.a);
+  if (q == "ramp") return "time";
   return q;
 }
 
@@ -78,6 +82,15 @@ Json correction_json(const CorrectionGiven& given) {
                      {"p_low", given.visited_low},
                      {"p_high", given.visited_high}};
   json["left"] = left;
+  if (given.formula) {
+    Json numbers = Json::object();
+    for (const NamedValue& number : given.formula->numbers)
+      numbers[number.name] = {{"value", finite(number.value)}, {"std", finite(number.std)}, {"unit", number.unit}};
+    json["formula"] = {{"equation", given.formula->equation},
+                       {"numbers", numbers},
+                       {"nats_over_features", finite(given.formula->over_learned)},
+                       {"words", given.formula->words}};
+  }
   return json;
 }
 

@@ -141,6 +141,26 @@ Json causes(const std::vector<CauseGiven>& given) {
   return array;
 }
 
+Json skill(const std::vector<SkillGiven>& rows) {
+  Json array = Json::array();
+  for (const auto& row : rows) {
+    array.push_back({{"horizon_s", row.horizon_s},
+                     {"axis", row.axis},
+                     {"rmse", number_or_null(row.rmse)},
+                     {"rmse_unchanged", number_or_null(row.rmse_unchanged)},
+                     {"rmse_plain", number_or_null(row.rmse_plain)},
+                     {"over_unchanged", number_or_null(row.over_unchanged)},
+                     {"over_plain", number_or_null(row.over_plain)}});
+  }
+  return array;
+}
+
+Json explainable(const std::vector<ExplainableGiven>& rows) {
+  Json array = Json::array();
+  for (const auto& row : rows) array.push_back({{"axis", row.axis}, {"share", number_or_null(row.share)}});
+  return array;
+}
+
 Json not_measured(const std::vector<NotMeasured>& groups) {
   Json array = Json::array();
   for (const auto& g : groups)
@@ -201,7 +221,11 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   file["validate"] = result.validate;
   file["consistency"] = consistency(result.consistency);
   file["verdict"] = result.verdict;
-  if (!given.core.empty()) file["core"] = given.core;
+  if (!given.core.empty()) {
+    file["core"] = given.core;
+    file["skill"] = skill(given.skill);
+    file["explainable"] = explainable(given.explainable);
+  }
   file["causes"] = causes(given.causes);
   file["paragraph"] = result.paragraph;
   file["next"] = next(result);

@@ -26,6 +26,12 @@ constexpr std::array kWords{
     CauseWords{"not_carried_over", "log odds", "An effect helped the runs that it was fitted to, and not the others"},
     CauseWords{"promising", "fraction of the error", "A refused effect would remove much of the error"},
     CauseWords{"part_only", "fraction of the lasting error", "The accepted effects explain only a part", false},
+    CauseWords{"no_skill", "1 - (error / error where nothing changes)^2",
+               "The model predicts no better than that nothing changes", false},
+    CauseWords{"force_unit", "fitted inertia over the expected one",
+               "The thrust is as a force in another unit would be"},
+    CauseWords{"input_idle", "Student's t of the thrust", "The recorded thrust does nothing", false},
+    CauseWords{"out_of_time", "s", "The time that was given ended before the search did"},
     CauseWords{"free_curve", "", "A force of a form that no listed effect has would explain more"}};
 
 }  // namespace

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "common/samples/estimates.hpp"
 
 namespace fathom {
 
@@ -30,6 +33,14 @@ struct CorrectionLeft {
   double before{};   ///< the same without the correction
 };
 
+/// A closed form that the correction is told as.
+struct FormulaGiven {
+  std::string equation;             ///< Fossen's notation
+  std::vector<NamedValue> numbers;  ///< SI
+  double over_learned{};            ///< nats over the table of features
+  std::string words;
+};
+
 struct CorrectionGiven {
   bool asked{false};    ///< something unlisted was there to be learned
   bool adopted{false};  ///< it is part of the model that is reported and exported
@@ -47,6 +58,7 @@ struct CorrectionGiven {
   bool input_is_wrench{false};
   std::array<double, 3> visited_low{}, visited_high{};  ///< m
   std::vector<CorrectionLeft> left;
+  std::optional<FormulaGiven> formula;  ///< where one fits: the terms are then its own
 };
 
 }  // namespace fathom

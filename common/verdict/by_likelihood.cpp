@@ -4,12 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/statistics.hpp"
 #include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/traces.hpp"
 #include "common/diagnosis/whiteness.hpp"
+#include "common/diagnosis/wiring.hpp"
 #include "common/identification/sparse.hpp"
+#include "common/likelihood/between_runs.hpp"
+#include "common/verdict/skill.hpp"
 
 namespace fathom::verdict {
 namespace {
@@ -18,7 +22,9 @@ using inference::Conclusion;
 using inference::Verdict;
 using likelihood::NumberKind;
 
-constexpr double kStep = 0.04;  // s between the velocities that are predicted: short of it there is only noise
+constexpr inference::Step kLearning{"learning", "learning what no list holds", 10.0};
+constexpr std::size_t kFiveSeconds = 1;  // of diagnosis::kHorizons
+constexpr double kStep = 0.04;           // s between the velocities that are predicted: short of it there is only noise
 
 std::vector<std::string> names_of(std::span<const Trial> trials) {
   std::vector<std::string> names;
@@ -28,10 +34,10 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
   return names;
 }
 
-std::vector<NamedValue> numbers_of(const likelihood::Fit& fit) {
+/// `sigma`: of the numbers.
+std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::VectorXd& sigma) {
   std::vector<NamedValue> values;
-  if (!fit.finite) return values;
-  const Eigen::VectorXd sigma = fit.sigma();
+  if (!fit.finite || sigma.size() != static_cast<Eigen::Index>(fit.numbers.size())) return values;
   for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
     if (fit.numbers[j].kind == NumberKind::kWeight) continue;
     values.push_back({fit.numbers[j].name, value(fit.hypothesis, fit.numbers[j]), sigma[static_cast<Eigen::Index>(j)],
@@ -49,10 +55,12 @@ const model::LearnedForce* force_for(const learning::Learned& learned, std::span
   return here ? learned.here.get() : learned.elsewhere.get();
 }
 
-void list_effects(const Conclusion& conclusion, DiagnosisResult& result, VerdictGiven& given) {
+/// `sigma`: of the best fit's numbers.
+void list_effects(const Conclusion& conclusion, const Eigen::VectorXd& sigma, DiagnosisResult& result,
+                  VerdictGiven& given) {
   const inference::Found& found = conclusion.found;
   const auto& effects = found.best.fit.hypothesis.model.effects;
-  const std::vector<NamedValue> numbers = numbers_of(found.best.fit);
+  const std::vector<NamedValue> numbers = numbers_of(found.best.fit, sigma);
   for (std::size_t e = 0; e < effects.size() && e < found.odds.size(); ++e) {
     EffectFound effect{.name = std::string(effects[e].effect->name()),
                        .variant = effects[e].variant_name,
@@ -83,11 +91,72 @@ void list_effects(const Conclusion& conclusion, DiagnosisResult& result, Verdict
   }
 }
 
+/// Predictions on runs that no fit has seen, beside the simplest ones. An axis that is foretold worse than by saying
+/// that nothing changes has no model.
+void judge_predictions(const model::Vehicle& vehicle, const model::Model& before, const model::Model& after,
+                       std::span<const Trial> unseen, std::span<const Trial> train, DiagnosisReport& report,
+                       VerdictGiven& given, Conclusion& conclusion) {
+  DiagnosisResult& result = report.result;
+  const auto residual_before = diagnosis::wrench_residuals(before, unseen),
+             residual_after = diagnosis::wrench_residuals(after, unseen);
+  result.error_before.force_rmse = diagnosis::force_rmse(vehicle, residual_before);
+  result.error_after.force_rmse = diagnosis::force_rmse(vehicle, residual_after);
+  result.residual_before = diagnosis::whiteness(before, unseen, residual_before);
+  result.residual_after = diagnosis::whiteness(after, unseen, residual_after);
+  report.traces = diagnosis::traces_of(unseen, before, after, residual_before, residual_after);
+  const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
+  if (windows.empty()) return;
+  const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
+                               by_after = diagnosis::predict(after, windows);
+  result.error_before.prediction = by_before.summary(vehicle);
+  result.error_after.prediction = by_after.summary(vehicle);
+  result.improvement = diagnosis::improvement(by_before, by_after, vehicle);
+  const diagnosis::Predictions unchanged = predict_unchanged(windows);
+  given.skill = skill_of(vehicle, by_after, unchanged, predict_plainly(vehicle, plain_fit(vehicle, train), windows));
+  for (const SkillGiven& row : given.skill) {
+    const auto axis =
+        static_cast<std::size_t>(std::ranges::find(model::kAxisNames, row.axis) - model::kAxisNames.begin());
+    const double p = p_no_worse(by_after, unchanged, kFiveSeconds, axis);
+    if (row.horizon_s != diagnosis::kHorizons[kFiveSeconds] || p >= inference::Thresholds{}.no_skill) continue;
+    conclusion.reasons.push_back({inference::Cause::kNoSkill, row.over_unchanged, 0.0, row.axis});
+    conclusion.verdict = Verdict::no_model;
+  }
+  const auto& free = conclusion.found.free_force;
+  for (std::size_t i = 0; free && i < free->explainable.size() && i < conclusion.random.size(); ++i)
+    given.explainable.push_back(
+        {model::kAxisNames[static_cast<std::size_t>(conclusion.random[i].axis)], free->explainable[i]});
+}
+
+/// The likeliest reason for a model that does not follow its thrust, measured.
+void seek_reason(const model::Vehicle& vehicle, std::span<const Trial> train, const inference::Thresholds& thresholds,
+                 DiagnosisResult& result, Conclusion& conclusion) {
+  using inference::Cause;
+  result.wiring = diagnosis::wiring_fault(vehicle, train, {});
+  if (result.wiring && !result.wiring->readings.empty())
+    conclusion.reasons.push_back(
+        {Cause::kWiring, result.wiring->error_reduction, 0.5, result.wiring->readings.front()});
+  const std::array<PlainAxis, 6> plain = plain_fit(vehicle, train);
+  std::vector<double> ratios;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!plain[axis].known) continue;
+    if (plain[axis].t_of_input < thresholds.idle_input)
+      conclusion.reasons.push_back(
+          {Cause::kInputIdle, plain[axis].t_of_input, thresholds.idle_input, model::kAxisNames[axis]});
+    for (const likelihood::Number& number : conclusion.found.base.fit.numbers) {
+      if (number.kind == NumberKind::kBase && number.index == static_cast<int>(axis) && number.mean > 0.0)
+        ratios.push_back(value(conclusion.found.base.fit.hypothesis, number) / number.mean);
+    }
+  }
+  if (ratios.empty()) return;
+  const double ratio = median(ratios);
+  if (std::max(ratio, 1.0 / std::max(ratio, 1e-9)) > thresholds.foreign_unit)
+    conclusion.reasons.push_back({Cause::kForceUnit, ratio, thresholds.foreign_unit, ""});
+}
+
 }  // namespace
 
 Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
-                const inference::Settings& settings, const inference::Progress& progress,
-                const learning::Settings& learning) {
+                const inference::Settings& settings, const Progress& progress, const learning::Settings& learning) {
   Answer answer;
   DiagnosisReport& report = answer.report;
   DiagnosisResult& result = report.result;
@@ -95,56 +164,51 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.vehicle = vehicle.name;
   result.train = names_of(train);
   result.validate = names_of(validate);
-  const Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
-  result.verdict = word(conclusion.verdict);
-  result.paragraph = paragraph(conclusion);
-  for (const inference::Reason& reason : conclusion.reasons)
-    answer.given.causes.push_back({std::string(word(reason.cause)), reason.value, reason.threshold, reason.of});
-  list_effects(conclusion, result, answer.given);
-  for (const std::string& name : settings.without)
-    result.candidates.push_back({.name = name, .reason = "taken out of the list"});
-  result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  result.improvement = {kNaN, kNaN, kNaN};
+  progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
+  Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
   learning::Learned learned;
   if (learning.learn && conclusion.verdict == Verdict::unexplained) {
-    progress("learning what no list holds", 0.97);
+    progress.begin(kLearning.phase, kLearning.what);
     learned = learning::learn(likelihood::make_problem(vehicle, train, settings.runs), train, conclusion, learning,
                               settings.threads);
     result.correction = learned.given;
   }
+  progress.expect(kLearning.phase, 0);
   const model::LearnedForce* force = force_for(learned, train, validate);
   const likelihood::Fit& best = force != nullptr ? learned.fit : conclusion.reported;
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  result.improvement = {kNaN, kNaN, kNaN};
-  if (!conclusion.reported.finite) return answer;
-
-  const bool numbers = conclusion.verdict != Verdict::no_model;
-  if (numbers) {
-    result.parameters_before = numbers_of(conclusion.reported_base);
-    result.parameters_after = numbers_of(best);
-  }
   std::vector<Trial> unseen;
   double input_step = 0.0;
   for (const Trial& trial : validate) {
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
-  const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = learning::as_model(best.hypothesis, input_step, force);
-  const auto residual_before = diagnosis::wrench_residuals(before, unseen),
-             residual_after = diagnosis::wrench_residuals(after, unseen);
-  const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
-  result.error_before.force_rmse = diagnosis::force_rmse(vehicle, residual_before);
-  result.error_after.force_rmse = diagnosis::force_rmse(vehicle, residual_after);
-  if (!windows.empty()) {
-    const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
-                                 by_after = diagnosis::predict(after, windows);
-    result.error_before.prediction = by_before.summary(vehicle);
-    result.error_after.prediction = by_after.summary(vehicle);
-    result.improvement = diagnosis::improvement(by_before, by_after, vehicle);
+  if (conclusion.reported.finite) {
+    const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+    const model::Model after = learning::as_model(best.hypothesis, input_step, force);
+    judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
   }
-  result.residual_before = diagnosis::whiteness(before, unseen, residual_before);
-  result.residual_after = diagnosis::whiteness(after, unseen, residual_after);
-  report.traces = diagnosis::traces_of(unseen, before, after, residual_before, residual_after);
+  if (conclusion.verdict == Verdict::no_model) seek_reason(vehicle, train, settings.thresholds, result, conclusion);
+  result.verdict = word(conclusion.verdict);
+  result.paragraph = paragraph(conclusion);
+  for (const inference::Reason& reason : conclusion.reasons)
+    answer.given.causes.push_back({std::string(word(reason.cause)), reason.value, reason.threshold, reason.of});
+  // Of the one-step likelihood, whose information is that of independent innovations, and of what differs between runs.
+  const auto deviations = [&](const likelihood::Fit& fit) {
+    if (!fit.finite) return Eigen::VectorXd{};
+    const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
+    return likelihood::between_runs(problem, fit, settings.threads).sigma;
+  };
+  const Eigen::VectorXd of_best = deviations(conclusion.found.best.fit);
+  list_effects(conclusion, of_best, result, answer.given);
+  for (const std::string& name : settings.without)
+    result.candidates.push_back({.name = name, .reason = "taken out of the list"});
+  result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
+  if (conclusion.reported.finite && conclusion.verdict != Verdict::no_model) {
+    result.parameters_before = numbers_of(conclusion.reported_base, deviations(conclusion.found.base.fit));
+    result.parameters_after = numbers_of(best, force != nullptr ? best.sigma() : of_best);
+  }
   return answer;
 }
 

@@ -2,7 +2,6 @@
 // runs that no fit has seen, and all sentences.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,8 +21,7 @@ struct Answer {
 /// Diagnosis of `train`, predictions on `validate`. Consistency findings are the caller's to add.
 [[nodiscard]] Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train,
                               std::span<const Trial> validate, const inference::Settings& settings,
-                              const inference::Progress& progress,
-                              const learning::Settings& learning = {});
+                              const Progress& progress, const learning::Settings& learning = {});
 
 /// The verdict in plain words.
 [[nodiscard]] std::string paragraph(const inference::Conclusion& conclusion);

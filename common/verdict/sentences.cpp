@@ -71,6 +71,24 @@ std::string unexplained(const Conclusion& conclusion) {
   return sentence;
 }
 
+/// What was measured of why, likeliest first.
+std::string reasons_of_no_model(const Conclusion& conclusion) {
+  if (const Reason* wiring = reason(conclusion, Cause::kWiring))
+    return text("likeliest because of the wiring: %s takes %.0f %% of the error away. ", wiring->of.c_str(),
+                100.0 * wiring->value);
+  if (const Reason* unit = reason(conclusion, Cause::kForceUnit))
+    return text("likeliest thrust is in another unit: inertias come out %.3g times what the file expects. ",
+                unit->value);
+  std::string idle;
+  for (const Reason& one : conclusion.reasons) {
+    if (one.cause == Cause::kInputIdle) idle += (idle.empty() ? "" : ", ") + one.of;
+  }
+  if (!idle.empty()) return "likeliest because the recorded thrust does not act along " + idle + ". ";
+  if (const auto& free = conclusion.found.free_force; free && free->log_odds > inference::Thresholds{}.free_force_odds)
+    return "wiring, force unit and inputs are in order: terms of the hull are missing. ";
+  return "wiring, force unit and inputs are in order as far as this data tells. ";
+}
+
 }  // namespace
 
 std::string paragraph(const Conclusion& conclusion) {
@@ -99,17 +117,24 @@ std::string paragraph(const Conclusion& conclusion) {
       for (const Reason& one : conclusion.reasons) {
         if (one.cause == Cause::kNotFollowing)
           words += text("along %s it explains %.0f %% of the acceleration; ", one.of.c_str(), 100.0 * one.value);
+        if (one.cause == Cause::kNoSkill)
+          words += text("along %s it foretells 5 s worse than saying that nothing changes; ", one.of.c_str());
         if (one.cause == Cause::kAbsurdNumber) words += one.of + " is no number that this vehicle can have; ";
       }
-      words += "check wiring, force unit and which axes the thrusters drive. ";
+      words += reasons_of_no_model(conclusion);
       break;
     case Verdict::not_judged: {
       const Reason* shortness = reason(conclusion, Cause::kTooShort);
-      words = shortness != nullptr ? text("Nothing is judged: %.0f s of data, and %.0f s are needed. ",
-                                          shortness->value, shortness->threshold)
-                                   : std::string("Nothing is judged: the filter did not run through this data. ");
+      if (shortness != nullptr) {
+        words =
+            text("Nothing is judged: %.0f s of data, and %.0f s are needed. ", shortness->value, shortness->threshold);
+      } else if (reason(conclusion, Cause::kNotFinite) != nullptr) {
+        words = "Nothing is judged: the filter did not run through this data. ";
+      }
     }
   }
+  if (reason(conclusion, Cause::kOutOfTime) != nullptr)
+    words += "The time was over before every effect had been asked: allow more, or give less data. ";
   if (const Reason* off = reason(conclusion, Cause::kScoresDisagree)) {
     words += text(
         "Numbers that predict one step best and those that predict ten seconds best differ by %.0f standard "

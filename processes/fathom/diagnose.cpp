@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,7 +55,7 @@ constexpr double kTooLate = 0.3;
 
 /// Phases of the work beside those of the diagnosis.
 constexpr std::string_view kReading = "reading", kSensors = "sensors", kReconstruction = "reconstruction",
-                           kReport = "report", kDiagnosis = "diagnosis", kLikelihoodSearch = "likelihood";
+                           kReport = "report", kDiagnosis = "diagnosis";
 constexpr double kLight = 0.03;             // of a fit: reading or reconstructing a run, until it has been timed
 constexpr double kGuessedDiagnosis = 40.0;  // fits, until it says more itself
 
@@ -65,6 +66,7 @@ struct DiagnoseOptions {
   std::string core{kTrajectories};
   bool no_learning{false};
   int threads{2};
+  double time_budget{std::numeric_limits<double>::infinity()};
   int folds{0};
 };
 
@@ -250,17 +252,10 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
     out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
     progress.expect(kDiagnosis, 0);
     if (options.core == kLikelihood) {
-      double share_told = 0.0;  // of its hundred units; it tells its share of the work
-      progress.expect(kLikelihoodSearch, 100.0, kGuessedDiagnosis / 100.0);
-      const auto show = [&](const std::string& what, double share) {
-        progress.done(kLikelihoodSearch, 100.0 * (share - share_told));
-        share_told = std::max(share_told, share);
-        progress.begin(kLikelihoodSearch, what);
-      };
-      verdict::Answer answer = verdict::diagnose(vehicle, out.fitting->trials(), out.judging->trials(),
-                                                 {.without = options.without, .threads = options.threads}, show,
-                                                 {.learn = !options.no_learning});
-      progress.expect(kLikelihoodSearch, 0);
+      verdict::Answer answer = verdict::diagnose(
+          vehicle, out.fitting->trials(), out.judging->trials(),
+          {.without = options.without, .threads = options.threads, .time_budget = options.time_budget}, progress,
+          {.learn = !options.no_learning});
       out.report = std::move(answer.report);
       out.given = std::move(answer.given);
       return;
@@ -387,6 +382,10 @@ void add_diagnose(runtime::CommandLine& app) {
       ->one_of({kTrajectories, kLikelihood});
   command->add_option("--without", options->without,
                       "with --core likelihood: effects to take out of the list, by name");
+  command
+      ->add_option("--time-budget", options->time_budget,
+                   "with --core likelihood: s for the search; what is not asked by then is said to be open")
+      ->within(1.0, 1e6);
   command->add_flag("--no-learning", options->no_learning,
                     "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();

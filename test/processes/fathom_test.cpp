@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -254,6 +255,26 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   CHECK(held.says("last 30 %"));
   const auto other = nlohmann::json::parse(test::read_bytes(scratch.path("held/result.json")));
   CHECK(other.at("validate").at(0) == "run1 (last 30 %)");
+
+  const Ran likely = shell(common + scratch.path("run1.lcmlog") + " --validate " + scratch.path("run2.csv") +
+                           " --core likelihood --without current cross_coupling --out " + scratch.path("likely"));
+  REQUIRE_MESSAGE(likely.code == 0, likely.text);
+  const auto third = nlohmann::json::parse(test::read_bytes(scratch.path("likely/result.json")));
+  CHECK(third.at("verdict") == "adequate");
+  CHECK(third.at("causes").at(0).at("cause") == "nothing_found");
+  std::map<std::string, std::string> reasons;
+  for (const auto& candidate : third.at("candidates")) reasons[candidate.at("name")] = candidate.at("reason");
+  CHECK(reasons["current"] == "taken out of the list");
+  CHECK(reasons["cross_coupling"] == "taken out of the list");
+}
+
+TEST_CASE("fathom: an effect to be taken out must be listed, and by the core that can") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const std::string common = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train a.csv --out " +
+                             scratch.path("out") + " --without ";
+  one_line(shell(common + "curent --core likelihood"), 1, "no effect has this name; listed are");
+  one_line(shell(common + "current"), 1, "--core likelihood");
 }
 
 TEST_CASE("fathom: what begins in the last 30 % of a run is fitted too, and other parts judge") {

@@ -8,10 +8,10 @@ namespace {
 
 double square(double x) { return x * x; }
 
-constexpr std::array<std::string_view, 16> kWords{"velocity",   "speed",         "wrench",         "wrench_size",
-                                                  "thruster",   "thruster_size", "slow_wrench",    "slow_velocity",
-                                                  "depth_bump", "plan_bump",     "heading_cosine", "heading_sine",
-                                                  "after",      "tone_cosine",   "tone_sine",      "flow_speed"};
+constexpr std::array<std::string_view, 19> kWords{
+    "velocity",      "speed",      "wrench",    "wrench_size",    "thruster",     "thruster_size", "slow_wrench",
+    "slow_velocity", "depth_bump", "plan_bump", "heading_cosine", "heading_sine", "after",         "tone_cosine",
+    "tone_sine",     "flow_speed", "power_odd", "power_even",     "ramp"};
 
 double factor_value(const Factor& f, const FeatureState& s) {
   const auto bank = static_cast<std::size_t>(f.bank);
@@ -50,6 +50,12 @@ double factor_value(const Factor& f, const FeatureState& s) {
       return std::sin(f.a * s.t);
     case Quantity::kFlowSpeed:
       return s.nu.head<3>().norm();
+    case Quantity::kPowerOdd:
+      return std::copysign(std::pow(std::abs(s.nu[f.index]), f.a), s.nu[f.index]);
+    case Quantity::kPowerEven:
+      return std::pow(std::abs(s.nu[f.index]), f.a);
+    case Quantity::kRamp:
+      return (s.t - f.a) / f.b;
   }
   return 0.0;
 }
@@ -72,13 +78,15 @@ double Feature::value(const FeatureState& state) const {
 
 bool Feature::moves_with_velocity() const {
   return std::any_of(factors.begin(), factors.begin() + count, [](const Factor& f) {
-    return f.quantity == Quantity::kVelocity || f.quantity == Quantity::kSpeed || f.quantity == Quantity::kFlowSpeed;
+    return f.quantity == Quantity::kVelocity || f.quantity == Quantity::kSpeed || f.quantity == Quantity::kFlowSpeed ||
+           f.quantity == Quantity::kPowerOdd || f.quantity == Quantity::kPowerEven;
   });
 }
 
 bool Feature::depends_on_time() const {
   return std::any_of(factors.begin(), factors.begin() + count, [](const Factor& f) {
-    return f.quantity == Quantity::kAfter || f.quantity == Quantity::kToneCosine || f.quantity == Quantity::kToneSine;
+    return f.quantity == Quantity::kAfter || f.quantity == Quantity::kToneCosine || f.quantity == Quantity::kToneSine ||
+           f.quantity == Quantity::kRamp;
   });
 }
 

@@ -48,7 +48,10 @@ enum class Quantity : std::uint8_t {
   kAfter,       ///< smooth step at a, over b seconds
   kToneCosine,  ///< of a rad/s
   kToneSine,
-  kFlowSpeed  ///< size of u, v and w together
+  kFlowSpeed,  ///< size of u, v and w together
+  kPowerOdd,   ///< of the velocity of axis `index`, its sign kept: exponent a
+  kPowerEven,  ///< of its size
+  kRamp        ///< (t - a) / b
 };
 /// As result.json names it.
 [[nodiscard]] std::string_view word(Quantity quantity);

@@ -53,6 +53,8 @@ double LearnedForce::fade(const Feature& feature, const FeatureState& state) con
     switch (factor.quantity) {
       case Quantity::kVelocity:
       case Quantity::kSpeed:
+      case Quantity::kPowerOdd:
+      case Quantity::kPowerEven:
         left *= beyond(state.nu[factor.index], visited_.nu[factor.index]);
         break;
       case Quantity::kSlowVelocity:

@@ -17,11 +17,11 @@ Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::stri
   const auto dive = test::fly(vehicle, settings);
   const auto begin = std::chrono::steady_clock::now();
   const Conclusion conclusion =
-      infer(vehicle, {&dive.trial, 1}, {.without = without}, [&](const std::string& what, double) {
-        if (std::getenv("FATHOM_SHOW") != nullptr)
-          std::printf("%6.2f %s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-                      what.c_str());
-      });
+      infer(vehicle, {&dive.trial, 1}, {.without = without}, Progress{[&](const Progress::Event& event) {
+              if (std::getenv("FATHOM_SHOW") == nullptr || event.kind != Progress::Event::Kind::kBegin) return;
+              std::printf("%6.2f %s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                          std::string{event.what}.c_str());
+            }});
   if (std::getenv("FATHOM_SHOW") != nullptr) {
     std::printf("%6.2f verdict %s, fits %zu\n",
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),

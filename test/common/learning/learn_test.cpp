@@ -72,6 +72,11 @@ TEST_CASE("learning: an unlisted force is adopted, and what was not recorded yet
   show("cross drag", learned.given);
   REQUIRE(learned.given.adopted);
   REQUIRE(learned.given.carried);
+  REQUIRE(learned.given.formula);
+  CHECK(learned.given.formula->equation == "tau_Y = c sign(u) |u|^n");
+  REQUIRE(learned.given.formula->numbers.size() == 2);
+  const NamedValue& power = learned.given.formula->numbers[1];
+  CHECK(std::abs(power.value - 2.0) < 0.3);
   const double step = sway.problem.input_step;
   const model::Model better = as_model(learned.fit.hypothesis, step, learned.elsewhere.get());
   const Ratio over_base =

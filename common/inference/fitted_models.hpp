@@ -1,0 +1,77 @@
+// Models that were fitted, with what they are worth: the fits of a search and what follows from all of them together.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/progress.hpp"
+#include "common/inference/scan.hpp"
+#include "common/inference/verdict.hpp"
+
+namespace fathom::inference {
+
+/// A phase of the work as it is told.
+struct Step {
+  std::string_view phase, what;
+  double weight{};  ///< guessed cost, in fits of one candidate
+};
+constexpr Step kCandidateFit{"candidates", "fitting what promises most", 1.0};
+
+/// A set of effects that was fitted.
+struct Fitted {
+  likelihood::Fit fit;
+  std::vector<std::string> names;  ///< of its effects, sorted: what a posterior is about
+  double score{};                  ///< log evidence and log prior of the set
+};
+
+/// Where a fit begins.
+struct Start {
+  likelihood::Hypothesis hypothesis;
+  likelihood::Noise noise;
+};
+
+/// Log prior of a set: of their number, and uniform over sets and over the forms of each.
+[[nodiscard]] double log_prior_of_set(const std::vector<model::ActiveEffect>& effects, const std::vector<Law>& laws);
+
+/// A name in the best model, against all other sets of names that were fitted.
+struct Standing {
+  double probability{1.0};  ///< of all sets that hold it
+  double odds{};            ///< nats of the best over the best set without it
+  std::string rival;        ///< the likeliest other name in its place; empty: none
+};
+
+class FittedModels {
+ public:
+  /// `laws` must outlive it.
+  FittedModels(const likelihood::Problem& problem, const std::vector<Law>& laws, int threads, const Progress& progress)
+      : problem_{problem}, laws_{laws}, threads_{threads}, progress_{progress} {}
+
+  Fitted add(likelihood::Fit fit);
+  /// Each start moved a little; those that came near enough to the best of them, seen from `from`, are fitted to the
+  /// end. All are kept.
+  std::vector<Fitted> race(const std::vector<Start>& starts, double from);
+  /// All fitted to the end.
+  std::vector<Fitted> fit_all(const std::vector<Start>& starts);
+  /// For progress: so many starts are still to come.
+  void expect(double starts);
+
+  [[nodiscard]] std::size_t size() const { return fitted_.size(); }
+  [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name) const;
+  /// The best that holds the name; nothing: none does.
+  [[nodiscard]] const Fitted* best_with(const std::string& name) const;
+
+ private:
+  [[nodiscard]] Fitted judged(likelihood::Fit fit) const;
+  std::vector<Fitted> fits(const std::vector<Start>& starts, const likelihood::FitOptions& options);
+
+  const likelihood::Problem& problem_;
+  const std::vector<Law>& laws_;
+  int threads_;
+  const Progress& progress_;
+  std::vector<Fitted> fitted_;
+  double to_come_{};
+};
+
+}  // namespace fathom::inference

@@ -1,0 +1,347 @@
+#include "common/learning/formula.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "common/base/parallel.hpp"
+
+namespace fathom::learning {
+namespace {
+
+using likelihood::Fit;
+using likelihood::Problem;
+using model::Factor;
+using model::Feature;
+using model::kWorldAxis;
+using model::Quantity;
+
+constexpr double kMoves = 1e-3;          // m/s, rad/s: an axis that does less shows nothing
+constexpr double kInnerPrice = 2.3;      // nats for a number of unknown order
+constexpr double kMomentPrice = 5.3;     // a moment has many places
+constexpr double kLinePrice = 9.0;       // a frequency more
+constexpr double kMomentLasts = 0.3;     // s
+constexpr double kAmplitudeSigma = 0.3;  // of the applied wrench: prior of a form whose rms is that of the wrench
+constexpr std::size_t kBatch = 48;       // columns that pass through the filter together
+constexpr std::size_t kFitted = 3;       // forms that are fitted in full
+constexpr int kMoments = 30;
+constexpr std::array<const char*, 9> kDirections{"tau_X", "tau_Y",   "tau_Z",  "tau_K", "tau_M",
+                                                 "tau_N", "f_north", "f_east", "f_down"};
+
+Feature along(int axis, std::initializer_list<Factor> factors) {
+  Feature feature{.axis = axis, .count = static_cast<int>(factors.size())};
+  std::ranges::copy(factors, feature.factors.begin());
+  return feature;
+}
+Factor of(Quantity quantity, int index = 0, double a = 0.0, double b = 1.0) {
+  return {.quantity = quantity, .index = index, .a = a, .b = b};
+}
+
+class Grammar {
+ public:
+  Grammar(const Problem& problem, const model::Scene& scene) : problem_{problem}, scene_{scene} {
+    const double length = problem.t_high - problem.t_low;
+    for (int i = 1; i < kMoments; ++i) moments_.push_back(problem.t_low + length * i / kMoments);
+    for (double omega = 0.2; omega < 6.0; omega += 2.0 / std::max(length, 1.0)) lines_.push_back(omega);
+  }
+
+  void body(int axis) {
+    const auto moving = [&](int j) { return scene_.nu_rms[j] > kMoves; };
+    for (int j = 0; j < 6; ++j) {
+      if (!moving(j)) continue;
+      const std::string v = model::kVelocityNames[static_cast<std::size_t>(j)];
+      const std::vector<double> powers = j == axis ? std::vector{3.0, 4.0} : std::vector{1.0, 1.5, 2.0, 2.5, 3.0};
+      add(axis, "a power of " + v + ", against or with it", "c sign(" + v + ") |" + v + "|^n", "n", "", powers,
+          kInnerPrice, [=](double n) { return std::vector{along(axis, {of(Quantity::kPowerOdd, j, n)})}; });
+      add(axis, "a power of " + v + ", whatever its sign", "c |" + v + "|^n", "n", "", {1.0, 1.5, 2.0, 2.5, 3.0},
+          kInnerPrice, [=](double n) { return std::vector{along(axis, {of(Quantity::kPowerEven, j, n)})}; });
+      for (int k = j + 1; k < 6; ++k) {
+        if (!moving(k)) continue;
+        const std::string w = model::kVelocityNames[static_cast<std::size_t>(k)];
+        add(axis, v + " and " + w + " together", "c " + v + " " + w, [=](double) {
+          return std::vector{along(axis, {of(Quantity::kVelocity, j), of(Quantity::kVelocity, k)})};
+        });
+      }
+      for (int k = 0; k < 6; ++k) {
+        if (!moving(k) || k == j) continue;
+        const std::string w = model::kVelocityNames[static_cast<std::size_t>(k)];
+        add(axis, w + ", the more the faster " + v + " is", "c |" + v + "| " + w, [=](double) {
+          return std::vector{along(axis, {of(Quantity::kSpeed, j), of(Quantity::kVelocity, k)})};
+        });
+      }
+    }
+    const std::string own = model::kVelocityNames[static_cast<std::size_t>(axis)];
+    for (int i = 0; i < problem_.simulated; ++i) {
+      const int j = problem_.axes[static_cast<std::size_t>(i)];
+      const std::string tau = kDirections[static_cast<std::size_t>(j)];
+      if (j != axis)
+        add(axis, "thrust of another axis", "c " + tau,
+            [=](double) { return std::vector{along(axis, {of(Quantity::kWrench, j)})}; });
+      add(axis, "the size of a thrust", "c |" + tau + "|",
+          [=](double) { return std::vector{along(axis, {of(Quantity::kWrenchSize, j)})}; });
+      add(axis, "thrust that weakens with the speed", "c |" + tau + "| " + own, [=](double) {
+        return std::vector{along(axis, {of(Quantity::kWrenchSize, j), of(Quantity::kVelocity, axis)})};
+      });
+    }
+    moment(axis, "a moment", "c", {});
+    moment(axis, "a thrust that changes at a moment", std::string("c ") + kDirections[static_cast<std::size_t>(axis)],
+           {of(Quantity::kWrench, axis)});
+    moment(axis, "a drag that changes at a moment", "c |" + own + "| " + own,
+           {of(Quantity::kSpeed, axis), of(Quantity::kVelocity, axis)});
+  }
+
+  void world(int axis) {
+    add(axis, "nothing: it is steady", "c", [=](double) { return std::vector{along(axis, {})}; });
+    add(axis, "the speed", "c |v|", [=](double) { return std::vector{along(axis, {of(Quantity::kFlowSpeed)})}; });
+    const double low = problem_.t_low, length = std::max(problem_.t_high - problem_.t_low, 1.0);
+    add(axis, "time: it creeps", "c (t - t_0) / T",
+        [=](double) { return std::vector{along(axis, {of(Quantity::kRamp, 0, low, length)})}; });
+    moment(axis, "a moment", "c", {});
+    moment(axis, "the speed, from a moment on", "c |v|", {of(Quantity::kFlowSpeed)});
+    add(axis, "a swing", "c_1 cos(w t) + c_2 sin(w t)", "w", "rad/s", lines_, kLinePrice, [=](double omega) {
+      return std::vector{along(axis, {of(Quantity::kToneCosine, 0, omega)}),
+                         along(axis, {of(Quantity::kToneSine, 0, omega)})};
+    });
+  }
+
+  std::vector<Form> forms;
+
+ private:
+  void add(int axis, const std::string& words, const std::string& equation, const std::string& symbol,
+           const std::string& unit, std::vector<double> grid, double price,
+           std::function<std::vector<Feature>(double)> features) {
+    forms.push_back({words, std::string(kDirections[static_cast<std::size_t>(axis)]) + " = " + equation, symbol, unit,
+                     axis, std::move(grid), price, std::move(features)});
+  }
+  void add(int axis, const std::string& words, const std::string& equation,
+           std::function<std::vector<Feature>(double)> features) {
+    add(axis, words, equation, "", "", {0.0}, 0.0, std::move(features));
+  }
+  void moment(int axis, const std::string& words, const std::string& equation, const std::vector<Factor>& factors) {
+    add(axis, words, equation + " from t_1 on", "t_1", "s", moments_, kMomentPrice, [=](double t) {
+      Feature feature{.axis = axis, .count = static_cast<int>(factors.size()) + 1};
+      std::ranges::copy(factors, feature.factors.begin());
+      feature.factors[factors.size()] = of(Quantity::kAfter, 0, t, kMomentLasts);
+      return std::vector{feature};
+    });
+  }
+
+  const Problem& problem_;
+  const model::Scene& scene_;
+  std::vector<double> moments_, lines_;
+};
+
+/// One form at one value of its inner number, as a group of a library.
+struct Place {
+  std::size_t form{};
+  double inner{};
+  double gain{};  ///< nats of the linear solution, the model's own numbers projected out
+};
+
+void score(const Problem& problem, const inference::Seen& seen, const std::vector<Form>& forms,
+           std::vector<Place>& places, int threads) {
+  std::vector<std::pair<std::size_t, std::size_t>> batches;  // [first, last) of the places
+  std::size_t columns = kBatch;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const std::size_t count = forms[places[k].form].features(places[k].inner).size();
+    if (columns + count > kBatch) batches.emplace_back(k, k), columns = 0;
+    columns += count;
+    batches.back().second = k + 1;
+  }
+  for_each_index(batches.size(), threads, [&](std::size_t b) {
+    likelihood::FreeForce library;
+    std::vector<std::size_t> groups, beginnings;
+    for (std::size_t k = batches[b].first; k < batches[b].second; ++k) {
+      const std::vector<Feature> features = forms[places[k].form].features(places[k].inner);
+      beginnings.push_back(library.features.size());
+      groups.push_back(groups.size());
+      library.groups.push_back(
+          {.first = static_cast<int>(library.features.size()), .count = static_cast<int>(features.size())});
+      library.features.insert(library.features.end(), features.begin(), features.end());
+    }
+    likelihood::ResponseSums sums;
+    for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+      inference::FeatureColumns source{problem, seen, library, groups, r};
+      likelihood::respond(
+          problem, seen.reference[r], r, library.features.size(), beginnings,
+          [&](std::size_t block, likelihood::RowMatrix& acceleration, likelihood::RowMatrix&) {
+            source.at(block, acceleration);
+          },
+          sums);
+    }
+    Eigen::MatrixXd gram = sums.gram.selfadjointView<Eigen::Lower>();
+    gram -= sums.with_numbers.transpose() * (seen.covariance * sums.with_numbers);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const auto first = static_cast<Eigen::Index>(library.groups[g].first);
+      const auto count = static_cast<Eigen::Index>(library.groups[g].count);
+      Eigen::MatrixXd G = gram.block(first, first, count, count);
+      G.diagonal() *= 1.0 + 1e-9;
+      const Eigen::VectorXd slope = sums.gradient.segment(first, count);
+      const double gain = 0.5 * slope.dot(G.ldlt().solve(slope));
+      places[batches[b].first + g].gain = std::isfinite(gain) && G.diagonal().minCoeff() > 0.0 ? gain : 0.0;
+    }
+  });
+}
+
+/// Best inner number of each form, twice refined about its best grid point.
+std::vector<Place> best_places(const Problem& problem, const inference::Seen& seen, const std::vector<Form>& forms,
+                               int threads) {
+  std::vector<Place> places;
+  for (std::size_t f = 0; f < forms.size(); ++f)
+    for (const double inner : forms[f].grid) places.push_back({f, inner});
+  score(problem, seen, forms, places, threads);
+  std::map<std::size_t, Place> best;
+  const auto take = [&](const std::vector<Place>& scored) {
+    for (const Place& place : scored) {
+      const auto [held, fresh] = best.try_emplace(place.form, place);
+      if (!fresh && place.gain > held->second.gain) held->second = place;
+    }
+  };
+  take(places);
+  std::vector<Place> order;
+  const auto sort = [&] {
+    order.clear();
+    for (const auto& [form, place] : best) order.push_back(place);
+    std::ranges::sort(order, std::greater{}, [&](const Place& p) { return p.gain - forms[p.form].price; });
+    if (order.size() > kFitted) order.resize(kFitted);
+  };
+  sort();
+  for (const double part : {0.5, 0.2, 0.06}) {
+    std::vector<Place> finer;
+    for (const Place& place : order) {
+      const Form& form = forms[place.form];
+      if (form.symbol.empty()) continue;
+      const double step = part * (form.grid[1] - form.grid[0]);
+      for (const int side : {-2, -1, 1, 2})  // below its grid a law has no slope at rest
+        finer.push_back({place.form, std::max(form.grid.front(), place.inner + 0.5 * side * step)});
+    }
+    if (finer.empty()) break;
+    score(problem, seen, forms, finer, threads);
+    take(finer);
+    sort();
+  }
+  return order;
+}
+
+/// From the curvature of the gain about the inner number.
+double inner_sigma(const Problem& problem, const inference::Seen& seen, const std::vector<Form>& forms,
+                   const Place& place, int threads) {
+  const Form& form = forms[place.form];
+  if (form.symbol.empty()) return 0.0;
+  const double step = 0.1 * (form.grid[1] - form.grid[0]);
+  std::vector<Place> three{
+      {place.form, place.inner - step}, {place.form, place.inner}, {place.form, place.inner + step}};
+  score(problem, seen, forms, three, threads);
+  const double curvature = (2.0 * three[1].gain - three[0].gain - three[2].gain) / (step * step);
+  return curvature > 0.0 ? 1.0 / std::sqrt(curvature) : step;
+}
+
+double rms_of(const Problem& problem, const inference::Seen& seen, const Feature& feature) {
+  double square = 0.0, count = 0.0;
+  const std::vector<likelihood::Number> none;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    likelihood::Plant plant{seen.fit.hypothesis, none, problem.runs[r], r, false};
+    plant.begin(problem.runs[r].start());
+    for (std::size_t b = 0; b < problem.runs[r].blocks().size(); ++b) {
+      plant.at_middle(b);
+      model::FeatureState state = plant.features();
+      state.nu = seen.reference[r].nu_middle.col(static_cast<Eigen::Index>(b));
+      const double value = feature.value(state);
+      square += value * value;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(square / std::max(count, 1.0));
+}
+
+}  // namespace
+
+std::vector<Form> grammar(const Problem& problem, const model::Scene& scene, const inference::FreeForceFound& found) {
+  Grammar grammar{problem, scene};
+  std::vector<bool> asked(6, false);
+  for (const inference::GroupFound& group : found.groups) {
+    if (group.axis < kWorldAxis) asked[static_cast<std::size_t>(group.axis)] = true;
+  }
+  asked[static_cast<std::size_t>(found.size.axis)] = true;
+  for (int i = 0; i < problem.simulated; ++i) {
+    const int axis = problem.axes[static_cast<std::size_t>(i)];
+    if (asked[static_cast<std::size_t>(axis)]) grammar.body(axis);
+    if (scene.attitude && axis < 3) grammar.world(kWorldAxis + axis);
+  }
+  return std::move(grammar.forms);
+}
+
+std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base, const model::Scene& scene,
+                                         const inference::FreeForceFound& found, int threads) {
+  const std::vector<Form> forms = grammar(problem, scene, found);
+  if (forms.empty()) return std::nullopt;
+  // Beside the base numbers, with the noise that the learned force leaves: the random force has swallowed nothing
+  // there.
+  Fit quiet = base;
+  quiet.noise = found.fit.noise;
+  const inference::Seen seen = inference::see(problem, quiet, threads);
+  double paid = 0.0;  // by the learned force
+  if (found.fit.finite) paid = found.fit.log_evidence - base.log_evidence - found.log_odds;
+  std::optional<FormulaFound> best;
+  for (const Place& place : best_places(problem, seen, forms, threads)) {
+    const Form& form = forms[place.form];
+    likelihood::Hypothesis hypothesis = base.hypothesis;
+    model::FreeForce& force = hypothesis.force = {};
+    force.features = form.features(place.inner);
+    const double wrench = form.axis < kWorldAxis ? scene.tau_rms[form.axis] : scene.tau_rms.head<3>().norm();
+    for (Feature& feature : force.features) {
+      const double rms = rms_of(problem, seen, feature);
+      feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
+    }
+    force.weights.assign(force.features.size(), 0.0);
+    force.groups.push_back({.kind = form.words,
+                            .axis = form.axis,
+                            .count = static_cast<int>(force.features.size()),
+                            .sigma = kAmplitudeSigma});
+    Fit fit = likelihood::fit(problem, hypothesis, found.fit.noise,
+                              {.noise_rounds = 2, .steps = 3, .enough = 0.3, .threads = threads});
+    if (!fit.finite) continue;
+    const double price = std::log(static_cast<double>(forms.size())) + form.price;
+    const double over = fit.log_evidence - price - (found.fit.log_evidence - std::max(paid, 0.0));
+    if (best && over <= best->over_learned) continue;
+    FormulaFound one{.form = form, .inner = place.inner, .over_learned = over};
+    one.inner_sigma = inner_sigma(problem, seen, forms, place, threads);
+    const Eigen::VectorXd sigma = fit.sigma();
+    for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+      if (fit.numbers[j].kind != likelihood::NumberKind::kWeight) continue;
+      const auto k = static_cast<std::size_t>(fit.numbers[j].index);
+      one.amplitude.push_back(fit.hypothesis.force.weights[k] * fit.hypothesis.force.features[k].scale);
+      one.amplitude_sigma.push_back(sigma[static_cast<Eigen::Index>(j)] * fit.hypothesis.force.features[k].scale);
+    }
+    one.fit = std::move(fit);
+    best = std::move(one);
+  }
+  return best;
+}
+
+FormulaGiven given_of(const FormulaFound& found) {
+  const auto text = [](const char* format, double a, double b) {
+    char buffer[96];
+    std::snprintf(buffer, sizeof buffer, format, a, b);
+    return std::string{buffer};
+  };
+  FormulaGiven given{.equation = found.form.equation, .over_learned = found.over_learned};
+  given.words = "A closed form fits: along " + std::string{kDirections[static_cast<std::size_t>(found.form.axis)]} +
+                ", with " + found.form.words + ": " + found.form.equation;
+  for (std::size_t k = 0; k < found.amplitude.size(); ++k) {
+    const std::string name = found.amplitude.size() == 1 ? "c" : "c_" + std::to_string(k + 1);
+    given.numbers.push_back({name, found.amplitude[k], found.amplitude_sigma[k], "SI"});
+    given.words += ", " + name + text(" = %.3g ± %.2g", found.amplitude[k], 1.96 * found.amplitude_sigma[k]);
+  }
+  if (!found.form.symbol.empty()) {
+    given.numbers.push_back({found.form.symbol, found.inner, found.inner_sigma, found.form.unit});
+    given.words += ", " + found.form.symbol + text(" = %.3g ± %.2g", found.inner, 1.96 * found.inner_sigma) +
+                   (found.form.unit.empty() ? "" : " " + found.form.unit);
+  }
+  given.words += " (SI, 95 %). No listed effect has this form.";
+  return given;
+}
+
+}  // namespace fathom::learning

@@ -1,0 +1,121 @@
+// The verdict's rules, each by what it is for: a model that does not follow, a name taken out of the list, an effect
+// too small to matter.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "common/inference/infer.hpp"
+#include "test/common/likelihood/noisy_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::inference;
+
+namespace {
+
+/// What a search that found nothing leaves, at the vehicle file's numbers and the noise's priors.
+struct Nothing {
+  explicit Nothing(double duration = 30.0)
+      : dive{test::fly(vehicle, {.duration = duration, .force = 0.05})},
+        problem{likelihood::make_problem(vehicle, {&dive.trial, 1})} {
+    likelihood::Fit& fit = conclusion.found.best.fit;
+    fit.hypothesis = likelihood::nominal_hypothesis(problem);
+    fit.noise = likelihood::prior_noise(problem);
+    fit.numbers = problem.numbers(fit.hypothesis);
+    fit.information = 1e4 * Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(fit.numbers.size()),
+                                                      static_cast<Eigen::Index>(fit.numbers.size()));
+    fit.finite = true;
+    conclusion.reported = fit;
+  }
+  Conclusion concluded() {
+    conclude(problem, {}, conclusion);
+    return conclusion;
+  }
+
+  model::Vehicle vehicle{test::vehicle_from_repository("bluerov2")};
+  test::VirtualDive dive;
+  likelihood::Problem problem;
+  Conclusion conclusion;
+};
+
+bool caused(const Conclusion& conclusion, Cause cause, const std::string& of) {
+  return std::ranges::any_of(conclusion.reasons,
+                             [&](const Reason& reason) { return reason.cause == cause && reason.of == of; });
+}
+
+const Refused* refused(const Found& found, const std::string& name) {
+  const auto place = std::ranges::find(found.refused, name, &Refused::name);
+  return place != found.refused.end() ? &*place : nullptr;
+}
+
+Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::string>& without = {}) {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, settings);
+  return infer(vehicle, {&dive.trial, 1}, {.without = without}, {});
+}
+
+}  // namespace
+
+TEST_CASE("conclusion: nothing found, all in order: adequate") {
+  CHECK(Nothing{}.concluded().verdict == Verdict::adequate);
+}
+
+TEST_CASE("conclusion: an axis whose acceleration is a random force's leaves no model") {
+  Nothing nothing;
+  nothing.conclusion.found.best.fit.noise[1].log[likelihood::kForce] = std::log(2.0 * nothing.problem.acceleration[1]);
+  const Conclusion conclusion = nothing.concluded();
+  CHECK(conclusion.verdict == Verdict::no_model);
+  CHECK(caused(conclusion, Cause::kNotFollowing, "Y"));
+  CHECK_FALSE(caused(conclusion, Cause::kNotFollowing, "X"));
+}
+
+TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves no model") {
+  for (const double mass : {2000.0, 0.0}) {
+    Nothing nothing;
+    likelihood::Fit& fit = nothing.conclusion.found.best.fit;
+    const auto number = std::ranges::find(fit.numbers, "m_X", &likelihood::Number::name);
+    REQUIRE(number != fit.numbers.end());
+    at(fit.hypothesis, *number) = std::max(mass, number->low);
+    const Conclusion conclusion = nothing.concluded();
+    CHECK(conclusion.verdict == Verdict::no_model);
+    CHECK(caused(conclusion, Cause::kAbsurdNumber, "m_X"));
+  }
+}
+
+TEST_CASE("conclusion: both scores' numbers apart are told, and change no verdict") {
+  Nothing nothing;
+  for (const likelihood::Number& number : nothing.conclusion.found.best.fit.numbers)
+    at(nothing.conclusion.reported.hypothesis, number) += 0.1;  // ten of its deviations
+  const Conclusion conclusion = nothing.concluded();
+  CHECK(conclusion.verdict == Verdict::adequate);
+  CHECK(caused(conclusion, Cause::kScoresDisagree, ""));
+}
+
+TEST_CASE("infer: thrusters that push the other way leave no model") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  auto dive = test::fly(vehicle, {.duration = 60.0, .force = 0.02});
+  for (Eigen::VectorXd& input : dive.trial.input) input = -input;
+  CHECK(infer(vehicle, {&dive.trial, 1}, {}, {}).verdict == Verdict::no_model);
+}
+
+TEST_CASE("infer: an effect taken out of the list is not named, and what it does is unexplained") {
+  const test::NoisyDive settings{
+      .duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}};
+  const Conclusion conclusion = inferred(settings, {"current"});
+  CHECK(conclusion.verdict == Verdict::unexplained);
+  CHECK(std::ranges::find(conclusion.found.best.names, "current") == conclusion.found.best.names.end());
+  CHECK(refused(conclusion.found, "current") == nullptr);
+}
+
+TEST_CASE("infer: an effect that is there and too small to matter is refused by its size") {
+  const Conclusion conclusion = inferred({.duration = 90.0,
+                                          .seed = 4,
+                                          .force = 0.002,
+                                          .sensor = 0.0005,
+                                          .effects = {test::active("current", {0.0015, 0.0})}});
+  CHECK(conclusion.found.best.names.empty());
+  const Refused* current = refused(conclusion.found, "current");
+  REQUIRE(current != nullptr);
+  REQUIRE(current->refusals.size() == 1);
+  CHECK(current->refusals[0].rule == Rule::kSize);
+  CHECK(current->refusals[0].value < current->refusals[0].needed);
+}
