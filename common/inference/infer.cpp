@@ -113,7 +113,7 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     unexplained = true;
   }
   const bool any = !found.best.names.empty();
-  if (found.cut_short) reasons.push_back({Cause::kOutOfTime, 0.0, 0.0, ""});
+  if (found.cut_short) reasons.push_back({Cause::kOutOfTime, found.spent, found.given, ""});
   if (any) {
     const double least = *std::ranges::min_element(found.probability);
     const bool sure = least >= thresholds.name_probability;

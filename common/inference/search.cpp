@@ -91,7 +91,11 @@ class Search {
   }
   /// There is time for more.
   bool goes_on() {
-    if (deadline_.over()) found_.cut_short = true;
+    if (!found_.cut_short && deadline_.over()) {
+      found_.cut_short = true;
+      found_.spent = deadline_.elapsed();
+      found_.given = deadline_.seconds();
+    }
     return !found_.cut_short;
   }
   [[nodiscard]] const std::vector<model::ActiveEffect>& effects() const {

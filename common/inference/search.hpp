@@ -32,7 +32,8 @@ struct Found {
   std::vector<Refused> refused;
   std::optional<FreeForceFound> free_force;
   std::size_t fits{};
-  bool cut_short{};  ///< the time was over before all was asked
+  bool cut_short{};         ///< the time was over before all was asked
+  double spent{}, given{};  ///< s, of a search that was cut short
 };
 
 [[nodiscard]] Found search(const likelihood::Problem& problem, const model::Scene& scene,

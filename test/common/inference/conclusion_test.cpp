@@ -90,6 +90,18 @@ TEST_CASE("conclusion: both scores' numbers apart are told, and change no verdic
   CHECK(caused(conclusion, Cause::kScoresDisagree, ""));
 }
 
+TEST_CASE("infer: a search that was cut short judges nothing, and says after how long") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 60.0, .force = 0.02});
+  constexpr double kBudget = 1e-6;  // s, over before the first fit is
+  const Conclusion conclusion = infer(vehicle, {&dive.trial, 1}, {.time_budget = kBudget}, {});
+  CHECK(conclusion.verdict == Verdict::not_judged);
+  REQUIRE(caused(conclusion, Cause::kOutOfTime, ""));
+  const auto why = std::ranges::find(conclusion.reasons, Cause::kOutOfTime, &Reason::cause);
+  CHECK(why->threshold == kBudget);
+  CHECK(why->value > kBudget);
+}
+
 TEST_CASE("infer: thrusters that push the other way leave no model") {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   auto dive = test::fly(vehicle, {.duration = 60.0, .force = 0.02});
