@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kStartSigma = 0.03;  // of the applied wrench: weights before their group's variance is known
 constexpr double kLeastSigma = 1e-4;
+constexpr double kMostSigma =
+    1.0;  // groups that nearly cancel would else stand for anything with weights of thousands of per cent
 constexpr int kTurns = 5;               // of the variances
 constexpr std::size_t kShortlist = 14;  // groups whose products with all others are worked out
 constexpr double kFactor = 4.0;         // by which the second start's random force is smaller
@@ -107,7 +109,7 @@ void renew_sigmas(likelihood::Fit& fit) {
       open += covariance(at, at);
     }
     const double known = std::max(group.count - open / (group.sigma * group.sigma), 0.1);
-    group.sigma = std::max(std::sqrt(square / known), kLeastSigma);
+    group.sigma = std::clamp(std::sqrt(square / known), kLeastSigma, kMostSigma);
   }
 }
 
@@ -144,7 +146,7 @@ GroupEvidence group_evidence(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
         open += inverse(at, at);
       }
       const double known = std::max(static_cast<double>(groups[g].second) - open, 0.1);
-      sigma[g] = std::max(std::sqrt(square / known), kLeastSigma);
+      sigma[g] = std::clamp(std::sqrt(square / known), kLeastSigma, kMostSigma);
     }
   }
   return best;
@@ -230,7 +232,14 @@ FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& s
     for (likelihood::AxisNoise& axis : noise) axis.log[likelihood::kForce] -= start == 0 ? 0.0 : std::log(kFactor);
     likelihood::FitOptions options{.noise_rounds = 2, .steps = 2, .enough = 0.3};
     if (fits.size() == 1) options.threads = threads;
-    likelihood::Fit fitted = likelihood::fit(problem, hypothesis, noise, options);
+    // The screen is linear: where its weights run away in the filter, the fit begins from smaller ones.
+    likelihood::Fit fitted;
+    for (const double share : {1.0, 0.3, 0.0}) {
+      likelihood::Hypothesis smaller = hypothesis;
+      for (double& weight : smaller.force.weights) weight *= share;
+      fitted = likelihood::fit(problem, smaller, noise, options);
+      if (fitted.finite) break;
+    }
     if (fitted.finite) {
       renew_sigmas(fitted);
       options.noise_rounds = 1;
@@ -243,9 +252,11 @@ FreeForceFound find_free_force(const likelihood::Problem& problem, const Seen& s
     if (!fit.finite) continue;
     const double odds = fit.log_evidence - seen.fit.log_evidence - priced;
     if (found.fit.finite && fit.log_evidence <= found.fit.log_evidence) continue;
-    found.log_odds = std::max(found.at_fixed_noise, odds);
+    found.log_odds = odds;
     found.fit = std::move(fit);
   }
+  // What the screen promises and no fit keeps is not found.
+  if (!fits.empty() && !found.fit.finite) found.log_odds = std::min(found.log_odds, 0.0);
 
   for (std::size_t i = 0; i < static_cast<std::size_t>(problem.simulated) && found.fit.finite; ++i) {
     const double left = found.fit.noise[i][likelihood::kForce] / seen.fit.noise[i][likelihood::kForce];
