@@ -169,8 +169,9 @@ std::string causes(const DiagnosisResult& result) {
     for (const Alternative& other : effect.alternatives)
       others += (others.empty() ? "" : ", ") + effect_title(other.name);
     if (!effect.unlisted.empty()) others += (others.empty() ? "" : ", ") + effect.unlisted;
-    const bool measured = effect.error_reduction > 0.0;
-    items += "<li>" + cause_line(effect) + " <span class=\"soft\">" +
+    const bool measured = effect.error_reduction > 0.0, likely = probability_of(effect) >= 0.5;
+    items += "<li>" + std::string{likely ? "" : "A stand-in, hardly the cause: "} + cause_line(effect) +
+             " <span class=\"soft\">" +
              (measured ? "removes " + escape(percent(effect.error_reduction)) + " of the error; " : std::string{}) +
              "it is this cause: " + escape(sure(probability_of(effect))) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";

@@ -59,6 +59,13 @@ TEST_CASE("The first screen has a line for every cause, with number and interval
   CHECK_FALSE(has(text, report.result.paragraph.substr(0, 40)));  // folded
 }
 
+TEST_CASE("The first screen calls what is kept but hardly the cause a stand-in") {
+  auto report = fathom::test::made_up_report({.samples = 600});
+  CHECK_FALSE(has(seen(to_html(report)), "A stand-in"));
+  report.result.effects.front().log_odds = -6.3;  // 1 : 545
+  CHECK(has(seen(to_html(report)), "A stand-in, hardly the cause: "));
+}
+
 TEST_CASE("A cause says which thruster, how much, and in which direction") {
   EffectFound gain{.name = "thruster_gain", .variant = "FL", .parameters = {{"gain_change", -0.29, 0.0075, ""}}};
   CHECK(has(cause_line(gain), "Thruster FL gives 29.0 (27.5 to 30.5) % less than the file says"));
