@@ -127,7 +127,9 @@ bool CommandLine::parse(int argc, const char* const* argv, std::ostream& answer)
     app_->exit(asked, answer, answer);
     return false;
   } catch (const CLI::ParseError& error) {
-    throw UsageError(std::string{error.what()} + "; see " + app_->get_name() + " --help");
+    std::string asked = app_->get_name();
+    for (const CLI::App* command : app_->get_subcommands()) asked += " " + command->get_name();
+    throw UsageError(std::string{error.what()} + "; see " + asked + " --help");
   }
 }
 

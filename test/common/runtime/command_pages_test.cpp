@@ -112,6 +112,13 @@ TEST_CASE("command line: what a subcommand throws is bad input, what the words l
   CHECK(Example{}.app.run(static_cast<int>(none.size()), none.data()) == 2);
 }
 
+TEST_CASE("command line: what is wrong with the words of a subcommand points to its own help") {
+  Example example;
+  const std::vector<const char*> words{"fish", "weigh", "cod"};
+  CHECK(test::complaint_of<UsageError>([&] { (void)example.app.parse(3, words.data()); }) ==
+        "--net is required; see fish weigh --help");
+}
+
 TEST_CASE("command line: words behind a command of another program go on unread") {
   Example example;
   std::vector<std::string> rest;
