@@ -106,9 +106,9 @@ Exported to_csv(const std::string& log, const std::string& folder, std::span<con
   std::map<std::string, Columns> columns;
   std::map<std::string, const Type*> types;
   std::optional<Utime> origin;
+  if (EventLog events{log}; const auto first = events.next()) origin = first->time;
   // Lists may grow while the log goes on: the columns are known at its end.
   (void)visit(log, channels, Bytes::kCount, [&](const LogEvent& event, const Type& type, const Json& message) {
-    if (!origin) origin = event.time;
     const std::string channel{event.channel};
     types[channel] = &type;
     Columns& known = columns[channel];
@@ -149,6 +149,7 @@ Exported to_csv(const std::string& log, const std::string& folder, std::span<con
 
 Exported to_mcap(const std::string& log, const std::string& file, std::span<const std::string> channels) {
   const Definitions& definitions = Definitions::built_in();
+  static_cast<void>(EventLog{log});  // refuses what is no log before anything is written
   recordings::mcap::Writer writer{file};
   writer.metadata("fathom",
                   {{"log", std::filesystem::path{log}.filename().string()}, {"version", std::string{version()}}});

@@ -12,6 +12,7 @@
 #include "common/exports/models/formats.hpp"
 #include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -63,6 +64,8 @@ void export_model(const ExportOptions& options) {
   const exports::Craft craft = exports::craft_of(stored, model::Vehicle::load(path));
   const exports::ModelFile file = exports::model_file(options.to, craft, stored, text_of(path));
   const std::string out = options.out.empty() ? exports::identifier(craft.name) + "." + file.extension : options.out;
+  refuse_over(out, path);
+  refuse_over(out, stored.path);
   std::ofstream into{out, std::ios::binary};
   into << file.text;
   if (!into.flush()) throw InputError(out + ": cannot be written; check the folder's permissions and free space");
@@ -74,6 +77,7 @@ void run_export(const ExportOptions& options) {
   if (options.to == "csv" || options.to == "mcap") {
     const std::string stem = std::filesystem::path{options.input}.stem().string();
     const std::string out = !options.out.empty() ? options.out : options.to == "csv" ? stem + "_csv" : stem + ".mcap";
+    refuse_over(out, options.input);
     const exports::Exported exported = options.to == "csv" ? exports::to_csv(options.input, out, options.channels)
                                                            : exports::to_mcap(options.input, out, options.channels);
     print_counts(exported);

@@ -79,12 +79,11 @@ std::vector<std::string> names_of(const std::vector<Source>& sources) {
 }
 
 void refuse_source(const std::string& path, const std::vector<Source>& sources) {
+  static std::set<std::string> written;  // by this command
+  if (!written.insert(path).second)
+    throw InputError(path + ": another recording of this import is already there; give it a folder of its own");
   for (const Source& source : sources) {
-    for (const std::string& file : source.files) {
-      std::error_code unknown;
-      if (std::filesystem::equivalent(file, path, unknown))
-        throw InputError(path + ": is read from; give the new log another name");
-    }
+    for (const std::string& file : source.files) refuse_over(path, file);
   }
 }
 

@@ -227,4 +227,10 @@ std::string describe_source(const Source& source, const std::optional<tables::Si
   return text + "#\n# A draft of a map, which runs as it is. Remarks say what must be checked.\n" + draft;
 }
 
+void refuse_over(const std::string& out, const std::string& read) {
+  std::error_code unknown;
+  if (std::filesystem::equivalent(out, read, unknown))
+    throw InputError(out + ": is read from; give what is written another name (--out)");
+}
+
 }  // namespace fathom::tool

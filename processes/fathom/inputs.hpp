@@ -28,6 +28,9 @@ struct Source {
 /// The same, each as one path, for commands that take recordings.
 [[nodiscard]] std::vector<std::string> paths_of(const std::vector<std::string>& arguments);
 
+/// What was recorded is not written over: InputError where `out` is the file `read`, by whatever path.
+void refuse_over(const std::string& out, const std::string& read);
+
 struct FromSource {
   std::vector<Recording> runs;  ///< several when a clock started anew within the file
   std::vector<std::string> notes;

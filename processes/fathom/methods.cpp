@@ -269,6 +269,7 @@ void run_methods(const MethodsOptions& options) {
     // Noises are stated by the pipeline: a rest's would not be those of the filter beside it.
     notes.clear();
     auto found = estimation::reconstruct_state(recording, files, {.noises_stated = true}, notes);
+    for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
     if (i == 0) process = found.settings.process;
     if (own)
       methods.front().runs.push_back(

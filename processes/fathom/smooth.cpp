@@ -1,7 +1,6 @@
 // fathom smooth: a recorded run through the Kalman filter and back through the smoother.
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/trial_files.hpp"
 
@@ -72,10 +72,7 @@ StateEstimate estimate_of(const SmoothedState& smoothed) {
 }
 
 void run_smooth(const SmoothOptions& options) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.run, options.out, ignored)) {
-    throw InputError(options.out + ": --out is the run itself; what was recorded is not written over");
-  }
+  refuse_over(options.out, options.run);
   std::vector<std::string> notes;
   Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
   const estimation::TrialFiles files = trial_files(options.files, recording, notes);

@@ -92,6 +92,8 @@ Craft craft_of(const result::Stored& stored, const model::Vehicle& vehicle) {
   craft.density = vehicle.water_density;
   craft.weight = craft.mass * Craft::kGravity;
   craft.buoyancy = craft.weight - value(result.parameters_after, "W-B", 0.0);
+  if (!(craft.buoyancy > 0.0))
+    throw InputError(stored.path + ": W-B is no less than the vehicle's weight: nothing would float; check its 'mass'");
   // G = r_G W - r_B B with the centre of mass at Bo.
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     constexpr std::array kNames{"G_x", "G_y", "G_z"};

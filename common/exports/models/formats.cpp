@@ -24,15 +24,20 @@ std::string identifier(const std::string& name) {
   return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) != 0 ? "vehicle_" + text : text;
 }
 
+std::string in_comment(const std::string& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {  // "--" ends a comment of XML
+    text += words[i];
+    if (words[i] == '-' && i + 1 < words.size() && words[i + 1] == '-') text += ' ';
+  }
+  return text;
+}
+
 std::string comment(const ModelFile& file, std::string_view mark) {
   std::string text;
   for (const std::string& note : file.unsaid) {
     text += mark;
-    for (std::size_t i = 0; i < note.size(); ++i) {  // "--" ends a comment of XML
-      text += note[i];
-      if (note[i] == '-' && i + 1 < note.size() && note[i + 1] == '-') text += ' ';
-    }
-    text += "\n";
+    text += in_comment(note) + "\n";
   }
   return text;
 }
@@ -46,12 +51,17 @@ ModelFile to_vehicle(const Craft& craft, const result::Stored& stored, const std
     if (top) inside = line.starts_with("priors:");
     if (!inside) file.text += line + "\n";
   }
+  for (const NamedValue& number : stored.result.parameters_after) {
+    if (model::parameter_from_name(number.name) && !(std::isfinite(number.std) && number.std > 0.0))
+      file.unsaid.push_back(number.name +
+                            " has no deviation in the result: no prior is written; state the vehicle file's again");
+  }
   file.text += "\n# Identified by fathom " + stored.version + " from: " + report::join(stored.result.train, ", ") +
                " (" + stored.path + ").\n" + comment(file, "# ") + "priors:\n";
   for (const NamedValue& number : stored.result.parameters_after) {
     if (!model::parameter_from_name(number.name)) continue;  // of an effect
     const double sigma = std::isfinite(number.std) && number.std > 0.0 ? number.std : 0.0;
-    if (sigma <= 0.0) continue;  // it was not moved: its prior stays as wide as it was
+    if (sigma <= 0.0) continue;  // said above
     file.text += "  " + number.name + ": {mean: " + exact(number.value) + " " + number.unit +
                  ", sigma: " + exact(sigma) + " " + number.unit + "}\n";
   }

@@ -35,8 +35,17 @@ struct ModelFile {
 // Small words that the formats share.
 /// Shortest text that reads back as the same number.
 [[nodiscard]] std::string exact(double value);
+/// All of `values` so, `between` them.
+template <class Values>
+[[nodiscard]] std::string exact(const Values& values, std::string_view between) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? std::string{} : std::string{between}) + exact(value);
+  return text;
+}
 /// "name" with what an identifier must not have as '_'.
 [[nodiscard]] std::string identifier(const std::string& name);
+/// Words as a comment of XML may hold them.
+[[nodiscard]] std::string in_comment(const std::string& words);
 /// Each note a line behind `mark`.
 [[nodiscard]] std::string comment(const ModelFile& file, std::string_view mark);
 /// Forward-right-down to forward-left-up, and back.

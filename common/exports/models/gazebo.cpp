@@ -26,7 +26,7 @@ ModelFile to_gazebo(const Craft& craft) {
   const double side = std::cbrt(craft.volume());
   const std::string box = exact(side) + " " + exact(side) + " " + exact(side);
   std::string& text = file.text;
-  text = "<?xml version=\"1.0\"?>\n<!--\n" + craft.name +
+  text = "<?xml version=\"1.0\"?>\n<!--\n" + in_comment(craft.name) +
          ", identified by fathom. Body forward-left-up; SI. Physics engine: DART (added mass).\n"
          "The world needs gz-sim-buoyancy-system with <uniform_fluid_density>" +
          exact(craft.density) + "</uniform_fluid_density>, and gravity 0 0 -" + exact(Craft::kGravity) + ".\n" +

@@ -7,11 +7,7 @@
 namespace fathom::exports {
 
 std::string python_model(const Craft& craft) {
-  const auto list = [](const auto& values) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ", ") + exact(value);
-    return "numpy.array([" + text + "])";
-  };
+  const auto list = [](const auto& values) { return "numpy.array([" + exact(values, ", ") + "])"; };
   Vector6d rigid;
   rigid << craft.mass, craft.mass, craft.mass, craft.inertia;
   const Eigen::Vector3d restoring = -craft.buoyancy * craft.p_BB;

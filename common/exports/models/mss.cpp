@@ -7,11 +7,7 @@ namespace fathom::exports {
 ModelFile to_mss(const Craft& craft) {
   ModelFile file{.extension = "m", .text = {}, .unsaid = craft.notes};
   if (!craft.thrusters.empty()) file.unsaid.emplace_back("thrusters: the caller gives the wrench that they make");
-  const auto list = [](const auto& values) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : "; ") + exact(value);
-    return "[" + text + "]";
-  };
+  const auto list = [](const auto& values) { return "[" + exact(values, "; ") + "]"; };
   Vector6d rigid;
   rigid << craft.mass, craft.mass, craft.mass, craft.inertia;
   const Eigen::Vector3d restoring = -craft.buoyancy * craft.p_BB;

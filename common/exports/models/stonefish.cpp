@@ -9,11 +9,7 @@ namespace fathom::exports {
 
 ModelFile to_stonefish(const Craft& craft) {
   ModelFile file{.extension = "scn", .text = {}, .unsaid = craft.notes};
-  const auto list = [](const Vector6d& values) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : " ") + exact(value);
-    return text;
-  };
+  const auto list = [](const Vector6d& values) { return exact(values, " "); };
   file.unsaid.push_back("added mass and inertia, X Y Z K M N (computed from the shape instead): " + list(craft.added));
   file.unsaid.push_back("linear drag, X_u .. N_r (computed from the shape instead): " + list(craft.linear));
   file.unsaid.push_back("quadratic drag, X_u|u| .. N_r|r| (computed from the shape instead): " + list(craft.quadratic));
@@ -21,7 +17,7 @@ ModelFile to_stonefish(const Craft& craft) {
   const double side = std::cbrt(craft.volume());
   const std::string centre = exact(craft.p_BB.x()) + " " + exact(craft.p_BB.y()) + " " + exact(craft.p_BB.z());
   file.text =
-      "<?xml version=\"1.0\"?>\n<!--\n" + craft.name +
+      "<?xml version=\"1.0\"?>\n<!--\n" + in_comment(craft.name) +
       ", identified by fathom. Body forward-right-down; SI. The box displaces the identified volume; put the "
       "vehicle's own mesh in its place.\nNot said here:\n" +
       comment(file, "- ") +

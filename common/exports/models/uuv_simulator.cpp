@@ -1,19 +1,10 @@
 // The underwater object plugin of UUV simulator (Gazebo classic; uuvsimulator/uuv_simulator, HydrodynamicModel.cc,
 // BuoyantObject.cc), model "fossen": added_mass, the 36 numbers of a matrix, positive; linear_damping and
-// quadratic_damping negative where they dissipate; volume and centre of buoyancy; its fluid and gravity are told too,
-// since its defaults (1028 kg/m^3) are not Fathom's. Body forward-left-up, world z up.
+// quadratic_damping negative where they dissipate; volume and centre of buoyancy; its fluid is told too,
+// since its default (1028 kg/m^3) is not Fathom's. Body forward-left-up, world z up.
 #include "common/exports/models/formats.hpp"
 
 namespace fathom::exports {
-namespace {
-
-std::string six(const Vector6d& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : " ") + exact(value);
-  return text;
-}
-
-}  // namespace
 
 ModelFile to_uuv_simulator(const Craft& craft) {
   ModelFile file{.extension = "uuv.sdf", .text = {}, .unsaid = craft.notes};
@@ -29,7 +20,7 @@ ModelFile to_uuv_simulator(const Craft& craft) {
       matrix += (column == 0 ? "" : " ") + exact(row == column ? craft.added[row] : 0.0);
   }
   file.text =
-      "<?xml version=\"1.0\"?>\n<!--\n" + craft.name +
+      "<?xml version=\"1.0\"?>\n<!--\n" + in_comment(craft.name) +
       ", identified by fathom. Body forward-left-up; SI.\nNot said here:\n" + comment(file, "- ") +
       "-->\n<sdf version=\"1.6\">\n  <model name=\"" + identifier(craft.name) +
       "\">\n    <link name=\"base_link\">\n      <inertial>\n        <mass>" + exact(craft.mass) +
@@ -44,8 +35,8 @@ ModelFile to_uuv_simulator(const Craft& craft) {
       " " + exact(centre.z()) +
       "</center_of_buoyancy>\n        <hydrodynamic_model>\n          <type>fossen</type>\n"
       "          <added_mass>" +
-      matrix + "\n          </added_mass>\n          <linear_damping>" + six(craft.linear) +
-      "</linear_damping>\n          <quadratic_damping>" + six(craft.quadratic) +
+      matrix + "\n          </added_mass>\n          <linear_damping>" + exact(craft.linear, " ") +
+      "</linear_damping>\n          <quadratic_damping>" + exact(craft.quadratic, " ") +
       "</quadratic_damping>\n        </hydrodynamic_model>\n      </link>\n    </plugin>\n  </model>\n</sdf>\n";
   return file;
 }
