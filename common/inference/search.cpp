@@ -307,6 +307,7 @@ class Search {
     if (count < 2) return;
     expect_rounds(static_cast<double>(count));
     for (std::size_t e = 0; e < effects().size(); ++e) {
+      if (!goes_on()) return;
       const Fitted rest = models_.fit_all({without(found_.best, e)}).front();
       if (!rest.fit.finite || !goes_on()) continue;
       const model::ActiveEffect active = effects()[e];

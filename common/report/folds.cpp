@@ -67,10 +67,12 @@ std::string change(const Errors& before, const Errors& after) {
 }  // namespace
 
 std::vector<Fold> folds_of(std::vector<std::string> paths, int count) {
+  std::ranges::sort(paths);  // a run that is named twice would judge a fit of itself
+  const auto twice = std::ranges::unique(paths);
+  paths.erase(twice.begin(), twice.end());
   if (paths.size() < 2)
     throw InputError("--folds: at least two recordings are needed, " + std::to_string(paths.size()) +
                      " is given; without --folds the end of every recording judges");
-  std::ranges::sort(paths);
   const std::size_t folds = std::min(static_cast<std::size_t>(count), paths.size());
   std::vector<Fold> all(folds);
   for (std::size_t i = 0; i < paths.size(); ++i) {

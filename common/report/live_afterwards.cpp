@@ -1,5 +1,6 @@
 // The closing of the loop on a live trial's own log: what `fathom diagnose` found afterwards, in the trial's report.
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.hpp"
@@ -38,7 +39,9 @@ Afterwards read_afterwards(const std::string& folder, const std::string& page) {
     for (const auto& effect : result.at("effects")) {
       found.effects.push_back({.name = effect.at("name").get<std::string>(),
                                .log_odds = effect.at("log_odds").get<double>(),
-                               .error_reduction = effect.at("error_reduction").get<double>()});
+                               .error_reduction = effect.at("error_reduction").is_number()
+                                                      ? effect.at("error_reduction").get<double>()
+                                                      : std::numeric_limits<double>::quiet_NaN()});
     }
     found.before = errors_of(result.at("error").at("before"));
     found.after = errors_of(result.at("error").at("after"));

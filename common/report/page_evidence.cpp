@@ -155,7 +155,8 @@ std::string candidate_section(const DiagnosisResult& result) {
     const double probability = found ? probability_of(*found) : std::nan("");
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
             cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
-            (found && c->error_reduction == 0.0  // the likelihood's core does not ask this of what it keeps
+            (!std::isfinite(c->error_reduction) ||
+                     (found && c->error_reduction == 0.0)  // the likelihood's core does not ask this of what it keeps
                  ? cell("<span class=\"soft\">not asked</span>", "bars")
                  : cell(bar(kWhole, c->error_reduction) + "<div>" + escape(percent(c->error_reduction)) + "</div>",
                         "bars")) +

@@ -30,7 +30,8 @@ constexpr std::array kWords{
                "The model predicts no better than that nothing changes", false},
     CauseWords{"force_unit", "fitted inertia over the expected one",
                "The thrust is as a force in another unit would be"},
-    CauseWords{"input_idle", "Student's t of the thrust", "The recorded thrust does nothing", false},
+    CauseWords{"input_idle", "Student's t of the thrust",
+               "The recorded thrust does nothing, or, below zero, pushes the other way", false},
     CauseWords{"out_of_time", "s", "The time that was given ended before the search did"},
     CauseWords{"free_curve", "", "A force of a form that no listed effect has would explain more"}};
 

@@ -15,7 +15,8 @@ constexpr double kFalseAlarm = 0.05;  // chance that anything is called differen
 struct Change {
   std::string name;
   NamedValue first, second;
-  double z{};  // of the difference, in its own standard deviations
+  double z{};    // of the difference, in its own standard deviations
+  bool known{};  // whether they have any
 };
 
 /// Parameters and the effects' numbers under one name each.
@@ -39,7 +40,7 @@ std::vector<Change> changes(const DiagnosisResult& first, const DiagnosisResult&
     if (other == after.end() || other->second.unit != value.unit) continue;
     const double sigma = std::hypot(value.std, other->second.std);
     const bool known = std::isfinite(sigma) && sigma > 0.0;
-    both.push_back({name, value, other->second, known ? (other->second.value - value.value) / sigma : 0.0});
+    both.push_back({name, value, other->second, known ? (other->second.value - value.value) / sigma : 0.0, known});
   }
   std::ranges::stable_sort(both, std::greater{}, [](const Change& c) { return std::abs(c.z); });
   return both;
@@ -117,8 +118,11 @@ std::string difference(const Stored& first, const Stored& second) {
   for (const EffectFound& effect : b.effects) {
     if (find(a, effect.name) != nullptr) continue;
     any = true;
-    out.line(report::effect_title(effect.name, effect.variant) + ": new in B, removes " +
-                 report::percent(effect.error_reduction) + " of the error, odds " + report::odds(effect.log_odds),
+    out.line(report::effect_title(effect.name, effect.variant) + ": new in B, " +
+                 (std::isfinite(effect.error_reduction)
+                      ? "removes " + report::percent(effect.error_reduction) + " of the error, "
+                      : std::string{}) +
+                 "odds " + report::odds(effect.log_odds),
              "  + ");
   }
   if (!any) out.line("none in either");
@@ -132,7 +136,10 @@ std::string difference(const Stored& first, const Stored& second) {
     ++differ;
   }
   if (differ == 0) out.line("none");
-  if (differ < all.size()) out.line(std::to_string(all.size() - differ) + " others agree within their uncertainty");
+  const auto open = static_cast<std::size_t>(std::ranges::count(all, false, &Change::known));
+  if (differ + open < all.size())
+    out.line(std::to_string(all.size() - differ - open) + " others agree within their uncertainty");
+  if (open > 0) out.line(std::to_string(open) + " cannot be compared: no uncertainty is told of them");
 
   out.title("Prediction error 5 s ahead");
   out.line(error_of(a), "  A ");

@@ -84,8 +84,11 @@ void evidence(Lines& out, const Stored& stored) {
   out.title("3. What was suspected, and what the evidence says");
   for (const EffectFound& effect : stored.result.effects) {
     if (!effect.accepted) continue;
-    out.line(report::effect_title(effect.name, effect.variant) + ": removes " + percent(effect.error_reduction) +
-                 " of the error; odds of the name " + report::odds(effect.log_odds),
+    out.line(report::effect_title(effect.name, effect.variant) +
+                 (std::isfinite(effect.error_reduction)
+                      ? ": removes " + percent(effect.error_reduction) + " of the error; odds"
+                      : std::string{": odds"}) +
+                 " of the name " + report::odds(effect.log_odds),
              "  + ");
     for (const NamedValue& value : effect.parameters)
       out.line(value.name + " = " + report::with_interval(value), "", 6);
@@ -157,7 +160,13 @@ std::string explained(const Stored& stored) {
   }
   if (stored.given.causes.empty()) out.line("the file states no causes: it was written by an older version");
   out.title("What to do next");
-  out.line(result.manoeuvre.empty() ? "Nothing is open on this data." : result.manoeuvre);
+  const bool settled = result.verdict == "adequate" || result.verdict == "effect";
+  if (!result.manoeuvre.empty()) {
+    out.line(result.manoeuvre);
+  } else {
+    out.line(settled ? "Nothing is open on this data."
+                     : "What is open is told above; no motion was worked out for it.");
+  }
   for (const EffectFound& effect : result.effects) {
     for (const ToldApart& told : effect.told_apart)
       out.line("'fathom fly' the segment \"" + told.segment + "\" for " + number(told.seconds) + " s: it tells " +

@@ -10,10 +10,8 @@
 #include "common/runtime/process.hpp"
 
 namespace fathom::runtime {
-class CommandLine;
-}
 
-namespace fathom::runtime {
+class CommandLine;
 
 /// Adds a process's own options to the common ones.
 using MoreOptions = std::function<void(CommandLine&)>;

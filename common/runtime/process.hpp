@@ -14,10 +14,8 @@
 #include "common/base/time.hpp"
 
 namespace fathom::runtime {
-class CommandLine;
-}
 
-namespace fathom::runtime {
+class CommandLine;
 
 struct Arguments;
 

@@ -23,8 +23,9 @@ using inference::Verdict;
 using likelihood::NumberKind;
 
 constexpr inference::Step kLearning{"learning", "learning what no list holds", 10.0};
-constexpr std::size_t kFiveSeconds = 1;  // of diagnosis::kHorizons
-constexpr double kStep = 0.04;           // s between the velocities that are predicted: short of it there is only noise
+constexpr std::size_t kFiveSeconds = 1;                                 // of diagnosis::kHorizons
+constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();  // null in result.json
+constexpr double kStep = 0.04;  // s between the velocities that are predicted: short of it there is only noise
 
 std::vector<std::string> names_of(std::span<const Trial> trials) {
   std::vector<std::string> names;
@@ -65,6 +66,7 @@ void list_effects(const Conclusion& conclusion, const Eigen::VectorXd& sigma, Di
     EffectFound effect{.name = std::string(effects[e].effect->name()),
                        .variant = effects[e].variant_name,
                        .log_odds = found.odds[e],
+                       .error_reduction = kNotAsked,
                        .sentence = std::string(effects[e].effect->sentence())};
     for (std::size_t j = 0; j < found.best.fit.numbers.size(); ++j) {
       const likelihood::Number& number = found.best.fit.numbers[j];
@@ -77,11 +79,12 @@ void list_effects(const Conclusion& conclusion, const Eigen::VectorXd& sigma, Di
       effect.alternatives.push_back(
           {.name = found.rival[e],
            .log_odds = std::log(found.probability[e] / std::max(1.0 - found.probability[e], 1e-300))});
-    result.candidates.push_back({effect.name, effect.variant, effect.log_odds, 0.0, {}, "accepted"});
+    result.candidates.push_back({effect.name, effect.variant, effect.log_odds, kNotAsked, {}, "accepted"});
     result.effects.push_back(std::move(effect));
   }
   for (const inference::Refused& refused : found.refused) {
-    CandidateTried candidate{.name = refused.name, .variant = refused.form};
+    CandidateTried candidate{
+        .name = refused.name, .variant = refused.form, .log_odds = kNotAsked, .error_reduction = kNotAsked};
     for (const inference::Refusal& refusal : refused.refusals) {
       given.refusals[refused.name].push_back({std::string(word(refusal.rule)), refusal.value, refusal.needed});
       if (refusal.rule == inference::Rule::kOdds) candidate.log_odds = refusal.value;
@@ -104,6 +107,10 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
   result.residual_before = diagnosis::whiteness(before, unseen, residual_before);
   result.residual_after = diagnosis::whiteness(after, unseen, residual_after);
   report.traces = diagnosis::traces_of(unseen, before, after, residual_before, residual_after);
+  const auto& free = conclusion.found.free_force;
+  for (std::size_t i = 0; free && i < free->explainable.size() && i < conclusion.random.size(); ++i)
+    given.explainable.push_back(
+        {model::kAxisNames[static_cast<std::size_t>(conclusion.random[i].axis)], free->explainable[i]});
   const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
   if (windows.empty()) return;
   const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
@@ -121,10 +128,6 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
     conclusion.reasons.push_back({inference::Cause::kNoSkill, row.over_unchanged, 0.0, row.axis});
     conclusion.verdict = Verdict::no_model;
   }
-  const auto& free = conclusion.found.free_force;
-  for (std::size_t i = 0; free && i < free->explainable.size() && i < conclusion.random.size(); ++i)
-    given.explainable.push_back(
-        {model::kAxisNames[static_cast<std::size_t>(conclusion.random[i].axis)], free->explainable[i]});
 }
 
 /// The likeliest reason for a model that does not follow its thrust, measured.
@@ -164,8 +167,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.vehicle = vehicle.name;
   result.train = names_of(train);
   result.validate = names_of(validate);
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  result.improvement = {kNaN, kNaN, kNaN};
+  result.improvement = {kNotAsked, kNotAsked, kNotAsked};
   progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
   learning::Learned learned;
@@ -189,7 +191,14 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
   }
-  if (conclusion.verdict == Verdict::no_model) seek_reason(vehicle, train, settings.thresholds, result, conclusion);
+  if (conclusion.verdict == Verdict::no_model) {
+    seek_reason(vehicle, train, settings.thresholds, result, conclusion);
+    if (result.correction && result.correction->adopted) {
+      result.correction->adopted = result.correction->carried = false;
+      result.correction->refused =
+          "on runs that no fit has seen the model with it predicts worse than that nothing changes";
+    }
+  }
   result.verdict = word(conclusion.verdict);
   result.paragraph = paragraph(conclusion);
   for (const inference::Reason& reason : conclusion.reasons)
@@ -202,8 +211,10 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   };
   const Eigen::VectorXd of_best = deviations(conclusion.found.best.fit);
   list_effects(conclusion, of_best, result, answer.given);
+  if (!result.effects.empty()) result.explained = kNotAsked;
   for (const std::string& name : settings.without)
-    result.candidates.push_back({.name = name, .reason = "taken out of the list"});
+    result.candidates.push_back(
+        {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
   result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
   if (conclusion.reported.finite && conclusion.verdict != Verdict::no_model) {
     result.parameters_before = numbers_of(conclusion.reported_base, deviations(conclusion.found.base.fit));

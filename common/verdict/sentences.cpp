@@ -79,10 +79,13 @@ std::string reasons_of_no_model(const Conclusion& conclusion) {
   if (const Reason* unit = reason(conclusion, Cause::kForceUnit))
     return text("likeliest thrust is in another unit: inertias come out %.3g times what the file expects. ",
                 unit->value);
-  std::string idle;
+  std::string idle, reversed;
   for (const Reason& one : conclusion.reasons) {
-    if (one.cause == Cause::kInputIdle) idle += (idle.empty() ? "" : ", ") + one.of;
+    if (one.cause != Cause::kInputIdle) continue;
+    std::string& axes = one.value < -one.threshold ? reversed : idle;
+    axes += (axes.empty() ? "" : ", ") + one.of;
   }
+  if (!reversed.empty()) return "likeliest because the recorded thrust pushes the other way along " + reversed + ". ";
   if (!idle.empty()) return "likeliest because the recorded thrust does not act along " + idle + ". ";
   if (const auto& free = conclusion.found.free_force; free && free->log_odds > inference::Thresholds{}.free_force_odds)
     return "wiring, force unit and inputs are in order: terms of the hull are missing. ";

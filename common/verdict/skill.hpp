@@ -14,7 +14,7 @@ namespace fathom::verdict {
 /// nu_dot = input tau + linear nu + quadratic |nu| nu + constant, of one axis by itself.
 struct PlainAxis {
   double input{}, linear{}, quadratic{}, constant{};  ///< SI; input: m/s^2 per N, rad/s^2 per N m
-  double t_of_input{};                                ///< Student's t of `input`: below 3 or so the input does not act
+  double t_of_input{};  ///< Student's t of `input`: between -3 and 3 or so the input does not act
   bool known{};
 };
 

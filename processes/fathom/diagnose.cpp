@@ -1,6 +1,8 @@
 // fathom diagnose: closes the loop on recordings. Sensors are checked, the base model fitted, its residual traced to
 // effects that it lacks, and the error before and after reported on runs that no fit has seen.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -167,6 +169,11 @@ ResultOrigin origin_of(const DiagnoseOptions& options, std::span<const std::stri
   add_words(origin, "--config", options.config);
   if (options.core != kTrajectories) add_words(origin, "--core", options.core);
   add_words(origin, "--without", options.without);
+  if (std::isfinite(options.time_budget)) {
+    std::array<char, 32> seconds{};
+    std::snprintf(seconds.data(), seconds.size(), "%.17g", options.time_budget);
+    add_words(origin, "--time-budget", std::string{seconds.data()});
+  }
   if (options.no_learning) origin.command += " --no-learning";
   add_words(origin, "--train", paths.first(fitted));
   add_words(origin, "--validate", paths.subspan(fitted));

@@ -251,6 +251,11 @@ TEST_CASE("fathom import: several files of one run on one clock, folders, patter
   refused("'" + scratch.path("dives") + "/*.bag'" + out, "no file matches");
   refused(scratch.path("dives/pilot.ulg"), "--out is missing");
   refused(scratch.path("all/pilot.lcmlog") + " --out " + scratch.path("all/pilot.lcmlog"), "is read from");
+  const std::string pilot = scratch.path("all/pilot.lcmlog"), recorded = test::read_bytes(pilot);
+  const Ran over = shell(kTool + " export " + pilot + " --to mcap --out " + pilot);
+  CHECK(over.code == 1);
+  CHECK_MESSAGE(over.says("is read from"), over.text);
+  CHECK(test::read_bytes(pilot) == recorded);
   refused(scratch.path("dives/pilot.ulg") + out + " --shift pilot=nan", "must be NAME=SECONDS");
   test::write_bytes(scratch.path("map.yaml"),
                     "source: s\nlicence: l\nahrs:\n  rates: {columns: ['sensor_combined.gyro_rad[0]', "

@@ -172,6 +172,10 @@ TEST_CASE("orders: forged and copied commands at 200 Hz move nothing and are nam
       ++looked_at;
     }
   };
+  for (const char* name : {"driver.text", "supervisor.text"})
+    CHECK(test::read_bytes(vehicle.scratch.path(name)).find(hex) == std::string::npos);
+  REQUIRE_FALSE(vehicle.bus.commands.empty());
+  holds_no_key(vehicle.bus.commands);
   holds_no_key(vehicle.bus.orders);
   holds_no_key(vehicle.bus.answers);
   holds_no_key(vehicle.bus.health);

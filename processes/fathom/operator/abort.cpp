@@ -32,7 +32,7 @@ double strongest(const Thrusters& thrusters) {
   return most;
 }
 
-constexpr double kVehicle = 0.7;  // s in which VEHICLE comes, twice a second, where the driver has one behind it
+constexpr double kVehicle = 1.7;  // s in which VEHICLE comes, twice a second: two may be lost
 
 constexpr char kByHand[] =
     "By hand, now: 1. the vehicle's kill switch, or its power; 2. disarm it in the ground station; 3. pull it in by "
@@ -44,7 +44,7 @@ std::string silence_of(const VehicleCondition& vehicle) {
   const auto heartbeat =
       std::ranges::find_if(vehicle.lines, [](const ConditionLine& line) { return line.name == "heartbeat"; });
   if (vehicle.has_applied || heartbeat == vehicle.lines.end() || heartbeat->ok) return {};
-  return "zero was sent, but nobody knows what the vehicle does: " + heartbeat->text;
+  return "zero was sent, but nobody knows what the vehicle does: " + printable(heartbeat->text);
 }
 
 /// What THRUSTERS' zero is worth.
@@ -82,11 +82,17 @@ void abort_now(Console& console, bool checked) {
   for (const auto& [process, each] : console.answers)
     std::printf("%-16s %s\n", printable(process).c_str(), printable(each.text).c_str());
   const double after = passed();
-  const bool simulated = answered() != nullptr && answered()->process == "simulator";
-  if (done() && !simulated) console.listen(kVehicle, [&] { return console.vehicle.has_value(); });
+  const bool simulated = std::ranges::all_of(
+      console.answers, [](const auto& each) { return !each.second.gate || each.second.process == "simulator"; });
+  if (done() && !simulated) {
+    console.vehicle.reset();  // of before
+    console.listen(kVehicle, [&] { return console.vehicle.has_value(); });
+  }
   const auto doubt = [&]() -> std::string {
     if (answered() == nullptr) return "no thruster driver answered within 2 s";
     if (!last) return "the driver asks for zero, but nothing says on THRUSTERS what the vehicle does";
+    if (done() && !simulated && !console.vehicle)
+      return "zero was sent, but nothing is heard on VEHICLE of what is behind the driver";
     if (done()) return console.vehicle ? silence_of(*console.vehicle) : "";
     if (is_zero(*last)) return "THRUSTERS says zero, but not three times in 2 s";
     char text[100];

@@ -39,7 +39,7 @@ void attend(Console& console, Orders& orders, double promised, bool supervised) 
     }
     if (silent || !console.excitation->mode.empty()) continue;
     if (console.excitation->phase == "done") return;
-    throw InputError("the trial has ended: " + now);
+    throw InputError("the trial has ended: " + printable(now));
   }
 }
 

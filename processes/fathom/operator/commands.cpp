@@ -19,10 +19,10 @@ using Options = OperatorOptions;
 void print(const Excitation& e) {
   std::printf("%-10s %s\n", printable(e.phase).c_str(), printable(e.reason).c_str());
   if (e.mode.empty()) return;
-  std::printf("mode %s, %.0f of at most %.0f s", e.mode.c_str(), e.elapsed, e.duration);
+  std::printf("mode %s, %.0f of at most %.0f s", printable(e.mode).c_str(), e.elapsed, e.duration);
   if (e.metric >= 0.0) std::printf(", certainty %.3g of %.3g", e.metric, e.threshold);
   std::printf("%s\n", e.bent ? ", bent by the fence" : "");
-  if (!e.missing.empty()) std::printf("still missing: %s\n", e.missing.c_str());
+  if (!e.missing.empty()) std::printf("still missing: %s\n", printable(e.missing).c_str());
 }
 
 void order(const Options& options, bool enable, const std::string& word) {

@@ -87,8 +87,9 @@ void Console::hear(const runtime::LiveInput::Message& message) {
     const auto one = runtime::message_of<fathom_lcm::answer_t>(message.bytes);
     if (auto heard = one ? wire::open(*one, keys_ ? keys_->answer : Key{}) : std::nullopt) hear(std::move(*heard));
   } else if (channel == wire::kExcitation) {
-    if (const auto one = runtime::message_of<fathom_lcm::excitation_t>(message.bytes)) excitation = wire::decode(*one);
-    excitation_came_ = Clock::now();
+    const auto one = runtime::message_of<fathom_lcm::excitation_t>(message.bytes);
+    excitation = one ? wire::decode(*one) : std::nullopt;
+    if (excitation) excitation_came_ = Clock::now();
   } else if (channel == wire::kHealth) {
     if (const auto one = runtime::message_of<fathom_lcm::health_t>(message.bytes)) {
       const auto heard = wire::decode(*one);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/base/printable.hpp"
 #include "common/orders/hand.hpp"
 #include "common/runtime/stop_signal.hpp"
 #include "processes/fathom/operator/orders.hpp"
@@ -128,7 +129,7 @@ void steer(const OperatorOptions& options) {
     const double now = seconds();
     if (stop.raised() || !hand.look(now)) break;
     if (console.excitation && console.excitation->mode.empty())
-      throw InputError("no longer armed: " + console.excitation->reason);
+      throw InputError("no longer armed: " + printable(console.excitation->reason));
     if (const bool was = std::exchange(silent, console.silence() > kNobody); silent && !was) {
       std::printf("%s\n", kNobodySays);
       std::fflush(stdout);

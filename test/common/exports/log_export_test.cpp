@@ -143,6 +143,7 @@ TEST_CASE("export: lists that grow become further columns, words are quoted") {
   const auto lines = lines_of(test::read_bytes(log.scratch.path("csv/EFFECTS.csv")));
   REQUIRE(lines.size() == 4);
   CHECK(lines[0].find("candidates[2].log_odds") != std::string::npos);
+  CHECK(lines[1].starts_with("0.5,"));  // s since the log's first message, whatever is asked for
   CHECK(lines[1].find("\"a \"\"quoted\"\", word\"") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(log.scratch.path("csv/STATE.csv")));
   const std::vector<std::string> none{"SONAR"};

@@ -45,6 +45,7 @@ TEST_CASE("folds: each recording is held out once, and never by a fold that fits
   }
   CHECK(folds_of({"b", "a", "c"}, 3)[0].held_out == std::vector<std::string>{"a"});
   CHECK_THROWS_AS((void)folds_of({"a"}, 2), InputError);
+  CHECK_THROWS_AS((void)folds_of({"a", "a"}, 2), InputError);  // it would judge a fit of itself
 }
 
 TEST_CASE("folds: the table has a line per fold, the pooled error, and how often each effect was found") {

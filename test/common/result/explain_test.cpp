@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "common/base/error.hpp"
@@ -81,6 +82,19 @@ TEST_CASE("explain: every reason with its value and threshold, within the termin
   }
   std::istringstream lines{text};
   for (std::string line; std::getline(lines, line);) CHECK(report::columns(line) <= report::kTableColumns);
+}
+
+TEST_CASE("explain: what is open is never called settled, and what was not asked has no number") {
+  Written w;
+  w.result.manoeuvre.clear();
+  w.result.verdict = "unexplained";
+  for (EffectFound& effect : w.result.effects) effect.error_reduction = std::nan("");
+  const std::string text = result::explained(result::read_result(w.save()));
+  CHECK(text.find("Nothing is open") == std::string::npos);
+  CHECK(text.find("removes nan") == std::string::npos);
+  CHECK(text.find(": odds of the name") != std::string::npos);
+  w.result.verdict = "adequate";
+  CHECK(result::explained(result::read_result(w.save())).find("Nothing is open") != std::string::npos);
 }
 
 TEST_CASE("diff: effects that came and went, and the numbers that differ for sure") {
