@@ -134,16 +134,19 @@ std::size_t Server::send(std::string_view bytes) {
 void Server::drain() {
   using std::chrono::milliseconds;
   constexpr milliseconds kLook{10};
-  constexpr int kMost = 200;
-  constexpr int kSettled = 10;  // looks in a row, as bytes come to a terminal's reader by way of the kernel's own queue
+  // In looks in a row. Bytes come to a terminal's reader by way of the kernel's own queue, whose worker may be late on
+  // a busy machine; a reader that takes nothing for so long stands still.
+  constexpr int kSettled = 50;
+  constexpr int kStill = 500;
   if (!connected()) return;
   // What waits in a terminal is told at the client's end only, and is thrown away when the line goes.
   const int end = terminal_ ? open(name_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC) : descriptor_;
   const unsigned long question = terminal_ ? FIONREAD : TIOCOUTQ;
-  for (int i = 0, empty = 0; i < kMost && empty < kSettled; ++i) {
+  for (int same = 0, last = -1; same < (last == 0 ? kSettled : kStill); ++same) {
     int waiting = 0;
     if (end < 0 || ioctl(end, question, &waiting) != 0) break;
-    empty = waiting == 0 ? empty + 1 : 0;
+    if (waiting != last) same = 0;
+    last = waiting;
     std::this_thread::sleep_for(kLook);
   }
   if (terminal_ && end >= 0) close(end);

@@ -22,7 +22,8 @@ class Server {
   [[nodiscard]] std::string wait(double seconds);
   /// Returns how many bytes were taken; the rest is lost, as on a line that nobody reads. Nothing without a client.
   std::size_t send(std::string_view bytes);
-  /// Waits until a client has read what was sent, two seconds at most: a line that ends takes the rest with it.
+  /// Waits until a client has read what was sent, or takes nothing for five seconds: a line that ends takes the rest
+  /// with it.
   void drain();
 
  private:

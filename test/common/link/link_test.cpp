@@ -34,7 +34,8 @@ struct Heard {
 };
 
 template <class Condition>
-bool until(Link& link, Condition&& condition, double seconds = 5.0) {
+bool until(Link& link, Condition&& condition,
+           double seconds = 20.0) {  // a busy machine; who comes at once waits for nothing
   const double end = wall_seconds() + seconds;
   while (!condition()) {
     if (wall_seconds() > end) return false;
