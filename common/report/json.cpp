@@ -250,7 +250,7 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string to_json(const CheckGiven& check) {
+std::string check_json(const CheckGiven& check) {
   const Json file{{"schema", kSchema},
                   {"kind", "check"},
                   {"fathom_version", std::string{version()}},

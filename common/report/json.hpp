@@ -25,6 +25,6 @@ struct CheckGiven {
   std::vector<std::string> notes;
   std::vector<ConsistencyFinding> findings;
 };
-[[nodiscard]] std::string to_json(const CheckGiven& check);
+[[nodiscard]] std::string check_json(const CheckGiven& check);
 
 }  // namespace fathom::report

@@ -94,7 +94,7 @@ void run_check(const CheckOptions& options) {
     for (const Recording& recording : recordings) given.runs.push_back(recording.name);
     given.findings = result.findings;
     if (given.findings.empty()) given.conclusion = consistency::conclusion_of(result);
-    tables::write_file(options.json, report::to_json(given));
+    tables::write_file(options.json, report::check_json(given));
   }
   if (!options.write_map.empty()) {
     for (const std::string& note : write_mended_map(options.write_map, options.map, runs, result.corrections))
