@@ -156,8 +156,8 @@ TEST_CASE("every effect: names, words, units and priors are stated") {
 TEST_CASE("every effect: one file, one line, one name") {
   const std::filesystem::path folder = std::string{FATHOM_SOURCE_DIR} + "/common/model/effects";
   std::set<std::string> files, lines, registered;
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
-    if (entry.path().extension() == ".cpp") files.insert(entry.path().stem().string());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{folder}) {
+    if (entry.path().extension() == ".cpp") CHECK(files.insert(entry.path().stem().string()).second);
   }
   std::ifstream text{folder / "effects.def"};
   for (std::string line; std::getline(text, line);) {
