@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "common/model/effect.hpp"
+#include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/text.hpp"
@@ -151,13 +153,22 @@ std::string picture(const DiagnosisReport& report, Album& album) {
     const std::size_t size = trace.t.size();
     const auto finite = [&](const auto& row) { return std::isfinite(row[*axis]); };
     if (size < 2 || trace.measured.size() != size || std::ranges::none_of(trace.before, finite)) continue;
-    Figure drawn = draw_motion(trace, *axis, kMostPoints, typical_stretch(trace, kCloseUp));
+    const auto stretch = typical_stretch(trace, kCloseUp);
+    Figure drawn = draw_motion(trace, *axis, kMostPoints, stretch);
     drawn.alt = std::string{"What shows it: "} + velocity_label(kAxes[*axis]) + " measured, before and after";
-    return figure(album.place(std::move(drawn)),
+    LivePlot live = live_motion(trace, *axis, stretch);
+    live.group = "front";
+    return figure(live_plot(album.place(std::move(drawn)), live, 1 + live.t.size() / kMostPoints),
                   escape("A typical stretch of " + trace.run + ", " + kAxes[*axis].name +
                          ": measured dark, before orange, after blue. At each light line the simulation starts anew."));
   }
   return "";
+}
+
+/// What the sensors say, not what the vehicle does: no force is missing for it.
+bool of_sensor(const EffectFound& effect) {
+  const model::Effect* known = model::find_effect(effect.name);
+  return known != nullptr && known->measures() && !(effect.error_reduction > 0.0);
 }
 
 std::string causes(const DiagnosisResult& result) {
@@ -170,8 +181,10 @@ std::string causes(const DiagnosisResult& result) {
       others += (others.empty() ? "" : ", ") + effect_title(other.name);
     if (!effect.unlisted.empty()) others += (others.empty() ? "" : ", ") + effect.unlisted;
     const bool measured = effect.error_reduction > 0.0, likely = probability_of(effect) >= 0.5;
-    items += "<li>" + std::string{likely ? "" : "A stand-in, hardly the cause: "} + cause_line(effect) +
-             " <span class=\"soft\">" +
+    const std::string what = of_sensor(effect) ? "In the sensors, and corrected: "
+                             : likely          ? ""
+                                               : "A stand-in, hardly the cause: ";
+    items += "<li>" + what + cause_line(effect) + " <span class=\"soft\">" +
              (measured ? "removes " + escape(percent(effect.error_reduction)) + " of the error; " : std::string{}) +
              "it is this cause: " + escape(sure(probability_of(effect))) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
@@ -221,8 +234,8 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +
                      "<div class=\"tiles\">";
-  const bool added =
-      std::ranges::any_of(result.effects, &EffectFound::accepted) || (result.correction && result.correction->adopted);
+  const auto acts = [](const EffectFound& effect) { return effect.accepted && !of_sensor(effect); };
+  const bool added = std::ranges::any_of(result.effects, acts) || (result.correction && result.correction->adopted);
   if (std::isfinite(result.improvement.value) && !added) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {

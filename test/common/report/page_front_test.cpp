@@ -66,6 +66,17 @@ TEST_CASE("The first screen calls what is kept but hardly the cause a stand-in")
   CHECK(has(seen(to_html(report)), "A stand-in, hardly the cause: "));
 }
 
+TEST_CASE("What sensors do wrong is no cause of the motion, and nothing was added to the model for it") {
+  auto report = fathom::test::made_up_report({.samples = 600});
+  report.result.effects = {
+      {.name = "sensor_latency", .variant = "dvl", .parameters = {{"dvl.delay", 0.2, 0.01, "s"}}, .log_odds = 20.0}};
+  const std::string text = seen(to_html(report));
+  CHECK(has(text, "In the sensors, and corrected: "));
+  CHECK(has(text, "nothing was added to the model"));
+  report.result.effects.front().error_reduction = 0.1;  // asked of the motion, and found there
+  CHECK_FALSE(has(seen(to_html(report)), "In the sensors"));
+}
+
 TEST_CASE("A cause says which thruster, how much, and in which direction") {
   EffectFound gain{.name = "thruster_gain", .variant = "FL", .parameters = {{"gain_change", -0.29, 0.0075, ""}}};
   CHECK(has(cause_line(gain), "Thruster FL gives 29.0 (27.5 to 30.5) % less than the file says"));
