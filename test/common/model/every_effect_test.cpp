@@ -17,9 +17,11 @@ namespace {
 
 constexpr double kAbsent = 1e-12;  // relative: battery_sag multiplies by pow(x, 0)
 
-/// Six axes, eight thrusters, and one component of the restoring moment that the base model does not have.
+/// Six axes, eight thrusters, one component of the restoring moment that the base model does not have, and something
+/// that stands above the water.
 model::Vehicle vehicle_without_G_y() {
   model::Vehicle vehicle = test::vehicle_from_repository("beluga");
+  vehicle.windage = 0.2;
   const auto place = std::find(vehicle.parameters.begin(), vehicle.parameters.end(), "G_y");
   vehicle.priors.erase(vehicle.priors.begin() + (place - vehicle.parameters.begin()));
   vehicle.parameters.erase(place);
