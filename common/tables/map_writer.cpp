@@ -158,6 +158,12 @@ std::string thrusters(const ThrusterColumns& columns) {
     text += "  command: {columns: " + listed(columns.command->command.columns) +
             ", neutral: " + with_unit(columns.command->neutral, "us") +
             ", full: " + with_unit(columns.command->full, "us") + "}\n";
+  if (columns.inputs) {
+    text += "  inputs: {columns: " + listed(columns.inputs->group.columns) + ", units: [";
+    for (std::size_t i = 0; i < columns.inputs->units.size(); ++i)
+      text += (i == 0 ? "" : ", ") + columns.inputs->units[i];
+    text += "]}\n";
+  }
   if (columns.speed)
     text += "  speed: {columns: " + listed(columns.speed->speed.columns) +
             ", unit: " + unit_of(columns.speed->speed.factor, "rad/s", kRates) +

@@ -16,7 +16,7 @@ class ThrusterImport {
  public:
   ThrusterImport(Resolver& resolve, const ThrusterColumns& columns)
       : columns_{columns},
-        pwm_{optional_group(resolve, columns.command ? std::optional{columns.command->command} : columns.pwm)},
+        pwm_{optional_group(resolve, commands_of(columns))},
         force_{optional_group(resolve, columns.speed ? std::optional{columns.speed->speed} : columns.force)},
         wrench_force_{optional_group(resolve, columns.wrench_force)},
         wrench_moment_{optional_group(resolve, columns.wrench_moment)},
@@ -34,6 +34,9 @@ class ThrusterImport {
       Thrusters sample;
       sample.utime = utime;
       if (pwm_) sample.pwm_us = pwm_->values(row);
+      if (const auto& inputs = columns_.inputs) {
+        for (std::size_t i = 0; i < sample.pwm_us.size(); ++i) sample.pwm_us[i] *= inputs->factors[i];
+      }
       if (const auto& command = columns_.command) {
         for (double& pulse : sample.pwm_us) pulse = command->neutral + command->full * pulse;
       }
@@ -54,6 +57,11 @@ class ThrusterImport {
   void report(const CsvTable& table, std::vector<std::string>& notes) const { count_.report(table, notes); }
 
  private:
+  static std::optional<ColumnGroup> commands_of(const ThrusterColumns& columns) {
+    if (columns.inputs) return columns.inputs->group;
+    return columns.command ? std::optional{columns.command->command} : columns.pwm;
+  }
+
   const ThrusterColumns& columns_;
   std::optional<Group> pwm_, force_, wrench_force_, wrench_moment_;
   Flags invalid_;
