@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/text.hpp"
@@ -151,9 +152,12 @@ std::string picture(const DiagnosisReport& report, Album& album) {
     const std::size_t size = trace.t.size();
     const auto finite = [&](const auto& row) { return std::isfinite(row[*axis]); };
     if (size < 2 || trace.measured.size() != size || std::ranges::none_of(trace.before, finite)) continue;
-    Figure drawn = draw_motion(trace, *axis, kMostPoints, typical_stretch(trace, kCloseUp));
+    const auto stretch = typical_stretch(trace, kCloseUp);
+    Figure drawn = draw_motion(trace, *axis, kMostPoints, stretch);
     drawn.alt = std::string{"What shows it: "} + velocity_label(kAxes[*axis]) + " measured, before and after";
-    return figure(album.place(std::move(drawn)),
+    LivePlot live = live_motion(trace, *axis, stretch);
+    live.group = "front";
+    return figure(live_plot(album.place(std::move(drawn)), live, 1 + live.t.size() / kMostPoints),
                   escape("A typical stretch of " + trace.run + ", " + kAxes[*axis].name +
                          ": measured dark, before orange, after blue. At each light line the simulation starts anew."));
   }
