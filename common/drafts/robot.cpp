@@ -16,7 +16,7 @@ const Eigen::DiagonalMatrix<double, 3> kDownward{1.0, -1.0, -1.0};  // forward, 
 
 std::string metres(const Eigen::Vector3d& v) {
   char text[96];
-  std::snprintf(text, sizeof text, "%.4g %.4g %.4g m", v.x(), v.y(), v.z());
+  std::snprintf(text, sizeof text, "%.4g %.4g %.4g m", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // no "-0"
   return text;
 }
 
