@@ -89,16 +89,19 @@ void check_turns(const FrameMotor& motor, int number, const Eigen::Vector3d& p_B
 
 std::span<const ArdusubFrame> ardusub_frames() { return kFrames; }
 
-Draft draft_of_frame(const std::string& name, const std::map<int, Eigen::Vector3d>& places) {
-  const ArdusubFrame* frame = nullptr;
+const ArdusubFrame& ardusub_frame(const std::string& name) {
   std::string all, near;
   for (const ArdusubFrame& each : kFrames) {
+    if (each.name == name) return each;
     all += (all.empty() ? "" : ", ") + std::string{each.name};
     if (near.empty() && looks_like(name, std::string{each.name}))
       near = " (did you mean " + std::string{each.name} + "?)";
-    if (each.name == name) frame = &each;
   }
-  if (frame == nullptr) throw InputError("ArduSub has no frame " + name + near + "; there are: " + all);
+  throw InputError("ArduSub has no frame " + name + near + "; there are: " + all);
+}
+
+Draft draft_of_frame(const std::string& name, const std::map<int, Eigen::Vector3d>& places) {
+  const ArdusubFrame* frame = &ardusub_frame(name);
   for (const auto& [number, place] : places) {
     if (number < 1 || static_cast<std::size_t>(number) > frame->motors.size()) {
       throw InputError("--place " + std::to_string(number) + ": frame " + name + " has motors 1 to " +

@@ -23,6 +23,8 @@ struct ArdusubFrame {
 };
 
 [[nodiscard]] std::span<const ArdusubFrame> ardusub_frames();
+/// InputError that names the known ones.
+[[nodiscard]] const ArdusubFrame& ardusub_frame(const std::string& name);
 
 /// Directions by the frame; `places` [m] by the number of the motor output, 1 the first. InputError for a frame or
 /// motor that is not there, and for a place at which the motor would turn the vehicle the other way than the frame

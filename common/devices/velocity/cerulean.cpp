@@ -10,6 +10,7 @@ constexpr double kMicrosecond = 1e-6;           // s
 // s: the log tells 5 to 20 times a second. A mean over much more is no velocity of a moment, one over less has no
 // digits.
 constexpr double kLeastInterval = 0.005, kMostInterval = 1.0;
+constexpr double kMostSpeed = 30.0;  // m/s: no log measures more
 
 }  // namespace
 
@@ -36,7 +37,11 @@ void Cerulean::sentence(const Words& words, Frame& frame) {
   const bool moment = interval >= kLeastInterval && interval <= kMostInterval;
   sample_ = Dvl{.altitude = trusted ? std::max(0.0, standoff_m_.value_or(0.0)) : 0.0,
                 .valid = trusted && moment && dx_m_ && dy_m_ && dz_m_};
-  if (sample_.valid) sample_.v_WB_B = R_BS_ * Eigen::Vector3d{*dx_m_, *dy_m_, *dz_m_} / interval;
+  if (sample_.valid) {
+    const Eigen::Vector3d v_S = Eigen::Vector3d{*dx_m_, *dy_m_, *dz_m_} / interval;
+    sample_.valid = v_S.cwiseAbs().maxCoeff() < kMostSpeed;
+    if (sample_.valid) sample_.v_WB_B = R_BS_ * v_S;
+  }
   frame.sample = &sample_;
 }
 

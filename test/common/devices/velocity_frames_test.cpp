@@ -253,5 +253,6 @@ TEST_CASE("Cerulean: a displacement in an interval is the mean velocity at its m
   CHECK(row("DVPDL,101234000,50000,0,0,0,0.1,0.1,0.1,0").at("SI valid") == "0");      // no confidence
   CHECK(row("DVPDL,101234000,0,0,0,0,0.1,0.1,0.1,100").at("SI valid") == "0");        // no interval
   CHECK(row("DVPDL,101234000,5000000,0,0,0,0.1,0.1,0.1,100").at("SI valid") == "0");  // the mean of five seconds
+  CHECK(row("DVPDL,101234000,50000,0,0,0,5.0,0.1,0.1,100").at("SI valid") == "0");    // 100 m/s
   CHECK_FALSE(row("DVPDL,101234000,50000,0,0,0,0.1,0.1,100").has_sample);             // a field was lost
 }

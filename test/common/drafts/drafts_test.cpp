@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/drafts/ardusub_frames.hpp"
+#include "common/drafts/ardusub_mixer.hpp"
 #include "common/drafts/robot.hpp"
 #include "common/model/vehicle.hpp"
 #include "test/support/scratch.hpp"
@@ -218,4 +219,39 @@ TEST_CASE("drafts: a place that contradicts the frame, a motor and a frame that 
   CHECK(said("vectored-6dof", {{1, {-0.15, -0.11, 0.0}}}).find("ahead, to starboard") != std::string::npos);
   CHECK(said("vectored", {{7, {0.0, 0.0, 0.0}}}).find("has motors 1 to 6") != std::string::npos);
   CHECK(said("vectored6dof", {}).find("did you mean vectored-6dof") != std::string::npos);
+}
+
+TEST_CASE("mixer: one stick alone gives each motor its factor, whatever the frame") {
+  for (const drafts::ArdusubFrame& frame : drafts::ardusub_frames()) {
+    CAPTURE(frame.name);
+    const drafts::ArdusubMixer mixer{std::string{frame.name}, 1.0, {}};
+    std::vector<double> commands(mixer.motors());
+    const auto expect = [&](const drafts::Sticks& sticks, double drafts::FrameMotor::*factor) {
+      mixer.mix(sticks, commands);
+      for (std::size_t i = 0; i < commands.size(); ++i)
+        CHECK(commands[i] == doctest::Approx(0.5 * frame.motors[i].*factor));
+    };
+    expect({.roll = 0.5}, &drafts::FrameMotor::roll);
+    expect({.pitch = 0.5}, &drafts::FrameMotor::pitch);
+    expect({.yaw = 0.5}, &drafts::FrameMotor::yaw);
+    expect({.throttle = 0.5}, &drafts::FrameMotor::throttle);
+    expect({.forward = 0.5}, &drafts::FrameMotor::forward);
+    expect({.lateral = 0.5}, &drafts::FrameMotor::lateral);
+  }
+}
+
+TEST_CASE("mixer: more than full is shared in the heavy frame, cut in the others, held back where water is drawn off") {
+  std::vector<double> eight(8), six(6);
+  drafts::ArdusubMixer{"vectored-6dof", 1.0, {}}.mix({.roll = 1.0, .throttle = 1.0, .forward = 1.0}, eight);
+  // Motors 6 and 8 would get -2: all vertical ones are halved; 5 and 7 get none. The horizontal ones keep theirs.
+  CHECK(eight == std::vector<double>{-1, -1, 1, 1, 0, -1, 0, -1});
+  drafts::ArdusubMixer{"vectored-6dof", 1.0, {}}.mix({.yaw = 1.0, .forward = 1.0}, eight);
+  CHECK(eight == std::vector<double>{0, -1, 0, 1, 0, 0, 0, 0});
+  // Ahead while going up by half: motors 3 and 4, which push ahead, are held to 1 - 1.2 / 2.
+  drafts::ArdusubMixer{"vectored", 1.2, {}}.mix({.throttle = 0.5, .forward = 1.0}, six);
+  CHECK(six[0] == -1.0);
+  CHECK(six[2] == doctest::Approx(0.4));
+  CHECK(six[4] == -0.5);
+  drafts::ArdusubMixer{"vectored", 0.0, {}}.mix({.throttle = 0.5, .forward = 1.0}, six);
+  CHECK(six[2] == 1.0);
 }
