@@ -14,6 +14,8 @@ std::string text_of(double value) {
 
 std::string text_of(const Eigen::Vector3d& v) { return text_of(v.x()) + " " + text_of(v.y()) + " " + text_of(v.z()); }
 
+bool is_control(char c) { return (c >= 0 && c < ' ') || c == 0x7F; }
+
 // A plain word, or in quotes what YAML would read as something else.
 std::string quoted(const std::string& name) {
   const bool plain =
@@ -22,7 +24,7 @@ std::string quoted(const std::string& name) {
   if (plain) return name;
   std::string text = "'";
   for (const char c : name) {
-    if (c == '\n' || c == '\r') continue;
+    if (is_control(c)) continue;
     text += c;
     if (c == '\'') text += c;
   }
@@ -32,7 +34,7 @@ std::string quoted(const std::string& name) {
 // Nothing of a remark may leave its line.
 std::string comment(const std::string& remark) {
   std::string text = "# ";
-  for (const char c : remark) text += c == '\n' || c == '\r' ? ' ' : c;
+  for (const char c : remark) text += is_control(c) ? ' ' : c;
   return text + "\n";
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "common/base/error.hpp"
+#include "common/base/printable.hpp"
 
 namespace fathom::drafts {
 namespace {
@@ -114,10 +115,10 @@ Draft draft_of(const Robot& robot, const std::string& source) {
     const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(),
                                     [&](const Joint& one) { return one.name == each.joint; });
     if (joint == robot.joints.end())
-      throw InputError(source + ": a thruster drives the joint '" + each.joint + "', which is not there");
+      throw InputError(source + ": a thruster drives the joint '" + printable(each.joint) + "', which is not there");
     const Link* child = robot.link(joint->child);
     if (child == nullptr)
-      throw InputError(source + ": joint '" + joint->name + "' moves the link '" + joint->child +
+      throw InputError(source + ": joint '" + printable(joint->name) + "' moves the link '" + printable(joint->child) +
                        "', which is not there");
     // Gazebo pushes at the centre of mass of the propeller's link.
     draft.thrusters.push_back({.name = joint->name,

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/base/printable.hpp"
 
 namespace fathom::drafts {
 namespace {
@@ -83,7 +84,8 @@ std::string Element::attribute(const char* name) const {
 bool Element::has(const char* name) const { return element_ != nullptr && element_->Attribute(name) != nullptr; }
 
 void Element::fail(const std::string& what) const {
-  throw InputError(*path_ + ":" + std::to_string(element_ != nullptr ? element_->GetLineNum() : 0) + ": " + what);
+  throw InputError(*path_ + ":" + std::to_string(element_ != nullptr ? element_->GetLineNum() : 0) + ": " +
+                   printable(what));
 }
 
 std::vector<double> Element::numbers(const std::string& from, std::size_t count) const {

@@ -1,7 +1,9 @@
 // Vehicle files from SDF, URDF and ArduSub's frames: numbers worked out by hand, and read back as a vehicle.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "common/base/error.hpp"
@@ -254,4 +256,35 @@ TEST_CASE("mixer: more than full is shared in the heavy frame, cut in the others
   CHECK(six[4] == -0.5);
   drafts::ArdusubMixer{"vectored", 0.0, {}}.mix({.throttle = 0.5, .forward = 1.0}, six);
   CHECK(six[2] == 1.0);
+}
+
+TEST_CASE("drafts: a damaged drawing is refused in one line or read, and what is read has no number that is none") {
+  const test::Scratch scratch;
+  std::mt19937 random{4};
+  int refused = 0, read = 0;
+  for (int round = 0; round < 600; ++round) {
+    std::string text = round % 2 == 0 ? kSdf : kUrdf;
+    for (int k = 0; k < 1 + round % 3; ++k) {
+      const std::size_t at = random() % text.size();
+      if (random() % 2 == 0) {
+        text[at] = static_cast<char>(random() & 0xFF);
+      } else {
+        text.erase(at, random() % 20);
+      }
+    }
+    const std::string path = written(scratch, "damaged.xml", text);
+    try {
+      const drafts::Draft draft =
+          drafts::draft_of(round % 2 == 0 ? drafts::read_sdf(path) : drafts::read_urdf(path), "it");
+      for (const drafts::DraftThruster& each : draft.thrusters)
+        CHECK((each.p_BJ->allFinite() && each.axis_B.allFinite()));
+      if (draft.mass) CHECK((std::isfinite(*draft.mass) && *draft.mass > 0.0));
+      ++read;
+    } catch (const InputError& error) {
+      CHECK(std::string{error.what()}.find('\n') == std::string::npos);
+      ++refused;
+    }
+  }
+  CHECK(refused > 50);
+  CHECK(read > 50);
 }
