@@ -237,8 +237,32 @@ StickColumns sticks_of(const Config& config) {
   return sticks;
 }
 
+/// To the unit in which a vehicle file's actuators take their commands.
+double command_factor(const Config& config, const std::string& unit) {
+  for (const char* wanted : {"us", "rad/s", "rad", "N"}) {
+    try {
+      return unit_factor(unit, wanted);
+    } catch (const InputError&) {  // of another kind
+    }
+  }
+  config.fail("units", "'" + unit + "' is no unit of a command: us (a pulse), rpm (a shaft), deg (a rudder) or N");
+}
+
+InputColumns inputs_of(const Config& config) {
+  InputColumns inputs{.group = {columns_of(config, "columns"), 1.0}, .units = config.texts("units")};
+  if (inputs.units.size() != inputs.group.columns.size())
+    config.fail("units", "'units' needs one unit for each of 'columns', [rpm, rpm, deg] for example");
+  for (const std::string& unit : inputs.units) inputs.factors.push_back(command_factor(config, unit));
+  return inputs;
+}
+
 ThrusterColumns thrusters_of(const Config& config) {
   ThrusterColumns thrusters;
+  if (config.has("inputs")) {
+    if (config.has("pwm") || config.has("command"))
+      config.fail("inputs", "state 'inputs' alone: pulses are columns of it with the unit us");
+    thrusters.inputs = inputs_of(config.section("inputs"));
+  }
   if (config.has("pwm")) thrusters.pwm = group_of(config.section("pwm"), "us");
   if (config.has("force")) thrusters.force = group_of(config.section("force"), "N");
   if (config.has("command")) {
@@ -249,8 +273,8 @@ ThrusterColumns thrusters_of(const Config& config) {
   }
   if (config.has("sticks")) {
     const Config sticks = config.section("sticks");
-    if (thrusters.pwm || thrusters.command)
-      config.fail("sticks", "state one of 'pwm', 'command' and 'sticks': each becomes pulses");
+    if (thrusters.pwm || thrusters.command || thrusters.inputs)
+      config.fail("sticks", "state one of 'pwm', 'command', 'inputs' and 'sticks': each tells commands");
     thrusters.sticks = sticks_of(sticks);
   }
   if (config.has("speed")) {
@@ -268,9 +292,9 @@ ThrusterColumns thrusters_of(const Config& config) {
     thrusters.wrench_force = {{columns.begin(), split}, factor_to(wrench, "force_unit", "N"), frame};
     thrusters.wrench_moment = {{split, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
   }
-  if (!thrusters.pwm && !thrusters.command && !thrusters.sticks && !thrusters.force && !thrusters.speed &&
-      !thrusters.wrench_force) {
-    config.fail("", "'thrusters' needs pwm, command, force, speed or wrench");
+  if (!thrusters.pwm && !thrusters.command && !thrusters.sticks && !thrusters.inputs && !thrusters.force &&
+      !thrusters.speed && !thrusters.wrench_force) {
+    config.fail("", "'thrusters' needs pwm, command, inputs, force, speed or wrench");
   }
   thrusters.invalid_where = invalid_of(config);
   return thrusters;

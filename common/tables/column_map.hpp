@@ -89,9 +89,17 @@ struct StickColumns {
   double neutral{}, full{};   ///< us: sticks and motors at neutral + full * command
 };
 
+/// Commands of actuators of different kinds, each in its own unit.
+struct InputColumns {
+  ColumnGroup group;               ///< order of the vehicle file
+  std::vector<std::string> units;  ///< as the map states them
+  std::vector<double> factors;     ///< to us, rad/s, rad or N
+};
+
 struct ThrusterColumns {
   std::optional<ColumnGroup> pwm;  ///< factor to us
   std::optional<StickColumns> sticks;
+  std::optional<InputColumns> inputs;
   std::optional<CommandColumns> command;
   std::optional<ColumnGroup> force;  ///< order of the vehicle file
   std::optional<SpeedColumns> speed;

@@ -167,6 +167,12 @@ std::string thrusters(const ThrusterColumns& columns) {
     for (const int motor : sticks->reversed) reversed += (reversed.empty() ? "" : ", ") + std::to_string(motor);
     text += (reversed.empty() ? "" : ", reversed: [" + reversed + "]") + std::string{"}\n"};
   }
+  if (columns.inputs) {
+    text += "  inputs: {columns: " + listed(columns.inputs->group.columns) + ", units: [";
+    for (std::size_t i = 0; i < columns.inputs->units.size(); ++i)
+      text += (i == 0 ? "" : ", ") + columns.inputs->units[i];
+    text += "]}\n";
+  }
   if (columns.speed)
     text += "  speed: {columns: " + listed(columns.speed->speed.columns) +
             ", unit: " + unit_of(columns.speed->speed.factor, "rad/s", kRates) +

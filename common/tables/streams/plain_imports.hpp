@@ -19,9 +19,7 @@ class ThrusterImport {
  public:
   ThrusterImport(Resolver& resolve, const ThrusterColumns& columns)
       : columns_{columns},
-        pwm_{optional_group(resolve, columns.sticks    ? std::optional{columns.sticks->pulses}
-                                     : columns.command ? std::optional{columns.command->command}
-                                                       : columns.pwm)},
+        pwm_{optional_group(resolve, commands_of(columns))},
         force_{optional_group(resolve, columns.speed ? std::optional{columns.speed->speed} : columns.force)},
         wrench_force_{optional_group(resolve, columns.wrench_force)},
         wrench_moment_{optional_group(resolve, columns.wrench_moment)},
@@ -41,6 +39,9 @@ class ThrusterImport {
       Thrusters sample;
       sample.utime = utime;
       if (pwm_) sample.pwm_us = pwm_->values(row);
+      if (const auto& inputs = columns_.inputs) {
+        for (std::size_t i = 0; i < sample.pwm_us.size(); ++i) sample.pwm_us[i] *= inputs->factors[i];
+      }
       if (const auto& command = columns_.command) {
         for (double& pulse : sample.pwm_us) pulse = command->neutral + command->full * pulse;
       }
@@ -86,6 +87,12 @@ class ThrusterImport {
                 pulses);
     for (double& pulse : pulses) pulse = sticks.neutral + sticks.full * pulse;
     return true;
+  }
+
+  static std::optional<ColumnGroup> commands_of(const ThrusterColumns& columns) {
+    if (columns.sticks) return columns.sticks->pulses;
+    if (columns.inputs) return columns.inputs->group;
+    return columns.command ? std::optional{columns.command->command} : columns.pwm;
   }
 
   const ThrusterColumns& columns_;
