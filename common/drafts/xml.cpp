@@ -135,9 +135,11 @@ Eigen::Matrix3d inertia_of(const Element& inertia, bool attributes) {
     const std::string text = attributes ? inertia.attribute(name) : inertia.text_of(name);
     return text.empty() ? 0.0 : inertia.number(text);
   };
+  // All are read before the matrix is filled: an exception halfway through a comma initialiser ends the program.
+  const double xx = value("ixx"), yy = value("iyy"), zz = value("izz"), xy = value("ixy"), xz = value("ixz"),
+               yz = value("iyz");
   Eigen::Matrix3d I;
-  I << value("ixx"), value("ixy"), value("ixz"), value("ixy"), value("iyy"), value("iyz"), value("ixz"), value("iyz"),
-      value("izz");
+  I << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   return I;
 }
 

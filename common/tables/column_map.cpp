@@ -294,7 +294,7 @@ ThrusterColumns thrusters_of(const Config& config) {
   }
   if (!thrusters.pwm && !thrusters.command && !thrusters.sticks && !thrusters.inputs && !thrusters.force &&
       !thrusters.speed && !thrusters.wrench_force) {
-    config.fail("", "'thrusters' needs pwm, command, inputs, force, speed or wrench");
+    config.fail("", "'thrusters' needs pwm, command, force, speed or wrench");
   }
   thrusters.invalid_where = invalid_of(config);
   return thrusters;
