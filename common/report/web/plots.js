@@ -46,7 +46,7 @@ document.addEventListener("DOMContentLoaded", () => {
       series: [{label: "t [s]", value: (u, v) => (v === null ? "-" : v.toFixed(2))},
                ...names.map((label, i) => ({label, stroke: colours[i], width: 1.5, spanGaps: false,
                                             value: (u, v) => (v === null ? "-" : v.toPrecision(4))}))],
-      axes: [{label: "time [s]", labelSize: 20, size: 34}, {size: 58}],
+      axes: [{label: "time [s]", labelSize: 20, size: 34, grid: {show: false}}, {size: 58}],
       legend: {markers: {fill: (u, i) => colours[i - 1]}},
       cursor: {sync: {key: group}, drag: {x: true, y: false, setScale: false}},
       hooks: {

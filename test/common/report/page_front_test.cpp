@@ -83,6 +83,17 @@ TEST_CASE("A cause says which thruster, how much, and in which direction") {
   gain.parameters[0].value = 0.1;
   gain.variant = "thruster 3";
   CHECK(has(cause_line(gain), "Thruster 3 gives 10.0 (8.53 to 11.5) % more than the file says"));
+  gain.variant = "T6, T4";
+  gain.parameters = {{"T6.gain_change", 0.686, 0.0, ""}, {"T4.gain_change", -0.206, 0.0, ""}};
+  CHECK(has(cause_line(gain), "Thruster T6 gives 68.6 % more, T4 gives 20.6 % less than the file says"));
+  EffectFound late{.name = "sensor_latency",
+                   .variant = "gyro, dvl",
+                   .parameters = {{"gyro.delay", 0.07, 0.0, "s"}, {"dvl.delay", 0.2, 0.0, "s"}}};
+  CHECK(has(cause_line(late), "<b>gyro comes late by 0.0700 s, dvl comes late by 0.200 s</b>"));
+  late.parameters[0].value = -0.07;
+  CHECK(has(cause_line(late), "gyro comes early by 0.0700 s"));
+  const EffectFound off{.name = "sensor_scale", .variant = "dvl.u", .parameters = {{"dvl.u.error", -0.02, 0.0, ""}}};
+  CHECK(has(cause_line(off), "<b>dvl.u shows 2.00 % less than there is</b>"));
   const EffectFound failure{.name = "thruster_failure",
                             .variant = "T5",
                             .parameters = {{"share_lost", 0.5, 0.0, ""}, {"onset", 40.0, 0.0, "s"}}};
