@@ -6,6 +6,7 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
+#include "common/drafts/ardusub_mixer.hpp"
 #include "common/tables/mapped_streams.hpp"
 
 namespace fathom::tables {
@@ -213,6 +214,29 @@ HeldRule held_of(const Config& config) {
   return rule;
 }
 
+StickColumns sticks_of(const Config& config) {
+  constexpr std::size_t kSticks = 6;
+  StickColumns sticks{.pulses = {components_of(config, "columns", kSticks), 1.0},
+                      .frame = config.text("frame"),
+                      .coupling = config.has("coupling") ? config.not_negative("coupling", "") : 1.0,
+                      .reversed = {},
+                      .neutral = config.positive("neutral", "us"),
+                      .full = config.positive("full", "us")};
+  need_count(config, "columns", sticks.pulses.columns, kSticks);
+  if (config.has("reversed")) {
+    for (const double number : config.quantities("reversed", "")) {
+      if (number != std::round(number)) config.fail("reversed", "'reversed' lists numbers of motors, 1 the first");
+      sticks.reversed.push_back(static_cast<int>(number));
+    }
+  }
+  try {
+    (void)drafts::ArdusubMixer{sticks.frame, sticks.coupling, sticks.reversed};
+  } catch (const InputError& error) {
+    config.fail("frame", error.what());
+  }
+  return sticks;
+}
+
 /// To the unit in which a vehicle file's actuators take their commands.
 double command_factor(const Config& config, const std::string& unit) {
   for (const char* wanted : {"us", "rad/s", "rad", "N"}) {
@@ -247,6 +271,12 @@ ThrusterColumns thrusters_of(const Config& config) {
     thrusters.command = {
         {columns_of(command, "columns"), 1.0}, command.positive("neutral", "us"), command.positive("full", "us")};
   }
+  if (config.has("sticks")) {
+    const Config sticks = config.section("sticks");
+    if (thrusters.pwm || thrusters.command || thrusters.inputs)
+      config.fail("sticks", "state one of 'pwm', 'command', 'inputs' and 'sticks': each tells commands");
+    thrusters.sticks = sticks_of(sticks);
+  }
   if (config.has("speed")) {
     const Config speed = config.section("speed");
     constexpr const char* kUnit = "N/(rad/s)^2";
@@ -262,9 +292,9 @@ ThrusterColumns thrusters_of(const Config& config) {
     thrusters.wrench_force = {{columns.begin(), split}, factor_to(wrench, "force_unit", "N"), frame};
     thrusters.wrench_moment = {{split, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
   }
-  if (!thrusters.pwm && !thrusters.command && !thrusters.inputs && !thrusters.force && !thrusters.speed &&
-      !thrusters.wrench_force) {
-    config.fail("", "'thrusters' needs pwm, command, inputs, force, speed or wrench");
+  if (!thrusters.pwm && !thrusters.command && !thrusters.sticks && !thrusters.inputs && !thrusters.force &&
+      !thrusters.speed && !thrusters.wrench_force) {
+    config.fail("", "'thrusters' needs pwm, command, force, speed or wrench");
   }
   thrusters.invalid_where = invalid_of(config);
   return thrusters;

@@ -1,12 +1,15 @@
 // Columns of thrusters, and of one number, to samples.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/drafts/ardusub_mixer.hpp"
 #include "common/samples/recording.hpp"
 #include "common/tables/streams/slice.hpp"
 
@@ -20,7 +23,9 @@ class ThrusterImport {
         force_{optional_group(resolve, columns.speed ? std::optional{columns.speed->speed} : columns.force)},
         wrench_force_{optional_group(resolve, columns.wrench_force)},
         wrench_moment_{optional_group(resolve, columns.wrench_moment)},
-        invalid_{resolve, columns.invalid_where} {}
+        invalid_{resolve, columns.invalid_where} {
+    if (const auto& sticks = columns.sticks) mixer_.emplace(sticks->frame, sticks->coupling, sticks->reversed);
+  }
 
   void take(const Slice& rows, Recording& out) {
     std::vector<const Group*> groups;
@@ -40,6 +45,10 @@ class ThrusterImport {
       if (const auto& command = columns_.command) {
         for (double& pulse : sample.pwm_us) pulse = command->neutral + command->full * pulse;
       }
+      if (mixer_ && !mix(sample.pwm_us)) {
+        ++count_.no_stick;
+        return;
+      }
       if (force_) sample.force = force_->values(row);
       if (const auto& speed = columns_.speed) {
         for (double& n : sample.force) n = (n < 0.0 ? speed->astern : speed->ahead) * n * std::abs(n);
@@ -57,12 +66,37 @@ class ThrusterImport {
   void report(const CsvTable& table, std::vector<std::string>& notes) const { count_.report(table, notes); }
 
  private:
+  /// Pulses of six sticks to those of the motors; false where a channel tells none.
+  bool mix(std::vector<double>& pulses) const {
+    constexpr double kMostThrow = 1.5;  // of a full stick: receivers tell 0, 65535 or less than 900 us for "no signal"
+    const StickColumns& sticks = *columns_.sticks;
+    std::array<double, 6> stick{};
+    for (std::size_t i = 0; i < stick.size(); ++i) {
+      if (sticks.pulses.columns[i].absent) continue;
+      stick[i] = (pulses[i] - sticks.neutral) / sticks.full;
+      if (!(std::abs(stick[i]) <= kMostThrow)) return false;
+      stick[i] = std::clamp(stick[i], -1.0, 1.0);
+    }
+    pulses.resize(mixer_->motors());
+    mixer_->mix({.roll = stick[1],
+                 .pitch = stick[0],
+                 .yaw = stick[3],
+                 .throttle = stick[2],
+                 .forward = stick[4],
+                 .lateral = stick[5]},
+                pulses);
+    for (double& pulse : pulses) pulse = sticks.neutral + sticks.full * pulse;
+    return true;
+  }
+
   static std::optional<ColumnGroup> commands_of(const ThrusterColumns& columns) {
+    if (columns.sticks) return columns.sticks->pulses;
     if (columns.inputs) return columns.inputs->group;
     return columns.command ? std::optional{columns.command->command} : columns.pwm;
   }
 
   const ThrusterColumns& columns_;
+  std::optional<drafts::ArdusubMixer> mixer_;
   std::optional<Group> pwm_, force_, wrench_force_, wrench_moment_;
   Flags invalid_;
   Count count_{.stream = "thrusters"};
