@@ -65,22 +65,27 @@ class Search {
   }
 
  private:
-  /// The better of two: begun from the noise's prior means, and with random forces as large as the motion's own. There
-  /// the filter leans on the measurements: whatever the numbers it begins from, it does not run away, and the first
-  /// steps are a fit of accelerations.
+  /// The better of two after a round of each: begun from the noise's prior means, and with random forces as large as
+  /// the motion's own. There the filter leans on the measurements: whatever the numbers it begins from, it does not run
+  /// away, and the first steps are a fit of accelerations.
   [[nodiscard]] likelihood::Fit fit_base() const {
     std::array<likelihood::Fit, kLeaning.size()> fits;
+    likelihood::FitOptions options{.noise_rounds = 1, .steps = 3, .enough = 0.2, .choose_tail = true};
     for_each_index(fits.size(), threads_, [&](std::size_t i) {
       likelihood::Noise noise = likelihood::prior_noise(problem_);
       for (likelihood::AxisNoise& axis : noise) {
         axis.log[likelihood::kForce] += std::log(kLeaning[i]);
         axis.log[likelihood::kWhiteForce] += std::log(kLeaning[i]);
       }
-      fits[i] = likelihood::fit(problem_, likelihood::nominal_hypothesis(problem_), noise,
-                                {.noise_rounds = 5, .steps = 3, .enough = 0.2, .choose_tail = true});
+      fits[i] = likelihood::fit(problem_, likelihood::nominal_hypothesis(problem_), noise, options);
     });
     const bool leaning = !fits[0].finite || (fits[1].finite && fits[1].log_evidence > fits[0].log_evidence);
-    return std::move(fits[leaning ? 1 : 0]);
+    const likelihood::Fit& ahead = fits[leaning ? 1 : 0];
+    if (!ahead.finite) return ahead;
+    options.noise_rounds = 4;
+    options.threads = threads_;
+    likelihood::Fit on = likelihood::fit(problem_, ahead.hypothesis, ahead.noise, options);
+    return on.finite ? on : ahead;
   }
   void expect(const Step& step, double units) const { progress_.expect(step.phase, units, step.weight); }
   void begin(const Step& step) const { progress_.begin(step.phase, step.what); }
@@ -252,7 +257,7 @@ class Search {
       std::erase_if(rest.model.effects, [&](const auto& other) {
         return other.effect == active.effect && other.variant == active.variant;
       });
-      for (const Fitted& other : models_.race(starts(rest, others), found_.base.score)) {
+      for (const Fitted& other : models_.race(starts(rest, others), found_.base.score, found_.best.score)) {
         if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
       }
     }
@@ -311,9 +316,11 @@ class Search {
       const Fitted rest = models_.fit_all({without(found_.best, e)}).front();
       if (!rest.fit.finite || !goes_on()) continue;
       const model::ActiveEffect active = effects()[e];
-      std::vector<Proposal> proposed = proposals(rest, thresholds_.score_worth, false);
+      // What stands in its place must do what it does.
+      const double lost = found_.best.score - rest.score;
+      std::vector<Proposal> proposed = proposals(rest, std::max(thresholds_.score_worth, kFarBehind * lost), false);
       std::erase_if(proposed, [&](const Proposal& proposal) { return proposal.added.front().effect == active.effect; });
-      for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score)) {
+      for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score, found_.best.score)) {
         if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
       }
     }

@@ -16,7 +16,10 @@ namespace {
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr int kTrials = 6;           // of damping, for one step
 constexpr double kMostFactor = 2.0;  // of an inertia, in one step
-constexpr double kTailGain = 10.0;   // nats that a tail must be worth over the Gaussian: it costs what it cannot know
+// Of the multi-horizon score: an error of a window is known to a tenth where there are fifty; more tell little more.
+constexpr double kEnoughWindows = 50.0;
+constexpr int kMostPhases = 3;
+constexpr double kTailGain = 10.0;  // nats that a tail must be worth over the Gaussian: it costs what it cannot know
 
 double noise_density(const Problem& problem, const Noise& noise) {
   double sum = 0.0;
@@ -75,14 +78,17 @@ class Fitting {
     PassOptions options{
         .derivatives = true, .reduced = options_.fit_noise || options_.choose_tail, .threads = options_.threads};
     if (!options_.horizon) return pass(problem_, hypothesis, numbers_, noise, options);
-    // Windows begin a third of a cycle later each time, so that every stretch is hidden about twice.
+    // Windows begin a part of a cycle later each time: where they are few, every stretch is hidden about twice.
     PassResult sum;
     const double cycle = options_.horizon->lead + options_.horizon->hidden;
-    for (int third = 0; third < 3; ++third) {
+    double length = 0.0;
+    for (const RunData& run : problem_.runs) length += run.last_time() - run.first_time();
+    const int phases = std::clamp(static_cast<int>(std::ceil(kEnoughWindows * cycle / length)), 1, kMostPhases);
+    for (int phase = 0; phase < phases; ++phase) {
       options.horizon = options_.horizon;
-      options.horizon->phase = cycle * third / 3.0;
+      options.horizon->phase = cycle * phase / phases;
       PassResult part = pass(problem_, hypothesis, numbers_, noise, options);
-      if (third == 0) {
+      if (phase == 0) {
         sum = std::move(part);
         continue;
       }
