@@ -153,6 +153,14 @@ Standing FittedModels::standing(const Fitted& best, double base, const std::stri
   return standing;
 }
 
+const Fitted* FittedModels::best_of(const std::vector<std::string>& names) const {
+  const Fitted* best = nullptr;
+  for (const Fitted& fitted : fitted_) {
+    if (fitted.fit.finite && fitted.names == names && (best == nullptr || fitted.score > best->score)) best = &fitted;
+  }
+  return best;
+}
+
 const Fitted* FittedModels::best_with(const std::string& name) const {
   const Fitted* best = nullptr;
   for (const Fitted& fitted : fitted_) {

@@ -61,6 +61,8 @@ class FittedModels {
 
   [[nodiscard]] std::size_t size() const { return fitted_.size(); }
   [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name) const;
+  /// The best of exactly these names, sorted; nothing: none was fitted.
+  [[nodiscard]] const Fitted* best_of(const std::vector<std::string>& names) const;
   /// The best that holds the name; nothing: none does.
   [[nodiscard]] const Fitted* best_with(const std::string& name) const;
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "common/base/parallel.hpp"
 
@@ -55,10 +56,11 @@ class Search {
     swap();
     judge_effects();
     expect_rounds(0);
-    begin(kFreeForceFit);
-    found_.free_force =
-        find_free_force(problem_, see(problem_, found_.best.fit, threads_), scene_, thresholds_, threads_, deadline_);
-    progress_.done(kFreeForceFit.phase);
+    progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
+    found_.free_force = free_force_beside(found_.best);
+    while (goes_on() && give_way()) {
+    }
+    progress_.expect(kFreeForceFit.phase, 0);
     list_refused();
     found_.fits = models_.size();
     return std::move(found_);
@@ -326,7 +328,48 @@ class Search {
     }
   }
 
+  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const {
+    begin(kFreeForceFit);
+    FreeForceFound found =
+        find_free_force(problem_, see(problem_, fitted.fit, threads_), scene_, thresholds_, threads_, deadline_);
+    progress_.done(kFreeForceFit.phase);
+    return found;
+  }
+
+  /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
+  /// best there. A name that is not worth its odds over that is none, and the free force stays in its place.
+  bool give_way() {
+    const auto worth = [](const FreeForceFound& force) { return std::max(0.0, force.log_odds); };
+    std::vector<std::size_t> order(effects().size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t e) { return found_.odds[e]; });
+    for (const std::size_t e : order) {
+      if (!goes_on()) return false;
+      const std::string name{effects()[e].effect->name()};
+      std::vector<std::string> others = found_.best.names;
+      others.erase(std::ranges::find(others, name));
+      const Fitted* rest = models_.best_of(others);
+      if (rest == nullptr || !rest->fit.finite) continue;
+      FreeForceFound in_place = free_force_beside(*rest);
+      if (in_place.size.share < thresholds_.smallest_size) continue;
+      const double odds = found_.best.score + worth(*found_.free_force) - rest->score - worth(in_place);
+      if (odds < thresholds_.name_odds) {
+        gave_way_[name] = {Rule::kOdds, odds, thresholds_.name_odds};
+        found_.best = Fitted{*rest};
+        found_.free_force = std::move(in_place);
+        judge_effects();
+        return !effects().empty();
+      }
+      found_.odds[e] = std::min(found_.odds[e], odds);
+    }
+    return false;
+  }
+
   void judge_effects() {
+    found_.odds.clear();
+    found_.size.clear();
+    found_.probability.clear();
+    found_.rival.clear();
     if (effects().empty()) return;
     const Seen seen = see(problem_, found_.best.fit, threads_);
     for (std::size_t e = 0; e < effects().size(); ++e) {
@@ -352,6 +395,7 @@ class Search {
     const Fitted* best = models_.best_with(name);
     if (best == nullptr) return {Rule::kScore, promised, thresholds_.score_worth};
     const double odds = best->score - found_.best.score;
+    if (const auto gave_way = gave_way_.find(name); gave_way != gave_way_.end()) return gave_way->second;
     if (!std::ranges::includes(best->names, found_.best.names))
       return {Rule::kProbability, 1.0 / (1.0 + std::exp(-odds)), thresholds_.name_probability};
     if (odds < thresholds_.name_odds) return {Rule::kOdds, odds, thresholds_.name_odds};
@@ -381,8 +425,9 @@ class Search {
   FittedModels models_;
   Found found_;
   std::map<std::string, Promise> noted_;
-  std::map<std::size_t, double> promised_;  // by law, in the last look
-  std::map<std::string, Refusal> failed_;   // what evidence alone would have named
+  std::map<std::size_t, double> promised_;   // by law, in the last look
+  std::map<std::string, Refusal> failed_;    // what evidence alone would have named
+  std::map<std::string, Refusal> gave_way_;  // to a free force in its place
 };
 
 }  // namespace
