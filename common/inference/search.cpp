@@ -47,20 +47,24 @@ class Search {
     progress_.done(kBaseFit.phase);
     found_.best = found_.base;
     if (!found_.base.fit.finite) return std::move(found_);
-    for (int round = 0; round < thresholds_.most_effects && goes_on(); ++round) {
-      expect_rounds(std::min(2, thresholds_.most_effects - round));  // this one, and one that finds nothing
+    const auto room = [&] { return thresholds_.most_effects - static_cast<int>(effects().size()); };
+    while (room() > 0 && goes_on()) {
+      expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
       if (!add_some()) break;
       drop();
     }
     expect_rounds(0);
-    swap();
+    leave_out();
     judge_effects();
-    expect_rounds(0);
+    // What gives way to something unlisted need not be told from other names.
     progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
     found_.free_force = free_force_beside(found_.best);
     while (goes_on() && give_way()) {
     }
     progress_.expect(kFreeForceFit.phase, 0);
+    if (swap()) found_.free_force = free_force_beside(found_.best);
+    judge_effects();
+    expect_rounds(0);
     list_refused();
     found_.fits = models_.size();
     return std::move(found_);
@@ -308,24 +312,47 @@ class Search {
     }
   }
 
-  /// For each of several effects: leave it out, scan, fit in its place what promises about as much.
-  void swap() {
+  [[nodiscard]] std::vector<std::string> names_without(std::size_t effect) const {
+    std::vector<std::string> others = found_.best.names;
+    others.erase(std::ranges::find(others, effects()[effect].effect->name()));
+    return others;
+  }
+
+  /// The best model without each effect, where none has been fitted yet.
+  void leave_out() {
+    std::vector<Start> starts;
+    for (std::size_t e = 0; e < effects().size(); ++e) {
+      if (models_.best_of(names_without(e)) == nullptr) starts.push_back(without(found_.best, e));
+    }
+    if (!starts.empty() && goes_on()) models_.fit_all(starts);
+  }
+
+  /// For each of several effects: leave it out, scan, fit in its place what promises about as much. Whether any was
+  /// exchanged.
+  bool swap() {
     const std::size_t count = effects().size();
-    if (count < 2) return;
+    if (count < 2) return false;
+    bool exchanged = false;
     expect_rounds(static_cast<double>(count));
     for (std::size_t e = 0; e < effects().size(); ++e) {
-      if (!goes_on()) return;
-      const Fitted rest = models_.fit_all({without(found_.best, e)}).front();
-      if (!rest.fit.finite || !goes_on()) continue;
+      if (!goes_on()) break;
+      const Fitted* without_it = models_.best_of(names_without(e));
+      if (without_it == nullptr) continue;
+      const Fitted rest = *without_it;
       const model::ActiveEffect active = effects()[e];
       // What stands in its place must do what it does.
       const double lost = found_.best.score - rest.score;
       std::vector<Proposal> proposed = proposals(rest, std::max(thresholds_.score_worth, kFarBehind * lost), false);
       std::erase_if(proposed, [&](const Proposal& proposal) { return proposal.added.front().effect == active.effect; });
       for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score, found_.best.score)) {
-        if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
+        if (!other.fit.finite || other.score <= found_.best.score || !counts(other)) continue;
+        found_.best = other;
+        exchanged = true;
+        in_place_.clear();
       }
+      if (exchanged) leave_out();
     }
+    return exchanged;
   }
 
   [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const {
@@ -336,33 +363,53 @@ class Search {
     return found;
   }
 
+  static double worth(const FreeForceFound& force) { return std::max(0.0, force.log_odds); }
+
   /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
-  /// best there. A name that is not worth its odds over that is none, and the free force stays in its place.
+  /// best there. Names that are not worth their odds over that are none, and the free force stays in their place. First
+  /// all together that are worth less than the free force beside them, then each. Whether any has gone.
   bool give_way() {
-    const auto worth = [](const FreeForceFound& force) { return std::max(0.0, force.log_odds); };
-    std::vector<std::size_t> order(effects().size());
+    std::vector<std::size_t> order(effects().size()), weak;
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t e) { return found_.odds[e]; });
+    std::ranges::copy_if(order, std::back_inserter(weak),
+                         [&](std::size_t e) { return found_.odds[e] < worth(*found_.free_force); });
+    if (weak.size() > 1) {
+      Start start{found_.best.fit.hypothesis, found_.best.fit.noise};
+      std::ranges::sort(weak, std::greater{});
+      for (const std::size_t e : weak)
+        start.hypothesis.model.effects.erase(start.hypothesis.model.effects.begin() + static_cast<std::ptrdiff_t>(e));
+      const Fitted rest = models_.fit_all({start}).front();
+      if (rest.fit.finite && goes_on() && takes_the_place(weak, rest)) return !effects().empty();
+    }
     for (const std::size_t e : order) {
       if (!goes_on()) return false;
-      const std::string name{effects()[e].effect->name()};
-      std::vector<std::string> others = found_.best.names;
-      others.erase(std::ranges::find(others, name));
-      const Fitted* rest = models_.best_of(others);
-      if (rest == nullptr || !rest->fit.finite) continue;
-      FreeForceFound in_place = free_force_beside(*rest);
-      if (in_place.size.share < thresholds_.smallest_size) continue;
-      const double odds = found_.best.score + worth(*found_.free_force) - rest->score - worth(in_place);
-      if (odds < thresholds_.name_odds) {
-        gave_way_[name] = {Rule::kOdds, odds, thresholds_.name_odds};
-        found_.best = Fitted{*rest};
-        found_.free_force = std::move(in_place);
-        judge_effects();
-        return !effects().empty();
-      }
-      found_.odds[e] = std::min(found_.odds[e], odds);
+      const Fitted* rest = models_.best_of(names_without(e));
+      if (rest != nullptr && takes_the_place({e}, Fitted{*rest})) return !effects().empty();
     }
     return false;
+  }
+
+  /// Whether the free force beside `rest`, which lacks these effects, does what they do; then they are gone.
+  bool takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest) {
+    FreeForceFound force = free_force_beside(rest);
+    if (force.size.share < thresholds_.smallest_size) return false;
+    const double odds = found_.best.score + worth(*found_.free_force) - rest.score - worth(force);
+    const bool stays = odds >= thresholds_.name_odds;
+    for (const std::size_t e : gone) {
+      const std::string name{effects()[e].effect->name()};
+      if (!stays) gave_way_[name] = {Rule::kOdds, odds, thresholds_.name_odds};
+      if (!stays || gone.size() > 1) continue;
+      const auto [place, fresh] = in_place_.try_emplace(name, odds);
+      if (!fresh) place->second = std::min(place->second, odds);
+    }
+    if (stays) return false;
+    found_.best = rest;
+    found_.free_force = std::move(force);
+    in_place_.clear();
+    leave_out();
+    judge_effects();
+    return true;
   }
 
   void judge_effects() {
@@ -377,7 +424,8 @@ class Search {
       const Standing standing =
           models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()));
       found_.probability.push_back(standing.probability);
-      found_.odds.push_back(standing.odds);
+      const auto in_place = in_place_.find(std::string(effects()[e].effect->name()));
+      found_.odds.push_back(in_place != in_place_.end() ? std::min(standing.odds, in_place->second) : standing.odds);
       found_.rival.push_back(standing.rival);
     }
   }
@@ -428,6 +476,7 @@ class Search {
   std::map<std::size_t, double> promised_;   // by law, in the last look
   std::map<std::string, Refusal> failed_;    // what evidence alone would have named
   std::map<std::string, Refusal> gave_way_;  // to a free force in its place
+  std::map<std::string, double> in_place_;   // nats by which a name is worth more than that
 };
 
 }  // namespace
