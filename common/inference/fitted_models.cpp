@@ -15,9 +15,11 @@ constexpr double kNever = -1e300;                              // score of what 
 // One step of the numbers and one of the noise tell a candidate's rank; only what may still win goes on. What has not
 // gained half of what the best has, and is not near it, has never won afterwards.
 constexpr likelihood::FitOptions kGlance{.noise_rounds = 1, .steps = 1, .enough = 0.5};
-constexpr likelihood::FitOptions kThorough{.noise_rounds = 3, .steps = 2, .enough = 0.3, .round_enough = 1.0};
+// A fit ends when a round gains no nat any more, not after so many: where numbers and noise move each other slowly
+// (drag of third order beside a random force: a hundred nats a round), a fit that is cut short is beaten by anything.
+constexpr int kMostRounds = 20;
+constexpr likelihood::FitOptions kThorough{.noise_rounds = kMostRounds, .steps = 2, .enough = 0.3, .round_enough = 1.0};
 constexpr likelihood::FitOptions kRound{.noise_rounds = 1, .steps = 2, .enough = 0.3};
-constexpr int kRounds = 3;          // as kThorough's
 constexpr double kStillOpen = 0.5;  // of the best one's gain
 constexpr double kNear = 30.0;      // nats
 // Rounds gain less and less: all that come after one have brought about as much as it did.
@@ -93,7 +95,7 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, double 
     const bool far = all[i].score < best() - kNear && all[i].score < from + kStillOpen * (best() - from);
     if (all[i].fit.finite && !far) open.push_back(i);
   }
-  for (int round = 0; round < kRounds && !open.empty(); ++round) {
+  for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
     std::vector<Start> on;
     for (const std::size_t i : open) on.push_back({all[i].fit.hypothesis, all[i].fit.noise});
     const std::vector<Fitted> further = fits(on, kRound);

@@ -88,7 +88,7 @@ class Search {
     const bool leaning = !fits[0].finite || (fits[1].finite && fits[1].log_evidence > fits[0].log_evidence);
     const likelihood::Fit& ahead = fits[leaning ? 1 : 0];
     if (!ahead.finite) return ahead;
-    options.noise_rounds = 4;
+    options.noise_rounds = 20;  // at most: it ends when a round gains nothing
     options.threads = threads_;
     likelihood::Fit on = likelihood::fit(problem_, ahead.hypothesis, ahead.noise, options);
     return on.finite ? on : ahead;
