@@ -59,8 +59,7 @@ class Search {
     // What gives way to something unlisted need not be told from other names.
     progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
     found_.free_force = free_force_beside(found_.best);
-    while (goes_on() && give_way()) {
-    }
+    give_way();
     progress_.expect(kFreeForceFit.phase, 0);
     if (swap()) found_.free_force = free_force_beside(found_.best);
     judge_effects();
@@ -367,33 +366,39 @@ class Search {
 
   /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
   /// best there. Names that are not worth their odds over that are none, and the free force stays in their place. First
-  /// all together that are worth less than the free force beside them, then each. Whether any has gone.
-  bool give_way() {
+  /// all together that are worth less than the free force beside them, then each once, the weakest first.
+  void give_way() {
     std::vector<std::size_t> order(effects().size()), weak;
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t e) { return found_.odds[e]; });
     std::ranges::copy_if(order, std::back_inserter(weak),
                          [&](std::size_t e) { return found_.odds[e] < worth(*found_.free_force); });
-    if (weak.size() > 1) {
+    std::vector<model::ActiveEffect> asked;
+    for (const std::size_t e : order) asked.push_back(effects()[e]);
+    if (weak.size() > 1 && goes_on()) {
       Start start{found_.best.fit.hypothesis, found_.best.fit.noise};
       std::ranges::sort(weak, std::greater{});
       for (const std::size_t e : weak)
         start.hypothesis.model.effects.erase(start.hypothesis.model.effects.begin() + static_cast<std::ptrdiff_t>(e));
       const Fitted rest = models_.fit_all({start}).front();
-      if (rest.fit.finite && goes_on() && takes_the_place(weak, rest)) return !effects().empty();
+      if (rest.fit.finite && goes_on()) takes_the_place(weak, rest);
     }
-    for (const std::size_t e : order) {
-      if (!goes_on()) return false;
+    for (const model::ActiveEffect& active : asked) {
+      const auto place = std::ranges::find_if(effects(), [&](const auto& other) {
+        return other.effect == active.effect && other.variant == active.variant;
+      });
+      if (place == effects().end()) continue;
+      if (!goes_on()) return;
+      const auto e = static_cast<std::size_t>(place - effects().begin());
       const Fitted* rest = models_.best_of(names_without(e));
-      if (rest != nullptr && takes_the_place({e}, Fitted{*rest})) return !effects().empty();
+      if (rest != nullptr) takes_the_place({e}, Fitted{*rest});
     }
-    return false;
   }
 
-  /// Whether the free force beside `rest`, which lacks these effects, does what they do; then they are gone.
-  bool takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest) {
+  /// If the free force beside `rest`, which lacks these effects, does what they do, they are gone.
+  void takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest) {
     FreeForceFound force = free_force_beside(rest);
-    if (force.size.share < thresholds_.smallest_size) return false;
+    if (force.size.share < thresholds_.smallest_size) return;
     const double odds = found_.best.score + worth(*found_.free_force) - rest.score - worth(force);
     const bool stays = odds >= thresholds_.name_odds;
     for (const std::size_t e : gone) {
@@ -403,13 +408,12 @@ class Search {
       const auto [place, fresh] = in_place_.try_emplace(name, odds);
       if (!fresh) place->second = std::min(place->second, odds);
     }
-    if (stays) return false;
+    if (stays) return;
     found_.best = rest;
     found_.free_force = std::move(force);
     in_place_.clear();
     leave_out();
     judge_effects();
-    return true;
   }
 
   void judge_effects() {
