@@ -121,6 +121,44 @@ class Fitting {
     }
   }
 
+  /// The Newton step that ends within the limits: what would leave them first stops there, all others move with that
+  /// known, and so on. A number on its limit is held only if the step of all together would take it out: to clip a step
+  /// afterwards, or to hold what its own slope alone pushes outwards, stops short where numbers do each other's work
+  /// (linear drag at zero beside drag of third order: 500 nats).
+  [[nodiscard]] Eigen::VectorXd step_within(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                            const Eigen::VectorXd& x) const {
+    Eigen::MatrixXd free = A;
+    Eigen::VectorXd right = b;
+    std::vector<bool> held(numbers_.size(), false);
+    while (true) {
+      const Eigen::VectorXd step = free.ldlt().solve(right);
+      double least = 1.0;  // of the step, where the first limit is reached
+      Eigen::Index first = -1;
+      double room_of_first = 0.0;
+      for (std::size_t k = 0; k < numbers_.size(); ++k) {
+        const auto j = static_cast<Eigen::Index>(k);
+        const Number& number = numbers_[k];
+        double low = number.low, high = number.high;
+        if (low > 0.0) {  // an inertia near zero makes all else look right: not in one step
+          low = std::max(low, x[j] / kMostFactor);
+          high = std::min(high, x[j] * kMostFactor);
+        }
+        const double room = step[j] < 0.0 ? low - x[j] : high - x[j];
+        if (held[k] || std::abs(step[j]) <= std::abs(room) || !(std::abs(room / step[j]) < least)) continue;
+        least = std::abs(room / step[j]);
+        first = j;
+        room_of_first = room;
+      }
+      if (first < 0) return step;
+      held[static_cast<std::size_t>(first)] = true;
+      right -= room_of_first * free.col(first);
+      free.row(first).setZero();
+      free.col(first).setZero();
+      free(first, first) = 1.0;
+      right[first] = room_of_first;
+    }
+  }
+
   /// What the step gained; zero when none did.
   double step_numbers() {
     const Eigen::VectorXd x = values(hypothesis_, numbers_);
@@ -130,30 +168,14 @@ class Fitting {
       const Number& number = numbers_[static_cast<std::size_t>(j)];
       b[j] -= (x[j] - number.mean) / (number.sigma * number.sigma);
     }
-    // What lies on a limit and is pushed outwards stays there.
-    for (Eigen::Index j = 0; j < x.size(); ++j) {
-      const Number& number = numbers_[static_cast<std::size_t>(j)];
-      if ((x[j] <= number.low && b[j] < 0.0) || (x[j] >= number.high && b[j] > 0.0)) {
-        const double diagonal = A(j, j);
-        A.row(j).setZero();
-        A.col(j).setZero();
-        A(j, j) = diagonal;
-        b[j] = 0.0;
-      }
-    }
-    double promised = 0.0;
     for (int trial = 0; trial < kTrials; ++trial) {
       Eigen::MatrixXd damped = A;
       damped.diagonal() *= 1.0 + damping_;
-      const Eigen::VectorXd step = damped.ldlt().solve(b);
-      promised = 0.5 * step.dot(b);
+      const Eigen::VectorXd step = step_within(damped, b, x);
+      const double promised = step.dot(b) - 0.5 * step.dot(damped * step);
       if (promised < 0.1 * options_.enough) return 0.0;
       Hypothesis moved = hypothesis_;
       set_values(moved, numbers_, x + step);
-      for (Eigen::Index j = 0; j < x.size(); ++j) {  // an inertia near zero makes all else look right: not in one step
-        const Number& number = numbers_[static_cast<std::size_t>(j)];
-        if (number.low > 0.0) at(moved, number) = std::clamp(x[j] + step[j], x[j] / kMostFactor, x[j] * kMostFactor);
-      }
       clamp(moved);
       PassResult there = look(moved, noise_);
       const double value = objective(there, moved, noise_);
