@@ -28,10 +28,11 @@ double noise_density(const Problem& problem, const Noise& noise) {
   return sum;
 }
 
-Eigen::MatrixXd with_prior(const std::vector<Number>& numbers, Eigen::MatrixXd information) {
+Eigen::MatrixXd with_prior(const std::vector<Number>& numbers, const Eigen::VectorXd& values,
+                           Eigen::MatrixXd information) {
   for (std::size_t j = 0; j < numbers.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
-    information(i, i) += 1.0 / (numbers[j].sigma * numbers[j].sigma);
+    information(i, i) += prior_weight(numbers[j], values[i]);
   }
   return information;
 }
@@ -64,8 +65,8 @@ class Fitting {
     fit.log_likelihood = now_.log_likelihood;
     fit.scored = now_.scored;
     fit.finite = now_.finite;
-    fit.information = with_prior(numbers_, now_.information);
     const Eigen::VectorXd x = values(hypothesis_, numbers_);
+    fit.information = with_prior(numbers_, x, now_.information);
     fit.log_posterior = objective_;
     fit.log_evidence =
         fit.finite ? laplace(numbers_, x, now_.log_likelihood, fit.information) + noise_density(problem_, noise_)
@@ -162,11 +163,11 @@ class Fitting {
   /// What the step gained; zero when none did.
   double step_numbers() {
     const Eigen::VectorXd x = values(hypothesis_, numbers_);
-    Eigen::MatrixXd A = with_prior(numbers_, now_.information);
+    Eigen::MatrixXd A = with_prior(numbers_, x, now_.information);
     Eigen::VectorXd b = now_.gradient;
     for (Eigen::Index j = 0; j < x.size(); ++j) {
       const Number& number = numbers_[static_cast<std::size_t>(j)];
-      b[j] -= (x[j] - number.mean) / (number.sigma * number.sigma);
+      b[j] -= (x[j] - number.mean) * prior_weight(number, x[j]);
     }
     for (int trial = 0; trial < kTrials; ++trial) {
       Eigen::MatrixXd damped = A;
@@ -295,7 +296,7 @@ Fit fit(const Problem& problem, Hypothesis start, Noise noise, const FitOptions&
 void refer(const Problem& problem, Fit& fit, Reference& reference, int threads) {
   const PassResult seen = pass(problem, fit.hypothesis, fit.numbers, fit.noise, {.threads = threads}, &reference);
   fit.log_likelihood = seen.log_likelihood;
-  fit.information = with_prior(fit.numbers, seen.information);
+  fit.information = with_prior(fit.numbers, values(fit.hypothesis, fit.numbers), seen.information);
 }
 
 }  // namespace fathom::likelihood
