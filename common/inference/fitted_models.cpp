@@ -15,9 +15,15 @@ constexpr double kNever = -1e300;                              // score of what 
 // One step of the numbers and one of the noise tell a candidate's rank; only what may still win goes on. What has not
 // gained half of what the best has, and is not near it, has never won afterwards.
 constexpr likelihood::FitOptions kGlance{.noise_rounds = 1, .steps = 1, .enough = 0.5};
-constexpr likelihood::FitOptions kThorough{.noise_rounds = 3, .steps = 2, .enough = 0.3, .round_enough = 1.0};
+// A fit ends when a round gains no nat any more, not after so many: where numbers and noise move each other slowly
+// (drag of third order beside a random force: a hundred nats a round), a fit that is cut short is beaten by anything.
+constexpr int kMostRounds = 20;
+constexpr likelihood::FitOptions kThorough{.noise_rounds = kMostRounds, .steps = 2, .enough = 0.3, .round_enough = 1.0};
+constexpr likelihood::FitOptions kRound{.noise_rounds = 1, .steps = 2, .enough = 0.3};
 constexpr double kStillOpen = 0.5;  // of the best one's gain
 constexpr double kNear = 30.0;      // nats
+// Rounds gain less and less: all that come after one have brought about as much as it did.
+constexpr double kToCome = 2.0;  // times the last round's gain, at most
 
 std::vector<std::string> names_of(const std::vector<model::ActiveEffect>& effects) {
   std::vector<std::string> names;
@@ -77,24 +83,34 @@ std::vector<Fitted> FittedModels::fits(const std::vector<Start>& starts, const l
   return fits;
 }
 
-std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, double from) {
+std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, double from, double to_beat) {
   if (starts.empty()) return {};
   const auto count = static_cast<double>(starts.size());
   expect(std::max(to_come_, count));
   progress_.begin(kCandidateFit.phase, kCandidateFit.what);
   std::vector<Fitted> all = fits(starts, kGlance);
-  const double best = std::ranges::max_element(all, {}, &Fitted::score)->score;
+  const auto best = [&] { return std::max(to_beat, std::ranges::max_element(all, {}, &Fitted::score)->score); };
   std::vector<std::size_t> open;
-  std::vector<Start> on;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!all[i].fit.finite) continue;
-    if (all[i].score < best - kNear && all[i].score < from + kStillOpen * (best - from)) continue;
-    open.push_back(i);
-    on.push_back({all[i].fit.hypothesis, all[i].fit.noise});
+    const bool far = all[i].score < best() - kNear && all[i].score < from + kStillOpen * (best() - from);
+    if (all[i].fit.finite && !far) open.push_back(i);
   }
-  const std::vector<Fitted> ended = fits(on, kThorough);
-  for (std::size_t k = 0; k < open.size(); ++k) {
-    if (ended[k].fit.finite) all[open[k]] = ended[k];
+  for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
+    std::vector<Start> on;
+    for (const std::size_t i : open) on.push_back({all[i].fit.hypothesis, all[i].fit.noise});
+    const std::vector<Fitted> further = fits(on, kRound);
+    std::vector<double> gained(open.size(), 0.0);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (!further[k].fit.finite) continue;
+      gained[k] = further[k].score - all[open[k]].score;
+      all[open[k]] = further[k];
+    }
+    std::vector<std::size_t> still;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      if (gained[k] >= kThorough.round_enough && all[open[k]].score + kToCome * gained[k] >= best() - kNear)
+        still.push_back(open[k]);
+    }
+    open = std::move(still);
   }
   fitted_.insert(fitted_.end(), all.begin(), all.end());
   progress_.done(kCandidateFit.phase, count);
@@ -137,6 +153,14 @@ Standing FittedModels::standing(const Fitted& best, double base, const std::stri
   if (sum > 0.0) standing.probability = with / sum;
   standing.odds = best.score - (rest > kNever ? rest : base);
   return standing;
+}
+
+const Fitted* FittedModels::best_of(const std::vector<std::string>& names) const {
+  const Fitted* best = nullptr;
+  for (const Fitted& fitted : fitted_) {
+    if (fitted.fit.finite && fitted.names == names && (best == nullptr || fitted.score > best->score)) best = &fitted;
+  }
+  return best;
 }
 
 const Fitted* FittedModels::best_with(const std::string& name) const {

@@ -1,6 +1,7 @@
 // Models that were fitted, with what they are worth: the fits of a search and what follows from all of them together.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -49,9 +50,10 @@ class FittedModels {
       : problem_{problem}, laws_{laws}, threads_{threads}, progress_{progress} {}
 
   Fitted add(likelihood::Fit fit);
-  /// Each start moved a little; those that came near enough to the best of them, seen from `from`, are fitted to the
-  /// end. All are kept.
-  std::vector<Fitted> race(const std::vector<Start>& starts, double from);
+  /// Each start moved a little; those that came near enough to the best of them and to `to_beat`, seen from `from`, go
+  /// on round by round, until what is still to be gained cannot make them the best. All are kept.
+  std::vector<Fitted> race(const std::vector<Start>& starts, double from,
+                           double to_beat = -std::numeric_limits<double>::infinity());
   /// All fitted to the end.
   std::vector<Fitted> fit_all(const std::vector<Start>& starts);
   /// For progress: so many starts are still to come.
@@ -59,6 +61,8 @@ class FittedModels {
 
   [[nodiscard]] std::size_t size() const { return fitted_.size(); }
   [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name) const;
+  /// The best of exactly these names, sorted; nothing: none was fitted.
+  [[nodiscard]] const Fitted* best_of(const std::vector<std::string>& names) const;
   /// The best that holds the name; nothing: none does.
   [[nodiscard]] const Fitted* best_with(const std::string& name) const;
 

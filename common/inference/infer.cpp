@@ -154,11 +154,13 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
                                    noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
     }
+    // One fit gives all numbers: the likelihood's, which wastes nothing where the model is right, unless numbers that
+    // predict far differ from it by more than chance: then those.
     const auto reported = [&](const likelihood::Fit& fit) {
       progress.begin(kHorizonFit.phase, kHorizonFit.what);
       likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
       progress.done(kHorizonFit.phase);
-      return by;
+      return disagreement(fit, by) > settings.thresholds.disagreement ? by : fit;
     };
     if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
     conclusion.reported = reported(found.best.fit);

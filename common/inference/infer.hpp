@@ -29,7 +29,8 @@ struct Conclusion {
   std::vector<Reason> reasons;
   Found found;
   std::vector<RandomForce> random;
-  /// Numbers for reports and exports: by the multi-horizon score, of the base model and of the best.
+  /// Numbers for reports and exports, all of one fit, of the base model and of the best: those of the likelihood, or
+  /// of the multi-horizon score where the two differ by more than Thresholds::disagreement.
   likelihood::Fit reported_base, reported;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "common/base/parallel.hpp"
@@ -179,15 +180,27 @@ std::vector<Question> all_questions(const std::vector<Law>& laws, const model::V
 }  // namespace
 
 Gain linear_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, const Eigen::VectorXd& sigma) {
-  Eigen::MatrixXd scaled = sigma.asDiagonal() * gram * sigma.asDiagonal();
-  scaled.diagonal().array() += 1.0;
+  constexpr int kTurns = 3;  // of the prior's weight, which goes with the amplitude
+  const likelihood::Number plain{.freedom = likelihood::kEffectFreedom};
+  Gain gain;
+  // In units of sigma.
+  const Eigen::MatrixXd G = sigma.asDiagonal() * gram * sigma.asDiagonal();
   const Eigen::VectorXd b = sigma.cwiseProduct(gradient);
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt{scaled};
-  const Eigen::VectorXd x = ldlt.solve(b);
-  Gain gain{.gain = 0.5 * b.dot(x), .amplitude = sigma.cwiseProduct(x)};
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(sigma.size());
+  Eigen::LDLT<Eigen::MatrixXd> ldlt;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Eigen::MatrixXd weighted = G;
+    for (Eigen::Index j = 0; j < x.size(); ++j) weighted(j, j) += likelihood::prior_weight(plain, x[j]);
+    ldlt.compute(weighted);
+    x = ldlt.solve(b);
+  }
+  gain.amplitude = sigma.cwiseProduct(x);
+  gain.gain = b.dot(x) - 0.5 * x.dot(G * x);
   if (!std::isfinite(gain.gain)) return {0.0, 0.0, Eigen::VectorXd::Zero(sigma.size())};
   gain.score = gain.gain;
-  for (Eigen::Index j = 0; j < sigma.size(); ++j) gain.score -= 0.5 * std::log(std::max(ldlt.vectorD()[j], 1e-300));
+  for (Eigen::Index j = 0; j < sigma.size(); ++j)
+    gain.score += likelihood::log_prior(plain, x[j]) + 0.5 * std::log(2.0 * std::numbers::pi) -
+                  0.5 * std::log(std::max(ldlt.vectorD()[j], 1e-300));
   return gain;
 }
 

@@ -81,7 +81,8 @@ struct Size {
 [[nodiscard]] Size size_of(const likelihood::Problem& problem, const Seen& seen,
                            const std::vector<Eigen::MatrixXd>& accelerations);
 
-/// 1/2 b' (G + V^-1)^-1 b and the score with its Occam factor. `sigma`: prior deviations of the columns' amplitudes.
+/// What columns gain in the likelihood at the amplitudes that their priors (Student's t of width `sigma`) and the
+/// gradient agree on, and the score with its Occam factor.
 struct Gain {
   double gain{}, score{};
   Eigen::VectorXd amplitude;

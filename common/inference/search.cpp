@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "common/base/parallel.hpp"
 
@@ -46,41 +47,50 @@ class Search {
     progress_.done(kBaseFit.phase);
     found_.best = found_.base;
     if (!found_.base.fit.finite) return std::move(found_);
-    for (int round = 0; round < thresholds_.most_effects && goes_on(); ++round) {
-      expect_rounds(std::min(2, thresholds_.most_effects - round));  // this one, and one that finds nothing
+    const auto room = [&] { return thresholds_.most_effects - static_cast<int>(effects().size()); };
+    while (room() > 0 && goes_on()) {
+      expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
       if (!add_some()) break;
       drop();
     }
     expect_rounds(0);
-    swap();
+    leave_out();
+    judge_effects();
+    // What gives way to something unlisted need not be told from other names.
+    progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
+    found_.free_force = free_force_beside(found_.best);
+    give_way();
+    progress_.expect(kFreeForceFit.phase, 0);
+    if (swap()) found_.free_force = free_force_beside(found_.best);
     judge_effects();
     expect_rounds(0);
-    begin(kFreeForceFit);
-    found_.free_force =
-        find_free_force(problem_, see(problem_, found_.best.fit, threads_), scene_, thresholds_, threads_, deadline_);
-    progress_.done(kFreeForceFit.phase);
     list_refused();
     found_.fits = models_.size();
     return std::move(found_);
   }
 
  private:
-  /// The better of two: begun from the noise's prior means, and with random forces as large as the motion's own. There
-  /// the filter leans on the measurements: whatever the numbers it begins from, it does not run away, and the first
-  /// steps are a fit of accelerations.
+  /// The better of two after a round of each: begun from the noise's prior means, and with random forces as large as
+  /// the motion's own. There the filter leans on the measurements: whatever the numbers it begins from, it does not run
+  /// away, and the first steps are a fit of accelerations.
   [[nodiscard]] likelihood::Fit fit_base() const {
     std::array<likelihood::Fit, kLeaning.size()> fits;
+    likelihood::FitOptions options{.noise_rounds = 1, .steps = 3, .enough = 0.2, .choose_tail = true};
     for_each_index(fits.size(), threads_, [&](std::size_t i) {
       likelihood::Noise noise = likelihood::prior_noise(problem_);
       for (likelihood::AxisNoise& axis : noise) {
         axis.log[likelihood::kForce] += std::log(kLeaning[i]);
         axis.log[likelihood::kWhiteForce] += std::log(kLeaning[i]);
       }
-      fits[i] = likelihood::fit(problem_, likelihood::nominal_hypothesis(problem_), noise,
-                                {.noise_rounds = 5, .steps = 3, .enough = 0.2, .choose_tail = true});
+      fits[i] = likelihood::fit(problem_, likelihood::nominal_hypothesis(problem_), noise, options);
     });
     const bool leaning = !fits[0].finite || (fits[1].finite && fits[1].log_evidence > fits[0].log_evidence);
-    return std::move(fits[leaning ? 1 : 0]);
+    const likelihood::Fit& ahead = fits[leaning ? 1 : 0];
+    if (!ahead.finite) return ahead;
+    options.noise_rounds = 20;  // at most: it ends when a round gains nothing
+    options.threads = threads_;
+    likelihood::Fit on = likelihood::fit(problem_, ahead.hypothesis, ahead.noise, options);
+    return on.finite ? on : ahead;
   }
   void expect(const Step& step, double units) const { progress_.expect(step.phase, units, step.weight); }
   void begin(const Step& step) const { progress_.begin(step.phase, step.what); }
@@ -252,7 +262,7 @@ class Search {
       std::erase_if(rest.model.effects, [&](const auto& other) {
         return other.effect == active.effect && other.variant == active.variant;
       });
-      for (const Fitted& other : models_.race(starts(rest, others), found_.base.score)) {
+      for (const Fitted& other : models_.race(starts(rest, others), found_.base.score, found_.best.score)) {
         if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
       }
     }
@@ -301,25 +311,116 @@ class Search {
     }
   }
 
-  /// For each of several effects: leave it out, scan, fit in its place what promises about as much.
-  void swap() {
+  [[nodiscard]] std::vector<std::string> names_without(std::size_t effect) const {
+    std::vector<std::string> others = found_.best.names;
+    others.erase(std::ranges::find(others, effects()[effect].effect->name()));
+    return others;
+  }
+
+  /// The best model without each effect, where none has been fitted yet.
+  void leave_out() {
+    std::vector<Start> starts;
+    for (std::size_t e = 0; e < effects().size(); ++e) {
+      if (models_.best_of(names_without(e)) == nullptr) starts.push_back(without(found_.best, e));
+    }
+    if (!starts.empty() && goes_on()) models_.fit_all(starts);
+  }
+
+  /// For each of several effects: leave it out, scan, fit in its place what promises about as much. Whether any was
+  /// exchanged.
+  bool swap() {
     const std::size_t count = effects().size();
-    if (count < 2) return;
+    if (count < 2) return false;
+    bool exchanged = false;
     expect_rounds(static_cast<double>(count));
     for (std::size_t e = 0; e < effects().size(); ++e) {
-      if (!goes_on()) return;
-      const Fitted rest = models_.fit_all({without(found_.best, e)}).front();
-      if (!rest.fit.finite || !goes_on()) continue;
+      if (!goes_on()) break;
+      const Fitted* without_it = models_.best_of(names_without(e));
+      if (without_it == nullptr) continue;
+      const Fitted rest = *without_it;
       const model::ActiveEffect active = effects()[e];
-      std::vector<Proposal> proposed = proposals(rest, thresholds_.score_worth, false);
+      // What stands in its place must do what it does.
+      const double lost = found_.best.score - rest.score;
+      std::vector<Proposal> proposed = proposals(rest, std::max(thresholds_.score_worth, kFarBehind * lost), false);
       std::erase_if(proposed, [&](const Proposal& proposal) { return proposal.added.front().effect == active.effect; });
-      for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score)) {
-        if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
+      for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score, found_.best.score)) {
+        if (!other.fit.finite || other.score <= found_.best.score || !counts(other)) continue;
+        found_.best = other;
+        exchanged = true;
+        in_place_.clear();
       }
+      if (exchanged) leave_out();
+    }
+    return exchanged;
+  }
+
+  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const {
+    begin(kFreeForceFit);
+    FreeForceFound found =
+        find_free_force(problem_, see(problem_, fitted.fit, threads_), scene_, thresholds_, threads_, deadline_);
+    progress_.done(kFreeForceFit.phase);
+    return found;
+  }
+
+  static double worth(const FreeForceFound& force) { return std::max(0.0, force.log_odds); }
+
+  /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
+  /// best there. Names that are not worth their odds over that are none, and the free force stays in their place. First
+  /// all together that are worth less than the free force beside them, then each once, the weakest first.
+  void give_way() {
+    std::vector<std::size_t> order(effects().size()), weak;
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t e) { return found_.odds[e]; });
+    std::ranges::copy_if(order, std::back_inserter(weak),
+                         [&](std::size_t e) { return found_.odds[e] < worth(*found_.free_force); });
+    std::vector<model::ActiveEffect> asked;
+    for (const std::size_t e : order) asked.push_back(effects()[e]);
+    if (weak.size() > 1 && goes_on()) {
+      Start start{found_.best.fit.hypothesis, found_.best.fit.noise};
+      std::ranges::sort(weak, std::greater{});
+      for (const std::size_t e : weak)
+        start.hypothesis.model.effects.erase(start.hypothesis.model.effects.begin() + static_cast<std::ptrdiff_t>(e));
+      const Fitted rest = models_.fit_all({start}).front();
+      if (rest.fit.finite && goes_on()) takes_the_place(weak, rest);
+    }
+    for (const model::ActiveEffect& active : asked) {
+      const auto place = std::ranges::find_if(effects(), [&](const auto& other) {
+        return other.effect == active.effect && other.variant == active.variant;
+      });
+      if (place == effects().end()) continue;
+      if (!goes_on()) return;
+      const auto e = static_cast<std::size_t>(place - effects().begin());
+      const Fitted* rest = models_.best_of(names_without(e));
+      if (rest != nullptr) takes_the_place({e}, Fitted{*rest});
     }
   }
 
+  /// If the free force beside `rest`, which lacks these effects, does what they do, they are gone.
+  void takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest) {
+    FreeForceFound force = free_force_beside(rest);
+    if (force.size.share < thresholds_.smallest_size) return;
+    const double odds = found_.best.score + worth(*found_.free_force) - rest.score - worth(force);
+    const bool stays = odds >= thresholds_.name_odds;
+    for (const std::size_t e : gone) {
+      const std::string name{effects()[e].effect->name()};
+      if (!stays) gave_way_[name] = {Rule::kOdds, odds, thresholds_.name_odds};
+      if (!stays || gone.size() > 1) continue;
+      const auto [place, fresh] = in_place_.try_emplace(name, odds);
+      if (!fresh) place->second = std::min(place->second, odds);
+    }
+    if (stays) return;
+    found_.best = rest;
+    found_.free_force = std::move(force);
+    in_place_.clear();
+    leave_out();
+    judge_effects();
+  }
+
   void judge_effects() {
+    found_.odds.clear();
+    found_.size.clear();
+    found_.probability.clear();
+    found_.rival.clear();
     if (effects().empty()) return;
     const Seen seen = see(problem_, found_.best.fit, threads_);
     for (std::size_t e = 0; e < effects().size(); ++e) {
@@ -327,7 +428,8 @@ class Search {
       const Standing standing =
           models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()));
       found_.probability.push_back(standing.probability);
-      found_.odds.push_back(standing.odds);
+      const auto in_place = in_place_.find(std::string(effects()[e].effect->name()));
+      found_.odds.push_back(in_place != in_place_.end() ? std::min(standing.odds, in_place->second) : standing.odds);
       found_.rival.push_back(standing.rival);
     }
   }
@@ -345,6 +447,7 @@ class Search {
     const Fitted* best = models_.best_with(name);
     if (best == nullptr) return {Rule::kScore, promised, thresholds_.score_worth};
     const double odds = best->score - found_.best.score;
+    if (const auto gave_way = gave_way_.find(name); gave_way != gave_way_.end()) return gave_way->second;
     if (!std::ranges::includes(best->names, found_.best.names))
       return {Rule::kProbability, 1.0 / (1.0 + std::exp(-odds)), thresholds_.name_probability};
     if (odds < thresholds_.name_odds) return {Rule::kOdds, odds, thresholds_.name_odds};
@@ -374,8 +477,10 @@ class Search {
   FittedModels models_;
   Found found_;
   std::map<std::string, Promise> noted_;
-  std::map<std::size_t, double> promised_;  // by law, in the last look
-  std::map<std::string, Refusal> failed_;   // what evidence alone would have named
+  std::map<std::size_t, double> promised_;   // by law, in the last look
+  std::map<std::string, Refusal> failed_;    // what evidence alone would have named
+  std::map<std::string, Refusal> gave_way_;  // to a free force in its place
+  std::map<std::string, double> in_place_;   // nats by which a name is worth more than that
 };
 
 }  // namespace

@@ -38,8 +38,8 @@ BetweenRuns between_runs(const Problem& problem, const Fit& fit, int threads) {
   if (!seen.finite) return between;
   Eigen::VectorXd prior(p);
   for (Eigen::Index j = 0; j < p; ++j) {
-    const double sigma = fit.numbers[static_cast<std::size_t>(j)].sigma;
-    prior[j] = sigma * sigma;
+    const Number& number = fit.numbers[static_cast<std::size_t>(j)];
+    prior[j] = 1.0 / prior_weight(number, value(fit.hypothesis, number));
   }
   std::vector<std::vector<Estimate>> estimates(fit.numbers.size());
   for (const RunInformation& run : seen.per_run) {

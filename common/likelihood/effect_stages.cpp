@@ -44,6 +44,7 @@ void add_effect_numbers(const model::Model& model, std::size_t effect, double t_
                   .name = std::string(active.effect->name()) + "." + std::string(parameter.name),
                   .unit = std::string(active.effect->unit(active.variant, c)),
                   .sigma = parameter.sigma,
+                  .freedom = kEffectFreedom,
                   .low = parameter.low,
                   .high = parameter.high};
     if (parameter.name == model::kOnset) {  // a time: anywhere in the data
@@ -51,6 +52,7 @@ void add_effect_numbers(const model::Model& model, std::size_t effect, double t_
       number.sigma = kOnsetSigma * (t_high - t_low);
       number.low = t_low;
       number.high = t_high;
+      number.freedom = 0.0;
       number.step = 0.02;
     }
     if (parameter.after_command) number.step = 1e-3;  // a time: commands are straight lines between samples

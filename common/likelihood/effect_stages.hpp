@@ -11,6 +11,10 @@
 
 namespace fathom::likelihood {
 
+/// Of the priors of effects' numbers: the density falls with the fourth power, so that a number fifty times as large as
+/// ordinary costs some ten nats and not a thousand.
+constexpr double kEffectFreedom = 3.0;
+
 enum class Stage {
   kThrust,  ///< by command, time and voltage alone: worked out once for a run
   kHull,    ///< water, wrench and inertia at an instant

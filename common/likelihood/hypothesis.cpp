@@ -113,12 +113,23 @@ void set_values(Hypothesis& hypothesis, const std::vector<Number>& numbers, cons
   for (Eigen::Index j = 0; j < values.size(); ++j) at(hypothesis, numbers[static_cast<std::size_t>(j)]) = values[j];
 }
 
+double log_prior(const Number& number, double value) {
+  const double off = (value - number.mean) / number.sigma;
+  const double nu = number.freedom;
+  const double constant = std::log(number.sigma);
+  if (nu <= 0.0) return -0.5 * off * off - constant - 0.5 * std::log(2.0 * std::numbers::pi);
+  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * std::numbers::pi) - constant -
+         0.5 * (nu + 1.0) * std::log1p(off * off / nu);
+}
+
+double prior_weight(const Number& number, double value) {
+  const double off = value - number.mean, square = number.sigma * number.sigma;
+  return number.freedom > 0.0 ? (number.freedom + 1.0) / (number.freedom * square + off * off) : 1.0 / square;
+}
+
 double log_prior(const std::vector<Number>& numbers, const Eigen::VectorXd& values) {
   double sum = 0.0;
-  for (std::size_t j = 0; j < numbers.size(); ++j) {
-    const double off = (values[static_cast<Eigen::Index>(j)] - numbers[j].mean) / numbers[j].sigma;
-    sum -= 0.5 * off * off + std::log(numbers[j].sigma) + 0.5 * std::log(2.0 * std::numbers::pi);
-  }
+  for (std::size_t j = 0; j < numbers.size(); ++j) sum += log_prior(numbers[j], values[static_cast<Eigen::Index>(j)]);
   return sum;
 }
 

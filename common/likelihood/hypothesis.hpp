@@ -34,6 +34,9 @@ struct Number {
   int run{-1};      ///< -1: of all runs
   std::string name, unit;
   double mean{}, sigma{1.0};  ///< prior
+  /// Of Student's t as the prior; zero: Gaussian. What an effect's number ordinarily is goes with the craft's speed and
+  /// size, so that the width itself is known to an order of magnitude only.
+  double freedom{};
   double low{-std::numeric_limits<double>::infinity()}, high{std::numeric_limits<double>::infinity()};
   double step{};  ///< of differences
 };
@@ -55,7 +58,12 @@ struct NumberSettings {
 [[nodiscard]] double value(const Hypothesis& hypothesis, const Number& number);
 [[nodiscard]] Eigen::VectorXd values(const Hypothesis& hypothesis, const std::vector<Number>& numbers);
 void set_values(Hypothesis& hypothesis, const std::vector<Number>& numbers, const Eigen::VectorXd& values);
-/// Log density of the Gaussian priors at their numbers, constants included.
+/// Log density of a number's prior, constants included.
+[[nodiscard]] double log_prior(const Number& number, double value);
+/// Weight of the prior in the normal equations there: slope of its log density over the distance from its mean, with
+/// the other sign. It is that of a Gaussian, and positive everywhere.
+[[nodiscard]] double prior_weight(const Number& number, double value);
+/// Log density of all priors at their numbers.
 [[nodiscard]] double log_prior(const std::vector<Number>& numbers, const Eigen::VectorXd& values);
 
 }  // namespace fathom::likelihood

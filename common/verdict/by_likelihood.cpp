@@ -56,24 +56,32 @@ const model::LearnedForce* force_for(const learning::Learned& learned, std::span
   return here ? learned.here.get() : learned.elsewhere.get();
 }
 
-/// `sigma`: of the best fit's numbers.
-void list_effects(const Conclusion& conclusion, const Eigen::VectorXd& sigma, DiagnosisResult& result,
-                  VerdictGiven& given) {
+/// Where the reported numbers are not the likelihood's own, what they differ by is an error of the model that no noise
+/// tells of: it enters their deviations.
+Eigen::VectorXd with_difference(const likelihood::Fit& of, const likelihood::Fit& reported, Eigen::VectorXd sigma) {
+  if (sigma.size() != static_cast<Eigen::Index>(of.numbers.size()) || reported.numbers.size() != of.numbers.size())
+    return sigma;
+  return (sigma.array().square() +
+          (values(reported.hypothesis, reported.numbers) - values(of.hypothesis, of.numbers)).array().square())
+      .sqrt();
+}
+
+/// Numbers of `fit`, which holds the effects that were found and gives all other numbers too.
+void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, const Eigen::VectorXd& sigma,
+                  DiagnosisResult& result, VerdictGiven& given) {
   const inference::Found& found = conclusion.found;
-  const auto& effects = found.best.fit.hypothesis.model.effects;
-  const std::vector<NamedValue> numbers = numbers_of(found.best.fit, sigma);
+  const auto& effects = fit.hypothesis.model.effects;
   for (std::size_t e = 0; e < effects.size() && e < found.odds.size(); ++e) {
     EffectFound effect{.name = std::string(effects[e].effect->name()),
                        .variant = effects[e].variant_name,
                        .log_odds = found.odds[e],
                        .error_reduction = kNotAsked,
                        .sentence = std::string(effects[e].effect->sentence())};
-    for (std::size_t j = 0; j < found.best.fit.numbers.size(); ++j) {
-      const likelihood::Number& number = found.best.fit.numbers[j];
+    for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+      const likelihood::Number& number = fit.numbers[j];
       if (number.kind != NumberKind::kEffect || number.index != static_cast<int>(e)) continue;
-      NamedValue named = numbers[j];
-      named.name = named.name.substr(named.name.find('.') + 1);
-      effect.parameters.push_back(std::move(named));
+      effect.parameters.push_back({number.name.substr(number.name.find('.') + 1), value(fit.hypothesis, number),
+                                   sigma[static_cast<Eigen::Index>(j)], number.unit});
     }
     if (!found.rival[e].empty() && found.probability[e] < inference::Thresholds{}.name_probability)
       effect.alternatives.push_back(
@@ -209,16 +217,20 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
     return likelihood::between_runs(problem, fit, settings.threads).sigma;
   };
-  const Eigen::VectorXd of_best = deviations(conclusion.found.best.fit);
-  list_effects(conclusion, of_best, result, answer.given);
+  const Eigen::VectorXd of_best =
+      force != nullptr ? best.sigma()
+                       : with_difference(conclusion.found.best.fit, best, deviations(conclusion.found.best.fit));
+  list_effects(conclusion, best, of_best, result, answer.given);
   if (!result.effects.empty()) result.explained = kNotAsked;
   for (const std::string& name : settings.without)
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
   result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
   if (conclusion.reported.finite && conclusion.verdict != Verdict::no_model) {
-    result.parameters_before = numbers_of(conclusion.reported_base, deviations(conclusion.found.base.fit));
-    result.parameters_after = numbers_of(best, force != nullptr ? best.sigma() : of_best);
+    result.parameters_before = numbers_of(
+        conclusion.reported_base,
+        with_difference(conclusion.found.base.fit, conclusion.reported_base, deviations(conclusion.found.base.fit)));
+    result.parameters_after = numbers_of(best, of_best);
   }
   return answer;
 }

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/likelihood/fit.hpp"
@@ -36,6 +37,51 @@ TEST_CASE("evidence: Laplace's method is the integral, where one number is free"
       laplace(found.numbers, values(found.hypothesis, found.numbers), found.log_likelihood, found.information);
   // The gain held fixed in the derivative, and what is not Gaussian about the posterior.
   CHECK(laplaces == doctest::Approx(found.log_likelihood + std::log(integral)).epsilon(0.1 / std::abs(laplaces)));
+}
+
+TEST_CASE("priors: both densities are whole, and their weights are their slopes") {
+  for (const double freedom : {0.0, kEffectFreedom}) {
+    const Number number{.mean = 2.0, .sigma = 0.5, .freedom = freedom};
+    double whole = 0.0;
+    constexpr double kStep = 1e-3;
+    for (double x = -60.0; x < 64.0; x += kStep) whole += kStep * std::exp(log_prior(number, x));
+    CHECK(whole == doctest::Approx(1.0).epsilon(1e-3));
+    for (const double x : {2.0, 2.3, 0.0, 12.0}) {
+      const double slope = (log_prior(number, x + 1e-4) - log_prior(number, x - 1e-4)) / 2e-4;
+      CHECK(slope == doctest::Approx(-(x - number.mean) * prior_weight(number, x)).epsilon(1e-5).scale(1.0));
+    }
+  }
+}
+
+TEST_CASE("fit: a number that is far larger than ordinary is found all the same") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  // Third-order drag that is ordinary at a metre per second, forty times over: at these speeds it is a few newtons.
+  constexpr double kTrue = 2000.0;
+  test::NoisyDive settings{.duration = 40.0, .force = 0.01, .effects = {test::active("cubic_drag", {kTrue}, 1)}};
+  const auto dive = test::fly(vehicle, settings);
+  const Problem problem = make_problem(vehicle, {&dive.trial, 1});
+  Hypothesis start = nominal_hypothesis(problem);
+  start.model.add(test::active("cubic_drag", {50.0}, 1));
+  const Fit found = fit(problem, start, prior_noise(problem), {.noise_rounds = 4});
+  const auto number = std::ranges::find(found.numbers, NumberKind::kEffect, &Number::kind);
+  REQUIRE(number != found.numbers.end());
+  const double sigma = found.sigma()[number - found.numbers.begin()];
+  CHECK(std::abs(value(found.hypothesis, *number) - kTrue) < 3.0 * sigma);
+  CHECK(sigma < 0.2 * kTrue);
+}
+
+TEST_CASE("fit: a number on its limit comes back where all together want it inside") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 40.0, .force = 0.01});
+  const Problem problem = make_problem(vehicle, {&dive.trial, 1});
+  const FitOptions options{.noise_rounds = 1, .steps = 8, .fit_noise = false};
+  const Fit plain = fit(problem, nominal_hypothesis(problem), prior_noise(problem), options);
+  // All linear drag in the quadratic one's place: its own slope alone pushes it outwards.
+  Hypothesis start = plain.hypothesis;
+  start.model.theta[model::index(model::BaseParameter::X_u)] = 0.0;
+  start.model.theta[model::index(model::BaseParameter::X_uu)] *= 3.0;
+  const Fit back = fit(problem, start, prior_noise(problem), options);
+  CHECK(back.log_posterior == doctest::Approx(plain.log_posterior).epsilon(0.2 / std::abs(plain.log_posterior)));
 }
 
 TEST_CASE("response: the score of a column is its inner product with the adjoint") {
