@@ -86,8 +86,7 @@ void Board::hear(const VehicleCondition& sample, double now) {
   take(vehicle_, sample, now);
 }
 
-void Board::hear(const ProcessInfo& sample, double now) {
-  heard_ = now;
+void Board::hear(const ProcessInfo& sample, double /*now*/) {
   if (sample.config.size() > kMostConfig || (told_.size() >= kMostTellers && !told_.contains(sample.process))) return;
   if (std::string& before = told_[sample.process]; before != sample.config) place_.take_told(before = sample.config);
 }

@@ -43,7 +43,7 @@ class Board {
   void hear(const Residual& sample, double now);
   void hear(const VehicleCondition& sample, double now);
   void hear(const Answer& sample, double now) { chronicle_.hear(sample, now); }
-  /// Its files say where the trial takes place.
+  /// Its files say where the trial takes place. No sign of life: the board says its own.
   void hear(const ProcessInfo& sample, double now);
   /// What files say of the place; InputError as their readers throw it.
   void take(const Config& file) { place_.take(file); }

@@ -117,8 +117,8 @@ TEST_CASE(
   CHECK_MESSAGE(well.code == 0, well.text);
   CHECK_FALSE(well.says("as it was sent"));  // it reports its outputs
   // Whose own controller commands is told the same, and refused by it.
-  const std::string arm = program("fathom") + " arm --no-supervisor --bus '" + behind.bus.url + "' --operator '" +
-                          test::file("config/operators/simulated.yaml") + "'";
+  const std::string arm = program("fathom") + " arm --no-supervisor --bus '" + behind.bus.url + "' --operator " +
+                          test::file("config/operators/simulated.yaml");
   const auto armed = test::shell(arm);
   CHECK_MESSAGE(armed.code == 0, armed.text);
   CHECK_MESSAGE(armed.says("ok      heartbeat"), armed.text);

@@ -16,12 +16,18 @@ struct Board {
       : background{scratch, "board", program("board") + " --port 0" + arguments}, port{wait()} {}
 
   [[nodiscard]] nlohmann::json json() const {
-    httplib::Client client{"127.0.0.1", port};
-    client.set_read_timeout(20);
-    const auto answer = client.Get("/board.json");
-    REQUIRE(answer);
-    CHECK(answer->status == 200);
-    return nlohmann::json::parse(answer->body);
+    nlohmann::json told;
+    for (int i = 0; i < 1000 && !told.contains("number"); ++i) {  // it listens before it has looked for the first time
+      httplib::Client client{"127.0.0.1", port};
+      client.set_read_timeout(20);
+      const auto answer = client.Get("/board.json");
+      REQUIRE(answer);
+      CHECK(answer->status == 200);
+      told = nlohmann::json::parse(answer->body);
+      if (!told.contains("number")) ::usleep(20'000);
+    }
+    REQUIRE(told.contains("number"));
+    return told;
   }
   /// What it shows once it is `enough`; the newest when it never is.
   template <class Enough>
