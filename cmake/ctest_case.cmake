@@ -10,7 +10,7 @@
 # The time limit is for machines that are much slower or busy with other things: what takes longer hangs. Long kinds begin
 # first, so that no core waits for the last of them.
 cmake_policy(VERSION 3.25)
-set(FATHOM_LIMIT_unit 60)
+set(FATHOM_LIMIT_unit 180)
 set(FATHOM_LIMIT_search 900)
 set(FATHOM_LIMIT_processes 400)
 set(FATHOM_LIMIT_survival 600)

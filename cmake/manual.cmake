@@ -19,9 +19,11 @@ add_custom_command(
   COMMENT "Man pages and completion"
   VERBATIM)
 add_custom_target(programs DEPENDS ${programs})  # what is installed
-if(TARGET fathom_types_jar)
-  add_dependencies(programs fathom_types_jar)
-endif()
+foreach(extra fathom_types_jar fathom_python)
+  if(TARGET ${extra})
+    add_dependencies(programs ${extra})
+  endif()
+endforeach()
 add_custom_target(manual DEPENDS ${manual}/completions/fathom)
 install(DIRECTORY ${manual}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
 install(DIRECTORY ${manual}/completions DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion OPTIONAL)

@@ -32,7 +32,7 @@ endif()
 # What is run, not linked: docs/dependencies.md.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "adduser, gnuplot-nox | gnuplot, iproute2, liblcm-bin")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "bash-completion, chrony | time-daemon")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "default-jre, liblcm-java, libjchart2d-java")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "default-jre, liblcm-java, libjchart2d-java, python3-numpy, python3-matplotlib")
 set(debian ${CMAKE_CURRENT_LIST_DIR}/debian)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${debian}/postinst ${debian}/prerm ${debian}/postrm ${debian}/conffiles)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

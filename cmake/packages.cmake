@@ -17,6 +17,7 @@ pkg_check_modules(SQLITE REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 find_package(BZip2 REQUIRED)
+pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 
 # OpenCV by its parts: Debian's configuration file comes with the whole, some hundred packages more. `codecs` reads and
 # writes pictures and videos and loads 200 libraries at every start; programs that need none of that do without.

@@ -8,6 +8,7 @@
 #include "common/consistency/consistency.hpp"
 #include "common/estimation/thruster_forces.hpp"
 #include "common/estimation/wording.hpp"
+#include "common/model/actuators.hpp"
 
 namespace fathom::consistency {
 
@@ -125,8 +126,8 @@ void check_thrusters(std::span<const Recording> recordings, const model::Vehicle
       has_force = has_force || !sample.force.empty();
     }
   }
-  const bool can_compute =
-      has_commands && !vehicle.curve.empty() && vehicle.allocation.cols() == static_cast<Eigen::Index>(thrusters);
+  const bool can_compute = has_commands && model::takes_commands(vehicle) &&
+                           vehicle.allocation.cols() == static_cast<Eigen::Index>(thrusters);
   if (!can_compute || has_force) return;
   const auto decide = [&](const ThrusterCorrection& correction) {
     for (Corrections& one : result.corrections) one.thrusters = correction;

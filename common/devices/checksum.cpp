@@ -6,11 +6,11 @@
 namespace fathom::devices {
 namespace {
 
-constexpr std::array<std::uint16_t, 256> reflected_table() {
+constexpr std::array<std::uint16_t, 256> reflected_table(unsigned polynomial) {
   std::array<std::uint16_t, 256> table{};
   for (unsigned i = 0; i < 256; ++i) {
     unsigned value = i;
-    for (int bit = 0; bit < 8; ++bit) value = (value & 1U) != 0 ? value >> 1 ^ 0x8408U : value >> 1;
+    for (int bit = 0; bit < 8; ++bit) value = (value & 1U) != 0 ? value >> 1 ^ polynomial : value >> 1;
     table[i] = static_cast<std::uint16_t>(value);
   }
   return table;
@@ -36,7 +36,8 @@ constexpr std::array<std::uint8_t, 256> short_table() {
   return table;
 }
 
-constexpr auto kReflected = reflected_table();
+constexpr auto kReflected = reflected_table(0x8408U);
+constexpr auto kArc = reflected_table(0xA001U);
 constexpr auto kStraight = straight_table();
 constexpr auto kShort = short_table();
 
@@ -45,6 +46,12 @@ constexpr auto kShort = short_table();
 std::uint16_t crc16_reflected(Bytes bytes, std::uint16_t start) {
   unsigned crc = start;
   for (const std::uint8_t byte : bytes) crc = crc >> 8 ^ kReflected[(crc ^ byte) & 0xFFU];
+  return static_cast<std::uint16_t>(crc);
+}
+
+std::uint16_t crc16_arc(Bytes bytes) {
+  unsigned crc = 0;
+  for (const std::uint8_t byte : bytes) crc = crc >> 8 ^ kArc[(crc ^ byte) & 0xFFU];
   return static_cast<std::uint16_t>(crc);
 }
 

@@ -11,6 +11,8 @@ namespace fathom::devices {
 [[nodiscard]] std::uint16_t crc16_reflected(Bytes bytes, std::uint16_t start);
 /// 0x1021, not reflected, start 0: CRC-16/XMODEM (VectorNav). Over data and its CRC it is 0.
 [[nodiscard]] std::uint16_t crc16_xmodem(Bytes bytes);
+/// 0x8005 reflected, start 0: CRC-16/ARC (SeaTrac).
+[[nodiscard]] std::uint16_t crc16_arc(Bytes bytes);
 /// 0x07, start 0, not reflected (Water Linked).
 [[nodiscard]] std::uint8_t crc8(Bytes bytes);
 /// Sum of all bytes modulo 65536 (Teledyne, MicroStrain).

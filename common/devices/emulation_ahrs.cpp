@@ -91,6 +91,36 @@ std::string gx3_frame(const Instant& now) {
   return body.text;
 }
 
+// Counter, time, quaternion in east, north, up, rates, acceleration, status, all of a sensor whose label looks up.
+std::string xsens_frame(const Instant& now) {
+  FrameWriter data;
+  const auto item = [&](std::uint16_t id, std::size_t size) {
+    data.big(id);
+    data.big(static_cast<std::uint8_t>(size));
+  };
+  const auto upward = [](const Eigen::Vector3d& v) { return Eigen::Vector3d{v.x(), -v.y(), -v.z()}; };
+  item(0x1020, 2);
+  data.big(static_cast<std::uint16_t>(ticks(now.time, 100.0) & 0xFFFFU));
+  item(0x1060, 4);
+  data.big(ticks(now.time, 1e4));
+  item(0x2010, 16);
+  const Eigen::Quaterniond R_LN{(Eigen::Matrix3d{} << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished()};
+  const Eigen::Quaterniond q = R_LN * now.ahrs.q_WB * Eigen::Quaterniond{0.0, 1.0, 0.0, 0.0};  // half a turn of roll
+  for (const double each : {q.w(), q.x(), q.y(), q.z()}) data.big(static_cast<float>(each));
+  item(0x8020, 12);
+  big_vector(data, upward(now.ahrs.w_WB_B));
+  item(0x4020, 12);
+  big_vector(data, upward(now.ahrs.f_B));
+  item(0xE020, 4);
+  data.big(std::uint32_t{3});
+  FrameWriter frame;
+  frame.text = "\xFF\x36";
+  frame.text += static_cast<char>(data.text.size());
+  frame.text += data.text;
+  frame.text += static_cast<char>(-sum16(as_bytes(frame.text)) & 0xFF);
+  return "\xFA" + frame.text;
+}
+
 }  // namespace
 
 std::string emulate_ahrs(std::string_view protocol, const Instant& now, const Settings&) {
@@ -98,6 +128,7 @@ std::string emulate_ahrs(std::string_view protocol, const Instant& now, const Se
   if (protocol == "sbg_ecom") return ecom_frames(now);
   if (protocol == "vn100") return vn100_frame(now);
   if (protocol == "gx3") return gx3_frame(now);
+  if (protocol == "xsens") return xsens_frame(now);
   const Eigen::Vector3d euler = euler_of(now) / kRadians;
   const double heading = euler.z() < 0.0 ? euler.z() + 360.0 : euler.z();
   return nmea_sentence(format("PSXN,23,%.2f,%.2f,%.2f,0.00", euler.x(), euler.y(), heading));

@@ -7,6 +7,7 @@
 #include "common/devices/attitude.hpp"
 #include "common/devices/checksum.hpp"
 #include "common/devices/emulation.hpp"
+#include "common/devices/velocity/nortek_ad2cp.hpp"
 
 namespace fathom::devices {
 
@@ -233,6 +234,64 @@ std::string wl_json_line(const Instant& now) {
              valid, us, us + 2000);
 }
 
+// Of a Nortek log with four beams: X, Y, Z as they are, or none.
+constexpr double kNortekNoVelocity = -32.768, kNortekNoMerit = 10.0;  // m/s
+constexpr std::uint32_t kNortekAllValid = 0x000FFFFF;
+
+std::string nortek_text_line(const Instant& now) {
+  const Eigen::Vector3d v =
+      now.dvl.valid ? now.dvl.v_WB_B : Eigen::Vector3d{Eigen::Vector3d::Constant(kNortekNoVelocity)};
+  const double d = now.dvl.altitude;
+  return nmea_sentence(
+      format("PNORBT9,%.4f,-100.000,-120.000,%.5f,%.5f,%.5f,%.5f,%.2f,%.2f,%.2f,%.2f,15.9,1500.0,1.30,15.00,0x%08X",
+             now.time, v.x(), v.y(), v.z(), now.dvl.valid ? 0.005 : kNortekNoMerit, d, d, d, d,
+             static_cast<unsigned>(now.dvl.valid ? kNortekAllValid : 0U)));
+}
+
+std::string nortek_ad2cp_record(const Instant& now) {
+  const Clock clock = clock_of(std::floor(now.time));
+  FrameWriter data;
+  data.text = "\x01\x24";
+  data.little(std::uint32_t{100001});
+  for (const int each : {clock.year - 1900, clock.month - 1, clock.day, clock.hour, clock.minute, clock.second}) {
+    data.text += static_cast<char>(each);
+  }
+  data.little(static_cast<std::uint16_t>(std::min(9999L, std::lround(1e4 * (now.time - std::floor(now.time))))));
+  data.little(std::uint16_t{4});
+  data.little(std::uint32_t{0});
+  data.little(now.dvl.valid ? kNortekAllValid : std::uint32_t{0});
+  const auto reals = [&](const std::array<double, 4>& values) {
+    for (const double each : values) data.little(static_cast<float>(each));
+  };
+  for (const float each : {1500.0F, 15.0F, 1.3F}) data.little(each);
+  const double d = now.dvl.altitude, fom = now.dvl.valid ? 0.005 : kNortekNoMerit;
+  reals({0.0, 0.0, 0.0, 0.0});
+  reals({d, d, d, d});
+  reals({fom, fom, fom, fom});
+  data.zeros(48);
+  const Eigen::Vector3d v =
+      now.dvl.valid ? now.dvl.v_WB_B : Eigen::Vector3d{Eigen::Vector3d::Constant(kNortekNoVelocity)};
+  reals({v.x(), v.y(), v.z(), v.z()});
+  reals({fom, fom, fom, fom});
+  data.zeros(48);
+  FrameWriter header;
+  header.text = "\xA5\x0A\x1B\x10";
+  header.little(static_cast<std::uint16_t>(data.text.size()));
+  header.little(nortek_checksum(as_bytes(data.text)));
+  header.little(nortek_checksum(as_bytes(header.text)));
+  return header.text + data.text;
+}
+
+// Eight times a second, so that the middle of the interval is now.
+std::string cerulean_line(const Instant& now) {
+  constexpr double kInterval = 0.125;  // s
+  const Eigen::Vector3d d = kInterval * now.dvl.v_WB_B;
+  return nmea_sentence(format("DVPDX,%lld,%lld,0.000000,0.000000,0.000000,%.6f,%.6f,%.6f,%d,1,0.00,0.00,%.3f",
+                              static_cast<long long>(std::llround(1e6 * (now.time + 0.5 * kInterval))),
+                              static_cast<long long>(std::llround(1e6 * kInterval)), d.x(), d.y(), d.z(),
+                              now.dvl.valid ? 95 : 0, now.dvl.altitude));
+}
+
 }  // namespace
 
 std::string emulate_dvl(std::string_view protocol, const Instant& now, const Settings& settings,
@@ -240,6 +299,9 @@ std::string emulate_dvl(std::string_view protocol, const Instant& now, const Set
   if (protocol == "pd0") return pd0_frame(now, dvl);
   if (protocol == "pd4") return pd5_frame(now, dvl);
   if (protocol == "pd6") return pd6_lines(now, settings);
+  if (protocol == "nortek_text") return nortek_text_line(now);
+  if (protocol == "nortek_ad2cp") return nortek_ad2cp_record(now);
+  if (protocol == "cerulean") return cerulean_line(now);
   if (protocol == "wl_serial") return wl_serial_lines(now);
   return wl_json_line(now);
 }

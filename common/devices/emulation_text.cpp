@@ -1,6 +1,9 @@
 // Acoustic positions and ranges, depth and loads: text lines from samples.
 #include <cmath>
+#include <cstdlib>
 
+#include "common/base/spatial.hpp"
+#include "common/devices/checksum.hpp"
 #include "common/devices/emulation.hpp"
 
 namespace fathom::devices::detail {
@@ -29,6 +32,30 @@ std::string evologics(const Instant& now, const Settings& settings) {
                                   now.time, beacon.empty() ? "2" : beacon.c_str(), p.y(), p.x(), -p.z(),
                                   static_cast<int>(p.norm() / 1500.0 * 1e6), now.usbl.sigma.x());
   return "+++AT:" + std::to_string(text.size()) + ":" + text + "\r\n";
+}
+
+// An enhanced answer to a ping, in decimetres: the depth is the beacon's own.
+std::string seatrac(const Instant& now, const Settings& settings) {
+  const Transceiver& from = settings.transceiver;
+  const Eigen::Vector3d p = rotation_from_euler({0.0, 0.0, -from.declination}) * (now.usbl.p_WB - from.p_W);
+  const auto tenths = [](double value) { return static_cast<std::int16_t>(std::lround(10.0 * value)); };
+  FrameWriter message;
+  message.text = "\x42\x0F";
+  message.text += static_cast<char>(from.beacon.empty() ? 2 : std::atoi(from.beacon.c_str()));
+  message.text += static_cast<char>(now.usbl.valid ? 0x0F : 0x1F);
+  message.text += '\x07';
+  for (const int each : {0, 0, 0, 10, 15000, -400}) message.little(static_cast<std::int16_t>(each));
+  const double distance = p.norm();
+  message.little(static_cast<std::uint32_t>(std::lround(distance / 1500.0 * 2.0 * 16000.0)));
+  message.little(static_cast<std::uint32_t>(std::lround(distance / 1500.0 * 1e7)));
+  message.little(static_cast<std::uint16_t>(std::lround(10.0 * distance)));
+  message.text += '\x04';
+  message.zeros(8 + 6);
+  for (const double each : {p.y(), p.x(), now.usbl.p_WB.z()}) message.little(tenths(each));
+  message.little(crc16_arc(as_bytes(message.text)));
+  std::string line = "$";
+  for (const char c : message.text) line += format("%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  return line + "\r\n";
 }
 
 std::string psimlbm(const Instant& now) {
@@ -65,6 +92,7 @@ std::string load_text(const Instant& now, const Settings& settings) {
 std::string emulate_text(std::string_view protocol, const Instant& now, const Settings& settings) {
   if (protocol == "nmea_usbl") return psimssb(now, settings);
   if (protocol == "evologics") return evologics(now, settings);
+  if (protocol == "seatrac") return seatrac(now, settings);
   if (protocol == "psimlbm") return psimlbm(now);
   if (protocol == "range_text") return range_text(now, settings);
   if (protocol == "load_text") return load_text(now, settings);

@@ -1,4 +1,5 @@
-// EvoLogics USBL modems: "+++AT:<length>:USBLLONG,..." CR LF. No checksum; the stated length must fit.
+// EvoLogics USBL modems: "+++AT:<length>:USBLLONG,..." CR LF, or the line alone, as loggers keep it. No checksum: the
+// stated length must fit; a line alone must have every word, each a number.
 #pragma once
 
 #include <string_view>
@@ -19,7 +20,10 @@ class Evologics final : public Parser {
  private:
   Look look(Bytes bytes) const override;
   void take(Frame& frame) override;
+  [[nodiscard]] Look look_at_wrapped(std::string_view text) const;
+  [[nodiscard]] static Look look_at_line(std::string_view text);
 
+  mutable bool wrapped_{false};  ///< this line tells lengths: what is inside of a damaged frame is no line alone
   Transceiver from_;
   WantedBeacon wanted_;
   Words words_;

@@ -72,6 +72,7 @@ void LoadText::line(std::string_view line, Frame& frame) {
     }
     all = all && fresh_[i];
   }
+  frame.lacks = "not every cell has told since the sample before";
   if (!all) return;
   fresh_ = {};
   frame.sample = &sample_;

@@ -53,6 +53,7 @@ void NmeaParser::take(Frame& frame) {
   const Sentence parts = cut(text.substr(0, text.find_first_of("\r\n")));
   body_ = parts.body;
   checksum_ = parts.check.empty() ? Checksum::kAbsent : Checksum::kRight;
+  frame.lacks = "a sentence that this protocol does not read";
   sentence(Words{body_, ','}, frame);
 }
 

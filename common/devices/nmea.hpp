@@ -17,7 +17,8 @@ class NmeaParser : public Parser {
   enum class Checksum : std::uint8_t { kRight, kAbsent };
 
   explicit NmeaParser(bool checksum_required);
-  /// words[0] is the sentence's name ("INHDT"). Fills frame.device_time and frame.sample where it says something.
+  /// words[0] is the sentence's name ("INHDT"). Fills frame.device_time and frame.sample where it says something, and
+  /// frame.lacks for every sentence that it reads.
   virtual void sentence(const Words& words, Frame& frame) = 0;
   /// The decoded values beside the raw fields.
   virtual void describe_values(Fields& fields) const = 0;

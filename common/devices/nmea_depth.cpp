@@ -33,6 +33,9 @@ void NmeaDepth::sentence(const Words& words, Frame& frame) {
   depth_m_ = offset_m_ = altitude_m_ = pressure_dbar_ = std::nullopt;
   const std::string_view id = words[0];
   std::optional<double> z;
+  const bool nmea =
+      id.size() == 5 && (id.ends_with("DPT") || id.ends_with("DBT") || id.ends_with("DBS") || id.ends_with("DBK"));
+  if (id == "PRVAT" || nmea) frame.lacks = "depth field empty";
   if (id == "PRVAT") {
     read_prvat(words);
     if (depth_m_) z = depth_m_;

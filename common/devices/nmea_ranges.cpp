@@ -17,6 +17,7 @@ void NmeaRanges::sentence(const Words& words, Frame& frame) {
   time_ = roll_deg_ = pitch_deg_ = course_deg_ = depth_m_ = std::nullopt;
   told_ = {};
   if (words[0] != "PSIMLBM") return;
+  frame.lacks = "the last field is neither M nor S";
   time_ = time_of_day(words[1]);
   array_ = words[2];
   roll_deg_ = words.number_at(4);

@@ -42,14 +42,25 @@ void NmeaUsbl::sentence(const Words& words, Frame& frame) {
   if (words[0] == "PSONLLD") read_psonlld(words);
   if (words[0] == "PSONALL") read_psonall(words);
   frame.device_time = time_;
+  if (!beacon_.empty()) frame.lacks = lacking();
   if (!p_WB_) return;
-  if (!wanted_.is(beacon_)) return complain(wanted_.complaint());
+  if (!wanted_.is(beacon_)) {
+    frame.lacks = "a fix of another transponder";
+    return complain(wanted_.complaint());
+  }
   complain("");
   // The accuracy is the root of the sum of both horizontal variances; zero or less is none.
   const bool stated = accuracy_ && *accuracy_ > 0.0;
   const double sigma = stated ? *accuracy_ / std::numbers::sqrt2 : from_.sigma;
   sample_ = Usbl{.p_WB = *p_WB_, .sigma = Eigen::Vector3d::Constant(sigma), .valid = trusted_};
   frame.sample = &sample_;
+}
+
+// Why there is no position; what an operator could set right is in the complaint.
+std::string_view NmeaUsbl::lacking() const {
+  if (!first_ || !second_) return "position fields empty";
+  return depth_ ? "the place of these coordinates is not stated, or it is the ship's own"
+                : "depth field empty or not measured";
 }
 
 // time, transponder, status, error, coordinates, orientation, filter, X, Y, depth, accuracy

@@ -26,6 +26,7 @@ class NmeaUsbl final : public NmeaParser {
   void read_valid_depth(const Words& words, std::size_t validity);
   void read_psonlld(const Words& words);
   void read_psonall(const Words& words);
+  [[nodiscard]] std::string_view lacking() const;
   void needs_origin(bool stated, std::string_view what);
 
   Transceiver from_;

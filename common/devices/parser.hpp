@@ -63,6 +63,8 @@ struct Frame {
   Bytes bytes;
   std::optional<double> device_time{};  ///< s on the instrument's clock, whatever its origin
   Sample sample{};
+  std::string_view
+      lacks{};  ///< why a frame that could hold a measurement gives no sample; empty: it is of another kind
 };
 
 class Parser;

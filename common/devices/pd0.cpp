@@ -92,7 +92,10 @@ void Pd0::take(Frame& frame) {
   bytes_ = frame.bytes;
   find_blocks();
   frame.device_time = clock();
-  if (fixed_.empty() || bottom_.empty()) return;
+  if (fixed_.empty() || bottom_.empty()) {
+    frame.lacks = "an ensemble without bottom track; is it switched on (BP)?";
+    return;
+  }
   read_pose();
   sample_ = Dvl{.valid = false};
   sample_.valid = read_velocity();

@@ -5,7 +5,9 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/spatial.hpp"
+#include "common/devices/acoustics/seatrac.hpp"
 #include "common/devices/evologics.hpp"
+#include "common/devices/inertial/xsens.hpp"
 #include "common/devices/load_text.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/microstrain_gx3.hpp"
@@ -21,6 +23,9 @@
 #include "common/devices/text_ranges.hpp"
 #include "common/devices/thruster_text.hpp"
 #include "common/devices/vectornav.hpp"
+#include "common/devices/velocity/cerulean.hpp"
+#include "common/devices/velocity/nortek_ad2cp.hpp"
+#include "common/devices/velocity/nortek_text.hpp"
 #include "common/devices/water_linked_json.hpp"
 #include "common/devices/water_linked_serial.hpp"
 
@@ -34,22 +39,29 @@ std::unique_ptr<Parser> make(const Settings& settings) {
 
 // Clocks that count from zero again [s]: times of day, and 32 bits of milliseconds, microseconds or GX3's ticks.
 constexpr double kDay = 86400.0;
-constexpr double kMilliseconds = 4294967.296, kMicroseconds = 4294.967296, kGx3Ticks = 4294967296.0 / 62500.0;
+constexpr double kMilliseconds = 4294967.296, kMicroseconds = 4294.967296, kGx3Ticks = 4294967296.0 / 62500.0,
+                 kXsensTicks = 429496.7296;
 
 constexpr std::array kProtocols{
     Protocol{"ig500", Kind::kAhrs, "SBG IG-500A, sbgCom binary", 115200, make<SbgIg500>, 1e-3, kMilliseconds},
     Protocol{"sbg_ecom", Kind::kAhrs, "SBG Ellipse, sbgECom binary", 115200, make<SbgEcom>, 0.0, kMicroseconds},
     Protocol{"vn100", Kind::kAhrs, "VectorNav VN-100, binary output", 115200, make<VectorNav>},
     Protocol{"gx3", Kind::kAhrs, "MicroStrain 3DM-GX3", 115200, make<MicrostrainGx3>, 0.0, kGx3Ticks},
-    Protocol{"nmea_attitude", Kind::kAhrs, "$PSXN,23, $--HDT, $SBG01", 115200, make<NmeaAttitude>, 0.0, kDay},
+    Protocol{"xsens", Kind::kAhrs, "Xsens MTi, MTData2", 115200, make<Xsens>, 0.0, kXsensTicks},
+    Protocol{"nmea_attitude", Kind::kAhrs, "$PSXN,23, $PIXSE,ATITUD, $--HDT, $SBG01", 115200, make<NmeaAttitude>, 0.0,
+             kDay},
     Protocol{"pd0", Kind::kDvl, "Teledyne PD0 ensembles", 115200, make<Pd0>, 0.01},
     Protocol{"pd4", Kind::kDvl, "Teledyne PD4 and PD5", 115200, make<Pd4>, 0.01, kDay},
     Protocol{"pd6", Kind::kDvl, "Teledyne PD6 and PD13 text", 115200, make<Pd6>, 0.01},
     Protocol{"wl_serial", Kind::kDvl, "Water Linked A50, serial", 115200, make<WaterLinkedSerial>},
     Protocol{"wl_json", Kind::kDvl, "Water Linked A50, JSON over TCP (port 16171)", 0, make<WaterLinkedJson>},
+    Protocol{"nortek_text", Kind::kDvl, "Nortek $PNORBT6 to $PNORBT9", 115200, make<NortekText>},
+    Protocol{"nortek_ad2cp", Kind::kDvl, "Nortek AD2CP, bottom track 1B", 115200, make<NortekAd2cp>},
+    Protocol{"cerulean", Kind::kDvl, "Cerulean $DVPDL, $DVPDX", 115200, make<Cerulean>},
     Protocol{"nmea_usbl", Kind::kUsbl, "$PSIMSSB, $PSONLLD, $PSONALL, $PTSAG, $PTSAX, $PTSAY", 9600, make<NmeaUsbl>,
              0.0, kDay},
     Protocol{"evologics", Kind::kUsbl, "EvoLogics USBLLONG", 19200, make<Evologics>},
+    Protocol{"seatrac", Kind::kUsbl, "Blueprint SeaTrac, fixes of the X150", 115200, make<Seatrac>},
     Protocol{"psimlbm", Kind::kRanges, "Kongsberg $PSIMLBM", 9600, make<NmeaRanges>, 0.0, kDay},
     Protocol{"range_text", Kind::kRanges, "lines of NAME=METRES", 9600, make<TextRanges>},
     Protocol{"nmea_depth", Kind::kDepth, "$--DPT, $--DBT, $PRVAT", 9600, make<NmeaDepth>},
@@ -109,6 +121,7 @@ void read_transceiver(const Config& config, Transceiver& from) {
   const auto optional = [&](const char* key, const char* unit, std::optional<double>& into) {
     if (place.has(key)) into = place.quantity(key, unit);
   };
+  if (place.has("declination")) from.declination = place.quantity("declination", "rad");
   optional("latitude", "rad", from.latitude);
   optional("longitude", "rad", from.longitude);
   optional("northing", "m", from.northing);

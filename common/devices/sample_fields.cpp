@@ -94,4 +94,10 @@ void describe_sample(const Sample& sample, Kind kind, const Settings& settings, 
   }
 }
 
+bool marked_invalid(const Sample& sample) {
+  const auto* dvl = as<Dvl>(sample);
+  const auto* usbl = as<Usbl>(sample);
+  return (dvl != nullptr && !dvl->valid) || (usbl != nullptr && !usbl->valid);
+}
+
 }  // namespace fathom::devices

@@ -85,6 +85,8 @@ void SbgEcom::take(Frame& frame) {
   const bool says = sample_.has_attitude || sample_.has_rates;
   if (says && sample_.w_WB_B.allFinite() && sample_.f_B.allFinite() && sample_.q_WB.coeffs().allFinite()) {
     frame.sample = &sample_;
+  } else {
+    frame.lacks = says ? "a number is none" : "the instrument says that its attitude is not valid";
   }
 }
 

@@ -124,6 +124,7 @@ void SbgIg500::read_outputs(Frame& frame) {
   }
   if (has(kTime)) frame.device_time = 1e-3 * word(at_[kTime]);
   mount(sample_, R_BS_);
+  frame.lacks = "a number is none";
   if (!sample_.w_WB_B.allFinite() || !sample_.f_B.allFinite() || !sample_.q_WB.coeffs().allFinite()) return;
   frame.sample = &sample_;
 }

@@ -32,6 +32,7 @@ struct RelativeAxes {
 struct Transceiver {
   Eigen::Vector3d p_W{Eigen::Vector3d::Zero()};  ///< m, NED, of the transceiver
   double heading{};                              ///< rad, of the axis that the system calls "head up"
+  double declination{};                          ///< rad, of the north of systems that tell magnetic north (SeaTrac)
   std::optional<double> latitude, longitude;     ///< rad, of the world's origin; for systems that say degrees
   std::optional<double> northing, easting;       ///< m, of the world's origin; for systems that say UTM
   std::optional<RelativeAxes> ptsax, ptsay;      ///< as the system is set up

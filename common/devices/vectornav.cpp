@@ -101,6 +101,8 @@ void VectorNav::take(Frame& frame) {
   const bool says = sample_.has_rates || sample_.has_specific_force || sample_.has_attitude;
   if (says && sample_.w_WB_B.allFinite() && sample_.f_B.allFinite() && sample_.q_WB.coeffs().allFinite()) {
     frame.sample = &sample_;
+  } else {
+    frame.lacks = says ? "a number is none" : "no attitude, rates or acceleration is chosen for output";
   }
 }
 

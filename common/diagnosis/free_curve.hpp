@@ -24,22 +24,9 @@ class FreeCurve final : public model::Effect {
   [[nodiscard]] int axis() const { return axis_; }
   [[nodiscard]] Quantity quantity() const { return quantity_; }
 
-  [[nodiscard]] std::string_view name() const override { return "free_curve"; }
-  [[nodiscard]] std::string_view sentence() const override { return "Something depends on a measured quantity."; }
-  [[nodiscard]] std::string_view revealed_by() const override { return "motion that covers the quantity evenly"; }
-  [[nodiscard]] std::span<const model::EffectParameter> parameters() const override { return parameters_; }
-  [[nodiscard]] bool knows_size() const override { return true; }
-  [[nodiscard]] bool feels_place() const override { return true; }
-  void load(const model::Motion& motion, model::EffectTheta theta, int variant, model::Load& load) const override;
-
  private:
-  [[nodiscard]] double value(const model::Motion& motion) const;
-
   int axis_;
   Quantity quantity_;
-  double low_, high_;
-  bool input_is_wrench_;
-  std::array<model::EffectParameter, kKnots> parameters_;
 };
 
 [[nodiscard]] const char* name_of(Quantity quantity);

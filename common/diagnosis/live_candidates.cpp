@@ -15,7 +15,7 @@ constexpr double kStep = 3e-4;  // of the number or a tenth of its sigma, for di
 
 // Of what sensors do, only an arm is asked here: scales of velocities hide in masses and drag, and what is late is no
 // matter of an instant.
-bool is_asked(const model::Effect& effect) { return !effect.measures() || effect.name() == "lever_arm"; }
+bool is_asked(const model::Effect& effect) { return !effect.measures() || effect.traits().asked_first; }
 
 /// `nu` as it was, were `effect` in what measured it.
 Vector6d unmeasured(const model::Effect& effect, Vector6d nu, std::span<const double> theta, int variant) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/actuators.hpp"
+
 namespace fathom::estimation {
 
 double voltage_at(const std::vector<Battery>& battery, Utime utime) {
@@ -23,10 +25,9 @@ double reference_voltage(const model::Vehicle& vehicle) {
 std::vector<double> forces_of(const ThrusterCorrection& correction, const model::Vehicle& vehicle,
                               const std::vector<double>& pwm_us, double voltage) {
   const double factor = correction.scale * std::pow(voltage / reference_voltage(vehicle), correction.exponent);
-  std::vector<double> force;
-  force.reserve(pwm_us.size());
-  for (std::size_t k = 0; k < pwm_us.size(); ++k) {
-    force.push_back(factor * vehicle.curve.force_at(pwm_us[k], vehicle.thrusters[k].pwm_sign, voltage));
+  std::vector<double> force = model::forces_of_commands(vehicle, pwm_us, voltage);
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    if (vehicle.thrusters[k].command == model::CommandKind::kForce) force[k] *= factor;
   }
   return force;
 }

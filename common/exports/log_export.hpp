@@ -24,6 +24,11 @@ Exported to_csv(const std::string& log, const std::string& folder, std::span<con
 /// message's own.
 Exported to_mcap(const std::string& log, const std::string& file, std::span<const std::string> channels);
 
+/// One .npz with an array per field, named "CHANNEL/field": a row per message, then the field's own dimensions, in the
+/// order of the log. "CHANNEL/t" is [s] since the log's first message. Lists of other lengths are filled with NaN,
+/// texts with nothing. "about" is JSON: types, units and comments of all fields.
+Exported to_npz(const std::string& log, const std::string& file, std::span<const std::string> channels);
+
 struct ChannelSummary {
   std::string channel, type;  ///< type empty: unknown
   std::uint64_t messages{}, bytes{}, damaged{};

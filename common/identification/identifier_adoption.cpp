@@ -7,6 +7,7 @@
 #include "common/identification/identifier.hpp"
 #include "common/model/effect_size.hpp"
 #include "common/model/onset.hpp"
+#include "common/model/open_scene.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -23,22 +24,6 @@ constexpr double kHeld = 1e-6;                      // of a number's prior sigma
 constexpr double kGain = 1.0;                       // of twice the log likelihood, which a step must bring
 constexpr double kMomentWithin = 0.06;              // of the trial, to either side of what the diagnoser says
 constexpr double kMomentKnown = 0.1;                // s
-
-// A scene that admits every form whose place in the list of variants is then its number.
-model::Scene open_scene(const model::Vehicle& vehicle, bool wrench) {
-  model::Scene scene{.vehicle = &vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
-  scene.input_is_wrench = wrench;
-  scene.voltage = true;
-  scene.mean_voltage = vehicle.nominal_voltage > 0.0 ? vehicle.nominal_voltage : 1.0;
-  scene.voltage_range = 1.0;
-  scene.duration = scene.t_high = 1.0;
-  scene.nu_rms.setOnes();
-  scene.tau_rms.setOnes();
-  scene.force_rms = model::ActuatorForces::Ones(wrench ? 6 : vehicle.allocation.cols());
-  scene.p_low.setConstant(-1.0);
-  scene.p_high.setOnes();
-  return scene;
-}
 
 void keep_inside(model::ActiveEffect& effect, const model::Vehicle& vehicle) {
   const auto parameters = model::parameters_of(*effect.effect, effect.variant, vehicle);
@@ -88,7 +73,7 @@ void Identifier::adopt(const EffectEvidence& found) {
     return;
   }
   const bool wrench = input_ == InputKind::kWrench;
-  const std::vector<std::string> variants = effect->variants(open_scene(*vehicle_, wrench));
+  const std::vector<std::string> variants = effect->variants(model::open_scene(*vehicle_, wrench));
   const auto variant = std::find(variants.begin(), variants.end(), found.variant);
   if (variant == variants.end()) {
     ++rejected_["effect not adoptable"];

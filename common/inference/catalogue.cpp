@@ -23,7 +23,7 @@ bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle) {
   return model::stopped_at_limit(*active.effect, active.variant, active.theta, vehicle);
 }
 
-bool asked_first(const Law& law) { return law.name == "lever_arm"; }
+bool asked_first(const Law& law) { return law.seed.effect->traits().asked_first; }
 
 bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {
   return a.effect == b.effect && a.effect->rules_out(a.variant, b.variant);

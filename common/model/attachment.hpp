@@ -3,8 +3,6 @@
 #pragma once
 
 #include <array>
-#include <string>
-#include <vector>
 
 #include "common/model/component_set.hpp"
 #include "common/model/vehicle.hpp"
@@ -16,15 +14,20 @@ constexpr std::array kAttachment{EffectParameter{"attached_x", "m", 0.3, -3.0, 3
                                  EffectParameter{"attached_y", "m", 0.3, -3.0, 3.0},
                                  EffectParameter{"attached_z", "m", 0.3, -3.0, 3.0}};
 
-/// The origin, and the place of which all components are sought that turn the vehicle about a simulated axis; its
-/// height also where it is `felt` otherwise.
-[[nodiscard]] inline std::vector<std::string> attachment_forms(const Vehicle& vehicle, bool felt = false) {
+/// The components of the place that turn the vehicle about a simulated axis; its height also where it is `felt`
+/// otherwise.
+[[nodiscard]] inline int attachment_set(const Vehicle& vehicle, bool felt = false) {
   const auto& dof = vehicle.dof;
   const bool turns = dof[3] || dof[4] || dof[5];
   const std::array acts{dof[4] || dof[5], dof[3] || dof[5], dof[3] || dof[4] || (turns && felt)};
-  int form = 0;
-  for (std::size_t i = 0; i < acts.size(); ++i) form |= acts[i] ? 1 << i : 0;
-  return forms_of(form, "made fast off the origin", {""});
+  int set = 0;
+  for (std::size_t i = 0; i < acts.size(); ++i) set |= acts[i] ? 1 << i : 0;
+  return set;
+}
+
+/// What a form is called that seeks the components `set`: the origin, or all that `asked` names.
+[[nodiscard]] inline FormName attachment_name(int set, int asked) {
+  return set == 0 ? FormName{""} : when(set == asked, "made fast off the origin");
 }
 
 }  // namespace fathom::model

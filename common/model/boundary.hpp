@@ -7,28 +7,38 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-#include <vector>
 
-#include "common/model/motion.hpp"
+#include "common/model/form.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::boundary {
 
-/// Variants of an effect: what is felt, and by which law it fades.
-enum Form : int { kForce, kDrag, kExponentialForce, kExponentialDrag, kSuction };
-inline constexpr std::array kStrengthUnits{"N m^2", "m^2", "N", "",
-                                           "N m^4/(m/s)^2"};  // by form; of drag: times the hull's own
-[[nodiscard]] inline bool multiplies(int form) { return form == kDrag || form == kExponentialDrag; }
-[[nodiscard]] inline bool exponential(int form) { return form == kExponentialForce || form == kExponentialDrag; }
-/// Forms whose strength has one sign: what takes drag away, or drives off what passes by, is no boundary.
-[[nodiscard]] inline bool one_sided(int form) { return multiplies(form) || form == kSuction; }
-/// Their names; "-" where the vehicle cannot show them: `pushed` and `moves`, a force or a drag would be felt; `along`,
-/// it moves along the boundary.
-[[nodiscard]] inline std::vector<std::string> names(bool pushed, bool moves, bool along) {
-  return {pushed ? "force" : "-", moves ? "drag" : "-", pushed ? "exponential force" : "-",
-          moves ? "exponential drag" : "-", pushed && along ? "suction" : "-"};
-}
+enum class Felt { kPush, kDrag, kSuction };
+enum class Fades { kWithGap, kExponentially };
+
+/// What is felt of a boundary, and by which law it fades.
+struct Law {
+  const char* name;
+  const char* unit;  ///< of the strength; of drag: times the hull's own
+  Felt felt;
+  Fades fades;
+  [[nodiscard]] constexpr bool multiplies() const { return felt == Felt::kDrag; }
+  [[nodiscard]] constexpr bool exponential() const { return fades == Fades::kExponentially; }
+  /// Strength of one sign: what takes drag away, or drives off what passes by, is no boundary.
+  [[nodiscard]] constexpr bool one_sided() const { return felt != Felt::kPush; }
+  /// Whether the vehicle can show it: `pushed` and `moves`, a force or a drag would be felt; `along`, it moves along
+  /// the boundary.
+  [[nodiscard]] constexpr bool shows(bool pushed, bool moves, bool along) const {
+    if (multiplies()) return moves;
+    return pushed && (along || felt != Felt::kSuction);
+  }
+};
+inline constexpr std::array kLaws{
+    Law{.name = "force", .unit = "N m^2", .felt = Felt::kPush, .fades = Fades::kWithGap},
+    Law{.name = "drag", .unit = "m^2", .felt = Felt::kDrag, .fades = Fades::kWithGap},
+    Law{.name = "exponential force", .unit = "N", .felt = Felt::kPush, .fades = Fades::kExponentially},
+    Law{.name = "exponential drag", .unit = "", .felt = Felt::kDrag, .fades = Fades::kExponentially},
+    Law{.name = "suction", .unit = "N m^4/(m/s)^2", .felt = Felt::kSuction, .fades = Fades::kWithGap}};
 
 constexpr double kSmallestGap = 0.1;     // m: closer, hull and boundary touch
 constexpr double kSmallestReach = 0.02;  // m
@@ -49,28 +59,46 @@ constexpr double kMostBeyond = 3.0;      // reaches beyond the place that a stre
 
 constexpr double kStartShare = 0.3;  // of the hull's own drag, where a search begins
 
-/// How near a boundary is, by the law of that form with its place `gap` metres ahead.
-[[nodiscard]] inline double nearness(int form, double gap) {
-  return form == kSuction ? proximity(gap) * proximity(gap) : proximity(gap);
+/// How near a boundary is, by the law with its place `gap` metres ahead.
+[[nodiscard]] inline double nearness(const Law& law, double gap) {
+  return law.felt == Felt::kSuction ? proximity(gap) * proximity(gap) : proximity(gap);
 }
 
 /// Strength that is worth `force` [N], or a typical share of the drag, at a gap, at a speed along the boundary [m/s].
-[[nodiscard]] inline double strength_at(int form, double force, double gap, double speed) {
-  if (form == kSuction) return force / (nearness(form, gap) * std::max(speed * speed, 1e-4));
-  return (multiplies(form) ? kStartShare : force) / nearness(form, gap);
+[[nodiscard]] inline double strength_at(const Law& law, double force, double gap, double speed) {
+  if (law.felt == Felt::kSuction) return force / (nearness(law, gap) * std::max(speed * speed, 1e-4));
+  return (law.multiplies() ? kStartShare : force) / nearness(law, gap);
 }
 
 /// Adds the push away from the boundary that lies `toward_B` (unit vector), more of the hull's own drag, or what draws
 /// a hull that passes by at `v_r` [m/s in B, of the water]; `near` is strength times proximity.
-inline void press(int form, double near, const Eigen::Vector3d& toward_B, const Eigen::Vector3d& v_r, Load& load) {
-  if (form == kSuction) {
-    load.wrench.head<3>() += near * (v_r - toward_B * toward_B.dot(v_r)).squaredNorm() * toward_B;
-  } else if (!multiplies(form)) {
-    load.wrench.head<3>() -= near * toward_B;
-  } else {
-    load.wrench.head<3>() += near * load.drag.head<3>();
-    load.drag_share += near;
+inline void press(const Law& law, double near, const Eigen::Vector3d& toward_B, const Eigen::Vector3d& v_r,
+                  Load& load) {
+  switch (law.felt) {
+    case Felt::kPush:
+      load.wrench.head<3>() -= near * toward_B;
+      break;
+    case Felt::kDrag:
+      load.wrench.head<3>() += near * load.drag.head<3>();
+      load.drag_share += near;
+      break;
+    case Felt::kSuction:
+      load.wrench.head<3>() += near * (v_r - toward_B * toward_B.dot(v_r)).squaredNorm() * toward_B;
+      break;
   }
+}
+
+/// What an effect's form is by its law: the strength first; by which other number it is placed; at which it is told.
+[[nodiscard]] inline FormTraits traits_of(const Law& law, NumberSet sought, NumberSet given, int obeys = -1) {
+  return {.sought = sought, .given = given, .unit = law.unit, .obeys = obeys, .multiplies_drag = law.multiplies()};
+}
+
+/// One form per law: F{law}.
+template <class F>
+[[nodiscard]] Forms form_per_law() {
+  Forms all;
+  for (const Law& law : kLaws) all.push_back(std::make_unique<F>(law));
+  return all;
 }
 
 }  // namespace fathom::model::boundary

@@ -4,6 +4,8 @@
 #include <array>
 #include <numbers>
 
+#include "common/model/one_of_many.hpp"
+
 namespace fathom::model {
 
 namespace effects {
@@ -12,18 +14,23 @@ namespace effects {
 #undef EFFECT
 }  // namespace effects
 
-std::span<const Effect* const> all_effects() {
+namespace {
+
+auto in_acting_order() {
 #define EFFECT(name) &effects::name(),
-  static const std::array kEffects{
+  std::array all{
 #include "common/model/effects/effects.def"
   };
 #undef EFFECT
-  return kEffects;
+  std::ranges::stable_sort(all, {}, [](const Effect* effect) { return effect->traits().stage; });
+  return all;
 }
 
-bool changes_thrust(const Effect& effect) {
-  const auto all = all_effects();
-  return std::ranges::find(all, &effect) < std::ranges::find(all, &effects::current());
+}  // namespace
+
+std::span<const Effect* const> all_effects() {
+  static const auto kEffects = in_acting_order();
+  return kEffects;
 }
 
 const Effect* find_effect(std::string_view name) {
@@ -33,15 +40,44 @@ const Effect* find_effect(std::string_view name) {
   return nullptr;
 }
 
+Effect::Effect(Traits traits, std::span<const EffectParameter> parameters, Forms forms)
+    : traits_{traits}, parameters_{parameters.begin(), parameters.end()}, forms_{std::move(forms)} {
+  for (const auto& form : forms_) form->parameters_ = parameters_;
+}
+
+std::vector<std::string> Effect::variants(const Scene& scene) const {
+  std::vector<std::string> names;
+  for (const auto& form : forms_) names.push_back(form->name(scene).value_or("-"));
+  if (std::ranges::all_of(names, [](const std::string& name) { return name == "-"; })) return {};
+  const auto beyond = [&](std::size_t place) {
+    const auto* one = dynamic_cast<const OneOfMany*>(forms_[place].get());
+    return one != nullptr && !one->exists(scene);
+  };
+  while (beyond(names.size() - 1)) names.pop_back();
+  return names;
+}
+
+bool Effect::rules_out(int variant, int other) const {
+  if (variant == other) return true;
+  const int obeys = form(variant).traits().obeys;
+  return obeys >= 0 && obeys == form(other).traits().obeys;
+}
+
+std::string_view Effect::unit(int variant, std::size_t number) const {
+  const auto leading = static_cast<std::size_t>(std::max(traits_.amplitudes, 1));
+  const FormTraits& of_form = form(variant).traits();
+  return number < leading && of_form.unit ? *of_form.unit : parameters_[number].unit;
+}
+
 int Effect::numbers(int variant) const {
   int count = 0;
-  for (std::size_t i = 0; i < parameters().size(); ++i) count += takes_part(variant, i) ? 1 : 0;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) count += takes_part(variant, i) ? 1 : 0;
   return count;
 }
 
-std::vector<std::vector<double>> Effect::starts(const Scene&, int) const {
+Starts Form::starts(const Scene&) const {
   std::vector<double> start;
-  for (const EffectParameter& parameter : parameters()) start.push_back(0.1 * parameter.sigma);
+  for (const EffectParameter& parameter : parameters_) start.push_back(0.1 * parameter.sigma);
   return {start};
 }
 

@@ -52,6 +52,8 @@ constexpr std::array kBounds{
     PhysicalBound{"focal", "", 1.0, 1e6, "pixels: a lens of 1 m before pixels of 1 um"},
     PhysicalBound{"*", "", 0.0, 1e6, kPlain},
     PhysicalBound{"*", "m", 0.0, 2e4, "the deepest sea has 11 km"},
+    PhysicalBound{"*", "m^2", 0.0, 4e4, "the largest ship's side has 458 m by some 60 m"},
+    PhysicalBound{"*", "1/rad", 0.0, 100.0, "a wing of infinite span lifts 2 pi per radian"},
     PhysicalBound{"*", "rad", 0.0, 12.6, kTurn},
     PhysicalBound{"*", "s", 0.0, 1e7, "four months"},
     PhysicalBound{"*", "V", 0.0, 2e4, "the largest ships' drives use 11 kV"},

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/open_scene.hpp"
 #include "common/model/rollout.hpp"
 #include "common/model/tones.hpp"
 
@@ -11,6 +12,21 @@ namespace {
 constexpr std::size_t kMostTones = 6;
 
 }  // namespace
+
+Scene open_scene(const Vehicle& vehicle, bool wrench) {
+  Scene scene{.vehicle = &vehicle, .position = true, .attitude = true, .velocity = true, .rates = true};
+  scene.input_is_wrench = wrench;
+  scene.voltage = true;
+  scene.mean_voltage = vehicle.nominal_voltage > 0.0 ? vehicle.nominal_voltage : 1.0;
+  scene.voltage_range = 1.0;
+  scene.duration = scene.t_high = 1.0;
+  scene.nu_rms.setOnes();
+  scene.tau_rms.setOnes();
+  scene.force_rms = ActuatorForces::Ones(wrench ? 6 : vehicle.allocation.cols());
+  scene.p_low.setConstant(-1.0);
+  scene.p_high.setOnes();
+  return scene;
+}
 
 Scene scene_of(const Vehicle& vehicle, std::span<const Trial> trials) {
   Scene scene{.vehicle = &vehicle};

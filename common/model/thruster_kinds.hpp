@@ -17,6 +17,14 @@ namespace fathom::model {
   return std::abs(column[2]) > column.head<2>().norm();
 }
 
+/// A rudder or fin, which no battery, propeller or reversal concerns.
+[[nodiscard]] inline bool is_fin(const Motion& motion, Eigen::Index actuator) {
+  if (motion.vehicle == nullptr || !motion.vehicle->flow_matters) return false;
+  const auto& thrusters = motion.vehicle->thrusters;
+  return static_cast<std::size_t>(motion.force.size()) == thrusters.size() &&
+         thrusters[static_cast<std::size_t>(actuator)].fin.has_value();
+}
+
 /// Whether a data set has both.
 [[nodiscard]] inline bool has_both_kinds(const Scene& scene) {
   const Eigen::Index actuators = scene.force_rms.size();

@@ -8,6 +8,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/model/actuators.hpp"
 #include "common/model/after_abort.hpp"
 #include "common/model/bounded.hpp"
 #include "common/model/vehicle_file.hpp"
@@ -58,6 +59,7 @@ void read_body(const Config& config, Vehicle& vehicle) {
   if (config.has("buoyancy")) vehicle.buoyancy = positive(config, "buoyancy", "N");
   if (config.has("nominal_voltage")) vehicle.nominal_voltage = positive(config, "nominal_voltage", "V");
   if (config.has("largest_thrust")) vehicle.largest_thrust = positive(config, "largest_thrust", "N");
+  if (config.has("windage")) vehicle.windage = bounded::positive(config, "windage", "m^2");
   if (config.has("hull")) {
     vehicle.hull = bounded::vector3(config, "hull", "m");
     if (vehicle.hull.minCoeff() <= 0.0) config.fail("hull", "'hull' must be positive along every axis");
@@ -162,13 +164,13 @@ void read_allocation(const Config& config, bool geometry, Vehicle& vehicle) {
 }
 
 // Free motions that the thrusters do not drive are normal (driven_axes.hpp); thrusters that push along none are not.
-void check_authority(const Config& config, const Vehicle& vehicle) {
+void check_authority(const Config& config, const std::string& key, const Vehicle& vehicle) {
   for (std::size_t i = 0; i < 6; ++i) {
     if (vehicle.dof[i] &&
         vehicle.allocation.row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > kControlTolerance)
       return;
   }
-  config.fail("thrusters", "the thrusters push along none of the axes in 'dof'; correct their geometry");
+  config.fail(key, "the " + key + " push along none of the axes in 'dof'; correct their geometry");
 }
 
 // All mass in the hull's corners is the most that a rigid body can have; some more for the water that turns with it.
@@ -263,9 +265,13 @@ Vehicle vehicle_from(const Config& config) {
   if (config.has("thrusters")) {
     const bool geometry = read_thrusters(config, vehicle);
     read_allocation(config, geometry, vehicle);
-    check_authority(config, vehicle);
-    if (config.has("thrust_curve")) vehicle.curve = read_curve(config.section("thrust_curve"));
+    check_authority(config, "thrusters", vehicle);
   }
+  if (config.has("actuators")) {
+    read_actuators(config, vehicle);
+    check_authority(config, "actuators", vehicle);
+  }
+  if (vehicle.has_thrusters() && config.has("thrust_curve")) vehicle.curve = read_curve(config.section("thrust_curve"));
   read_parameters(config, vehicle);
   if (config.has("sensors")) {
     const Config sensors = config.section("sensors");

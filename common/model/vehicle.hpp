@@ -27,11 +27,28 @@ struct ThrustCurve {
   [[nodiscard]] double force_at(double pwm, double pwm_sign, double battery) const;
 };
 
+/// What a command to an actuator means. kForce and kPulse are read as they always were: a pulse where there is a curve.
+enum class CommandKind { kForce, kShaftSpeed, kFinAngle, kAzimuthForce, kAzimuthAngle };
+
+/// A rudder or fin: `force` of an actuator is what its deflection gives at the reference speed.
+struct Fin {
+  double slope{};            ///< N/rad at the reference speed
+  double stall{};            ///< rad: beyond it the force grows no more
+  double reference_speed{};  ///< m/s
+  int behind{-1};            ///< place of the propeller in whose slipstream it stands; -1: none
+  double slipstream{};       ///< (m/s)^2 that each N of that propeller's thrust adds to the square of the speed
+};
+
 struct Thruster {
   std::string name;
   Eigen::Vector3d p_BJ{Eigen::Vector3d::Zero()};     ///< m, position in the body
   Eigen::Vector3d axis_B{Eigen::Vector3d::UnitX()};  ///< unit, direction of positive force
   double pwm_sign{1.0};                              ///< -1: the command is mirrored about neutral before the curve
+  CommandKind command{CommandKind::kForce};
+  double per_square{};  ///< N/(rad/s)^2 of shaft speed ahead, in still water
+  double astern{1.0};   ///< times that astern
+  double inflow{};      ///< N^(1/2)/(m/s): ahead f = f_0 - inflow sqrt|f_0| u_a, u_a the water's speed past it
+  std::optional<Fin> fin;
 };
 
 /// Prior of one base parameter. sigma > 0 small: known constant; large: to be found.
@@ -54,6 +71,7 @@ struct Vehicle {
   double nominal_voltage{};                          ///< V; 0 when unknown
   double largest_thrust{};                           ///< N, of one thruster, either way; 0 when not stated
   Eigen::Vector3d hull{Eigen::Vector3d::Zero()};     ///< m, length, width, height about Bo; 0 when unknown
+  double windage{};  ///< m^2, side view of what stands above the water; 0: nothing does, or unknown
   std::vector<Thruster> thrusters;
   ThrustCurve curve;
   std::vector<std::string>
@@ -63,6 +81,8 @@ struct Vehicle {
   Mounts mounts{};                                      ///< where the instruments sit
 
   std::optional<Hydrodynamics> hydrodynamics;  ///< for manoeuvres and regression
+
+  bool flow_matters{false};  ///< some actuator's force depends on the water's speed past it
 
   /// False for a vehicle that is driven by a body wrench (no thrusters in its file).
   [[nodiscard]] bool has_thrusters() const { return !thrusters.empty(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/base/version.hpp"
 #include "common/report/correction.hpp"
 #include "common/report/json_origin.hpp"
 #include "common/report/text.hpp"
@@ -246,6 +247,19 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   file["residual"]["before"] = whiteness(result.residual_before);
   file["residual"]["after"] = whiteness(result.residual_after);
   file["residual"]["goes_with"] = associations(result.goes_with);
+  return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string check_json(const CheckGiven& check) {
+  const Json file{{"schema", kSchema},
+                  {"kind", "check"},
+                  {"fathom_version", std::string{version()}},
+                  {"vehicle", check.vehicle},
+                  {"runs", check.runs},
+                  {"conclusion", check.conclusion},
+                  {"compared", check.compared},
+                  {"consistency", consistency(check.findings)},
+                  {"notes", check.notes}};
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

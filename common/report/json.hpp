@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/samples/diagnosis_result.hpp"
 #include "common/samples/result_origin.hpp"
@@ -14,5 +15,16 @@ namespace fathom::report {
 /// null.
 [[nodiscard]] std::string to_json(const DiagnosisResult& result, const VerdictGiven& given = {},
                                   const ResultOrigin& origin = {});
+
+/// What `fathom check` found, as docs/schema/check-1.schema.json describes it.
+struct CheckGiven {
+  std::string vehicle;
+  std::vector<std::string> runs;
+  std::vector<std::string> compared;  ///< a line per quantity
+  std::string conclusion;             ///< empty where there are findings
+  std::vector<std::string> notes;
+  std::vector<ConsistencyFinding> findings;
+};
+[[nodiscard]] std::string check_json(const CheckGiven& check);
 
 }  // namespace fathom::report

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/report/correction.hpp"
+#include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/style.hpp"
@@ -46,10 +47,10 @@ std::string folded(std::string section) {
 std::string to_html(const DiagnosisReport& report, const std::string& gnuplot) {
   const DiagnosisResult& result = report.result;
   Album album;
-  std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\"><title>Fathom: " +
-      escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">" + live_policy() +
+                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Fathom: " +
+                     escape(result.vehicle) + "</title><style>" + kStyle + "</style>" + live_style() + live_script() +
+                     "</head>\n<body><main>\n";
   page += front_section(report, album);
   page += kKey;
   page += folded(correction_section(result));

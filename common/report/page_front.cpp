@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "common/model/effect.hpp"
+#include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/text.hpp"
@@ -119,10 +121,40 @@ std::string number_title(const std::string& name) {
   return name.size() <= kSymbol ? name : effect_title(name);
 }
 
+/// The numbers with the place that each belongs to ("T6.gain_change": T6; without one: the effect's form). Empty where
+/// one of them is another quantity than `name`.
+std::vector<std::pair<std::string, NamedValue>> places(const EffectFound& effect, const std::string& name) {
+  std::vector<std::pair<std::string, NamedValue>> found;
+  for (const NamedValue& value : effect.parameters) {
+    const bool plain = value.name == name;
+    if (!plain && !value.name.ends_with("." + name)) return {};
+    found.emplace_back(plain ? effect.variant : value.name.substr(0, value.name.size() - name.size() - 1), value);
+  }
+  return found;
+}
+
+/// "T6 gives 69 % more, T4 gives 21 % less".
+template <class Says>
+std::string each(const std::vector<std::pair<std::string, NamedValue>>& places, Says&& says) {
+  std::string text;
+  for (const auto& [place, value] : places) text += (text.empty() ? "" : ", ") + place + says(value);
+  return text;
+}
+
 /// In the words of whoever repairs it; empty where no sentence was written for the effect.
 std::string in_words(const EffectFound& effect) {
-  if (const NamedValue* gain = find(effect, "gain_change"); gain != nullptr && effect.parameters.size() == 1)
-    return thruster(effect.variant) + " gives " + more_or_less(*gain) + " than the file says";
+  if (const auto gains = places(effect, "gain_change"); !gains.empty()) {
+    const auto gives = [](const NamedValue& gain) { return " gives " + more_or_less(gain); };
+    return thruster(each(gains, gives)) + " than the file says";
+  }
+  if (const auto late = places(effect, "delay"); !late.empty() && effect.name == "sensor_latency")
+    return each(late, [](const NamedValue& delay) {
+      const auto [low, high] = delay.range95();
+      return delay.value < 0.0 ? " comes early by " + between(-delay.value, -high, -low, 1.0, delay.unit)
+                               : " comes late by " + plain_value(delay);
+    });
+  if (const auto off = places(effect, "error"); !off.empty() && effect.name == "sensor_scale")
+    return each(off, [](const NamedValue& error) { return " shows " + more_or_less(error) + " than there is"; });
   if (const NamedValue* lost = find(effect, "share_lost")) {
     const auto [low, high] = lost->range95();
     std::string text =
@@ -151,13 +183,22 @@ std::string picture(const DiagnosisReport& report, Album& album) {
     const std::size_t size = trace.t.size();
     const auto finite = [&](const auto& row) { return std::isfinite(row[*axis]); };
     if (size < 2 || trace.measured.size() != size || std::ranges::none_of(trace.before, finite)) continue;
-    Figure drawn = draw_motion(trace, *axis, kMostPoints, typical_stretch(trace, kCloseUp));
+    const auto stretch = typical_stretch(trace, kCloseUp);
+    Figure drawn = draw_motion(trace, *axis, kMostPoints, stretch);
     drawn.alt = std::string{"What shows it: "} + velocity_label(kAxes[*axis]) + " measured, before and after";
-    return figure(album.place(std::move(drawn)),
+    LivePlot live = live_motion(trace, *axis, stretch);
+    live.group = "front";
+    return figure(live_plot(album.place(std::move(drawn)), live, 1 + live.t.size() / kMostPoints),
                   escape("A typical stretch of " + trace.run + ", " + kAxes[*axis].name +
                          ": measured dark, before orange, after blue. At each light line the simulation starts anew."));
   }
   return "";
+}
+
+/// What the sensors say, not what the vehicle does: no force is missing for it.
+bool of_sensor(const EffectFound& effect) {
+  const model::Effect* known = model::find_effect(effect.name);
+  return known != nullptr && known->measures() && !(effect.error_reduction > 0.0);
 }
 
 std::string causes(const DiagnosisResult& result) {
@@ -170,8 +211,10 @@ std::string causes(const DiagnosisResult& result) {
       others += (others.empty() ? "" : ", ") + effect_title(other.name);
     if (!effect.unlisted.empty()) others += (others.empty() ? "" : ", ") + effect.unlisted;
     const bool measured = effect.error_reduction > 0.0, likely = probability_of(effect) >= 0.5;
-    items += "<li>" + std::string{likely ? "" : "A stand-in, hardly the cause: "} + cause_line(effect) +
-             " <span class=\"soft\">" +
+    const std::string what = of_sensor(effect) ? "In the sensors, and corrected: "
+                             : likely          ? ""
+                                               : "A stand-in, hardly the cause: ";
+    items += "<li>" + what + cause_line(effect) + " <span class=\"soft\">" +
              (measured ? "removes " + escape(percent(effect.error_reduction)) + " of the error; " : std::string{}) +
              "it is this cause: " + escape(sure(probability_of(effect))) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
@@ -221,8 +264,8 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +
                      "<div class=\"tiles\">";
-  const bool added =
-      std::ranges::any_of(result.effects, &EffectFound::accepted) || (result.correction && result.correction->adopted);
+  const auto acts = [](const EffectFound& effect) { return effect.accepted && !of_sensor(effect); };
+  const bool added = std::ranges::any_of(result.effects, acts) || (result.correction && result.correction->adopted);
   if (std::isfinite(result.improvement.value) && !added) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {

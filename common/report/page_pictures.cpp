@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
 #include "common/report/series.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 1200;    // per curve: one per pixel of a wide screen is plenty
 constexpr std::size_t kPointBudget = 60000;  // of all curves together: keeps the page small with many runs
+constexpr std::size_t kMostNumbers = 60000;  // of all plots that can be looked into: some 200 kB
 constexpr double kCloseUp = 60.0;            // s: six windows of 10 s
 constexpr std::size_t kDependenceBins = 10;
 
@@ -164,10 +166,14 @@ std::string error_section(const DiagnosisResult& result, Album& album) {
 }
 
 std::string motion_section(const DiagnosisReport& report, Album& album) {
-  std::size_t curves = 0;
+  std::size_t curves = 0, numbers = 0;
   for (const auto& trace : report.traces) {
-    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) curves += drawable(trace, axis) ? 6 : 0;
+    for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+      curves += drawable(trace, axis) ? 6 : 0;
+      numbers += drawable(trace, axis) ? 4 * trace.t.size() : 0;
+    }
   }
+  const std::size_t every = (numbers + kMostNumbers - 1) / kMostNumbers;
   if (curves == 0) return "";
   const std::size_t points = std::clamp<std::size_t>(kPointBudget / curves, 150, kMostPoints);
   std::string html =
@@ -175,14 +181,18 @@ std::string motion_section(const DiagnosisReport& report, Album& album) {
       "simulation "
       "takes the measured motion and then runs on thruster commands alone until the next line. The closer the coloured "
       "curves "
-      "stay to the dark one, the better the model. A curve that leaves the frame is cut at its edge. The close-up is a "
+      "stay to the dark one, the better the model. A curve that leaves the frame is cut at its edge. Drag over a "
+      "stretch to look closer; all axes of a run follow. The "
+      "close-up is a "
       "typical stretch: half of the others are predicted better by the base model, half worse.</p>\n";
   for (const auto& trace : report.traces) {
     std::string pictures;
     const auto close_up = typical_stretch(trace, kCloseUp);
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       if (!drawable(trace, axis)) continue;
-      pictures += "<figure>" + album.place(draw_motion(trace, axis, points)) + "</figure>\n";
+      pictures += "<figure>" +
+                  live_plot(album.place(draw_motion(trace, axis, points)), live_motion(trace, axis), every) +
+                  "</figure>\n";
       if (close_up) pictures += "<figure>" + album.place(draw_motion(trace, axis, points, close_up)) + "</figure>\n";
     }
     if (!pictures.empty())

@@ -101,6 +101,22 @@ double spacing(const PredictionTrace& trace) {
   return (trace.t.back() - trace.t.front()) / static_cast<double>(trace.t.size() - 1);
 }
 
+struct Frame {
+  double floor{}, ceiling{};
+};
+
+/// A model that runs away must not squeeze the measurement flat: it may leave the frame by half its height.
+Frame frame_of(std::span<const double> measured, std::span<const double> before, std::span<const double> after) {
+  double low = quantile(measured, 0.0);
+  double high = quantile(measured, 1.0);
+  if (!std::isfinite(low)) low = std::fmin(quantile(before, 0.0), quantile(after, 0.0));
+  if (!std::isfinite(high)) high = std::fmax(quantile(before, 1.0), quantile(after, 1.0));
+  const double span = span_of(low, high);
+  const double lowest = std::fmin(low, std::fmin(quantile(before, 0.0), quantile(after, 0.0)));
+  const double highest = std::fmax(high, std::fmax(quantile(before, 1.0), quantile(after, 1.0)));
+  return {std::fmax(low - 0.5 * span, lowest) - 0.05 * span, std::fmin(high + 0.5 * span, highest) + 0.05 * span};
+}
+
 }  // namespace
 
 std::optional<Leftover> leftover(std::span<const PredictionTrace> traces, std::size_t axis) {
@@ -263,16 +279,7 @@ Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t m
   const auto measured = part(trace.measured);
   auto before = part(trace.before);
   auto after = part(trace.after);
-  // A model that runs away must not squeeze the measurement flat: it may leave the frame by half its height.
-  double low = quantile(measured, 0.0);
-  double high = quantile(measured, 1.0);
-  if (!std::isfinite(low)) low = std::fmin(quantile(before, 0.0), quantile(after, 0.0));
-  if (!std::isfinite(high)) high = std::fmax(quantile(before, 1.0), quantile(after, 1.0));
-  const double span = span_of(low, high);
-  const double lowest = std::fmin(low, std::fmin(quantile(before, 0.0), quantile(after, 0.0)));
-  const double highest = std::fmax(high, std::fmax(quantile(before, 1.0), quantile(after, 1.0)));
-  const double floor = std::fmax(low - 0.5 * span, lowest) - 0.05 * span;
-  const double ceiling = std::fmin(high + 0.5 * span, highest) + 0.05 * span;
+  const auto [floor, ceiling] = frame_of(measured, before, after);
   for (auto* series : {&before, &after}) {
     for (double& v : *series) v = clamped(v, floor, ceiling);
   }
@@ -298,6 +305,30 @@ Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t m
                   kMeasuredColour + "' lw " + thick + ", $b w l lc rgb '" + kBeforeColour + "' lw " + width +
                   ", $a w l lc rgb '" + kAfterColour + "' lw " + width + "\n";
   return figure;
+}
+
+LivePlot live_motion(const PredictionTrace& trace, std::size_t axis, const std::optional<Stretch>& close_up) {
+  const Axis& a = kAxes[axis];
+  const Stretch shown = close_up.value_or(Stretch{0, trace.t.size()});
+  const auto part = [&](const std::vector<std::array<double, 6>>& rows) {
+    auto values = column(rows, axis, a.scale);
+    values.resize(trace.t.size(), kNaN);
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(shown.begin),
+                               values.begin() + static_cast<std::ptrdiff_t>(shown.end));
+  };
+  LivePlot plot{.title = velocity_label(a), .group = trace.run};
+  plot.t.assign(trace.t.begin() + static_cast<std::ptrdiff_t>(shown.begin),
+                trace.t.begin() + static_cast<std::ptrdiff_t>(shown.end));
+  plot.curves = {{"measured", kMeasuredColour, part(trace.measured)},
+                 {"before", kBeforeColour, part(trace.before), true},
+                 {"after", kAfterColour, part(trace.after), true}};
+  const Frame frame = frame_of(plot.curves[0].values, plot.curves[1].values, plot.curves[2].values);
+  plot.floor = frame.floor;
+  plot.ceiling = frame.ceiling;
+  for (const std::size_t i : trace.restarts) {
+    if (i >= shown.begin && i < shown.end) plot.marks.push_back(trace.t[i]);
+  }
+  return plot;
 }
 
 Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::size_t axis) {

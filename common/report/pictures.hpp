@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/report/live_plot.hpp"
 #include "common/report/plot.hpp"
 #include "common/samples/diagnosis_result.hpp"
 
@@ -60,6 +61,9 @@ struct Stretch {
 /// The whole run, or the close-up of a part of it.
 [[nodiscard]] Figure draw_motion(const PredictionTrace& trace, std::size_t axis, std::size_t max_points,
                                  const std::optional<Stretch>& close_up = std::nullopt);
+/// The numbers of draw_motion(), to be looked into.
+[[nodiscard]] LivePlot live_motion(const PredictionTrace& trace, std::size_t axis,
+                                   const std::optional<Stretch>& close_up = std::nullopt);
 [[nodiscard]] Figure draw_dependence(const Leftover& leftover, const Quantity& quantity, std::size_t axis);
 [[nodiscard]] Figure draw_memory(const Memory& memory, std::size_t axis);
 

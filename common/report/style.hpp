@@ -47,11 +47,18 @@ details.section{background:var(--paper);padding:12px 26px;margin:0 0 12px}
 details.section>summary h2{display:inline;font-size:18px}
 ul.causes{font-size:19px;margin:12px 0 4px;padding-left:22px}ul.causes li{margin:4px 0}ul.causes .soft{font-size:15px}
 dt{font-weight:600}dd{margin:0 0 8px;color:var(--soft)}dl{font-size:14px;margin:4px 0;columns:2;column-gap:36px}dl div{break-inside:avoid}
-@media(max-width:800px){.grid,.grid.pair{grid-template-columns:1fr}.tiles{grid-template-columns:1fr 1fr}dl{columns:1}
+@media screen and (max-width:800px){.grid,.grid.pair{grid-template-columns:1fr}.tiles{grid-template-columns:1fr 1fr}dl{columns:1}
  main{padding:8px}section,header,details.section{padding:12px;overflow-x:auto}.badge{font-size:19px}.tile b{font-size:18px}
  h1{font-size:21px}ul.causes{font-size:17px}td.bars,td.name{width:auto}.key{padding:6px 12px}}
-@media print{.key{position:static}section{break-inside:auto}body{background:#fff;font-size:12px}main{padding:0}
- details.section:not([open]){padding:4px 12px;margin:0 0 4px}figure,tr{break-inside:avoid}}
+@page{size:A4;margin:11mm}
+@media print{*{-webkit-print-color-adjust:exact;print-color-adjust:exact}.key{position:static;padding:3px 12px;margin:0 0 6px;font-size:9px}body{background:#fff;font-size:10px;line-height:1.35}
+ main{padding:0;max-width:none}section,header,details.section{break-inside:auto;padding:6px 12px;margin:0 0 6px}
+ details.section:not([open]){padding:3px 12px;margin:0 0 3px}details{padding:2px 10px;margin:3px 0}
+ h1{font-size:17px}h2,details.section>summary h2{font-size:13px}h3{font-size:11px;margin:6px 0 2px}.badge{font-size:15px;padding:4px 10px}
+ ul.causes{font-size:12px}ul.causes .soft,.small,table,figcaption,dl,.lead{font-size:9px}.tile{font-size:9px;padding:5px 8px}.tile b{font-size:13px}
+ .tiles{margin-top:6px;gap:6px}td,th{padding:1px 5px}td.mid svg{max-height:16px}.bar{height:9px}.bar+div{font-size:9px}.two span{padding:0;min-width:24px}
+ .grid{gap:2px 8px}.grid.pair{grid-template-columns:repeat(4,1fr)}.grid figure,figure{margin:2px 0}figure,tr{break-inside:avoid}
+ header .plot svg{max-height:230px}}
 )css";
 
 }  // namespace fathom::report

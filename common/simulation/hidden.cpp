@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kOpenWater = 10.0;     // m around the start, where there are no walls
 constexpr double kBoundaryDrag = 0.5;   // m^2, or plain at the boundary itself
-constexpr double kOrbitalShare = 0.02;  // m/s of the water per N of the prior: the same number is both
 constexpr double kTiltShare = 0.3;      // of the righting moment that an unknown one may have
 constexpr double kMassShare = 0.15;     // of the vehicle's mass that a payload may have
 constexpr double kFlown = 200.0;        // s: a trial's limit may be far behind its end, and nothing would happen in it
@@ -93,9 +92,10 @@ void nearest_wall(const Occasion& occasion, double& bearing, double& distance) {
   distance = std::isfinite((*nearest)[1]) ? (*nearest)[1] : kOpenWater;
 }
 
-double drawn(const model::Effect& effect, const model::EffectParameter& parameter, const std::string& variant,
-             const Occasion& occasion, const model::Scene& scene, RandomStream& stream) {
+double drawn(const model::ActiveEffect& active, const model::EffectParameter& parameter, const Occasion& occasion,
+             const model::Scene& scene, RandomStream& stream) {
   const model::Site& site = *occasion.site;
+  const model::Traits& traits = active.effect->traits();
   const std::string_view name = parameter.name;
   const Eigen::Vector3d anchor =
       site.tether_anchor ? *site.tether_anchor : Eigen::Vector3d{occasion.start + Eigen::Vector3d{-3.0, 0.0, -1.0}};
@@ -108,19 +108,17 @@ double drawn(const model::Effect& effect, const model::EffectParameter& paramete
   if (name == "slack_length") return (0.6 + 0.2 * share) * (anchor - occasion.start).norm();
   if (name == "onset") return (0.5 * share) * std::min(occasion.duration, kFlown);
   if (name == "bottom_depth" || name == "at_depth") return site.floor;
-  if (name == "bearing") return effect.name() == "wave" ? 2.0 * std::numbers::pi * side : wall_bearing;
+  if (name == "bearing") return traits.stage == model::Stage::kWater ? 2.0 * std::numbers::pi * side : wall_bearing;
   if (name == "distance" || name == "at_distance") return wall_distance;
   if (name == "frequency") return scene.tones_horizontal.front().omega;
   // What a boundary adds is a share of the hull's own drag, and never takes drag away.
-  if (name == "strength" && variant.ends_with("drag")) return kBoundaryDrag * share;
-  double size = share * parameter.sigma;
-  if (effect.name() == "wave" && variant == "orbital") size *= kOrbitalShare;
-  if (effect.name() == "restoring_moment") size = std::min(size, kTiltShare * share * occasion.righting);
-  if (effect.name() == "payload_change" && name == "mass" && occasion.vehicle->mass > 0.0) {
+  if (name == "strength" && active.effect->multiplies_drag(active.variant)) return kBoundaryDrag * share;
+  double size = share * parameter.sigma * active.effect->form(active.variant).traits().drawn;
+  if (parameter.drawn_within == model::DrawnWithin::kRightingMoment)
+    size = std::min(size, kTiltShare * share * occasion.righting);
+  if (parameter.drawn_within == model::DrawnWithin::kVehicleMass && occasion.vehicle->mass > 0.0)
     size = std::min(size, kMassShare * share * occasion.vehicle->mass);
-  }
-  const bool passive = effect.name() == "fluid_memory";  // memory that gives energy is none of water
-  if (parameter.low < 0.0 && side < 0.5 && !passive) size = -size;
+  if (parameter.low < 0.0 && side < 0.5 && !traits.takes_energy) size = -size;
   return std::clamp(size, parameter.low, parameter.high);
 }
 
@@ -174,7 +172,7 @@ model::ActiveEffect hidden_effect(const std::string& text, const Occasion& occas
       continue;
     }
     names.push_back(parameter.name);
-    double value = drawn(*effect, parameter, active.variant_name, occasion, scene, stream);
+    double value = drawn(active, parameter, occasion, scene, stream);
     if (const auto stated = given.find(std::string{parameter.name}); stated != given.end()) {
       value = number(text, stated->second);
       if (value < parameter.low || value > parameter.high) {

@@ -6,6 +6,7 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
+#include "common/drafts/ardusub_mixer.hpp"
 #include "common/tables/mapped_streams.hpp"
 
 namespace fathom::tables {
@@ -213,8 +214,55 @@ HeldRule held_of(const Config& config) {
   return rule;
 }
 
+StickColumns sticks_of(const Config& config) {
+  constexpr std::size_t kSticks = 6;
+  StickColumns sticks{.pulses = {components_of(config, "columns", kSticks), 1.0},
+                      .frame = config.text("frame"),
+                      .coupling = config.has("coupling") ? config.not_negative("coupling", "") : 1.0,
+                      .reversed = {},
+                      .neutral = config.positive("neutral", "us"),
+                      .full = config.positive("full", "us")};
+  need_count(config, "columns", sticks.pulses.columns, kSticks);
+  if (config.has("reversed")) {
+    for (const double number : config.quantities("reversed", "")) {
+      if (number != std::round(number)) config.fail("reversed", "'reversed' lists numbers of motors, 1 the first");
+      sticks.reversed.push_back(static_cast<int>(number));
+    }
+  }
+  try {
+    (void)drafts::ArdusubMixer{sticks.frame, sticks.coupling, sticks.reversed};
+  } catch (const InputError& error) {
+    config.fail("frame", error.what());
+  }
+  return sticks;
+}
+
+/// To the unit in which a vehicle file's actuators take their commands.
+double command_factor(const Config& config, const std::string& unit) {
+  for (const char* wanted : {"us", "rad/s", "rad", "N"}) {
+    try {
+      return unit_factor(unit, wanted);
+    } catch (const InputError&) {  // of another kind
+    }
+  }
+  config.fail("units", "'" + unit + "' is no unit of a command: us (a pulse), rpm (a shaft), deg (a rudder) or N");
+}
+
+InputColumns inputs_of(const Config& config) {
+  InputColumns inputs{.group = {columns_of(config, "columns"), 1.0}, .units = config.texts("units")};
+  if (inputs.units.size() != inputs.group.columns.size())
+    config.fail("units", "'units' needs one unit for each of 'columns', [rpm, rpm, deg] for example");
+  for (const std::string& unit : inputs.units) inputs.factors.push_back(command_factor(config, unit));
+  return inputs;
+}
+
 ThrusterColumns thrusters_of(const Config& config) {
   ThrusterColumns thrusters;
+  if (config.has("inputs")) {
+    if (config.has("pwm") || config.has("command"))
+      config.fail("inputs", "state 'inputs' alone: pulses are columns of it with the unit us");
+    thrusters.inputs = inputs_of(config.section("inputs"));
+  }
   if (config.has("pwm")) thrusters.pwm = group_of(config.section("pwm"), "us");
   if (config.has("force")) thrusters.force = group_of(config.section("force"), "N");
   if (config.has("command")) {
@@ -222,6 +270,12 @@ ThrusterColumns thrusters_of(const Config& config) {
     if (thrusters.pwm) config.fail("command", "state 'pwm' or 'command', not both: a command becomes a pulse");
     thrusters.command = {
         {columns_of(command, "columns"), 1.0}, command.positive("neutral", "us"), command.positive("full", "us")};
+  }
+  if (config.has("sticks")) {
+    const Config sticks = config.section("sticks");
+    if (thrusters.pwm || thrusters.command || thrusters.inputs)
+      config.fail("sticks", "state one of 'pwm', 'command', 'inputs' and 'sticks': each tells commands");
+    thrusters.sticks = sticks_of(sticks);
   }
   if (config.has("speed")) {
     const Config speed = config.section("speed");
@@ -238,7 +292,8 @@ ThrusterColumns thrusters_of(const Config& config) {
     thrusters.wrench_force = {{columns.begin(), split}, factor_to(wrench, "force_unit", "N"), frame};
     thrusters.wrench_moment = {{split, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
   }
-  if (!thrusters.pwm && !thrusters.command && !thrusters.force && !thrusters.speed && !thrusters.wrench_force) {
+  if (!thrusters.pwm && !thrusters.command && !thrusters.sticks && !thrusters.inputs && !thrusters.force &&
+      !thrusters.speed && !thrusters.wrench_force) {
     config.fail("", "'thrusters' needs pwm, command, force, speed or wrench");
   }
   thrusters.invalid_where = invalid_of(config);

@@ -80,8 +80,26 @@ struct CommandColumns {
   double neutral{}, full{};  ///< us
 };
 
+/// The pilot's sticks as pulses, which ArduSub's mixer turns into those of the motors.
+struct StickColumns {
+  ColumnGroup pulses;         ///< of its channels 1 to 6: pitch, roll, throttle, yaw, forward, lateral
+  std::string frame;          ///< common/drafts/ardusub_frames.hpp
+  double coupling{};          ///< MOT_FV_CPLNG_K
+  std::vector<int> reversed;  ///< outputs whose direction is -1
+  double neutral{}, full{};   ///< us: sticks and motors at neutral + full * command
+};
+
+/// Commands of actuators of different kinds, each in its own unit.
+struct InputColumns {
+  ColumnGroup group;               ///< order of the vehicle file
+  std::vector<std::string> units;  ///< as the map states them
+  std::vector<double> factors;     ///< to us, rad/s, rad or N
+};
+
 struct ThrusterColumns {
   std::optional<ColumnGroup> pwm;  ///< factor to us
+  std::optional<StickColumns> sticks;
+  std::optional<InputColumns> inputs;
   std::optional<CommandColumns> command;
   std::optional<ColumnGroup> force;  ///< order of the vehicle file
   std::optional<SpeedColumns> speed;

@@ -136,11 +136,12 @@ std::string list(const char* name, const ListColumns& columns, const char* si, c
          "\n  unit: " + unit_of(columns.group.factor, si, units) + "\n" + flags(columns.invalid_where, "  ");
 }
 
-std::string with_unit(double value, const char* unit) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.10g %s", value, unit);
+std::string number_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.10g", value);
   return text.data();
 }
+std::string with_unit(double value, const char* unit) { return number_of(value) + " " + unit; }
 
 std::string usbl(const UsblColumns& columns) {
   std::string text =
@@ -158,6 +159,20 @@ std::string thrusters(const ThrusterColumns& columns) {
     text += "  command: {columns: " + listed(columns.command->command.columns) +
             ", neutral: " + with_unit(columns.command->neutral, "us") +
             ", full: " + with_unit(columns.command->full, "us") + "}\n";
+  if (const auto& sticks = columns.sticks) {
+    text += "  sticks: {frame: " + sticks->frame + ", columns: " + listed(sticks->pulses.columns) +
+            ", neutral: " + with_unit(sticks->neutral, "us") + ", full: " + with_unit(sticks->full, "us");
+    if (sticks->coupling != 1.0) text += ", coupling: " + number_of(sticks->coupling);
+    std::string reversed;
+    for (const int motor : sticks->reversed) reversed += (reversed.empty() ? "" : ", ") + std::to_string(motor);
+    text += (reversed.empty() ? "" : ", reversed: [" + reversed + "]") + std::string{"}\n"};
+  }
+  if (columns.inputs) {
+    text += "  inputs: {columns: " + listed(columns.inputs->group.columns) + ", units: [";
+    for (std::size_t i = 0; i < columns.inputs->units.size(); ++i)
+      text += (i == 0 ? "" : ", ") + columns.inputs->units[i];
+    text += "]}\n";
+  }
   if (columns.speed)
     text += "  speed: {columns: " + listed(columns.speed->speed.columns) +
             ", unit: " + unit_of(columns.speed->speed.factor, "rad/s", kRates) +

@@ -4,8 +4,10 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 
 #include "common/base/error.hpp"
+#include "common/base/progress_line.hpp"
 #include "common/consistency/consistency.hpp"
 #include "common/consistency/dead_axes.hpp"
 #include "common/consistency/flow_check.hpp"
@@ -16,6 +18,7 @@
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/recordings/worth.hpp"
+#include "common/report/json.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
@@ -27,7 +30,7 @@ namespace fathom::tool {
 namespace {
 
 struct CheckOptions {
-  std::string vehicle, site, map, write, write_map;
+  std::string vehicle, site, map, write, write_map, json;
   std::vector<std::string> runs;
 };
 
@@ -44,15 +47,21 @@ void print(const std::vector<ConsistencyFinding>& findings) {
 
 void run_check(const CheckOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, reasons;
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   const std::vector<std::string> runs = paths_of(options.runs);
+  if (!options.json.empty()) {
+    for (const std::string& run : runs) refuse_over(options.json, run);
+  }
+  std::optional<ProgressLine> shown{std::in_place};
+  const Progress progress = shown->progress();
+  progress.begin("reading", "reading recordings");
   std::vector<Recording> recordings = read_recordings(runs, options.map, notes, vehicle.dof);
-  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   for (const Recording& recording : recordings) {
     for (const std::string& reason : recordings::against_fitting(recording))
-      std::printf("%s: ! %s\n", recording.name.c_str(), reason.c_str());
+      reasons.push_back(recording.name + ": ! " + reason);
   }
+  progress.begin("sensors", "comparing the sensors with each other");
   const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
   consistency::ConsistencyResult result = consistency::check_consistency(recordings);
   result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
@@ -66,15 +75,26 @@ void run_check(const CheckOptions& options) {
       const Trial trial = estimation::reconstruct(recordings[i], result.corrections[i], vehicle);
       std::ranges::copy(estimation::gap_findings({&trial, 1}), std::back_inserter(result.findings));
     } catch (const InputError& error) {  // what fathom diagnose would say of it
-      std::fprintf(stderr, "not looked for gaps: %s\n", error.what());
+      notes.push_back(std::string{"not looked for gaps: "} + error.what());
     }
   }
+  shown.reset();
+  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  for (const std::string& reason : reasons) std::printf("%s\n", reason.c_str());
+  notes.insert(notes.end(), reasons.begin(), reasons.end());
   consistency::keep_axes(result, vehicle.dof);
   for (const std::string& line : consistency::table_of(result)) std::printf("%s\n", line.c_str());
   if (result.findings.empty()) {
     std::printf("%s\n", consistency::conclusion_of(result).c_str());
   } else {
     print(result.findings);
+  }
+  if (!options.json.empty()) {
+    report::CheckGiven given{.vehicle = vehicle.name, .compared = consistency::table_of(result), .notes = notes};
+    for (const Recording& recording : recordings) given.runs.push_back(recording.name);
+    given.findings = result.findings;
+    if (given.findings.empty()) given.conclusion = consistency::conclusion_of(result);
+    tables::write_file(options.json, report::check_json(given));
   }
   if (!options.write_map.empty()) {
     for (const std::string& note : write_mended_map(options.write_map, options.map, runs, result.corrections))
@@ -107,6 +127,7 @@ void add_check(runtime::CommandLine& app) {
   command->add_option("--map", options->map, "YAML file that says what the columns of .csv files are");
   command->add_option("--write-map", options->write_map,
                       "write the map of the tables as it should be to this file: conventions, heading, unit");
+  command->add_option("--json", options->json, "write what was found to this file (docs/schema/check-1.schema.json)");
   command->add_option("--write", options->write, "write the corrections for live processes to this file");
   command->callback([options] { run_check(*options); });
 }

@@ -1,6 +1,9 @@
 // fathom decode: recorded bytes of an instrument to a table: what it said, in its own units, beside what that means.
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -45,9 +48,15 @@ class Table final : public devices::Output, private devices::Fields {
     if (rows++ == 0) std::fprintf(out_, "%s\n", header_.c_str());
     line_ += '\n';
     std::fwrite(line_.data(), 1, line_.size(), out_);
-    samples += frame.sample.index() != 0 ? 1 : 0;
+    if (frame.sample.index() != 0) {
+      ++samples;
+      if (devices::marked_invalid(frame.sample)) ++invalid;
+    } else if (!frame.lacks.empty()) {
+      ++lacking[std::string{frame.lacks}];
+    }
   }
-  std::uint64_t rows{}, samples{};
+  std::uint64_t rows{}, samples{}, invalid{};
+  std::map<std::string, std::uint64_t> lacking;  ///< frames without a sample by what they lack
 
  private:
   void add(std::string_view name, std::string_view text) override {
@@ -64,6 +73,20 @@ class Table final : public devices::Output, private devices::Fields {
   const devices::Settings& settings_;
   std::string line_, header_;
 };
+
+// Why good frames say nothing, the most frequent reason first.
+void print_reasons(const Table& table) {
+  std::vector<std::pair<std::string, std::uint64_t>> reasons{table.lacking.begin(), table.lacking.end()};
+  std::stable_sort(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  for (const auto& [reason, count] : reasons) {
+    std::printf("no sample from %llu of %llu frames: %s\n", static_cast<unsigned long long>(count),
+                static_cast<unsigned long long>(table.rows), reason.c_str());
+  }
+  if (table.invalid > 0) {
+    std::printf("%llu of %llu samples are marked as not valid by the instrument\n",
+                static_cast<unsigned long long>(table.invalid), static_cast<unsigned long long>(table.samples));
+  }
+}
 
 void run_decode(const DecodeOptions& options) {
   const devices::Protocol& protocol = devices::protocol(options.protocol, "fathom decode");
@@ -98,6 +121,7 @@ void run_decode(const DecodeOptions& options) {
   print("bad frames", counters.bad_frame);
   print("bytes skipped", counters.skipped);
   print("bytes of a cut-off frame", counters.incomplete);
+  print_reasons(table);
   if (!parser->complaint().empty()) std::printf("note: %s\n", parser->complaint().c_str());
   if (counters.frames == 0) {
     throw InputError(options.file + ": no frame of '" + options.protocol + "'; is it another protocol or baud rate?");

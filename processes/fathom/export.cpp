@@ -1,24 +1,30 @@
 // fathom info, fathom export: what a log holds; its channels for other programs, and an identified model for other
 // simulators.
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/file_hash.hpp"
 #include "common/exports/log_export.hpp"
 #include "common/exports/models/formats.hpp"
+#include "common/model/vehicle.hpp"
 #include "common/runtime/command_line.hpp"
+#include "common/wire/log_writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
+#include "processes/fathom/recordings.hpp"
 
 namespace fathom::tool {
 namespace {
 
 struct ExportOptions {
-  std::string input, to, out, vehicle, config;
+  std::string input, to, out, vehicle, config, map;
   std::vector<std::string> channels;
 };
 
@@ -73,20 +79,65 @@ void export_model(const ExportOptions& options) {
   std::printf("model  %s\n", out.c_str());
 }
 
+constexpr std::array kOfLogs{"csv", "mcap", "npz"};
+
+/// An LCM log as it is; any other recording as the log that `fathom import` would make of it, for as long as this
+/// lives.
+class AsLog {
+ public:
+  explicit AsLog(const ExportOptions& options) : path_{options.input} {
+    const std::vector<Source> sources = sources_of({options.input});
+    if (sources.size() == 1 && sources.front().lcm) {
+      if (!options.map.empty()) throw InputError("--map is for recordings that are no LCM logs");
+      return;
+    }
+    std::vector<std::string> notes;
+    std::optional<tables::SimulatedAxes> simulated;
+    if (!options.vehicle.empty()) simulated = model::Vehicle::load(options.vehicle).dof;
+    const std::vector<Recording> read = read_recordings({options.input}, options.map, notes, simulated);
+    for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+    std::string pattern = (std::filesystem::temp_directory_path() / "fathom-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr)
+      throw InputError(pattern + ": cannot be made; set TMPDIR to a folder that can be written");
+    folder_ = pattern;
+    path_ = (folder_ / (read.front().name + ".lcmlog")).string();
+    static_cast<void>(wire::write_log(read.front(), path_));
+  }
+  ~AsLog() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  AsLog(const AsLog&) = delete;
+  AsLog& operator=(const AsLog&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  std::filesystem::path folder_;
+};
+
+void export_log(const ExportOptions& options) {
+  const std::filesystem::path input{options.input};
+  const std::string stem = (input.has_filename() ? input : input.parent_path()).stem().string();
+  const std::string out = !options.out.empty() ? options.out : stem + (options.to == "csv" ? "_csv" : "." + options.to);
+  refuse_over(out, options.input);
+  const AsLog log{options};
+  const exports::Exported exported = options.to == "csv"    ? exports::to_csv(log.path(), out, options.channels)
+                                     : options.to == "mcap" ? exports::to_mcap(log.path(), out, options.channels)
+                                                            : exports::to_npz(log.path(), out, options.channels);
+  print_counts(exported);
+  if (exported.written.empty())
+    throw InputError(options.input + ": holds no message of a type that this version has; " + out + " is empty");
+  std::printf("%s   %s\n", options.to == "csv" ? "folder" : "file  ", out.c_str());
+}
+
 void run_export(const ExportOptions& options) {
-  if (options.to == "csv" || options.to == "mcap") {
-    const std::string stem = std::filesystem::path{options.input}.stem().string();
-    const std::string out = !options.out.empty() ? options.out : options.to == "csv" ? stem + "_csv" : stem + ".mcap";
-    refuse_over(out, options.input);
-    const exports::Exported exported = options.to == "csv" ? exports::to_csv(options.input, out, options.channels)
-                                                           : exports::to_mcap(options.input, out, options.channels);
-    print_counts(exported);
-    if (exported.written.empty())
-      throw InputError(options.input + ": holds no message of a type that this version has; " + out + " is empty");
-    std::printf("%s   %s\n", options.to == "csv" ? "folder" : "file  ", out.c_str());
+  if (std::ranges::find(kOfLogs, options.to) != kOfLogs.end()) {
+    export_log(options);
     return;
   }
-  if (!options.channels.empty()) throw InputError("--channel is for --to csv and --to mcap");
+  if (!options.channels.empty()) throw InputError("--channel is for --to csv, mcap and npz");
+  if (!options.map.empty()) throw InputError("--map is for --to csv, mcap and npz");
   export_model(options);
 }
 
@@ -119,14 +170,19 @@ void add_export(runtime::CommandLine& app) {
 
   runtime::CommandLine* command =
       app.add_subcommand("export", "a log's channels for other programs, or an identified model for other simulators");
-  command->add_option("input", options->input, "LCM log (for csv, mcap), or result.json of a diagnosis or its folder")
+  command
+      ->add_option("input", options->input,
+                   "any recording (for csv, mcap, npz), or result.json of a diagnosis or its folder")
       ->required();
-  command->add_option("--to", options->to, "format; csv and mcap of a log, the others of a diagnosis")
+  command
+      ->add_option("--to", options->to, "format; csv, mcap and npz (NumPy) of a recording, the others of a diagnosis")
       ->required()
-      ->one_of({"csv", "mcap", "vehicle", "gz", "uuv", "stonefish", "holoocean", "mss", "json"});
+      ->one_of({"csv", "mcap", "npz", "vehicle", "gz", "uuv", "stonefish", "holoocean", "mss", "json"});
   command->add_option("--out", options->out, "file, or folder for csv; without: named after the input, here");
-  command->add_option("--channel", options->channels, "with csv, mcap: these channels alone");
+  command->add_option("--channel", options->channels, "with csv, mcap, npz: these channels alone");
   command->add_option("--vehicle", options->vehicle, "vehicle file; without: the one that the diagnosis read");
+  command->add_option("--map", options->map,
+                      "YAML file that says what the columns of tables and the topics of logs are");
   command->callback([options] { run_export(*options); });
 }
 

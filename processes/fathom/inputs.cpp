@@ -230,7 +230,7 @@ std::string describe_source(const Source& source, const std::optional<tables::Si
 void refuse_over(const std::string& out, const std::string& read) {
   std::error_code unknown;
   if (std::filesystem::equivalent(out, read, unknown))
-    throw InputError(out + ": is read from; give what is written another name (--out)");
+    throw InputError(out + ": --out is the run itself, which is read from; give what is written another name");
 }
 
 }  // namespace fathom::tool

@@ -1,4 +1,5 @@
-// fathom vehicle: the vehicle files that come with Fathom, to begin one's own with.
+// fathom vehicle: the vehicle files that come with Fathom, to begin one's own with, and drafts of one from a drawing or
+// a frame.
 #include "common/model/vehicle.hpp"
 
 #include <array>
@@ -9,9 +10,13 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
+#include "common/drafts/ardusub_frames.hpp"
+#include "common/drafts/draft.hpp"
+#include "common/drafts/robot.hpp"
 #include "common/runtime/command_line.hpp"
 #include "processes/fathom/commands.hpp"
 
@@ -80,13 +85,63 @@ void print(const std::string& name) {
   std::fputs(text.str().c_str(), stdout);
 }
 
+struct VehicleOptions {
+  std::string name, sdf, urdf, frame;
+  std::vector<std::string> places;
+};
+
+/// "3:-0.12,0.22,0": motor output and place.
+std::map<int, Eigen::Vector3d> places_of(const std::vector<std::string>& words) {
+  std::map<int, Eigen::Vector3d> places;
+  for (const std::string& word : words) {
+    int number = 0, end = 0;
+    double x = 0.0, y = 0.0, z = 0.0;
+    const int read = std::sscanf(word.c_str(), "%d:%lf,%lf,%lf%n", &number, &x, &y, &z, &end);
+    if (read != 4 || static_cast<std::size_t>(end) != word.size() || !Eigen::Vector3d{x, y, z}.allFinite()) {
+      throw InputError("--place " + word + ": is MOTOR:FORWARD,RIGHT,DOWN in m, as in 1:0.156,0.111,0.085");
+    }
+    if (!places.emplace(number, Eigen::Vector3d{x, y, z}).second)
+      throw InputError("--place " + word + ": this motor has a place already");
+  }
+  return places;
+}
+
+void draft(const VehicleOptions& options) {
+  const int asked = (options.name.empty() ? 0 : 1) + (options.sdf.empty() ? 0 : 1) + (options.urdf.empty() ? 0 : 1) +
+                    (options.frame.empty() ? 0 : 1);
+  if (asked > 1)
+    throw InputError("one of NAME, --from-sdf, --from-urdf and --from-ardusub-frame at a time");
+  if (!options.places.empty() && options.frame.empty()) throw InputError("--place: goes with --from-ardusub-frame");
+  std::string text;
+  if (!options.frame.empty()) text = vehicle_file(drafts::draft_of_frame(options.frame, places_of(options.places)));
+  if (!options.sdf.empty())
+    text = vehicle_file(draft_of(drafts::read_sdf(options.sdf), fs::path{options.sdf}.filename().string()));
+  if (!options.urdf.empty())
+    text = vehicle_file(draft_of(drafts::read_urdf(options.urdf), fs::path{options.urdf}.filename().string()));
+  if (!text.empty()) std::fputs(text.c_str(), stdout);
+}
+
 }  // namespace
 
 void add_vehicle(runtime::CommandLine& app) {
-  auto name = std::make_shared<std::string>();
+  auto options = std::make_shared<VehicleOptions>();
   runtime::CommandLine* command = app.add_subcommand("vehicle", "vehicle files to begin with: all of them, or one");
-  command->add_option("name", *name, "which file to print; without: a list");
-  command->callback([name] { name->empty() ? list() : print(*name); });
+  command->add_option("name", options->name, "which file to print; without: a list");
+  command->add_option("--from-sdf", options->sdf, "print one from a model of Gazebo: mass, inertia, thrusters");
+  command->add_option("--from-urdf", options->urdf,
+                      "print one from a URDF with thrusters as Gazebo's plugins or joints");
+  command->add_option("--from-ardusub-frame", options->frame,
+                      "print one with the motors of ArduSub's frame, as in vectored-6dof");
+  command
+      ->add_option("--place", options->places,
+                   "where a motor of the frame sits, MOTOR:FORWARD,RIGHT,DOWN in m; once for each")
+      ->take_all()
+      ->expected(1);
+  command->callback([options] {
+    draft(*options);
+    if (!options->sdf.empty() || !options->urdf.empty() || !options->frame.empty()) return;
+    options->name.empty() ? list() : print(options->name);
+  });
 }
 
 }  // namespace fathom::tool

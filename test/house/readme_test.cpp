@@ -1,6 +1,7 @@
 // README tells the truth: its first two lines, and the effects that it lists.
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -11,6 +12,16 @@ namespace {
 std::string content(const std::string& path) {
   std::ifstream file{std::string{FATHOM_SOURCE_DIR} + "/" + path};
   return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+/// Of the effect, from the folder of its family.
+std::string source_of(const std::string& effect) {
+  const std::string folder = std::string{FATHOM_SOURCE_DIR} + "/common/model/effects";
+  for (const auto& family : std::filesystem::directory_iterator{folder}) {
+    const std::string path = family.path().filename().string() + "/" + effect + ".cpp";
+    if (std::filesystem::exists(folder + "/" + path)) return content("common/model/effects/" + path);
+  }
+  return "";
 }
 
 }  // namespace
@@ -28,8 +39,8 @@ TEST_CASE("README: lists every registered effect with its own sentence, in order
   for (auto at = registry.find(opening); at != std::string::npos; at = registry.find(opening, at + 1)) {
     const auto begin = at + opening.size();
     const std::string name = registry.substr(begin, registry.find(')', begin) - begin);
-    const std::string source = content("common/model/effects/" + name + ".cpp");
-    const auto quote = source.find('"', source.find("sentence() const"));
+    const std::string source = source_of(name);
+    const auto quote = source.find('"', source.find(".sentence = "));
     expected += "- `" + name + "`: " + source.substr(quote + 1, source.find('"', quote + 1) - quote - 1) + "\n";
   }
   CHECK(readme.find(expected + "<!-- end of effects -->") != std::string::npos);

@@ -26,7 +26,7 @@ void clip(Vector6d& x, const Vector6d& visited) {
 
 }  // namespace
 
-LearnedForce::LearnedForce(FreeForce force, Visited visited, Allocation allocation)
+LearnedForm::LearnedForm(FreeForce force, Visited visited, Allocation allocation)
     : force_{std::move(force)}, visited_{std::move(visited)}, allocation_{std::move(allocation)} {
   for (const Feature& feature : force_.features) {
     part_.push_back(feature.remembers()             ? Part::kRemembers
@@ -36,7 +36,7 @@ LearnedForce::LearnedForce(FreeForce force, Visited visited, Allocation allocati
   }
 }
 
-FeatureState LearnedForce::state_of(const Motion& motion) const {
+FeatureState LearnedForm::state_of(const Motion& motion) const {
   FeatureState state{.t = motion.t, .p_WB = motion.p_WB, .R_WB = motion.R_WB, .nu = motion.nu, .force = motion.force};
   const double across = std::hypot(motion.R_WB(0, 0), motion.R_WB(1, 0));
   state.heading_cosine = across > 0.0 ? motion.R_WB(0, 0) / across : 1.0;
@@ -45,7 +45,7 @@ FeatureState LearnedForce::state_of(const Motion& motion) const {
   return state;
 }
 
-double LearnedForce::fade(const Feature& feature, const FeatureState& state) const {
+double LearnedForm::fade(const Feature& feature, const FeatureState& state) const {
   double left = 1.0;
   for (int i = 0; i < feature.count; ++i) {
     const Factor& factor = feature.factors[static_cast<std::size_t>(i)];
@@ -81,7 +81,7 @@ double LearnedForce::fade(const Feature& feature, const FeatureState& state) con
   return left;
 }
 
-Vector6d LearnedForce::sum(const FeatureState& state, Part part) const {
+Vector6d LearnedForm::sum(const FeatureState& state, Part part) const {
   FeatureState inside = state;
   clip(inside.nu, visited_.nu);
   clip(inside.tau, visited_.tau);
@@ -97,7 +97,7 @@ Vector6d LearnedForce::sum(const FeatureState& state, Part part) const {
   return wrench;
 }
 
-void LearnedForce::feel(Motion& motion, EffectTheta, int, std::span<const double> z) const {
+void LearnedForm::feel(Motion& motion, EffectTheta, std::span<const double> z) const {
   if (!remembers_) return;
   FeatureState state = state_of(motion);
   const Eigen::Map<const Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
@@ -106,7 +106,7 @@ void LearnedForce::feel(Motion& motion, EffectTheta, int, std::span<const double
   motion.w_memory += sum(state, Part::kRemembers);
 }
 
-void LearnedForce::load(const Motion& motion, EffectTheta, int, Load& load) const {
+void LearnedForm::load(const Motion& motion, EffectTheta, Load& load) const {
   const FeatureState state = state_of(motion);
   load.wrench += sum(state, Part::kStill);
   Vector6d moving = sum(state, Part::kMoves);
@@ -116,16 +116,16 @@ void LearnedForce::load(const Motion& motion, EffectTheta, int, Load& load) cons
   load.wrench += moving;
 }
 
-int LearnedForce::state_size(const Vehicle&, int) const { return remembers_ ? 6 * static_cast<int>(kTaps + kSlow) : 0; }
+int LearnedForm::state_size(int) const { return remembers_ ? 6 * static_cast<int>(kTaps + kSlow) : 0; }
 
-void LearnedForce::settle(const Motion& motion, EffectTheta, int, std::span<double> z) const {
+void LearnedForm::settle(const Motion& motion, EffectTheta, std::span<double> z) const {
   if (!remembers_) return;
   Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
   memory.leftCols<kTaps>().colwise() = Vector6d{allocation_ * motion.force};
   memory.rightCols<kSlow>().colwise() = motion.nu;
 }
 
-void LearnedForce::advance(const Motion& motion, EffectTheta, int, double dt, std::span<double> z) const {
+void LearnedForm::advance(const Motion& motion, EffectTheta, double dt, std::span<double> z) const {
   if (!remembers_) return;
   Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
   const Vector6d tau = allocation_ * motion.force;
@@ -136,7 +136,7 @@ void LearnedForce::advance(const Motion& motion, EffectTheta, int, double dt, st
         -std::expm1(-dt / kVelocityMemories[static_cast<std::size_t>(b)]) * (motion.nu - memory.col(kTaps + b));
 }
 
-double LearnedForce::run_in(EffectTheta) const {
+double LearnedForm::run_in(EffectTheta) const {
   double longest = 0.0;  // s
   for (const Feature& feature : force_.features) {
     for (int i = 0; i < feature.count; ++i) {
@@ -148,6 +148,15 @@ double LearnedForce::run_in(EffectTheta) const {
   }
   return longest > 0.0 ? run_in_for(longest) : 0.0;
 }
+
+LearnedForce::LearnedForce(FreeForce force, Visited visited, Allocation allocation)
+    : Effect{{.name = "learned_force",
+              .sentence = "A force learned from the recording acts.",
+              .revealed_by = "the motion of the recording that showed it",
+              .stage = Stage::kBody,
+              .feels_place = true},
+             {},
+             forms(LearnedForm{std::move(force), std::move(visited), std::move(allocation)})} {}
 
 FreeForce without_time(const FreeForce& force) {
   FreeForce rest;

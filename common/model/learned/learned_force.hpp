@@ -18,22 +18,16 @@ struct Visited {
 
 constexpr double kVisitedReach = 1.15;  ///< times the visited size, up to which features are taken at their word
 
-class LearnedForce final : public Effect {
+class LearnedForm final : public Form {
  public:
-  LearnedForce(FreeForce force, Visited visited, Allocation allocation);
+  LearnedForm(FreeForce force, Visited visited, Allocation allocation);
 
-  [[nodiscard]] std::string_view name() const override { return "learned_force"; }
-  [[nodiscard]] std::string_view sentence() const override { return "A force learned from the recording acts."; }
-  [[nodiscard]] std::string_view revealed_by() const override { return "the motion of the recording that showed it"; }
-  [[nodiscard]] std::span<const EffectParameter> parameters() const override { return {}; }
-  [[nodiscard]] std::vector<std::string> variants(const Scene&) const override { return {}; }
-  [[nodiscard]] bool feels_place() const override { return true; }
-
-  void feel(Motion& motion, EffectTheta, int, std::span<const double> z) const override;
-  void load(const Motion& motion, EffectTheta, int, Load& load) const override;
-  [[nodiscard]] int state_size(const Vehicle&, int) const override;
-  void settle(const Motion& motion, EffectTheta, int, std::span<double> z) const override;
-  void advance(const Motion& motion, EffectTheta, int, double dt, std::span<double> z) const override;
+  [[nodiscard]] FormName name(const Scene&) const override { return {}; }  // it is no candidate
+  void feel(Motion& motion, EffectTheta, std::span<const double> z) const override;
+  void load(const Motion& motion, EffectTheta, Load& load) const override;
+  [[nodiscard]] int state_size(int) const override;
+  void settle(const Motion& motion, EffectTheta, std::span<double> z) const override;
+  void advance(const Motion& motion, EffectTheta, double dt, std::span<double> z) const override;
   [[nodiscard]] double run_in(EffectTheta) const override;
 
   [[nodiscard]] const FreeForce& force() const { return force_; }
@@ -50,6 +44,16 @@ class LearnedForce final : public Effect {
   Visited visited_;
   Allocation allocation_;
   bool remembers_{false};
+};
+
+class LearnedForce final : public Effect {
+ public:
+  LearnedForce(FreeForce force, Visited visited, Allocation allocation);
+  [[nodiscard]] const FreeForce& force() const { return learned().force(); }
+  [[nodiscard]] const Visited& visited() const { return learned().visited(); }
+
+ private:
+  [[nodiscard]] const LearnedForm& learned() const { return static_cast<const LearnedForm&>(form(0)); }
 };
 
 /// The same without what depends on time: what another run may be told. Empty where nothing else is in it.

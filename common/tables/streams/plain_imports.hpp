@@ -1,12 +1,15 @@
 // Columns of thrusters, and of one number, to samples.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/drafts/ardusub_mixer.hpp"
 #include "common/samples/recording.hpp"
 #include "common/tables/streams/slice.hpp"
 
@@ -16,11 +19,13 @@ class ThrusterImport {
  public:
   ThrusterImport(Resolver& resolve, const ThrusterColumns& columns)
       : columns_{columns},
-        pwm_{optional_group(resolve, columns.command ? std::optional{columns.command->command} : columns.pwm)},
+        pwm_{optional_group(resolve, commands_of(columns))},
         force_{optional_group(resolve, columns.speed ? std::optional{columns.speed->speed} : columns.force)},
         wrench_force_{optional_group(resolve, columns.wrench_force)},
         wrench_moment_{optional_group(resolve, columns.wrench_moment)},
-        invalid_{resolve, columns.invalid_where} {}
+        invalid_{resolve, columns.invalid_where} {
+    if (const auto& sticks = columns.sticks) mixer_.emplace(sticks->frame, sticks->coupling, sticks->reversed);
+  }
 
   void take(const Slice& rows, Recording& out) {
     std::vector<const Group*> groups;
@@ -34,8 +39,15 @@ class ThrusterImport {
       Thrusters sample;
       sample.utime = utime;
       if (pwm_) sample.pwm_us = pwm_->values(row);
+      if (const auto& inputs = columns_.inputs) {
+        for (std::size_t i = 0; i < sample.pwm_us.size(); ++i) sample.pwm_us[i] *= inputs->factors[i];
+      }
       if (const auto& command = columns_.command) {
         for (double& pulse : sample.pwm_us) pulse = command->neutral + command->full * pulse;
+      }
+      if (mixer_ && !mix(sample.pwm_us)) {
+        ++count_.no_stick;
+        return;
       }
       if (force_) sample.force = force_->values(row);
       if (const auto& speed = columns_.speed) {
@@ -54,7 +66,37 @@ class ThrusterImport {
   void report(const CsvTable& table, std::vector<std::string>& notes) const { count_.report(table, notes); }
 
  private:
+  /// Pulses of six sticks to those of the motors; false where a channel tells none.
+  bool mix(std::vector<double>& pulses) const {
+    constexpr double kMostThrow = 1.5;  // of a full stick: receivers tell 0, 65535 or less than 900 us for "no signal"
+    const StickColumns& sticks = *columns_.sticks;
+    std::array<double, 6> stick{};
+    for (std::size_t i = 0; i < stick.size(); ++i) {
+      if (sticks.pulses.columns[i].absent) continue;
+      stick[i] = (pulses[i] - sticks.neutral) / sticks.full;
+      if (!(std::abs(stick[i]) <= kMostThrow)) return false;
+      stick[i] = std::clamp(stick[i], -1.0, 1.0);
+    }
+    pulses.resize(mixer_->motors());
+    mixer_->mix({.roll = stick[1],
+                 .pitch = stick[0],
+                 .yaw = stick[3],
+                 .throttle = stick[2],
+                 .forward = stick[4],
+                 .lateral = stick[5]},
+                pulses);
+    for (double& pulse : pulses) pulse = sticks.neutral + sticks.full * pulse;
+    return true;
+  }
+
+  static std::optional<ColumnGroup> commands_of(const ThrusterColumns& columns) {
+    if (columns.sticks) return columns.sticks->pulses;
+    if (columns.inputs) return columns.inputs->group;
+    return columns.command ? std::optional{columns.command->command} : columns.pwm;
+  }
+
   const ThrusterColumns& columns_;
+  std::optional<drafts::ArdusubMixer> mixer_;
   std::optional<Group> pwm_, force_, wrench_force_, wrench_moment_;
   Flags invalid_;
   Count count_{.stream = "thrusters"};

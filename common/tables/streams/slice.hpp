@@ -27,6 +27,7 @@ struct Count {
   std::size_t flagged{};
   std::size_t held{};
   std::size_t not_unit{};
+  std::size_t no_stick{};
 
   void report(const CsvTable& table, std::vector<std::string>& notes) const {
     if (kept == 0) throw InputError(table.path + ": not one whole sample of " + stream);
@@ -43,6 +44,7 @@ struct Count {
     say(no_attitude, "refused: no attitude near them turns the world's axes into the body's");
     say(flagged, "marked or left out as invalid by their flags");
     say(held, "repeat the one before (held)");
+    say(no_stick, "left out: a stick's channel told no pulse");
     say(not_unit, "invalid because their quaternion is not of unit length");
   }
 };

@@ -70,9 +70,9 @@ TEST_CASE("MAVLink: hardly any byte of a vehicle's log is not understood") {
   const auto parser = known.make({});
   (void)decode_wire(*parser, known, {}, wire_bytes("mavlink_ardusub_tlog/small.tlog"));
   const devices::Counters& counters = parser->counters();
-  CHECK(counters.frames > 3'520);             // of 3,528
-  CHECK(counters.bad_checksum < 20);          // false beginnings inside of those that are not known
-  CHECK(counters.skipped < 500);  // the time stamps of the log are none of it
+  CHECK(counters.frames > 3'520);     // of 3,528
+  CHECK(counters.bad_checksum < 20);  // false beginnings inside of those that are not known
+  CHECK(counters.skipped < 500);      // the time stamps of the log are none of it
 }
 
 TEST_CASE("MAVLink: the extra bytes follow from the definitions") {

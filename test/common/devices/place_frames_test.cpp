@@ -192,3 +192,91 @@ TEST_CASE("depth: an offset above zero is the transducer's depth, pressure becom
   CHECK(z("PRVAT,00.115,M,0020.1325,dBar") == doctest::Approx(10.0));
   CHECK(decode("nmea_depth", sentence("SDDPT,,0.0"), settings)[0].at("SI z [m]").empty());
 }
+
+TEST_CASE("SeaTrac: fixes made by hand from public descriptions") {
+  const auto configured = [](const std::string& more) {
+    return devices::read_settings(
+        Config::parse("beacon: '3'\nsigma: 1 m\ntransceiver: {position: 10 20 1 m, heading: 0 deg" + more + "}\n",
+                      "test"),
+        devices::protocol("seatrac", "test"));
+  };
+  const std::string enhanced =
+      "$420F030F07D204F1FF14000C002F3A85FF06010000A84201007B00049CFF9BFF9AFF99FFC20138FF0C005000ABFF2A000329\r\n";
+  const auto rows = decode("seatrac", enhanced, configured(""));
+  REQUIRE(rows.size() == 1);
+  CHECK(fix(rows[0]).isApprox(Eigen::Vector3d{10.0 - 8.5, 20.0 + 8.0, 4.2}, kSingle));  // the depth is the beacon's own
+  CHECK(rows[0].at("SI valid") == "1");
+  CHECK(rows[0].at("beacon") == "3");
+  CHECK(rows[0].value("distance_m") == 12.3);
+  CHECK(rows[0].value("azimuth_deg") == 45.0);
+  CHECK(rows[0].value("elevation_deg") == -20.0);
+  CHECK(rows[0].value("head_yaw_deg") == 123.4);
+  // Magnetic north 90 degrees to the east of true north: its east 8, north -8.5 are north -8, east -8.5.
+  CHECK(fix(decode("seatrac", enhanced, configured(", declination: 90 deg")).at(0))
+            .isApprox(Eigen::Vector3d{10.0 - 8.0, 20.0 - 8.5, 4.2}, kSingle));
+  const std::string of_angles =  // a navigation answer: 4.2 m below the head at 1 m
+      "$520F030707D204F1FF14000C002F3A85FF06010000A84201007B00049CFF9BFF9AFF99FFC20138FF0C005000ABFF2A00037AF6\r\n";
+  CHECK(fix(decode("seatrac", of_angles, configured("")).at(0)).z() == doctest::Approx(5.2));
+  const std::string doubted =
+      "$420F031F07D204F1FF14000C002F3A85FF06010000A84201007B00049CFF9BFF9AFF99FFC20138FF0C005000ABFF2A001F20\r\n";
+  CHECK(decode("seatrac", doubted, configured("")).at(0).at("SI valid") == "0");
+  CHECK_FALSE(decode("seatrac", "$420F030107D204F1FF14000C002F3A85FF06010000A84201007B00326F\r\n").at(0).has_sample);
+  CHECK_FALSE(decode("seatrac", "$100000000000000000000000003E90\r\n").at(0).has_sample);  // its own state
+  devices::Settings other;
+  other.transceiver.beacon = "2";
+  CHECK_FALSE(decode("seatrac", enhanced, other).at(0).has_sample);
+  std::string damaged = enhanced;
+  damaged[40] = damaged[40] == '0' ? '1' : '0';
+  CHECK(decode("seatrac", damaged).empty());
+}
+
+TEST_CASE("SeaTrac: the place comes back from an emulated one") {
+  devices::Settings settings;
+  settings.transceiver = {.p_W = {3.0, -2.0, 1.0}, .declination = 0.2};
+  devices::Instant now = devices::emulated_motion(1.7e9, 4.0, settings);
+  const auto rows = decode("seatrac", devices::emulate("seatrac", now, settings), settings);
+  REQUIRE(rows.size() == 1);
+  CHECK((fix(rows[0]) - now.usbl.p_WB).norm() < 0.1);  // it tells decimetres
+}
+
+TEST_CASE("EvoLogics: the line alone, as loggers keep it") {
+  const std::string line =
+      "USBLLONG,1446.52,1446.1,2,0.1,0.2,0.3,-0.4233,-1.0020,-0.5901,0.01,0.02,1.5,825,-40,120,0.05";
+  const auto rows = decode("evologics", "noise " + line + "\r\n" + line + "\n");
+  REQUIRE(rows.size() == 2);
+  CHECK(fix(rows[0]).isApprox(Eigen::Vector3d{-1.0020, -0.4233, 0.5901}, kSingle));
+  CHECK(rows[0].value("SI sigma [m]") == 0.05);
+  CHECK(rows[0].value("device_time") == 1446.1);
+  CHECK(decode("evologics", line.substr(0, line.rfind(',')) + "\r\n").empty());  // a word is missing
+  std::string letter = line;
+  letter[letter.find("0.4233") + 3] = 'x';
+  CHECK(decode("evologics", letter + "\r\n").empty());
+  // Inside of a frame whose stated length does not fit, it is no line of its own.
+  CHECK(decode("evologics", "+++AT:90:" + line + "\r\n").empty());
+}
+
+TEST_CASE("frames without a sample say why") {
+  class Reasons final : public devices::Output {
+   public:
+    void frame(const devices::Parser&, const devices::Frame& frame) override {
+      last = frame.sample.index() == 0 ? std::string{frame.lacks} : "sample";
+    }
+    std::string last;
+  };
+  using devices::detail::nmea_sentence;
+  const std::vector<std::array<std::string, 3>> cases{
+      {"nmea_attitude", nmea_sentence("PSXN,23,0.1,0.2,,0.0"), "heading field empty and no $--HDT before"},
+      {"nmea_attitude", nmea_sentence("GPZDA,120000,1,1,2020,,"), "a sentence that this protocol does not read"},
+      {"nmea_depth", nmea_sentence("SDDPT,,0.0"), "depth field empty"},
+      {"nmea_usbl", nmea_sentence("PSIMSSB,120000,B01,V,NRy,C,N,M,,,,,N,,"), "position fields empty"},
+      {"nmea_depth", nmea_sentence("SDDPT,3.0,0.0"), "sample"},
+      {"nortek_text", nmea_sentence("PNORBT4,1.2,-1.2,1.2,23.4,12.3,12.3"),
+       "one beam, or speed and course alone: no velocity in three axes"}};
+  for (const auto& [protocol, bytes, reason] : cases) {
+    CAPTURE(bytes);
+    Reasons reasons;
+    const auto parser = devices::protocol(protocol, "test").make({});
+    parser->feed(devices::as_bytes(bytes), reasons);
+    CHECK(reasons.last == reason);
+  }
+}

@@ -72,7 +72,8 @@ TEST_CASE("PD0: one beam without echo still gives a velocity, no echo at all giv
     CHECK((velocity(rows[0]) - now.dvl.v_WB_B).norm() < 6.0 * kMillimetre);
   }
   now.dvl.valid = false;
-  for (const char* protocol : {"pd0", "pd4", "pd6", "wl_serial", "wl_json"}) {
+  for (const char* protocol :
+       {"pd0", "pd4", "pd6", "wl_serial", "wl_json", "nortek_text", "nortek_ad2cp", "cerulean"}) {
     CAPTURE(protocol);
     bool told = false;
     for (const WireRow& row : decode(protocol, devices::emulate(protocol, now, {}))) {
@@ -85,9 +86,9 @@ TEST_CASE("PD0: one beam without echo still gives a velocity, no echo at all giv
   }
 }
 
-TEST_CASE("PD4 and PD5, PD6, Water Linked: the body's velocity comes back") {
+TEST_CASE("PD4 and PD5, PD6, Water Linked, Nortek, Cerulean: the body's velocity comes back") {
   const devices::Instant now = tilted();
-  for (const char* protocol : {"pd4", "pd6", "wl_serial", "wl_json"}) {
+  for (const char* protocol : {"pd4", "pd6", "wl_serial", "wl_json", "nortek_text", "nortek_ad2cp", "cerulean"}) {
     CAPTURE(protocol);
     const auto rows = decode(protocol, devices::emulate(protocol, now, {}, {.frame = devices::DvlFrame::kShip}));
     REQUIRE_FALSE(rows.empty());
@@ -161,4 +162,97 @@ TEST_CASE("Water Linked: a report in a format of the future is no measurement, a
   parser->feed(devices::as_bytes(line), counts);
   CHECK(counts.samples == 1);
   CHECK(parser->complaint().find("speaks json_v10.") != std::string::npos);
+}
+
+TEST_CASE("Nortek text: the maker's examples, with their checksums") {
+  const auto rows =
+      decode("nortek_text",
+             "$PNORBT7,1452244916.7508,1.234,-1.234,0.1234,0.1234,0.1234,12.34,23.45,23.45,23.45,23.45*39\r\n"
+             "$PNORBT9,1452244916.7508,1.234,-1.234,0.1234,0.1234,0.1234,12.34,23.45,23.45,23.45,23.45,23.4,"
+             "1567.8,1.2,12.3,0x000FFFFF*1E\r\n"
+             "$PNORBT0,1,040721,131335.3341,23.961,-48.122,-32.76800,10.00000,0.00,0x00000000*48\r\n");
+  REQUIRE(rows.size() == 3);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(rows[i].value("device_time") == doctest::Approx(1452244916.7508).epsilon(1e-13));
+    CHECK(rows[i].value("vx_mps") == 0.1234);
+    CHECK(rows[i].value("SI altitude [m]") == doctest::Approx(23.45));
+    CHECK(rows[i].at("SI valid") == "0");  // 12.34 m/s of uncertainty is above what stands for "none"
+  }
+  CHECK_FALSE(rows[2].has_sample);  // one beam
+}
+
+TEST_CASE("Nortek text: forward, starboard, down of the vehicle; what is none; names before the values") {
+  using devices::detail::nmea_sentence;
+  const auto row = [](const std::string& body) { return decode("nortek_text", nmea_sentence(body)).at(0); };
+  const WireRow plain = row("PNORBT7,1452244916.7508,-80.1,-95.2,1.250,-0.500,0.125,0.004,10.0,12.0,0.00,14.0");
+  CHECK(velocity(plain) == Eigen::Vector3d{1.25, -0.5, 0.125});
+  CHECK(plain.value("SI altitude [m]") == 12.0);  // of the three beams that found the bottom
+  const WireRow named =
+      row("PNORBT6,TIME=1452244916.7508,DT1=-80.1,DT2=-95.2,VX=1.250,VY=-0.500,VZ=0.125,FOM=0.004,D1=10.0,D2=12.0,"
+          "D3=0.00,D4=14.0");
+  CHECK(velocity(named) == velocity(plain));
+  const std::string status =
+      "PNORBT8,TIME=1.5,DT1=0,DT2=0,VX=1.250,VY=-0.500,VZ=0.125,FOM=0.004,D1=10.0,D2=12.0,D3=8.0,"
+      "D4=14.0,BATT=15.9,SS=1500.0,PRESS=1.2,TEMP=8.0,STAT=0x";
+  CHECK(velocity(row(status + "0000B0F0")) == velocity(plain));      // X, Y and the second of both vertical estimates
+  CHECK(row(status + "0000D0F0").at("SI valid") == "0");             // Y is not valid: bit 13
+  CHECK(row(status + "000030F0").at("SI valid") == "0");             // neither vertical estimate
+  CHECK(row(status + "0000F030").value("SI altitude [m]") == 11.0);  // beams 1 and 2 alone
+  CHECK(row("PNORBT7,1.5,0,0,-32.768,-0.5,0.1,0.004,10,12,0,14").at("SI valid") == "0");
+  CHECK(row("PNORBT7,1.5,0,0,,-0.5,0.1,0.004,10,12,0,14").at("SI valid") == "0");
+  CHECK_FALSE(row("PNORBT7,1.5,0,0,1.2,-0.5,0.1,0.004,10,12,0").has_sample);  // a value is missing
+  CHECK_FALSE(row("PNORBT6,TIME=1,DT1=0,DT2=0,VY=1,VX=1,VZ=1,FOM=0,D1=1,D2=1,D3=1,D4=1").has_sample);  // another order
+}
+
+TEST_CASE("Nortek text: a format without three axes is named with what to choose") {
+  const devices::Protocol& protocol = devices::protocol("nortek_text", "test");
+  const auto parser = protocol.make({});
+  const auto rows = decode_wire(*parser, protocol, {},
+                                devices::detail::nmea_sentence("PNORBT4,1.234,-1.234,1.234,23.4,12.34567,12.3"));
+  CHECK_FALSE(rows.at(0).has_sample);
+  CHECK(parser->complaint().find("choose data format 356") != std::string::npos);
+}
+
+TEST_CASE("Nortek AD2CP: a bottom track made by hand from public descriptions") {
+  const std::string record = unhex(
+      "A5 0A 1B 10 D4 00 D6 2C F6 FD 01 24 A1 86 01 00 79 02 0E 07 08 09 C4 09 04 00 00 00 00 00 FF FF 0F 00 00 40 BA "
+      "44 "
+      "00 00 48 41 00 00 A0 3F 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 20 41 00 00 30 41 00 00 40 41 00 "
+      "00 "
+      "00 00 6F 12 03 3B 6F 12 03 3B 6F 12 03 3B 6F 12 03 3B 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 "
+      "00 "
+      "00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 80 3F 00 00 80 BE 00 "
+      "00 "
+      "00 3F 00 00 80 3E 6F 12 03 3B 6F 12 03 3B 6F 12 03 3B 6F 12 03 3B 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 "
+      "00 "
+      "00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 ");
+  const auto rows = decode("nortek_ad2cp", record);
+  REQUIRE(rows.size() == 1);
+  CHECK(velocity(rows[0]) == Eigen::Vector3d{1.0, -0.25, 0.375});  // the mean of both vertical estimates
+  CHECK(rows[0].value("SI altitude [m]") == 11.0);                 // of 10, 11 and 12; the fourth found none
+  CHECK(rows[0].value("device_time") == doctest::Approx(1615705689.25).epsilon(1e-13));  // 14 March 2021, 07:08:09.25
+  CHECK(rows[0].value("serial") == 100001);
+  std::string damaged = record;
+  damaged[150] ^= 1;
+  CHECK(decode("nortek_ad2cp", damaged).empty());
+  devices::Settings turned;  // its X points to starboard
+  turned.R_BS = rotation_from_euler({0.0, 0.0, 90.0 * kRadians});
+  CHECK(velocity(decode("nortek_ad2cp", record, turned).at(0)).isApprox(Eigen::Vector3d{0.25, 1.0, 0.375}, kSingle));
+}
+
+TEST_CASE("Cerulean: a displacement in an interval is the mean velocity at its middle") {
+  using devices::detail::nmea_sentence;
+  const auto row = [](const std::string& body) { return decode("cerulean", nmea_sentence(body)).at(0); };
+  const WireRow maker = row("DVPDL,101234000,50000,0.001263,-0.019663,-0.745226,-0.000,0.001,-0.005,100");
+  CHECK((velocity(maker) - Eigen::Vector3d{0.0, 0.02, -0.1}).norm() < kSingle);
+  CHECK(maker.value("device_time") == doctest::Approx(101.234 - 0.025));
+  CHECK(maker.at("SI altitude [m]").empty());
+  const WireRow longer = row("DVPDX,101234000,100000,0,0,0,0.050,-0.010,0.002,80,1,0.5,-0.5,3.21");
+  CHECK((velocity(longer) - Eigen::Vector3d{0.5, -0.1, 0.02}).norm() < kSingle);
+  CHECK(longer.value("SI altitude [m]") == doctest::Approx(3.21));
+  CHECK(row("DVPDL,101234000,50000,0,0,0,0.1,0.1,0.1,0").at("SI valid") == "0");      // no confidence
+  CHECK(row("DVPDL,101234000,0,0,0,0,0.1,0.1,0.1,100").at("SI valid") == "0");        // no interval
+  CHECK(row("DVPDL,101234000,5000000,0,0,0,0.1,0.1,0.1,100").at("SI valid") == "0");  // the mean of five seconds
+  CHECK(row("DVPDL,101234000,50000,0,0,0,5.0,0.1,0.1,100").at("SI valid") == "0");    // 100 m/s
+  CHECK_FALSE(row("DVPDL,101234000,50000,0,0,0,0.1,0.1,100").has_sample);             // a field was lost
 }

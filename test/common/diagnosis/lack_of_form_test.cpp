@@ -17,15 +17,10 @@ using identification::TrajectoryFit;
 namespace {
 
 /// A layer of denser water: a force up below some depth. No effect of the registry has this form.
-class Layer final : public model::Effect {
+class DenserBelow final : public model::Form {
  public:
-  explicit Layer(double depth) : depth_{depth} {}
-  std::string_view name() const override { return "layer"; }
-  std::string_view sentence() const override { return ""; }
-  std::string_view revealed_by() const override { return ""; }
-  std::span<const model::EffectParameter> parameters() const override { return parameters_; }
-  bool feels_place() const override { return true; }
-  void load(const model::Motion& motion, model::EffectTheta theta, int, model::Load& load) const override {
+  explicit DenserBelow(double depth) : depth_{depth} {}
+  void load(const model::Motion& motion, model::EffectTheta theta, model::Load& load) const override {
     const double below = std::tanh((motion.p_WB.z() - depth_) / kThickness);
     load.wrench.head<3>() -= theta[0] * below * motion.R_WB.transpose().col(2);
   }
@@ -33,25 +28,28 @@ class Layer final : public model::Effect {
  private:
   static constexpr double kThickness = 0.1;  // m
   double depth_;
-  std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"force", "N", 5.0}};
+};
+struct Layer : model::Effect {
+  explicit Layer(double depth)
+      : Effect{{.name = "layer", .feels_place = true},
+               std::array{model::EffectParameter{"force", "N", 5.0}},
+               model::forms(DenserBelow{depth})} {}
 };
 
 /// A dead band with sharp edges, a wider one ahead than astern: nearly the registry's, and on every thruster.
-class CrookedBand final : public model::Effect {
+class WiderAhead final : public model::Form {
  public:
-  std::string_view name() const override { return "crooked_band"; }
-  std::string_view sentence() const override { return ""; }
-  std::string_view revealed_by() const override { return ""; }
-  std::span<const model::EffectParameter> parameters() const override { return parameters_; }
-  bool feels_motion() const override { return false; }
-  void feel(model::Motion& motion, model::EffectTheta theta, int, std::span<const double>) const override {
+  void feel(model::Motion& motion, model::EffectTheta theta, std::span<const double>) const override {
     for (double& force : motion.force) {
       if (force < 1.3 * theta[0] && force > -0.7 * theta[0]) force = 0.0;
     }
   }
-
- private:
-  std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"half_width", "N", 1.0}};
+};
+struct CrookedBand : model::Effect {
+  CrookedBand()
+      : Effect{{.name = "crooked_band", .feels_motion = false},
+               std::array{model::EffectParameter{"half_width", "N", 1.0}},
+               model::forms(WiderAhead{})} {}
 };
 
 struct Case {

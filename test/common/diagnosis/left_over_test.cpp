@@ -17,19 +17,17 @@ namespace {
 constexpr double kDuration = 150.0;  // s
 
 /// Weed collects: all drag grows with time. No effect of the registry does this.
-class Weed final : public model::Effect {
+class GrowingDrag final : public model::Form {
  public:
-  std::string_view name() const override { return "weed"; }
-  std::string_view sentence() const override { return ""; }
-  std::string_view revealed_by() const override { return ""; }
-  std::span<const model::EffectParameter> parameters() const override { return parameters_; }
-  void load(const model::Motion& motion, model::EffectTheta theta, int, model::Load& load) const override {
+  void load(const model::Motion& motion, model::EffectTheta theta, model::Load& load) const override {
     const Eigen::Vector3d v = motion.nu.head<3>();
     load.wrench.head<3>() -= theta[0] * motion.t / kDuration * v.cwiseProduct(v.cwiseAbs());
   }
-
- private:
-  std::array<model::EffectParameter, 1> parameters_{model::EffectParameter{"growth", "", 100.0}};
+};
+struct Weed : model::Effect {
+  Weed()
+      : Effect{{.name = "weed"}, std::array{model::EffectParameter{"growth", "", 100.0}}, model::forms(GrowingDrag{})} {
+  }
 };
 
 constexpr double kFilter = 0.1;  // s: an estimator that remembers

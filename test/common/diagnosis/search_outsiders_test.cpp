@@ -9,46 +9,41 @@ namespace {
 constexpr double kConfidentShare = 0.02;  // of the error (RMS): what a wrong name may explain before it misleads
 
 /// Physics that the registry does not hold.
-class Outsider : public model::Effect {
- public:
-  std::string_view sentence() const override { return "Not in the registry."; }
-  std::string_view revealed_by() const override { return "nothing"; }
-  std::span<const model::EffectParameter> parameters() const override {
-    static constexpr std::array kOne{model::EffectParameter{"size", "", 1.0}};
-    return kOne;
-  }
+template <class Law>
+struct Outsider : model::Effect {
+  explicit Outsider(std::string_view name)
+      : Effect{{.name = name, .sentence = "Not in the registry.", .revealed_by = "nothing"},
+               std::array{model::EffectParameter{"size", "", 1.0}},
+               model::forms(Law{})} {}
 };
 
 /// Lift: sway of a hull that flies at an angle, a product of two speeds.
-class Lift final : public Outsider {
+class Lift final : public model::Form {
  public:
-  std::string_view name() const override { return "lift"; }
-  void load(const model::Motion& motion, model::EffectTheta theta, int, model::Load& load) const override {
+  void load(const model::Motion& motion, model::EffectTheta theta, model::Load& load) const override {
     load.wrench[1] += theta[0] * motion.nu[0] * motion.nu[1];
     load.wrench[2] += theta[0] * motion.nu[0] * motion.nu[2];
   }
 };
 
 /// A spinning wheel on board: turning about one axis pushes about another.
-class Gyroscope final : public Outsider {
+class Gyroscope final : public model::Form {
  public:
-  std::string_view name() const override { return "gyroscope"; }
-  void load(const model::Motion& motion, model::EffectTheta theta, int, model::Load& load) const override {
+  void load(const model::Motion& motion, model::EffectTheta theta, model::Load& load) const override {
     load.wrench.tail<3>() -= motion.nu.tail<3>().cross(Eigen::Vector3d(theta[0], 0.0, 0.0));
     load.wrench[5] += theta[0] * motion.nu[0] * motion.nu[2];
   }
 };
 
 /// A pump: a force that swells and fades with time, ever faster.
-class Pump final : public Outsider {
+class Pump final : public model::Form {
  public:
-  std::string_view name() const override { return "pump"; }
-  void load(const model::Motion& motion, model::EffectTheta theta, int, model::Load& load) const override {
+  void load(const model::Motion& motion, model::EffectTheta theta, model::Load& load) const override {
     load.wrench[1] += theta[0] * std::sin(0.3 * motion.t + 0.006 * motion.t * motion.t);
   }
 };
 
-void check_outsider(const Outsider& outsider, double size, unsigned seed) {
+void check_outsider(const model::Effect& outsider, double size, unsigned seed) {
   const model::Vehicle& vehicle = vehicle_named("seabotix_lbv150");
   const Outcome outcome = search_dive(vehicle, {{&outsider, 0, "", {size}}}, kShort, seed);
   MESSAGE(outsider.name() << " outside the registry: " << (outcome.said.empty() ? "no name; " : outcome.said)
@@ -63,10 +58,12 @@ void check_outsider(const Outsider& outsider, double size, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("search: what the registry does not hold gets no confident name") { check_outsider(Lift{}, 15.0, 11); }
+TEST_CASE("search: what the registry does not hold gets no confident name") {
+  check_outsider(Outsider<Lift>{"lift"}, 15.0, 11);
+}
 
 TEST_CASE("search survey: outsiders" * doctest::skip() * doctest::description("slow: --no-skip")) {
-  check_outsider(Lift{}, 15.0, 12);
-  check_outsider(Gyroscope{}, 3.0, 13);
-  check_outsider(Pump{}, 3.0, 14);
+  check_outsider(Outsider<Lift>{"lift"}, 15.0, 12);
+  check_outsider(Outsider<Gyroscope>{"gyroscope"}, 3.0, 13);
+  check_outsider(Outsider<Pump>{"pump"}, 3.0, 14);
 }

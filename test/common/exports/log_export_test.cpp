@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -195,6 +196,49 @@ TEST_CASE("export: the footer of an MCAP file leads to its summary") {
   CHECK(bytes[summary - 13] == 15);  // behind the end of the data, whose checksum has four bytes
   const Bytes covered = bytes.subspan(summary, bytes.size() - 8 - 4 - summary);
   CHECK(crc32(covered) == little<std::uint32_t>(footer, 25));
+}
+
+TEST_CASE("export: arrays for NumPy hold all digits, whole numbers as such, and units") {
+  LogFile log;
+  const std::string path = log.scratch.path("run.npz"), again = log.scratch.path("again.npz");
+  const exports::Exported exported = exports::to_npz(log.path, path, {});
+  CHECK(exported.written.at("STATE") == 80);
+  (void)exports::to_npz(log.path, again, {});
+  const std::string bytes = test::read_bytes(path);
+  CHECK(bytes == test::read_bytes(again));
+  // Members are stored as they are: NEP 1 alone reads them.
+  const auto member = [&](const std::string& name, const std::string& header) {
+    const auto at = bytes.find(name + ".npy");
+    REQUIRE(at != std::string::npos);
+    const auto begin = bytes.find("\x93NUMPY", at);
+    const auto text = bytes.find('{', begin), end = bytes.find('\n', text);
+    CAPTURE(bytes.substr(text, end - text));
+    CHECK(bytes.substr(text, end - text).find(header) != std::string::npos);
+    CHECK((end + 1 - begin) % 64 == 0);
+    return bytes.substr(end + 1);
+  };
+  const auto number = [](const std::string& data, std::size_t i, auto value) {
+    std::memcpy(&value, data.data() + i * sizeof value, sizeof value);
+    return value;
+  };
+  const std::string nu = member("STATE/nu", "'<f8', 'fortran_order': False, 'shape': (80,6,)");
+  const std::string utime = member("STATE/utime", "'<i8', 'fortran_order': False, 'shape': (80,)");
+  for (std::size_t k = 0; k < 80; ++k) {
+    CHECK(number(nu, 6 * k + 5, 0.0) == log.written.state[k].nu[5]);
+    CHECK(number(utime, k, std::int64_t{}) == log.written.state[k].utime);
+  }
+  (void)member("STATE/valid", "'|b1'");
+  // Lists of one, two and three entries: what is missing is no number.
+  const std::string odds = member("EFFECTS/candidates.log_odds", "'<f8', 'fortran_order': False, 'shape': (3,3,)");
+  CHECK(number(odds, 0, 0.0) == log.written.effects[0].candidates[0].log_odds);
+  CHECK(std::isnan(number(odds, 1, 0.0)));
+  CHECK(number(odds, 8, 0.0) == log.written.effects[2].candidates[2].log_odds);
+  const std::string about = member("about", "'<U");
+  std::string plain;
+  for (std::size_t i = 0; i + 4 <= about.size() && plain.find("]} ") == std::string::npos && i < 400000; i += 4)
+    plain += about[i];
+  CHECK(plain.find(R"~("p_WB":{"type":"double","unit":"m","comment":"[m] Bo from Wo, in W (NED)"})~") !=
+        std::string::npos);
 }
 
 TEST_CASE("info: channels with their rates and pauses, and the configuration that a log carries") {

@@ -65,8 +65,9 @@ TEST_CASE("S1: forward then inverse leaves no residual, for random states and an
     for (std::size_t b = a; b < effects.size(); ++b) {
       model::Model model = model::nominal_model(vehicle, false);
       for (const std::size_t e : {a, b}) {
-        const auto starts = effects[e]->starts(scene, e == b ? 1 : 0);
-        if (!starts.empty()) model.add({effects[e], e == b ? 1 : 0, "", starts.front()});
+        const int second = effects[e]->variants(scene).size() > 1 ? 1 : 0;
+        const auto starts = effects[e]->starts(scene, e == b ? second : 0);
+        if (!starts.empty()) model.add({effects[e], e == b ? second : 0, "", starts.front()});
       }
       std::vector<double> memory(static_cast<std::size_t>(model.memory_size()), 0.0);
       const Eigen::VectorXd input = Eigen::VectorXd::Random(vehicle.allocation.cols()) * 10.0;

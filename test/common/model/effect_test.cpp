@@ -12,21 +12,13 @@ using namespace fathom;
 
 namespace {
 
-class Plain final : public model::Effect {
- public:
-  std::string_view name() const override { return "plain"; }
-  std::string_view sentence() const override { return "Does nothing."; }
-  std::string_view revealed_by() const override { return "nothing"; }
-  std::span<const model::EffectParameter> parameters() const override {
-    static constexpr std::array kTwo{model::EffectParameter{"a", "N", 4.0}, model::EffectParameter{"b", "m", 0.5}};
-    return kTwo;
-  }
-};
+constexpr std::array kTwo{model::EffectParameter{"a", "N", 4.0}, model::EffectParameter{"b", "m", 0.5}};
+const model::Effect plain{
+    {.name = "plain", .sentence = "Does nothing.", .revealed_by = "nothing"}, kTwo, model::forms(model::Form{})};
 
 }  // namespace
 
 TEST_CASE("effect: what an author leaves out does nothing, and a search begins at a tenth of sigma") {
-  const Plain plain;
   CHECK(plain.variants({}) == std::vector<std::string>{""});
   CHECK_FALSE(plain.variants_matter());
   CHECK(plain.starts({}, 0) == std::vector<std::vector<double>>{{0.4, 0.05}});
@@ -52,7 +44,6 @@ TEST_CASE("effect: a model keeps the registry's order, whatever the order of add
   REQUIRE(model.effects.size() == all.size());
   for (std::size_t i = 0; i < all.size(); ++i) CHECK(model.effects[i].effect == all[i]);
   // Forms of one effect stay in the order in which they came, and one unknown to the registry acts last.
-  const Plain plain;
   model.add({&plain, 0, "", {0.0, 0.0}});
   model.add({all[3], 2, "again", std::vector<double>(all[3]->parameters().size(), 0.0)});
   CHECK(model.effects[3].variant == 0);

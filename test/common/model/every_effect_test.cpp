@@ -17,9 +17,11 @@ namespace {
 
 constexpr double kAbsent = 1e-12;  // relative: battery_sag multiplies by pow(x, 0)
 
-/// Six axes, eight thrusters, and one component of the restoring moment that the base model does not have.
+/// Six axes, eight thrusters, one component of the restoring moment that the base model does not have, and something
+/// that stands above the water.
 model::Vehicle vehicle_without_G_y() {
   model::Vehicle vehicle = test::vehicle_from_repository("beluga");
+  vehicle.windage = 0.2;
   const auto place = std::find(vehicle.parameters.begin(), vehicle.parameters.end(), "G_y");
   vehicle.priors.erase(vehicle.priors.begin() + (place - vehicle.parameters.begin()));
   vehicle.parameters.erase(place);
@@ -156,8 +158,8 @@ TEST_CASE("every effect: names, words, units and priors are stated") {
 TEST_CASE("every effect: one file, one line, one name") {
   const std::filesystem::path folder = std::string{FATHOM_SOURCE_DIR} + "/common/model/effects";
   std::set<std::string> files, lines, registered;
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
-    if (entry.path().extension() == ".cpp") files.insert(entry.path().stem().string());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{folder}) {
+    if (entry.path().extension() == ".cpp") CHECK(files.insert(entry.path().stem().string()).second);
   }
   std::ifstream text{folder / "effects.def"};
   for (std::string line; std::getline(text, line);) {

@@ -66,12 +66,34 @@ TEST_CASE("The first screen calls what is kept but hardly the cause a stand-in")
   CHECK(has(seen(to_html(report)), "A stand-in, hardly the cause: "));
 }
 
+TEST_CASE("What sensors do wrong is no cause of the motion, and nothing was added to the model for it") {
+  auto report = fathom::test::made_up_report({.samples = 600});
+  report.result.effects = {
+      {.name = "sensor_latency", .variant = "dvl", .parameters = {{"dvl.delay", 0.2, 0.01, "s"}}, .log_odds = 20.0}};
+  const std::string text = seen(to_html(report));
+  CHECK(has(text, "In the sensors, and corrected: "));
+  CHECK(has(text, "nothing was added to the model"));
+  report.result.effects.front().error_reduction = 0.1;  // asked of the motion, and found there
+  CHECK_FALSE(has(seen(to_html(report)), "In the sensors"));
+}
+
 TEST_CASE("A cause says which thruster, how much, and in which direction") {
   EffectFound gain{.name = "thruster_gain", .variant = "FL", .parameters = {{"gain_change", -0.29, 0.0075, ""}}};
   CHECK(has(cause_line(gain), "Thruster FL gives 29.0 (27.5 to 30.5) % less than the file says"));
   gain.parameters[0].value = 0.1;
   gain.variant = "thruster 3";
   CHECK(has(cause_line(gain), "Thruster 3 gives 10.0 (8.53 to 11.5) % more than the file says"));
+  gain.variant = "T6, T4";
+  gain.parameters = {{"T6.gain_change", 0.686, 0.0, ""}, {"T4.gain_change", -0.206, 0.0, ""}};
+  CHECK(has(cause_line(gain), "Thruster T6 gives 68.6 % more, T4 gives 20.6 % less than the file says"));
+  EffectFound late{.name = "sensor_latency",
+                   .variant = "gyro, dvl",
+                   .parameters = {{"gyro.delay", 0.07, 0.0, "s"}, {"dvl.delay", 0.2, 0.0, "s"}}};
+  CHECK(has(cause_line(late), "<b>gyro comes late by 0.0700 s, dvl comes late by 0.200 s</b>"));
+  late.parameters[0].value = -0.07;
+  CHECK(has(cause_line(late), "gyro comes early by 0.0700 s"));
+  const EffectFound off{.name = "sensor_scale", .variant = "dvl.u", .parameters = {{"dvl.u.error", -0.02, 0.0, ""}}};
+  CHECK(has(cause_line(off), "<b>dvl.u shows 2.00 % less than there is</b>"));
   const EffectFound failure{.name = "thruster_failure",
                             .variant = "T5",
                             .parameters = {{"share_lost", 0.5, 0.0, ""}, {"onset", 40.0, 0.0, "s"}}};

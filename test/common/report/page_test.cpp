@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/version.hpp"
+#include "common/report/live_plot.hpp"
 #include "common/report/report.hpp"
 #include "test/support/diagnosis_fixture.hpp"
 
@@ -50,10 +51,22 @@ TEST_CASE("The page says which build wrote it") {
 
 TEST_CASE("The page loads nothing from anywhere") {
   const std::string& page = usual_page();
-  for (const char* word : {"http:", "https:", "src=", "<link", "<script", "@import", "<iframe", "<image", "url(http"}) {
+  for (const char* word : {"http:", "https:", "src=", "<link", "@import", "<iframe", "<image", "url(http"}) {
     CAPTURE(word);
     CHECK_FALSE(has(page, word));
   }
+  // The browser is told so before all else, and the only scripts are the two that came with this build.
+  CHECK(page.find("content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-fathom'\"") <
+        page.find("<title>"));
+  CHECK(count(page, "<script") == 2);
+  CHECK(has(page, fathom::report::live_script()));
+}
+
+TEST_CASE("The page's scripts carry their licence") {
+  const std::string script = fathom::report::live_script();
+  CHECK(has(script, "The MIT License (MIT)"));
+  CHECK(has(script, "Leon Sorokin"));
+  CHECK(count(script, "</script>") == 2);  // none ends early
 }
 
 TEST_CASE("Ids of all pictures on the page differ, and every reference has its target") {

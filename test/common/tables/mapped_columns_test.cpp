@@ -220,6 +220,36 @@ TEST_CASE("columns: shaft speeds become forces by k n |n|, commands between -1 a
                   InputError);
 }
 
+TEST_CASE("columns: the pilot's sticks become pulses of the motors as ArduSub mixes them") {
+  // pitch, roll, throttle, yaw, forward, lateral; full ahead, then half up with a quarter to starboard, then no signal
+  const std::string csv =
+      "t,p,r,th,y,f,l\n0,1500,1500,1500,1500,1900,1500\n1,1500,1500,1700,1500,1500,1600\n2,0,0,0,0,0,0\n";
+  const std::string sticks =
+      "thrusters:\n  sticks: {frame: vectored-6dof, columns: [p, r, th, y, f, l], neutral: 1500 us, full: 400 us";
+  const Imported imported = import_text(csv, sticks + "}\n");
+  const auto& thrusters = imported.recording.thrusters;
+  REQUIRE(thrusters.size() == 2);
+  CHECK(thrusters[0].pwm_us == std::vector<double>{1100, 1100, 1900, 1900, 1500, 1500, 1500, 1500});
+  CHECK(thrusters[1].pwm_us == std::vector<double>{1600, 1400, 1600, 1400, 1300, 1300, 1300, 1300});
+  CHECK(noted(imported, "1 samples left out: a stick's channel told no pulse"));
+  const Imported reversed = import_text(csv, sticks + ", reversed: [1, 5]}\n");
+  CHECK(reversed.recording.thrusters[1].pwm_us == std::vector<double>{1400, 1400, 1600, 1400, 1700, 1300, 1300, 1300});
+  const std::string without =
+      "thrusters:\n  sticks: {frame: vectored, columns: [none, none, th, y, f, none], neutral: 1500 us, full: 400 us, "
+      "coupling: 1.2, reversed: [2]}\n";
+  const ColumnMap parsed = ColumnMap::parse(kAbout + without, "map.yaml");
+  CHECK(to_yaml(ColumnMap::parse(to_yaml(parsed), "again.yaml")) == to_yaml(parsed));
+  CHECK(import_text(csv, without).recording.thrusters[0].pwm_us.size() == 6);
+  CHECK_THROWS_WITH_AS(
+      import_text(
+          csv,
+          "thrusters: {sticks: {frame: vectored9, columns: [p, r, th, y, f, l], neutral: 1500 us, full: 400 us}}\n"),
+      doctest::Contains("did you mean vectored"), InputError);
+  CHECK_THROWS_WITH_AS(import_text(csv, sticks + ", reversed: [9]}\n"), doctest::Contains("has motors 1 to 8"),
+                       InputError);
+  CHECK_THROWS_AS(import_text(csv, sticks + "}\n  pwm: {columns: [p, r], unit: us}\n"), InputError);
+}
+
 TEST_CASE("columns: acoustic fixes, ranges and loads come in from tables; an empty range is no echo") {
   const std::string csv = "t,e,n,up,good,ra,rb,l1\n0,1,2,-3,1,10,,5\n1,1,2,-3,0,0,12,\n2,,,,1,,,6\n";
   const std::string map =

@@ -154,7 +154,7 @@ TEST_CASE("tether_drag: linear, proportional to the way to the fixed end and to 
 }
 
 TEST_CASE("tether_drag: across its line only what goes across counts, whatever the heading") {
-  constexpr int kAcross = 16;
+  constexpr int kAcross = 9;
   const std::vector<double> numbers{2.0, 0.0, 0.0, 0.0, 0.7, 0.7, 0.7};
   model::Motion motion;
   motion.p_WB = {3.0, 4.0, 0.0};

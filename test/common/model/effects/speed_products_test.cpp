@@ -1,0 +1,137 @@
+// Effects of oblique flow, of turning and of the world's steady forces, against hand-written formulas.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "common/model/dynamics.hpp"
+#include "test/support/virtual_dive.hpp"
+
+namespace fathom {
+namespace {
+
+constexpr double kProductRounding = 1e-12;
+
+Vector6d wrench_of(const std::string& name, const std::vector<double>& theta, int variant,
+                   const model::Motion& motion) {
+  model::Load load;
+  model::find_effect(name)->load(motion, theta, variant, load);
+  CHECK_FALSE(load.has_inertia());
+  return load.wrench;
+}
+
+model::Motion moving() {
+  model::Motion motion;
+  motion.nu << 0.8, -0.3, 0.2, 0.1, -0.2, 0.4;
+  return motion;
+}
+
+int variant_of(const std::string& effect, const std::string& form) {
+  model::Vehicle vehicle;
+  vehicle.dof = {true, true, true, true, true, true};
+  vehicle.flow_matters = true;
+  model::Scene scene{.vehicle = &vehicle};
+  scene.nu_rms.setConstant(0.3);
+  const auto names = model::find_effect(effect)->variants(scene);
+  const auto found = std::ranges::find(names, form);
+  REQUIRE(found != names.end());
+  return static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+TEST_CASE("speed_drag: against the path with the square of the whole speed, and never gives power") {
+  model::Motion motion = moving();
+  const double speed = std::sqrt(0.64 + 0.09 + 0.04);
+  CHECK(wrench_of("speed_drag", {5.0}, 1, motion)[1] == doctest::Approx(5.0 * speed * 0.3).epsilon(kProductRounding));
+  CHECK(wrench_of("speed_drag", {5.0}, 5, motion)[5] == doctest::Approx(-5.0 * speed * 0.4).epsilon(kProductRounding));
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      motion.nu = sign * moving().nu;
+      CHECK(motion.nu.dot(wrench_of("speed_drag", {3.0}, axis, motion)) < 0.0);
+    }
+  }
+  motion.nu = moving().nu;  // it is the water's speed past the hull that counts
+  motion.v_WF_B = motion.nu.head<3>();
+  CHECK(wrench_of("speed_drag", {5.0}, 1, motion).isZero(0.0));
+}
+
+TEST_CASE("speed_drag: is asked of an axis only where others move too") {
+  model::Vehicle vehicle;
+  vehicle.dof = {true, true, false, false, false, true};
+  vehicle.flow_matters = true;
+  model::Scene scene{.vehicle = &vehicle};
+  scene.nu_rms[0] = 0.5;
+  CHECK(model::find_effect("speed_drag")->variants(scene).empty());
+  scene.nu_rms[5] = 0.2;
+  CHECK(model::find_effect("speed_drag")->variants(scene).back() == "N_|V|r");
+  scene.nu_rms[1] = 0.1;
+  CHECK(model::find_effect("speed_drag")->variants(scene)[0] == "X_|V|u");
+  vehicle.flow_matters = false;  // an open frame: the file states neither fins nor propellers nor windage
+  for (const char* name : {"speed_drag", "body_lift", "turning_resistance", "steady_force", "wind"}) {
+    CAPTURE(name);
+    CHECK(model::find_effect(name)->variants(scene).empty());
+  }
+}
+
+TEST_CASE("body_lift: a product of the speed ahead, which turns round going astern or does not") {
+  model::Motion motion = moving();
+  const int munk = variant_of("body_lift", "N_uv"), fin = variant_of("body_lift", "Y_|u|v");
+  CHECK(wrench_of("body_lift", {7.0}, munk, motion)[5] == doctest::Approx(7.0 * 0.8 * -0.3).epsilon(kProductRounding));
+  CHECK(wrench_of("body_lift", {-7.0}, fin, motion)[1] == doctest::Approx(7.0 * 0.8 * 0.3).epsilon(kProductRounding));
+  motion.nu[0] = -0.8;
+  CHECK(wrench_of("body_lift", {7.0}, munk, motion)[5] == doctest::Approx(7.0 * 0.8 * 0.3).epsilon(kProductRounding));
+  CHECK(wrench_of("body_lift", {-7.0}, fin, motion)[1] == doctest::Approx(7.0 * 0.8 * 0.3).epsilon(kProductRounding));
+  const model::Effect& lift = *model::find_effect("body_lift");
+  CHECK(lift.unit(munk, 0) == "N m/(m/s)^2");
+  CHECK(lift.unit(variant_of("body_lift", "Y_ur"), 0) == "N/(m/s)/(rad/s)");
+  CHECK(lift.unit(variant_of("body_lift", "M_uq"), 0) == "N m/(m/s)/(rad/s)");
+}
+
+TEST_CASE("turning_resistance: products of drift and turning load the way ahead") {
+  const model::Motion motion = moving();
+  const int vr = variant_of("turning_resistance", "X_vr"), qq = variant_of("turning_resistance", "X_qq");
+  CHECK(wrench_of("turning_resistance", {11.0}, vr, motion)[0] ==
+        doctest::Approx(11.0 * -0.3 * 0.4).epsilon(kProductRounding));
+  CHECK(wrench_of("turning_resistance", {11.0}, qq, motion)[0] ==
+        doctest::Approx(11.0 * 0.2 * 0.2).epsilon(kProductRounding));
+  CHECK(model::find_effect("turning_resistance")->unit(qq, 0) == "N/(rad/s)^2");
+}
+
+TEST_CASE("steady_force: is the same in the world on every heading") {
+  model::Motion motion = moving();
+  for (const double heading : {0.0, 1.0, 3.0}) {
+    motion.R_WB = Eigen::AngleAxisd{heading, Eigen::Vector3d::UnitZ()}.toRotationMatrix();
+    const Eigen::Vector3d in_world = motion.R_WB * wrench_of("steady_force", {3.0, -2.0}, 0, motion).head<3>();
+    CHECK((in_world - Eigen::Vector3d(3.0, -2.0, 0.0)).norm() < kProductRounding);
+  }
+}
+
+TEST_CASE("wind: pushes with the square of the wind past the craft, and still air is none of it") {
+  model::Vehicle vehicle;
+  vehicle.windage = 2.0;
+  model::Motion motion;
+  motion.vehicle = &vehicle;
+  constexpr double kPressure = 0.5 * 1.23 * 2.0;  // kg/m: times speed squared
+  // From astern at 5 m/s on a craft at rest, then on one that runs before it at 1 m/s.
+  CHECK(wrench_of("wind", {5.0, 0.0, 0.4}, 0, motion)[0] ==
+        doctest::Approx(0.6 * kPressure * 25.0).epsilon(kProductRounding));
+  motion.nu[0] = 1.0;
+  CHECK(wrench_of("wind", {5.0, 0.0, 0.4}, 0, motion)[0] ==
+        doctest::Approx(0.6 * kPressure * (16.0 + 1.0)).epsilon(kProductRounding));
+  motion.nu.setZero();
+  const Vector6d abeam = wrench_of("wind", {0.0, 4.0, 0.4}, 0, motion);
+  CHECK(abeam[1] == doctest::Approx(0.9 * kPressure * 16.0).epsilon(kProductRounding));
+  CHECK(abeam[5] == doctest::Approx(0.4 * abeam[1]).epsilon(kProductRounding));
+  // Nothing stands above the water of a craft whose file does not say so.
+  vehicle.dof = {true, true, false, false, false, true};
+  model::Scene scene{.vehicle = &vehicle, .attitude = true, .velocity = true};
+  CHECK(model::find_effect("wind")->variants(scene).size() == 1);
+  vehicle.windage = 0.0;
+  CHECK(model::find_effect("wind")->variants(scene).empty());
+}
+
+}  // namespace fathom
