@@ -38,7 +38,8 @@ void AbortWatch::hear(const Answer& said) {
 
 void AbortWatch::hear(const Thrusters& said) {
   if (done_ || !answered()) return;
-  last_ = said;
+  heard_ = true;
+  if (!is_zero(said)) pushed_ = said;
   in_a_row_ = is_zero(said) ? in_a_row_ + 1 : 0;
 }
 
@@ -65,13 +66,13 @@ bool AbortWatch::simulated() const {
 std::string AbortWatch::doubt() const {
   const bool done = in_a_row_ >= kInARow;
   if (!answered()) return "no thruster driver answered within 2 s";
-  if (!last_) return "the driver asks for zero, but nothing says on THRUSTERS what the vehicle does";
+  if (!heard_) return "the driver asks for zero, but nothing says on THRUSTERS what the vehicle does";
   if (done && !simulated() && !vehicle_)
     return "zero was sent, but nothing is heard on VEHICLE of what is behind the driver";
   if (done) return vehicle_ ? silence_of(*vehicle_) : "";
-  if (is_zero(*last_)) return "THRUSTERS says zero, but not three times in 2 s";
+  if (!pushed_) return "THRUSTERS says zero, but not three times in 2 s";
   char text[100];
-  std::snprintf(text, sizeof text, "THRUSTERS still says %.3g (N or N m) after 2 s", strongest(*last_));
+  std::snprintf(text, sizeof text, "THRUSTERS still says %.3g (N or N m) after 2 s", strongest(*pushed_));
   return text;
 }
 

@@ -51,9 +51,10 @@ class AbortWatch {
 
   std::int64_t number_;
   double begin_;
-  std::optional<double> said_, done_;      ///< s: the order last; zero for the third time
-  std::map<std::string, Answer> answers_;  ///< to this order, by process
-  std::optional<Thrusters> last_;
+  std::optional<double> said_, done_;        ///< s: the order last; zero for the third time
+  std::map<std::string, Answer> answers_;    ///< to this order, by process
+  bool heard_{false};                        ///< THRUSTERS, after the answer
+  std::optional<Thrusters> pushed_;          ///< the newest of these that was not zero
   std::optional<VehicleCondition> vehicle_;  ///< after zero was said
   int in_a_row_{};
 };

@@ -83,6 +83,7 @@ TEST_CASE("abort: whatever lacks is told, with what is left to the hands, and no
   AbortWatch goes_on{kNumber, 0.0};
   goes_on.hear(answer("thruster_driver"));
   goes_on.hear(thrust(20.0));
+  goes_on.hear(thrust(0.0));  // somebody says zero in between
   CHECK(told(goes_on, 2.0).find("THRUSTERS still says 20") != std::string::npos);
   AbortWatch dead{kNumber, 0.0};
   dead.hear(answer("thruster_driver"));
