@@ -206,11 +206,14 @@ TEST_CASE("board: a browser draws all of it, wide and on a phone, and its consol
   REQUIRE(is_over(board.until(bus, is_over)));
   for (const char* size : {"1400,1200", "400,900"}) {
     CAPTURE(size);
-    const auto ran =
-        shell("timeout 100 '" + browser.substr(0, browser.find('\n')) +
-              "' --headless --no-sandbox --disable-gpu --user-data-dir='" + scratch.path("browser") +
-              "' --enable-logging=stderr --window-size=" + size +
-              " --virtual-time-budget=4000 --dump-dom http://127.0.0.1:" + std::to_string(board.port) + "/ 2>&1");
+    const auto look = [&] {
+      return shell("timeout 100 '" + browser.substr(0, browser.find('\n')) +
+                   "' --headless --no-sandbox --disable-gpu --user-data-dir='" + scratch.path("browser") +
+                   "' --enable-logging=stderr --window-size=" + size +
+                   " --virtual-time-budget=4000 --dump-dom http://127.0.0.1:" + std::to_string(board.port) + "/ 2>&1");
+    };
+    auto ran = look();
+    for (int i = 0; i < 3 && ran.says("</html>") && !ran.says("class=\"band\""); ++i) ran = look();  // too slow
     if (!ran.says("</html>")) {  // a container may let no browser run
       MESSAGE("skipped: the browser does not run here: " << ran.text.substr(0, 300));
       return;
