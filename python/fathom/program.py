@@ -4,7 +4,6 @@ import json
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -39,7 +38,7 @@ def show(line):
 
 
 def _end(process):
-    process.send_signal(signal.SIGINT)
+    process.terminate()  # what runs behind a notebook may have been started with SIGINT ignored
     try:
         process.wait(_PATIENCE)
     except subprocess.TimeoutExpired:

@@ -158,6 +158,7 @@ class Programs(unittest.TestCase):
         sleeper.write_text("#!/bin/sh\necho $$ >&2\nexec sleep 600\n")
         sleeper.chmod(0o755)
         os.environ["FATHOM_PROGRAM"] = str(sleeper)
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
         started = []
 
         def interrupt(line):

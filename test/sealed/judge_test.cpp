@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "test/sealed/comparison.hpp"
+
 namespace fathom::sealed {
 namespace {
 
@@ -94,6 +96,31 @@ TEST_CASE("judge: numbers") {
   REQUIRE(score.claims.size() == 1);
   CHECK(score.claims.front().right);
   CHECK(score.claims.front().probability == doctest::Approx(0.99331).epsilon(1e-4));
+}
+
+TEST_CASE("comparison: Wilson's interval") {
+  // By hand, z = 1.96: 8 of 10 is (.8 + .1921) / 1.3841 -+ 1.96 / 1.3841 sqrt(.016 + .0096).
+  const Rate most = wilson(8, 10), all = wilson(10, 10), none = wilson(0, 0);
+  CHECK(most.share == doctest::Approx(0.8));
+  CHECK(most.low == doctest::Approx(0.4902).epsilon(1e-3));
+  CHECK(most.high == doctest::Approx(0.9433).epsilon(1e-3));
+  CHECK(all.low == doctest::Approx(0.7225).epsilon(1e-3));  // n / (n + z^2)
+  CHECK(all.high == doctest::Approx(1.0));
+  CHECK(none.low == 0.0);
+  CHECK(none.high == 1.0);
+}
+
+TEST_CASE("comparison: only sets that every core has answered") {
+  const Score named = judged(truth_of("single", {"thruster_lag"}), {effect("thruster_lag")});
+  Score missed = judged(truth_of("single", {"thruster_lag"}), {});
+  Score other = named;
+  other.seed = 2;
+  const std::vector<CoreScores> cores{{"one", {named, other}}, {"two", {missed}}};
+  const std::string page = to_comparison(cores, "how");
+  CHECK(page.find("`how`: 1 sets") != std::string::npos);
+  CHECK(page.find("| single effect, all sizes | 100 % (1 of 1; 21 to 100 %) | 0 % (0 of 1; 0 to 79 %) |") !=
+        std::string::npos);
+  CHECK(page.find("| 1 | thruster_lag | medium | two | missed | - | effect |") != std::string::npos);
 }
 
 }  // namespace fathom::sealed

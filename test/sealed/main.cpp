@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/base/progress_line.hpp"
+#include "test/sealed/comparison.hpp"
 #include "test/sealed/page.hpp"
 #include "test/sealed/tool.hpp"
 #include "test/sealed/writing.hpp"
@@ -22,6 +23,7 @@ using Json = nlohmann::json;
 
 struct Options {
   std::string seeds{"0..122"}, only, size, out, tool, page;
+  std::vector<std::string> cores;  ///< of the tool; none: the one that it takes by itself
   int jobs{1};
   bool draw_only{}, score_only{};
   std::uint64_t first{}, last{};
@@ -52,16 +54,21 @@ Wish wish_of(const Options& options) {
   return wish;
 }
 
+/// The cores that are asked, at least one.
+std::vector<std::string> cores_of(const Options& options) {
+  return options.cores.empty() ? std::vector<std::string>{""} : options.cores;
+}
+
 void draw(std::uint64_t seed, const Options& options, const Places& where) {
   const Json truth = read_json(where.truth);
   if (valid(truth) && truth.value("generator", 0) == kGenerator) return;
-  fs::remove_all(where.found);
+  for (const std::string& core : cores_of(options)) fs::remove_all(places(options.out, seed, core).found);
   fs::remove_all(where.data);
   write_set(make_set(make_plan(seed, wish_of(options))), where);
 }
 
 /// The tool's command line. Only the data's folder is named in it.
-std::vector<std::string> command(const Options& options, const Places& where) {
+std::vector<std::string> command(const Options& options, const std::string& core, const Places& where) {
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::string> words{options.tool, "diagnose", "--vehicle", where.data + "/vehicle.yaml", "--train"};
   for (int i = 1; fs::exists(where.data + "/train-" + std::to_string(i) + ".csv"); ++i) {
@@ -70,6 +77,7 @@ std::vector<std::string> command(const Options& options, const Places& where) {
   if (fs::exists(where.data + "/validate.csv")) words.insert(words.end(), {"--validate", where.data + "/validate.csv"});
   words.insert(words.end(), {"--out", where.found, "--threads",
                              std::to_string(std::max(1U, cores / static_cast<unsigned>(options.jobs)))});
+  if (!core.empty()) words.insert(words.end(), {"--core", core});
   return words;
 }
 
@@ -79,12 +87,12 @@ bool answered(const Options& options, const Places& where) {
   return fs::exists(note) && fs::last_write_time(note) > fs::last_write_time(options.tool);
 }
 
-void diagnose(const Options& options, const Places& where) {
+void diagnose(const Options& options, const std::string& core, const Places& where) {
   if (answered(options, where)) return;
   const std::string note = where.found + "/run.json";
   fs::create_directories(where.found);
   fs::remove(where.found + "/result.json");
-  const Measured measured = run_tool(command(options, where), where.found + "/log.txt");
+  const Measured measured = run_tool(command(options, core, where), where.found + "/log.txt");
   std::ofstream(note) << Json{{"code", measured.code},
                               {"seconds", measured.seconds},
                               {"processor", measured.processor},
@@ -116,8 +124,12 @@ void work(const Options& options) {
   std::string trouble;
   constexpr const char* kSets = "sets";
   double to_come = 0.0;  // sets that have no answer yet
-  for (std::uint64_t seed = options.first; seed <= options.last; ++seed)
-    to_come += answered(options, places(options.out, seed)) ? 0.0 : 1.0;
+  const std::vector<std::string> cores = cores_of(options);
+  const auto all_answered = [&](std::uint64_t seed) {
+    return std::ranges::all_of(cores,
+                               [&](const auto& core) { return answered(options, places(options.out, seed, core)); });
+  };
+  for (std::uint64_t seed = options.first; seed <= options.last; ++seed) to_come += all_answered(seed) ? 0.0 : 1.0;
   ProgressLine progress_line;
   const Progress progress = progress_line.progress();
   progress.expect(kSets, to_come);
@@ -125,12 +137,16 @@ void work(const Options& options) {
   const auto worker = [&] {
     for (std::uint64_t seed = next++; seed <= options.last; seed = next++) {
       try {
-        const Places where = places(options.out, seed);
-        const bool there = answered(options, where);
-        draw(seed, options, where);
-        if (!options.draw_only) diagnose(options, where);
+        const bool there = all_answered(seed);
+        std::string said;
+        for (const std::string& core : cores) {
+          const Places where = places(options.out, seed, core);
+          draw(seed, options, where);
+          if (!options.draw_only) diagnose(options, core, where);
+          said += (said.empty() ? "" : "\n") + (options.draw_only ? where.data : line(score_of(where)));
+          if (!core.empty()) said += "  " + core;
+        }
         if (!there) progress.done(kSets);
-        const std::string said = options.draw_only ? where.data : line(score_of(where));
         const std::lock_guard lock(printing);
         std::printf("%s\n", said.c_str());
         std::fflush(stdout);
@@ -152,23 +168,47 @@ void work(const Options& options) {
   if (!trouble.empty()) throw std::runtime_error(trouble);
 }
 
-void conclude(const Options& options) {
+std::vector<Score> scores_of(const Options& options, const std::string& core) {
   std::vector<Score> scores;
-  Json all = Json::array();
   for (std::uint64_t seed = options.first; seed <= options.last; ++seed) {
-    const Places where = places(options.out, seed);
-    if (!fs::exists(where.truth) || !fs::exists(where.found + "/run.json")) continue;
-    scores.push_back(score_of(where));
-    all.push_back(to_json(scores.back()));
+    const Places where = places(options.out, seed, core);
+    if (fs::exists(where.truth) && fs::exists(where.found + "/run.json")) scores.push_back(score_of(where));
   }
-  std::ofstream(options.out + "/scores.json") << all.dump(1) << "\n";
+  return scores;
+}
+
+std::string how_of(const Options& options) {
   std::string how = "./check --sealed --seeds " + options.seeds;
   if (!options.only.empty()) how += " --only " + options.only;
   if (!options.size.empty()) how += " --size " + options.size;
+  for (const std::string& core : options.cores) how += " --core " + core;
+  return how;
+}
+
+void write_scores(const std::vector<Score>& scores, const std::string& path) {
+  Json all = Json::array();
+  for (const Score& score : scores) all.push_back(to_json(score));
+  std::ofstream(path) << all.dump(1) << "\n";
+}
+
+void conclude(const Options& options) {
+  if (options.cores.size() > 1) {
+    std::vector<CoreScores> cores;
+    for (const std::string& core : options.cores) {
+      cores.push_back({core, scores_of(options, core)});
+      write_scores(cores.back().scores, options.out + "/scores-" + core + ".json");
+    }
+    const std::string page = options.page.empty() ? options.out + "/cores.md" : options.page;
+    std::ofstream(page) << to_comparison(cores, how_of(options));
+    std::printf("%s\n", page.c_str());
+    return;
+  }
+  const std::vector<Score> scores = scores_of(options, cores_of(options).front());
+  write_scores(scores, options.out + "/scores.json");
   const std::string page = options.page.empty() ? options.out + "/benchmark.md" : options.page;
   const std::string picture = fs::path(page).replace_extension(".svg").string();
   draw_picture(scores, picture);
-  std::ofstream(page) << to_page(scores, how, fs::path(picture).filename().string());
+  std::ofstream(page) << to_page(scores, how_of(options), fs::path(picture).filename().string());
   std::printf("%s, %s, %s/scores.json\n", page.c_str(), picture.c_str(), options.out.c_str());
 }
 
@@ -185,6 +225,9 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "folder of data, truth and answers")->required();
   app.add_option("--tool", options.tool, "the program fathom")->required();
   app.add_option("--page", options.page, "write the page here instead of into --out; its picture beside it");
+  app.add_option("--core", options.cores, "of the tool; several: every set by each, and one table of all")
+      ->take_all()
+      ->check(CLI::IsMember({"trajectories", "likelihood"}));
   app.add_option("-j", options.jobs, "sets at a time")->check(CLI::Range(1, 64));
   app.add_flag("--draw-only", options.draw_only, "only draw the sets");
   app.add_flag("--score-only", options.score_only, "only score the answers that are there");

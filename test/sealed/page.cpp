@@ -7,6 +7,8 @@
 #include <functional>
 #include <map>
 
+#include "test/sealed/comparison.hpp"
+
 namespace fathom::sealed {
 namespace {
 
@@ -21,8 +23,9 @@ std::string format(const char* pattern, double value) {
 
 std::string percent(long part, long whole) {
   if (whole == 0) return "-";
-  return format("%.0f %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole)) + " (" +
-         std::to_string(part) + " of " + std::to_string(whole) + ")";
+  const Rate rate = wilson(part, whole);
+  return format("%.0f %%", 100.0 * rate.share) + " (" + std::to_string(part) + " of " + std::to_string(whole) +
+         format("; %.0f", 100.0 * rate.low) + format(" to %.0f %%)", 100.0 * rate.high);
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -253,7 +256,8 @@ std::string to_page(std::span<const Score> scores, const std::string& how, const
       "that the base model\n"
       "leaves after its own best fit (root mean square over the driven axes, each against its own "
       "applied wrench). Where\n"
-      "physics ends before the class is reached, the set counts for the nearest class.\n\n";
+      "physics ends before the class is reached, the set counts for the nearest class. Rates with their 95 % "
+      "intervals\n(Wilson 1927).\n\n";
   add_targets(scores, text);
   add_effects(scores, text);
   const auto bins = calibration(scores);
@@ -326,11 +330,8 @@ void draw_picture(std::span<const Score> scores, const std::string& path) {
       "set xrange [0:1.03]\nset yrange [0:1.03]\nset xtics auto norotate\nset ytics auto\nset xlabel 'stated'\nset "
       "ylabel 'right'\n$bins << EOD\n");
   for (const Bin& bin : calibration(scores)) {
-    // 95 % interval after Wilson (1927).
-    const double n = static_cast<double>(bin.all), p = static_cast<double>(bin.right) / n, z = 1.96;
-    const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
-    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-    std::fprintf(plot, "%g %g %g %g\n", bin.stated / n, p, middle - half, middle + half);
+    const Rate rate = wilson(bin.right, bin.all);
+    std::fprintf(plot, "%g %g %g %g\n", bin.stated / static_cast<double>(bin.all), rate.share, rate.low, rate.high);
   }
   std::fprintf(plot, "EOD\nplot x lc 'gray', $bins using 1:2:3:4 with yerrorbars pt 7 lc '#2b6cb0'\nunset multiplot\n");
   pclose(plot);
