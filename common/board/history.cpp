@@ -15,14 +15,4 @@ MotionRow motion_row(const StateEstimate& state) {
   return row;
 }
 
-void History::add(const StateEstimate& state, double now) {
-  forget(now);
-  if (!points_.empty() && now - points_.back().at < kSpacing) return;
-  points_.push_back({now, motion_row(state)});
-}
-
-void History::forget(double now) {
-  while (!points_.empty() && now - points_.front().at > kLength) points_.pop_front();
-}
-
 }  // namespace fathom::board

@@ -5,6 +5,6 @@
 
 namespace fathom::board {
 
-extern const std::string_view kPage, kStyle, kScript;
+extern const std::string_view kPage, kStyle, kDrawing, kScript;
 
 }  // namespace fathom::board

@@ -67,7 +67,8 @@ Standing standing(const StandingInput& input) {
     const std::string& phase = input.trial->phase;
     const bool armed = !input.trial->mode.empty();  // the supervisor names a mode as long as it is armed
     const bool over = !armed && (phase == "done" || phase == "disarmed");
-    if (fresh || (over && (ended || there))) {
+    said.calm = over && (ended || there);
+    if (fresh || said.calm) {
       said.phase = {phase, kind_of(phase)};
     } else {
       said.phase = {"was " + phase, "bad"};

@@ -20,7 +20,8 @@ struct Standing {
   Badge phase, armed;
   std::string alarm;   ///< red above everything; empty: all is well
   std::string remark;  ///< the same place, in no colour
-  bool over{false};    ///< the trial has ended as it should: what is old is no trouble
+  bool over{false};    ///< the trial has ended as it should, and everybody has stopped: what is old is no trouble
+  bool calm{false};    ///< it has ended as it should, and its supervisor knows: no STATE is missed
 };
 
 struct StandingInput {

@@ -69,13 +69,15 @@ std::pair<Trial, Trial> split(const Trial& trial, double held_out) {
   return {std::move(parts.fitted), std::move(parts.judged.front())};
 }
 
-std::vector<Trial> known_stretches(const Trial& trial, double shortest) {
-  if (trial.input_valid.empty()) return {trial};
+std::vector<Trial> known_stretches(Trial trial, double shortest) {
   std::vector<Trial> known;
+  if (std::ranges::all_of(trial.input_valid, [](std::uint8_t one) { return one != 0; })) {
+    known.push_back(std::move(trial));
+    return known;
+  }
   stretches(trial.input_valid, [&](bool valid, std::size_t first, std::size_t end) {
-    const bool whole = first == 0 && end == trial.size();
-    if (!valid || (!whole && static_cast<double>(end - first - 1) * trial.dt < shortest)) return;
-    known.push_back(whole ? trial : part(trial, first, end, trial.name));
+    if (!valid || static_cast<double>(end - first - 1) * trial.dt < shortest) return;
+    known.push_back(part(trial, first, end, trial.name));
   });
   return known;
 }

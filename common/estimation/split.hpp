@@ -27,7 +27,7 @@ struct Parts {
 
 /// The stretches of at least `shortest` s over which it is known what drove the vehicle, each a trial under the run's
 /// name whose time goes on: nothing that looks at one trial then reaches across a gap, nor remembers what was before.
-[[nodiscard]] std::vector<Trial> known_stretches(const Trial& trial, double shortest);
+[[nodiscard]] std::vector<Trial> known_stretches(Trial trial, double shortest);
 
 /// What of a run's input was not recorded.
 struct InputGaps {

@@ -17,6 +17,7 @@ struct ReconstructionOptions {
   bool noises_stated{false};     ///< those of the instruments alone: nothing from rest
   bool without_position{false};  ///< velocity and attitude alone are asked for, position may drift
   bool despite_state{false};     ///< the log's own STATE is known to be the one that is wrong
+  bool filtered{true};           ///< the filter's estimates are kept beside the smoother's
   std::optional<KinematicModel> model{};
 };
 

@@ -117,7 +117,7 @@ class Run {
     estimator_.start(events_.empty() ? 0 : events_.front().utime, start_of(recording, events_, settings));
   }
 
-  void forward(SmoothedTrial* trial, const Progress& progress = {}) {
+  void forward(SmoothedTrial* trial, const Progress& progress = {}, bool keep_filtered = true) {
     const auto stretches = static_cast<double>(instants_.size() / kStretch + 1);
     progress.expect(kForward, stretches);
     progress.expect(kBackward, stretches, 3.0);  // the filter again, and the way back
@@ -127,9 +127,11 @@ class Run {
       if (k % kStretch == 0 && trial != nullptr) checkpoints_.push_back(estimator_);
       pass_instant<N>(events_, instants_[k], instants_[k + 1], estimator_, nullptr);
       if (trial == nullptr || !output(k)) continue;
-      trial->filtered.push_back(state_of(events_[instants_[k]].utime, widen<N>(estimator_.filter().state()),
-                                         widen<N>(estimator_.filter().covariance().diagonal()),
-                                         estimator_.filter().reference()));
+      const StateEstimate state =
+          state_of(events_[instants_[k]].utime, widen<N>(estimator_.filter().state()),
+                   widen<N>(estimator_.filter().covariance().diagonal()), estimator_.filter().reference());
+      places_.push_back(state.p_WB);
+      if (keep_filtered) trial->filtered.push_back(state);
     }
     if (!estimator_.upright()) {
       throw InputError(name_ + ": the attitude is lost; check the noises of gyro and attitude, and their axes");
@@ -143,7 +145,8 @@ class Run {
     FilterRecord<N> record;
     Smoother<N> smoother;
     std::vector<Utime> utimes;  // of the record's instants; 0: a step inside a gap
-    trial.smoothed.reserve(trial.filtered.size());
+    trial.smoothed.reserve(places_.size());
+    trial.apart.reserve(places_.size());
     for (std::size_t c = checkpoints_.size(); c > 0; --c) {
       KinematicEstimator<N>& estimator = checkpoints_[c - 1];
       record.begin(estimator.filter());
@@ -161,10 +164,13 @@ class Run {
         if (trial.smoothed.empty()) trial.biases = widen<N>(x);
         trial.smoothed.push_back(
             motion_of(utimes[i], widen<N>(x), widen<N>(smoothed.variance()), smoothed.reference(), settings_));
+        const Eigen::Vector3d& filtered = places_[places_.size() - trial.smoothed.size()];
+        trial.apart.emplace_back((filtered - trial.smoothed.back().p_WB).cast<float>());
       });
       progress.done(kBackward);
     }
-    std::reverse(trial.smoothed.begin(), trial.smoothed.end());
+    std::ranges::reverse(trial.smoothed);
+    std::ranges::reverse(trial.apart);
   }
 
   [[nodiscard]] const KinematicEstimator<N>& estimator() const { return estimator_; }
@@ -181,6 +187,7 @@ class Run {
   std::vector<std::size_t> instants_;  // first event of each, and the end
   KinematicEstimator<N> estimator_;
   std::vector<KinematicEstimator<N>> checkpoints_;
+  std::vector<Eigen::Vector3d> places_;  // m, of the filter at every output
 };
 
 /// What unequal steps and gaps a run has; nothing where all are alike.
@@ -208,11 +215,11 @@ std::optional<std::string> uneven(const std::string& name, const std::vector<Smo
 
 template <int N>
 SmoothedTrial smooth_as(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit,
-                        const Progress& progress) {
+                        const Progress& progress, bool keep_filtered) {
   SmoothedTrial trial;
   Run<N> run{recording, settings};
-  trial.filtered.reserve(std::max(recording.ahrs.size(), recording.pose_capture.size()));
-  run.forward(&trial, progress);
+  if (keep_filtered) trial.filtered.reserve(std::max(recording.ahrs.size(), recording.pose_capture.size()));
+  run.forward(&trial, progress, keep_filtered);
   trial.statistics = run.estimator().statistics();
   trial.likelihood = run.estimator().likelihood();
   run.backward(trial, visit, progress);
@@ -254,14 +261,14 @@ std::vector<InnovationStatistics> innovations(const Recording& recording, const 
 }
 
 SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings, const SmoothedVisit& visit,
-                     const Progress& progress) {
+                     const Progress& progress, bool keep_filtered) {
   switch (settings.states()) {
     case model::kMostStates:
-      return smooth_as<model::kMostStates>(recording, settings, visit, progress);
+      return smooth_as<model::kMostStates>(recording, settings, visit, progress, keep_filtered);
     case model::kInertialStates:
-      return smooth_as<model::kInertialStates>(recording, settings, visit, progress);
+      return smooth_as<model::kInertialStates>(recording, settings, visit, progress, keep_filtered);
     default:
-      return smooth_as<model::kKinematicStates>(recording, settings, visit, progress);
+      return smooth_as<model::kKinematicStates>(recording, settings, visit, progress, keep_filtered);
   }
 }
 

@@ -12,7 +12,8 @@
 namespace fathom::estimation {
 
 struct SmoothedTrial {
-  std::vector<StateEstimate> filtered;
+  std::vector<StateEstimate> filtered;  ///< where they were asked for
+  std::vector<Eigen::Vector3f> apart;   ///< m, of the filter's place from the smoother's, along the axes of W
   std::vector<SmoothedState> smoothed;  ///< at the same times
   std::vector<InnovationStatistics> statistics;
   std::vector<std::string> notes;  ///< one line each: what was wrong and what was done about it
@@ -26,7 +27,8 @@ using SmoothedVisit = std::function<void(Utime, const Eigen::VectorXd& x, const 
 /// Estimates at the times of the inertial package (of the pose capture without one). InputError in one line when the
 /// run cannot begin, holds nothing to estimate from, or dives too steeply for Euler angles.
 [[nodiscard]] SmoothedTrial smooth(const Recording& recording, const KalmanSettings& settings,
-                                   const SmoothedVisit& visit = nullptr, const Progress& progress = {});
+                                   const SmoothedVisit& visit = nullptr, const Progress& progress = {},
+                                   bool keep_filtered = true);
 
 /// Whether anything in the recording tells where the vehicle is, with what is known of the instruments.
 [[nodiscard]] bool tells_position(const Recording& recording, const KalmanSettings& settings);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 #include "common/base/health_words.hpp"
 #include "common/base/printable.hpp"
@@ -58,12 +59,15 @@ std::vector<PreflightLine> preflight(const PreflightInput& heard, const std::vec
   } else {
     lines.push_back({"state", true, "valid"});
   }
-  // A simulator in its place has no vehicle behind it.
-  if (!heard.health.contains(kDriver) && !heard.vehicle) return lines;
-  if (!heard.vehicle || heard.vehicle->age > kNoVehicle) {
-    lines.push_back({"vehicle", false, "no VEHICLE: is the thruster driver running?"});
-    return lines;
-  }
+  std::ranges::move(vehicle_lines(heard), std::back_inserter(lines));
+  return lines;
+}
+
+std::vector<PreflightLine> vehicle_lines(const PreflightInput& heard) {
+  if (!heard.health.contains(kDriver) && !heard.vehicle) return {};  // a simulator has no vehicle behind it
+  if (!heard.vehicle || heard.vehicle->age > kNoVehicle)
+    return {{"vehicle", false, "no VEHICLE: is the thruster driver running?"}};
+  std::vector<PreflightLine> lines;
   for (const ConditionLine& line : heard.vehicle->sample.lines) lines.push_back({line.name, line.ok, line.text});
   return lines;
 }

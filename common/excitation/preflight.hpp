@@ -39,6 +39,8 @@ struct PreflightLine {
 /// `needs` as in the supervisor's section: names, "A or B" where B stands in for A.
 [[nodiscard]] std::vector<PreflightLine> preflight(const PreflightInput& heard,
                                                    const std::vector<std::string>& needs = usual_needs());
+/// Those of the vehicle alone, behind the thruster driver; none of a simulator.
+[[nodiscard]] std::vector<PreflightLine> vehicle_lines(const PreflightInput& heard);
 [[nodiscard]] bool all_ok(const std::vector<PreflightLine>& lines);
 /// One line as a terminal shows it: "ok       recorder      running: ...".
 [[nodiscard]] std::string shown(const PreflightLine& line);

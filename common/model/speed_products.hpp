@@ -24,7 +24,11 @@ class SpeedProduct final : public Form {
   enum class Sense { kWithSign, kEitherWay };
   /// w_row = c nu_r,first nu_r,second, a square where both are the same; either way: with the size of the first alone.
   SpeedProduct(Eigen::Index row, Eigen::Index first, Eigen::Index second, Sense sense = Sense::kWithSign)
-      : Form{{.unit = unit_of(row, first, second)}}, row_{row}, first_{first}, second_{second}, sense_{sense} {}
+      : Form{{.unit = unit_of(row, first, second), .drawn = kDrawn}},
+        row_{row},
+        first_{first},
+        second_{second},
+        sense_{sense} {}
   FormName name(const Scene& scene) const override {
     const bool moves = scene.nu_rms[first_] > kLeastMotion && scene.nu_rms[second_] > kLeastMotion;
     return when(lives_by_flow(*scene.vehicle) && scene.vehicle->dof[static_cast<std::size_t>(row_)] && moves, label());
@@ -42,7 +46,8 @@ class SpeedProduct final : public Form {
 
  private:
   static constexpr double kLeastMotion = 0.02;  // m/s, rad/s RMS: less shows no product
-  static constexpr double kStartShare = 0.02;   // of the thrust along that axis
+  static constexpr double kDrawn = 0.2;        // of sigma: a hull that is simulated with more would not hold its course
+  static constexpr double kStartShare = 0.02;  // of the thrust along that axis
 
   static std::string_view unit_of(Eigen::Index row, Eigen::Index first, Eigen::Index second) {
     const int turns = (first < 3 ? 0 : 1) + (second < 3 ? 0 : 1);

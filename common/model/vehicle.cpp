@@ -11,6 +11,7 @@
 #include "common/model/actuators.hpp"
 #include "common/model/after_abort.hpp"
 #include "common/model/bounded.hpp"
+#include "common/model/vehicle_file.hpp"
 #include "common/model/wide_prior.hpp"
 
 namespace fathom::model {
@@ -253,8 +254,9 @@ double ThrustCurve::force_at(double pwm, double pwm_sign, double battery) const 
   return at_reference * std::pow(battery / voltage, voltage_exponent);
 }
 
-Vehicle Vehicle::load(const std::string& path) {
-  const Config config = Config::load(path);
+Vehicle Vehicle::load(const std::string& path) { return vehicle_from(Config::load(path)); }
+
+Vehicle vehicle_from(const Config& config) {
   Vehicle vehicle;
   vehicle.name = config.text("name");
   read_dof(config, vehicle);

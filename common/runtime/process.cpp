@@ -21,8 +21,9 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr Utime kRestartJump = 1'000'000;  // us; devices are late by less
-constexpr int kWaitMs = 50;                // half of the promised 100 ms, should a signal miss the descriptor
+constexpr Utime kRestartJump = 1'000'000;        // us; devices are late by less
+constexpr std::chrono::seconds kInfoPeriod{30};  // of PROCESS_INFO on a live bus, for whoever came later
+constexpr int kWaitMs = 50;                      // half of the promised 100 ms, should a signal miss the descriptor
 constexpr char kInfoChannel[] = "PROCESS_INFO";
 
 /// What a configuration file says. An operator's word is not for the bus, nor for logs.
@@ -227,6 +228,7 @@ void Process::run_live() {
   state_->out.emplace(state_->arguments.out);
   state_->live.emplace(state_->arguments.in, subscriptions);
   introduce(wall_clock());
+  auto introduced = Clock::now();
   report_health("running", "");  // whoever waits until it hears need not wait a second
   Clock::time_point last_call{};
   while (!state_->stop->raised() && !state_->ended) {
@@ -249,7 +251,12 @@ void Process::run_live() {
       last_call = now;
       state_->real_time(std::chrono::duration<double>(now.time_since_epoch()).count());
     }
-    if (Clock::now() - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
+    if (now - state_->last_health >= std::chrono::seconds{1}) report_health("running", "");
+    if (now - introduced >= kInfoPeriod) {
+      introduced = now;
+      state_->introduced = false;
+      introduce(wall_clock());
+    }
   }
 }
 

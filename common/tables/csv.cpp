@@ -274,7 +274,7 @@ NameAndUnit part_unit(std::string_view header) {
   return {std::string(trim(header.substr(0, open))), unit};
 }
 
-const std::vector<double>* CsvTable::find(std::string_view name) const {
+const Paged<double>* CsvTable::find(std::string_view name) const {
   auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) found = std::find(names.begin(), names.end(), part_unit(name).name);
   return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/paged.hpp"
+
 namespace fathom::tables {
 
 /// What the cells of a column are.
@@ -22,18 +24,18 @@ enum class Cells : std::uint8_t {
 /// write for "no value" ("--.--", "N/A", "null", "-").
 struct CsvTable {
   std::string path;
-  std::vector<std::string> names;            ///< without the unit
-  std::vector<std::string> units;            ///< per name: of "u [m/s]" the unit; empty when the header states none
-  std::vector<Cells> cells;                  ///< per name
-  bool zoneless_dates{};                     ///< some date names no zone: taken as UTC
-  std::vector<std::vector<double>> columns;  ///< one per name, all of the same length
-  std::vector<std::string> faults;           ///< per column: what is wrong with its first cell that is no number
-  std::vector<std::size_t> lines;            ///< line of each row in the file, for messages
+  std::vector<std::string> names;      ///< without the unit
+  std::vector<std::string> units;      ///< per name: of "u [m/s]" the unit; empty when the header states none
+  std::vector<Cells> cells;            ///< per name
+  bool zoneless_dates{};               ///< some date names no zone: taken as UTC
+  std::vector<Paged<double>> columns;  ///< one per name, all of the same length
+  std::vector<std::string> faults;     ///< per column: what is wrong with its first cell that is no number
+  Paged<std::size_t> lines;            ///< line of each row in the file, for messages
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
   /// nullptr when there is no such column; with or without the unit in brackets behind it.
-  [[nodiscard]] const std::vector<double>* find(std::string_view name) const;
-  [[nodiscard]] std::size_t index(const std::vector<double>* column) const {
+  [[nodiscard]] const Paged<double>* find(std::string_view name) const;
+  [[nodiscard]] std::size_t index(const Paged<double>* column) const {
     return static_cast<std::size_t>(column - columns.data());
   }
   /// What a column's cells are; numbers in tables that nobody parsed.

@@ -55,7 +55,7 @@ std::vector<std::string> to_si(CsvTable& table) {
       throw InputError(table.path + ":1: column '" + name + "' is in " + table.units[i] + ", where " + ours +
                        " is meant; describe what it is with a map (--map)");
     }
-    for (double& value : table.columns[i]) value *= factor;
+    table.columns[i].change([factor](double& value) { value *= factor; });
     notes.push_back("column '" + name + "' is in " + table.units[i] + ", as its header says");
   }
   return notes;

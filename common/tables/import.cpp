@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <span>
 #include <utility>
 
 #include "common/tables/angle_unit.hpp"
@@ -66,7 +65,11 @@ bool TableImport::next(std::size_t rows, Recording& out) {
   const bool all = (streams_->ahrs && streams_->ahrs->turns()) || (streams_->dvl && streams_->dvl->turns());
   const std::size_t count = all ? left : std::min(rows, left);
   if (count == 0) return false;
-  const Slice slice{std::span{rows_.index}.subspan(taken_, count), std::span{rows_.utime}.subspan(taken_, count)};
+  Slice slice;
+  for (std::size_t k = taken_; k < taken_ + count; ++k) {
+    slice.index.push_back(rows_.index[k]);
+    slice.utime.push_back(rows_.utime[k]);
+  }
   taken_ += count;
   if (streams_->pose) streams_->pose->take(slice, out);
   if (streams_->ahrs) streams_->ahrs->take(slice, out);

@@ -17,7 +17,7 @@ namespace fathom::tables {
 /// The time of a recording with topics: a clock of its own, of whose unit there is no question.
 inline constexpr const char* kOwnTime = "(time)";
 
-using ColumnData = const std::vector<double>*;
+using ColumnData = const Paged<double>*;
 
 /// Finds columns, remembers which were used, and complains in the words of the map.
 class Resolver {
@@ -99,8 +99,8 @@ class HeldReader {
 
 /// Rows whose time rises, and their stamps.
 struct Rows {
-  std::vector<std::size_t> index;
-  std::vector<Utime> utime;
+  Paged<std::size_t> index;
+  Paged<Utime> utime;
 };
 
 /// Reads the time (time_column.cpp) and drops rows in which it does not rise, counts them and names the longest gap in

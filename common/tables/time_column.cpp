@@ -4,7 +4,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -56,16 +58,26 @@ void check_step(const CsvTable& table, const Column& column, double factor, doub
 }
 
 /// Notes the longest gap; the median step, in s.
-double report_longest_gap(const std::vector<Utime>& utime, std::vector<std::string>& notes) {
+double report_longest_gap(const Paged<Utime>& utime, std::vector<std::string>& notes) {
   if (utime.size() < 3) return 0.0;
-  std::vector<Utime> steps(utime.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = utime[i + 1] - utime[i];
-  const auto longest = std::max_element(steps.begin(), steps.end());
-  const double gap = static_cast<double>(*longest) * 1e-6;
-  const double begin = seconds_between(0, utime[static_cast<std::size_t>(longest - steps.begin())]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double typical = static_cast<double>(*middle) * 1e-6;
+  // Counted by their length, those above a second to a millisecond: at most some millions, however many rows there are.
+  constexpr Utime kSecond = 1'000'000, kCoarse = 1'000;
+  std::unordered_map<Utime, std::size_t> counts;
+  Utime longest = 0, after = utime[0];
+  for (std::size_t i = 0; i + 1 < utime.size(); ++i) {
+    const Utime before = utime[i], step = utime[i + 1] - before;
+    ++counts[step < kSecond ? step : step / kCoarse * kCoarse];
+    if (step <= longest) continue;
+    longest = step;
+    after = before;
+  }
+  const double gap = static_cast<double>(longest) * 1e-6;
+  const double begin = seconds_between(0, after);
+  std::vector<std::pair<Utime, std::size_t>> sorted(counts.begin(), counts.end());
+  std::ranges::sort(sorted);
+  auto middle = sorted.begin();
+  for (std::size_t below = middle->second; below <= (utime.size() - 1) / 2; below += middle->second) ++middle;
+  const double typical = static_cast<double>(middle->first) * 1e-6;
   if (gap > kGapPeriods * typical) {
     notes.push_back("time: the longest gap is " + in_seconds(gap) + ", after " + in_seconds(begin));
   }
@@ -73,7 +85,7 @@ double report_longest_gap(const std::vector<Utime>& utime, std::vector<std::stri
 }
 
 /// The column of nanoseconds beside one of whole seconds, "stamp.nanosec" beside "stamp.sec"; empty when there is none.
-std::string nanoseconds_beside(const CsvTable& table, const Column& seconds, const std::vector<double>& values) {
+std::string nanoseconds_beside(const CsvTable& table, const Column& seconds, const Paged<double>& values) {
   const auto whole = [](double value) { return std::isnan(value) || value == std::floor(value); };
   if (!std::ranges::all_of(values, whole)) return {};
   for (const auto& [whole_name, fine_name] : {std::pair{"sec", "nanosec"},
@@ -99,7 +111,7 @@ class TimeColumn {
   TimeColumn(const CsvTable& table, Resolver& resolve, const ColumnMap& map, std::vector<std::string>& notes)
       : table_(table), columns_(map.time.columns), factors_(map.time_factors) {
     factors_.resize(columns_.size(), map.time.factor);
-    const std::vector<double>& first = *resolve(columns_.front());
+    const Paged<double>& first = *resolve(columns_.front());
     if (columns_.size() == 1) {
       if (const std::string fine = nanoseconds_beside(table, columns_.front(), first);
           !fine.empty() && factors_.front() == 1.0) {
@@ -134,7 +146,7 @@ class TimeColumn {
 
  private:
   /// Without a map: numbers that can be nothing but an epoch in ms, us or ns.
-  void find_epoch(const std::vector<double>& values, std::vector<std::string>& notes) {
+  void find_epoch(const Paged<double>& values, std::vector<std::string>& notes) {
     if (!columns_.front().where.empty() || factors_.front() != 1.0 || columns_.size() != 1) return;
     const auto first = std::ranges::find_if(values, [](double value) { return std::isfinite(value); });
     if (first == values.end()) return;
@@ -160,14 +172,18 @@ void compare_clocks(const CsvTable& table, const TimeColumn& time, const Rows& r
     const bool text = table.cells_of(c) != Cells::kNumbers;
     const bool named = name == "time" || name == "timestamp" || name == "datetime" || name == "utc" || name == "clock";
     if ((!text && !named) || time.is(table.names[c])) continue;
-    std::vector<std::pair<double, double>> both;  // s, unit of the column
+    std::optional<std::pair<double, double>> first;  // s, unit of the column
+    std::pair<double, double> last;
+    double steps = 0.0;
     for (std::size_t k = 0; k < rows.index.size(); ++k) {
-      const double there = table.columns[c][rows.index[k]];
-      if (std::isfinite(there) && (both.empty() || there > both.back().second))
-        both.emplace_back(seconds_between(0, rows.utime[k]), there);
+      const double value = table.columns[c][rows.index[k]];
+      if (!std::isfinite(value) || (first && value <= last.second)) continue;
+      last = {seconds_between(0, rows.utime[k]), value};
+      if (!first) first = last;
+      ++steps;
     }
-    if (static_cast<double>(both.size()) < kFewestSteps) continue;
-    const double here = both.back().first - both.front().first, there = both.back().second - both.front().second;
+    if (steps < kFewestSteps) continue;
+    const double here = last.first - first->first, there = last.second - first->second;
     double rate = there / here;
     if (!text) {
       for (const auto& [unit, finer] : kFinerUnits) {

@@ -35,7 +35,7 @@ constexpr int kSlice = 100;  // ms between two looks at the clock
 /// One request that is whole, and the answer to it: the library reads and writes memory and never waits.
 class Exchange : public httplib::Stream {
  public:
-  explicit Exchange(const std::string& request) : request_{request} {}
+  Exchange(const std::string& request, std::string from) : request_{request}, from_{std::move(from)} {}
   std::string answer;
 
   [[nodiscard]] bool is_readable() const override { return read_ < request_.size(); }
@@ -50,16 +50,19 @@ class Exchange : public httplib::Stream {
     answer.append(from, size);
     return static_cast<ssize_t>(size);
   }
-  void get_remote_ip_and_port(std::string& ip, int& port) const override { nowhere(ip, port); }
-  void get_local_ip_and_port(std::string& ip, int& port) const override { nowhere(ip, port); }
-  [[nodiscard]] socket_t socket() const override { return -1; }
-
- private:
-  static void nowhere(std::string& ip, int& port) {
+  void get_remote_ip_and_port(std::string& ip, int& port) const override {
+    ip = from_;
+    port = 0;
+  }
+  void get_local_ip_and_port(std::string& ip, int& port) const override {
     ip.clear();
     port = 0;
   }
+  [[nodiscard]] socket_t socket() const override { return -1; }
+
+ private:
   const std::string& request_;
+  std::string from_;
   std::size_t read_{};
 };
 
@@ -74,6 +77,31 @@ bool is_address(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), unused.data()) == 1 || inet_pton(AF_INET6, text.c_str(), unused.data()) == 1;
 }
 
+std::string address_of(const sockaddr_storage& from) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const void* address = from.ss_family == AF_INET6
+                            ? static_cast<const void*>(&reinterpret_cast<const sockaddr_in6*>(&from)->sin6_addr)
+                            : static_cast<const void*>(&reinterpret_cast<const sockaddr_in*>(&from)->sin_addr);
+  const char* known = inet_ntop(from.ss_family, address, text.data(), text.size());
+  return known == nullptr ? "" : known;
+}
+
+/// This host itself, and whoever comes to it by a tunnel that has asked who he is (ssh -L).
+bool is_here(const std::string& address) {
+  return address.starts_with("127.") || address == "::1" || address.starts_with("::ffff:127.");
+}
+
+/// Why an order on the page's way is none; empty: it is one. A page of another origin cannot set this header without
+/// asking first, which nobody answers, and the browser says by itself from where it comes.
+std::string objection(const httplib::Request& request) {
+  const std::string origin = request.get_header_value("Origin"), host = request.get_header_value("Host");
+  if (request.get_header_value("X-Fathom") != "abort" || (!origin.empty() && origin != "http://" + host))
+    return "an abort is asked for by this board's own page\n";
+  if (is_here(request.remote_addr)) return {};
+  return "ABORT works on the board's own host and through a tunnel that knows who you are: ssh -L 8077:localhost:8077 "
+         "HOST, then http://localhost:8077/. On any host of the bus: fathom abort\n";
+}
+
 }  // namespace
 
 class Server::Http : public httplib::Server {
@@ -85,8 +113,8 @@ class Server::Http : public httplib::Server {
 
   // One request each. Ranges and compression are left aside: a request for a thousand ranges would be answered with a
   // thousand copies, and loopback needs no compression.
-  [[nodiscard]] std::string answer(const std::string& request) {
-    Exchange exchange{request};
+  [[nodiscard]] std::string answer(const std::string& request, const std::string& from) {
+    Exchange exchange{request, from};
     bool closed = false;
     process_request(exchange, true, closed, [](httplib::Request& each) {
       each.ranges.clear();
@@ -110,18 +138,19 @@ class Server::Http : public httplib::Server {
 
 struct Server::Client {
   int socket{};
+  std::string from;  ///< its address
   Clock::time_point begin{Clock::now()};
   std::string request{}, answer{};
   std::size_t sent{};
   bool answered{false}, done{false};  ///< done: all was sent; the client's end is waited for
 
-  explicit Client(int descriptor) : socket{descriptor} {}
+  Client(int descriptor, std::string address) : socket{descriptor}, from{std::move(address)} {}
   ~Client() { ::close(socket); }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 };
 
-Server::Server(const std::string& host, int port, const std::vector<std::string>& names)
+Server::Server(const std::string& host, int port, const std::vector<std::string>& names, bool aborting)
     : http_{std::make_unique<Http>(names)}, port_{port}, json_{std::make_shared<const std::string>("{}")} {
   http_->set_payload_max_length(kMostBytes);
   // Should a name from the bus ever get into the page as a script, the browser would not run it.
@@ -143,14 +172,25 @@ Server::Server(const std::string& host, int port, const std::vector<std::string>
   give("/", kPage, "text/html; charset=utf-8");
   give("/style.css", kStyle, "text/css; charset=utf-8");
   give("/script.js", kScript, "text/javascript; charset=utf-8");
+  give("/drawing.js", kDrawing, "text/javascript; charset=utf-8");
   http_->Get("/board.json", [this](const httplib::Request&, httplib::Response& response) {
     response.set_content(*shown(), "application/json");
+  });
+  http_->Post("/abort", [this, aborting](const httplib::Request& request, httplib::Response& response) {
+    const std::string why = aborting ? objection(request) : "a log is played here: there is nothing to abort\n";
+    if (why.empty()) {
+      const std::uint64_t one = 1;
+      (void)!::write(aborts_, &one, sizeof one);
+    }
+    response.status = why.empty() ? 202 : 403;
+    response.set_content(why.empty() ? "asked; the page tells what becomes of it\n" : why, "text/plain");
   });
   http_->set_error_handler([](const httplib::Request&, httplib::Response& response) {
     if (response.status == 404) response.set_content("there is / and /board.json\n", "text/plain");
   });
   listener_ = listen_at(host, port_);
   wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  aborts_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   sigset_t all, before;  // signals are for the thread that waits for them
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -164,14 +204,22 @@ Server::~Server() {
   thread_.join();
   ::close(listener_);
   ::close(wake_);
+  ::close(aborts_);
+}
+
+bool Server::taken() const {
+  std::uint64_t count = 0;
+  return ::read(aborts_, &count, sizeof count) == sizeof count && count > 0;
 }
 
 void Server::accept_clients() {
   for (;;) {
-    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    sockaddr_storage from{};
+    socklen_t size = sizeof from;
+    const int socket = ::accept4(listener_, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket < 0) return;
     if (clients_.size() >= kMostClients) clients_.pop_front();
-    clients_.emplace_back(socket);
+    clients_.emplace_back(socket, address_of(from));
   }
 }
 
@@ -183,7 +231,7 @@ bool Server::attend(Client& client, short events) {
     if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return false;
     if (count > 0) client.request.append(buffer.data(), static_cast<std::size_t>(count));
     if (client.request.find("\r\n\r\n") == std::string::npos) return client.request.size() <= kMostBytes;
-    client.answer = http_->answer(client.request);
+    client.answer = http_->answer(client.request, client.from);
     client.answered = true;
     events |= POLLOUT;
   }

@@ -102,21 +102,23 @@ Trial reconstruct(const std::string& path, const Recording& recording, const est
 /// Stretches of all runs over which it is known what drove the vehicle. InputError where no gap leaves `needed` s.
 class Stretches {
  public:
-  Stretches(std::span<const Trial> runs, std::span<const std::string> paths, double needed) {
+  /// The runs are taken apart: what they held is not held twice.
+  Stretches(std::vector<Trial> runs, std::span<const std::string> paths, double needed) {
     double longest = 0.0, lost = 0.0;
     std::size_t gaps = 0;
-    for (const Trial& run : runs) {
+    const bool several = runs.size() > 1;
+    for (Trial& run : runs) {
       whole_ += duration(run);
       gaps += estimation::input_gaps(run).count;
       lost += estimation::input_gaps(run).total;
-      for (Trial& stretch : estimation::known_stretches(run, kShortest)) {
+      for (Trial& stretch : estimation::known_stretches(std::exchange(run, {}), kShortest)) {
         longest = std::max(longest, duration(stretch));
         kept_ += duration(stretch);
         trials_.push_back(std::move(stretch));
       }
     }
     if (gaps == 0 || longest > needed) return;
-    throw InputError(paths.front() + (runs.size() > 1 ? " and its fellows" : "") +
+    throw InputError(paths.front() + (several ? " and its fellows" : "") +
                      estimation::text(": what drove the vehicle is missing for %.3g s of %.4g s", lost, whole_) +
                      estimation::text(", and no stretch of %.3g s is left between the %.0f gaps", needed,
                                       static_cast<double>(gaps)) +
@@ -202,14 +204,18 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   progress.expect(kReport, 1, 1.0);
   progress.expect(kDiagnosis, 1, kGuessedDiagnosis);
   progress.begin(kReading, "reading recordings");
-  std::vector<Recording> recordings = read_recordings(paths, options.map, notes, vehicle.dof);
-  sort_by_time(std::span{recordings}.first(fitted_runs), std::span{paths}.first(fitted_runs));
-  sort_by_time(std::span{recordings}.subspan(fitted_runs), std::span{paths}.subspan(fitted_runs));
+  const auto read = [&](std::vector<std::string>& told) {
+    std::vector<Recording> all = read_recordings(paths, options.map, told, vehicle.dof);
+    sort_by_time(std::span{all}.first(fitted_runs), std::span{paths}.first(fitted_runs));
+    sort_by_time(std::span{all}.subspan(fitted_runs), std::span{paths}.subspan(fitted_runs));
+    for (Recording& recording : all) {
+      if (!estimation::take_state_as_measured(recording)) continue;
+      told.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
+    }
+    return all;
+  };
+  std::vector<Recording> recordings = read(notes);
   origin = origin_of(options, paths, fitted_runs, recordings);
-  for (Recording& recording : recordings) {
-    if (!estimation::take_state_as_measured(recording)) continue;
-    notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
-  }
   for (const Recording& recording : recordings) {
     for (const std::string& reason : recordings::against_fitting(recording))
       notes.push_back(recording.name + ": ! " + reason);
@@ -226,7 +232,17 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   }
 
   progress.done(kSensors);
+  // Samples are let go while their trials are searched, and read again in the rare case that they are needed again.
   const auto trials_of_recordings = [&] {
+    if (recordings.empty()) {
+      std::vector<std::string> told_already;
+      recordings = read(told_already);
+      static_cast<void>(consistency::set_aside_dead_axes(recordings, vehicle.dof));
+      if (!options.site.empty()) {
+        consistency::ConsistencyResult found_already = consistency;
+        consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), found_already);
+      }
+    }
     std::vector<Trial> trials;
     progress.expect(kReconstruction, runs, kLight);
     for (std::size_t i = 0; i < recordings.size(); ++i) {
@@ -244,19 +260,21 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
     const bool one_clock = estimation::share_clock(recordings, trials);
     if (one_clock && !std::exchange(told, true))
       notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
+    recordings = {};
     out.gaps = estimation::gap_findings(trials);
     std::vector<Trial> train, validate;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       if (options.validate.empty()) {
-        estimation::Parts parts = estimation::split(trials[i], kHeldOut, kept);
+        estimation::Parts parts = estimation::split(std::exchange(trials[i], {}), kHeldOut, kept);
         train.push_back(std::move(parts.fitted));
         std::ranges::move(parts.judged, std::back_inserter(validate));
       } else {
         (i < fitted_runs ? train : validate).push_back(std::move(trials[i]));
       }
     }
-    out.fitting.emplace(train, paths, settings.fit.window);
-    out.judging.emplace(validate, std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs), kShortest);
+    out.fitting.emplace(std::move(train), paths, settings.fit.window);
+    out.judging.emplace(std::move(validate), std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs),
+                        kShortest);
     progress.expect(kDiagnosis, 0);
     if (options.core == kLikelihood) {
       verdict::Answer answer = verdict::diagnose(

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
@@ -12,6 +13,7 @@
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
+#include "common/wire/streams.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -44,8 +46,8 @@ void print(const estimation::SmoothedTrial& trial) {
   }
   Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   double count = 0.0;
-  for (std::size_t k = 0; k < trial.filtered.size() && k < trial.smoothed.size(); ++k) {
-    const Eigen::Vector3d apart = (trial.filtered[k].p_WB - trial.smoothed[k].p_WB).cwiseAbs();
+  for (std::size_t k = 0; k < trial.smoothed.size(); ++k) {
+    const Eigen::Vector3d apart = trial.apart[k].cast<double>().cwiseAbs();
     if (seconds_between(trial.smoothed.front().utime, trial.smoothed[k].utime) < kConverged) {
       early = early.cwiseMax(apart);
     } else {
@@ -71,13 +73,47 @@ StateEstimate estimate_of(const SmoothedState& smoothed) {
           .valid = true};
 }
 
+/// The run with SMOOTHED, and STATE from it, a minute after the other: STATE never stands in memory as a whole.
+std::uint64_t write(const Recording& recording, const std::string& path) {
+  constexpr Utime kPart = 60'000'000;  // us
+  std::vector<std::size_t> taken;      // of each stream
+  wire::LogWriter log{path};
+  for (bool more = true; more;) {
+    std::optional<Utime> first;
+    std::size_t stream = 0;
+    wire::visit_streams(recording, [&](const char*, const auto& from) {
+      if (stream == taken.size()) taken.push_back(0);
+      if (const std::size_t at = taken[stream++]; at < from.size())
+        first = std::min(from[at].utime, first.value_or(from[at].utime));
+    });
+    Recording part{.name = recording.name};
+    stream = 0;
+    more = false;
+    wire::visit_streams(recording, [&](const char*, const auto& from) {
+      std::size_t& at = taken[stream++];
+      const std::size_t begin = at;
+      while (at < from.size() && from[at].utime < *first + kPart) ++at;
+      more = more || at < from.size();
+      wire::visit_streams(part, [&](const char*, auto& to) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(to)>, std::decay_t<decltype(from)>>)
+          to.assign(from.begin() + static_cast<std::ptrdiff_t>(begin), from.begin() + static_cast<std::ptrdiff_t>(at));
+      });
+    });
+    for (const SmoothedState& one : part.smoothed) part.state.push_back(estimate_of(one));
+    log.append(part);
+  }
+  return log.finish();
+}
+
 void run_smooth(const SmoothOptions& options) {
   refuse_over(options.out, options.run);
   std::vector<std::string> notes;
   Recording recording = std::move(read_recordings({options.run}, options.map, notes).front());
   const estimation::TrialFiles files = trial_files(options.files, recording, notes);
-  estimation::ReconstructionOptions asked{
-      .stated = options.stated, .without_position = options.without_position, .despite_state = options.despite_state};
+  estimation::ReconstructionOptions asked{.stated = options.stated,
+                                          .without_position = options.without_position,
+                                          .despite_state = options.despite_state,
+                                          .filtered = !options.page.empty()};
   if (!options.model.empty()) {
     asked.model =
         options.model == "printed" ? estimation::KinematicModel::kPrinted : estimation::KinematicModel::kCoupled;
@@ -102,9 +138,8 @@ void run_smooth(const SmoothOptions& options) {
   line.reset();
   print(trial);
   recording.state.clear();
-  for (const SmoothedState& one : trial.smoothed) recording.state.push_back(estimate_of(one));
   recording.smoothed = std::move(trial.smoothed);
-  const auto events = wire::write_log(recording, options.out);
+  const auto events = write(recording, options.out);
   if (!options.page.empty())
     tables::write_file(options.page, report::smoothed_page(recording, trial.filtered, attitude_used));
   std::printf("%s: %llu events, %zu of them SMOOTHED\n", options.out.c_str(), static_cast<unsigned long long>(events),

@@ -116,6 +116,12 @@ TEST_CASE(
   const auto well = test::shell(abort);
   CHECK_MESSAGE(well.code == 0, well.text);
   CHECK_FALSE(well.says("as it was sent"));  // it reports its outputs
+  // Whose own controller commands is told the same, and refused by it.
+  const std::string arm = program("fathom") + " arm --no-supervisor --bus '" + behind.bus.url + "' --operator " +
+                          test::file("config/operators/simulated.yaml");
+  const auto armed = test::shell(arm);
+  CHECK_MESSAGE(armed.code == 0, armed.text);
+  CHECK_MESSAGE(armed.says("ok      heartbeat"), armed.text);
   kill(std::stoi(test::read_bytes(behind.scratch.path("ardusub.pid"))), SIGKILL);
   REQUIRE(behind.bus.until([&] { return !behind.is_well(); }));
   behind.bus.thrusters.clear();
@@ -126,6 +132,9 @@ TEST_CASE(
   CHECK_MESSAGE(gone.code == 1, gone.text);
   CHECK_MESSAGE(gone.says("NOT CONFIRMED: zero was sent, but nobody knows what the vehicle does: no heartbeat"),
                 gone.text);
+  const auto refused = test::shell(arm);
+  CHECK(refused.code == 1);
+  CHECK_MESSAGE(refused.says("NOT OK  heartbeat"), refused.text);
 }
 
 TEST_CASE("vehicle: a rig that tells by the plain text protocol is judged as well") {

@@ -28,8 +28,7 @@ class PoseImport {
       apart += position_->complete(row) && attitude_->group().empty(row) ? 1 : 0;
     }
     own_rows_ = apart > together;
-    if (own_rows_)
-      each_attitude({rows.index, rows.utime}, [&](const Ahrs& one) { between_.keep(one.utime, one.q_WB); });
+    if (own_rows_) each_attitude(rows, [&](const Ahrs& one) { between_.keep(one.utime, one.q_WB); });
     if (!geodetic_) return;
     origin_ = GeodeticOrigin::first_of(*position_, rows);
     notes.push_back(origin_.note());
@@ -76,8 +75,8 @@ class PoseImport {
   }
 
  private:
-  template <typename Use>
-  void each_attitude(const Slice& rows, const Use& use) const {
+  template <typename SomeRows, typename Use>
+  void each_attitude(const SomeRows& rows, const Use& use) const {
     for (std::size_t k = 0; k < rows.index.size(); ++k) {
       bool unit = false;
       if (!attitude_->group().complete(rows.index[k])) continue;

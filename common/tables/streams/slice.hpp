@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,8 @@ namespace fathom::tables {
 
 /// Some of a table's rows, in the order of time.
 struct Slice {
-  std::span<const std::size_t> index;
-  std::span<const Utime> utime;
+  std::vector<std::size_t> index;
+  std::vector<Utime> utime;
 };
 
 // What happened to one stream, as sentences.

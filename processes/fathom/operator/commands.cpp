@@ -28,7 +28,7 @@ void print(const Excitation& e) {
 void order(const Options& options, bool enable, const std::string& word) {
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
-  if (enable && !options.no_supervisor) go_through(console, options.needs);
+  if (enable) go_through(console, options.needs, !options.no_supervisor);
   const double stays = enable ? promised(options, console) : 0.0;
   orders.give(
       {.enable = enable, .order = word, .segment = options.segment, .duration = options.seconds, .attends = stays},
@@ -84,7 +84,7 @@ void add_operator(runtime::CommandLine& app) {
     command->add_flag("--leave", options->leave, "go away, even where the bus leaves this host");
     command->add_flag(
         "--no-supervisor", options->no_supervisor,
-        "a controller of your own commands, and judges for itself: no list of conditions, and ours is not waited for");
+        "a controller of your own commands, and judges for itself: only the vehicle's own conditions are listed");
   };
   runtime::CommandLine* arm = add(app, "arm", "let the thrusters obey the supervisor, and begin", options);
   with_key(arm);

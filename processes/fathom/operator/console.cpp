@@ -75,6 +75,7 @@ void Console::hear(Answer answer) {
     gate_at_ = Clock::now();
     gate = answer;
   }
+  if (on_answer) on_answer(answer);
   if (asked != 0 && answer.sequence == asked) answers.emplace(answer.process, std::move(answer));
 }
 
@@ -101,6 +102,7 @@ void Console::hear(const runtime::LiveInput::Message& message) {
     if (const auto one = runtime::message_of<fathom_lcm::vehicle_condition_t>(message.bytes))
       vehicle = wire::decode(*one);
     vehicle_came_ = Clock::now();
+    if (vehicle && on_vehicle) on_vehicle(*vehicle);
   } else if (const auto one = runtime::message_of<fathom_lcm::state_t>(message.bytes)) {
     state = wire::decode(*one);
     state_came_ = Clock::now();

@@ -39,12 +39,14 @@ class Console {
   /// Messages leave this host: somebody may be at the far end of a cable.
   [[nodiscard]] bool over_a_link() const;
 
-  std::optional<Answer> gate;             ///< newest of who moves the thrusters
-  std::set<std::string> gates;            ///< who says that he moves them, with his challenge
-  bool foreign{false};                    ///< answers came that another key signed
-  std::int64_t asked{};                   ///< the order whose answers are kept
-  std::map<std::string, Answer> answers;  ///< to that order, by process
+  std::optional<Answer> gate;                    ///< newest of who moves the thrusters
+  std::set<std::string> gates;                   ///< who says that he moves them, with his challenge
+  bool foreign{false};                           ///< answers came that another key signed
+  std::int64_t asked{};                          ///< the order whose answers are kept
+  std::map<std::string, Answer> answers;         ///< to that order, by process
+  std::function<void(const Answer&)> on_answer;  ///< each one that counts
   std::function<void(const Thrusters&)> on_thrusters;
+  std::function<void(const VehicleCondition&)> on_vehicle;
   std::optional<Excitation> excitation;
   std::optional<StateEstimate> state;
   std::map<std::string, Health> health;

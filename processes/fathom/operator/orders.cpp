@@ -75,10 +75,16 @@ void Orders::give(Operator wanted, bool supervisor) {
   }
 }
 
-void go_through(Console& console, const std::vector<std::string>& needs) {
+void go_through(Console& console, const std::vector<std::string>& needs, bool supervisor) {
   constexpr double kLongest = 2.5;  // s: HEALTH comes each second
-  const auto lines = [&] { return excitation::preflight(console.heard(), needs); };
-  console.listen(kLongest, [&] { return excitation::all_ok(lines()); });
+  const auto lines = [&] {
+    return supervisor ? excitation::preflight(console.heard(), needs) : excitation::vehicle_lines(console.heard());
+  };
+  const bool simulated = console.gate && console.gate->process == "simulator";  // nothing stands behind it
+  console.listen(kLongest, [&] {
+    const auto all = lines();
+    return excitation::all_ok(all) && (simulated || !all.empty());
+  });
   for (const excitation::PreflightLine& line : lines()) std::printf("%s\n", excitation::shown(line).c_str());
   std::fflush(stdout);
   if (!excitation::all_ok(lines())) throw InputError("not armed: see to what is NOT OK above, then arm again");

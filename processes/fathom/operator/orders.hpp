@@ -57,8 +57,9 @@ inline constexpr char kNobodySays[] =
 /// one commands (`supervised`), nothing any more. Returns when the trial is done; InputError when it ended otherwise.
 /// Ctrl-C aborts.
 void attend(Console& console, Orders& orders, double promised, bool supervised);
-/// Line by line what must hold before anything moves; InputError where it does not.
-void go_through(Console& console, const std::vector<std::string>& needs);
+/// Line by line what must hold before anything moves, of the vehicle alone where no `supervisor` of ours commands;
+/// InputError where it does not.
+void go_through(Console& console, const std::vector<std::string>& needs, bool supervisor);
 /// Thrusters to zero. InputError "NOT CONFIRMED" unless THRUSTERS says within two seconds that they are.
 void abort_now(Console& console, bool checked);
 /// Keyboard or joystick to forces, until Ctrl-C.

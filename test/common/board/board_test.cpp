@@ -74,6 +74,24 @@ TEST_CASE("board: a trial is armed as long as the supervisor names a mode; an un
   CHECK(trial["age"] == doctest::Approx(2.0));
 }
 
+TEST_CASE("board: the track is the trial's, kept when it is done, and begun anew with the next one") {
+  Board some = board();
+  const auto fly = [&](const std::string& mode, const std::string& phase, double from, double to) {
+    for (double t = from; t < to; t += 1.0) {
+      some.hear(Excitation{.mode = mode, .phase = phase}, t);
+      StateEstimate state{.valid = true};
+      state.p_WB = {t, 0.0, 0.0};
+      some.hear(state, t);
+    }
+    return told(some, to)["track"].size();
+  };
+  fly("", "disarmed", 0.0, 20.0);
+  CHECK(fly("yaw", "excite", 20.0, 60.0) == 40);
+  CHECK(fly("total", "done", 60.0, 62.0) == 42);  // still armed
+  CHECK(fly("", "done", 62.0, 70.0) == 50);
+  CHECK(fly("surge", "approach", 70.0, 75.0) == 5);
+}
+
 TEST_CASE("board: state, model, thrusters and effects as they were said") {
   Board some = board();
   StateEstimate state{.valid = true};

@@ -261,11 +261,17 @@ TEST_CASE("simulator: hidden effects act on the truth and leave what is told alo
 }
 
 TEST_CASE("simulator: every registered effect can be hidden with drawn sizes, and the run stays finite") {
+  constexpr double kMast = 0.05;  // m^2 above the water, for what only such craft can feel
   for (const model::Effect* effect : model::all_effects()) {
     CAPTURE(effect->name());
     for (const std::string vehicle : {"seabotix_lbv150", "bluerov2"}) {
       CAPTURE(vehicle);
-      auto simulator = test::make_simulator(vehicle, "tank", {.seed = 3, .hide = {std::string{effect->name()}}});
+      model::Vehicle craft = test::vehicle_of_file(vehicle);
+      craft.windage = kMast;
+      const Config config = Config::parse(test::simulation_text(vehicle, {}), vehicle + ".yaml");
+      const auto simulator =
+          std::make_unique<simulation::Simulator>(craft, test::site_of_file("tank"), config.section("simulator"),
+                                                  simulation::Setup{.seed = 3, .hide = {std::string{effect->name()}}});
       const auto truth = [&] {
         std::vector<Truth> found;
         for (int tick = 0; tick < 500; ++tick) {
