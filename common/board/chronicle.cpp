@@ -5,7 +5,7 @@
 namespace fathom::board {
 namespace {
 
-constexpr std::size_t kMostText = 300;
+constexpr std::size_t kMostWords = 300;
 constexpr std::size_t kMostNames = 200;  // that a hostile publisher may make up
 
 std::string kind_of_phase(const std::string& phase) {
@@ -23,7 +23,7 @@ bool changed(std::optional<std::string>& before, const std::string& now) {
 }  // namespace
 
 void Chronicle::note(double now, const std::string& kind, const std::string& text) {
-  lines_.push_back({now, kind, text.substr(0, kMostText)});
+  lines_.push_back({now, kind, text.substr(0, kMostWords)});
   if (lines_.size() > kMost) lines_.pop_front();
 }
 

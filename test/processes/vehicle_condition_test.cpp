@@ -170,14 +170,14 @@ TEST_CASE("vehicle: outputs that stay neutral under a command are told within th
 namespace {
 
 /// The supervisor with everybody whom it needs, and `fathom arm` beside it.
-struct Trial {
+struct TankTrial {
   Behind behind;
   bool recorder{true};
   std::string full{};  ///< what the recorder says of its disk; empty: all is well
   std::string vehicle_file;
   Background supervisor;
 
-  explicit Trial(const std::string& conditions, const std::string& more_of_vehicle = "")
+  explicit TankTrial(const std::string& conditions, const std::string& more_of_vehicle = "")
       : behind{conditions},
         vehicle_file{behind.scratch.path("vehicle.yaml")},
         supervisor{behind.scratch, "supervisor", command(more_of_vehicle)} {}
@@ -231,7 +231,7 @@ struct Trial {
 
 TEST_CASE(
     "preflight: fathom arm prints what is so, line by line, and refuses a disarmed vehicle and a missing recorder") {
-  Trial trial{"--condition 14:disarmed"};
+  TankTrial trial{"--condition 14:disarmed"};
   trial.recorder = false;
   trial.run(4.0);
   const std::string unrecorded = trial.arm();
@@ -249,8 +249,8 @@ TEST_CASE(
 
 TEST_CASE(
     "preflight: with all well it arms; a leak then ends the trial at once, and the vehicle goes up as its file says") {
-  Trial trial{"--condition '20:says=2,Leak Detected'",
-              "after_abort: {action: surface, speed: 0.2 m/s, largest: 20 N, duration: 60 s}\n"};
+  TankTrial trial{"--condition '20:says=2,Leak Detected'",
+                  "after_abort: {action: surface, speed: 0.2 m/s, largest: 20 N, duration: 60 s}\n"};
   trial.run(4.0);
   const std::string armed = trial.arm();
   CHECK_MESSAGE(says(armed, "code 0"), armed);
@@ -272,7 +272,7 @@ TEST_CASE(
 
 TEST_CASE(
     "record: a trial whose disk is nearly full has no thrust at once, ends with that reason, and is not armed again") {
-  Trial trial{""};
+  TankTrial trial{""};
   trial.run(4.0);
   REQUIRE(says(trial.arm(), "code 0"));
   trial.run(2.0);
