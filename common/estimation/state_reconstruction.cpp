@@ -121,7 +121,8 @@ Reconstruction reconstruct_state(const Recording& recording, const TrialFiles& f
                     text(": most probable process noise: jerk %.3g m/s^2, angular jerk %.3g rad/s^2 per root second",
                          settings.process.jerk, settings.process.angular_jerk));
   }
-  Reconstruction result{.settings = settings, .trial = smooth(recording, settings, nullptr, progress, options.filtered)};
+  Reconstruction result{.settings = settings,
+                        .trial = smooth(recording, settings, nullptr, progress, options.filtered)};
   refuse_contradictions(recording.name, result.trial);
   refuse_unsure(recording.name, result.trial, options.without_position);
   if (!options.despite_state) refuse_against_state(recording, result.trial, options.without_position);

@@ -109,8 +109,7 @@ std::map<int, Eigen::Vector3d> places_of(const std::vector<std::string>& words) 
 void draft(const VehicleOptions& options) {
   const int asked = (options.name.empty() ? 0 : 1) + (options.sdf.empty() ? 0 : 1) + (options.urdf.empty() ? 0 : 1) +
                     (options.frame.empty() ? 0 : 1);
-  if (asked > 1)
-    throw InputError("one of NAME, --from-sdf, --from-urdf and --from-ardusub-frame at a time");
+  if (asked > 1) throw InputError("one of NAME, --from-sdf, --from-urdf and --from-ardusub-frame at a time");
   if (!options.places.empty() && options.frame.empty()) throw InputError("--place: goes with --from-ardusub-frame");
   std::string text;
   if (!options.frame.empty()) text = vehicle_file(drafts::draft_of_frame(options.frame, places_of(options.places)));
