@@ -125,7 +125,7 @@ class Fitting {
   /// The Newton step that ends within the limits: what would leave them first stops there, all others move with that
   /// known, and so on. A number on its limit is held only if the step of all together would take it out: to clip a step
   /// afterwards, or to hold what its own slope alone pushes outwards, stops short where numbers do each other's work
-  /// (linear drag at zero beside drag of third order: 500 nats).
+  /// (linear drag at zero beside drag of third order).
   [[nodiscard]] Eigen::VectorXd step_within(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                                             const Eigen::VectorXd& x) const {
     Eigen::MatrixXd free = A;

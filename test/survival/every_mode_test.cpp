@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fathom_lcm/health_t.hpp>
 #include <fathom_lcm/model_t.hpp>
-#include <fathom_lcm/process_info_t.hpp>
 #include <filesystem>
 #include <utility>
 
@@ -79,12 +79,13 @@ struct Learnt {
 Learnt learnt_in(const Scratch& scratch) {
   Learnt learnt;
   bool anew = false;
+  int64_t pid = 0;  // PROCESS_INFO is said again and again
   for (const std::string& path : parts(scratch)) {
     EventLog log{path};
     while (const auto event = log.next()) {
-      if (event->channel == "PROCESS_INFO") {
-        const auto info = runtime::message_of<fathom_lcm::process_info_t>(event->data);
-        anew = anew || (info && info->process == "identifier");
+      if (event->channel == "HEALTH") {
+        const auto health = runtime::message_of<fathom_lcm::health_t>(event->data);
+        if (health && health->process == "identifier" && std::exchange(pid, health->pid) != health->pid) anew = true;
       } else if (event->channel == "MODEL") {
         const auto message = runtime::message_of<fathom_lcm::model_t>(event->data);
         const auto model = message ? wire::decode(*message) : std::nullopt;
