@@ -31,6 +31,10 @@ if(CMAKE_CROSSCOMPILING)  # cpack would ask dpkg, which answers for the machine 
 endif()
 # What is run, not linked: docs/dependencies.md.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "adduser, gnuplot-nox | gnuplot, iproute2, liblcm-bin")
+get_property(python GLOBAL PROPERTY FATHOM_PYTHON_DEPENDS)  # of the module, where it is built
+if(python)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", ${python}")
+endif()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "bash-completion, chrony | time-daemon")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "default-jre, liblcm-java, libjchart2d-java, python3-numpy, python3-matplotlib")
 set(debian ${CMAKE_CURRENT_LIST_DIR}/debian)
