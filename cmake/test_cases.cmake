@@ -3,7 +3,7 @@
 # LABEL is that of cases in no doctest suite; those of the files after SEARCH have that one. What labels mean:
 # cmake/ctest_case.cmake.
 set(FATHOM_SLOWER 1)
-if(FATHOM_SANITIZE)
+if(FATHOM_SANITIZE OR CMAKE_CROSSCOMPILING)  # the latter by an emulator
   set(FATHOM_SLOWER 6)
 endif()
 
