@@ -73,8 +73,10 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
 
   const likelihood::Fit& fit = found.best.fit;
   // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
-  const bool beside =
-      found.free_force && found.free_force->fit.finite && found.free_force->log_odds >= thresholds.free_force_odds;
+  // What takes all thrust away, or turns it around, does not stand beside the model but in its place.
+  const bool beside = found.free_force && found.free_force->fit.finite &&
+                      found.free_force->log_odds >= thresholds.free_force_odds &&
+                      found.free_force->of_thrust > thresholds.thrust_taken;
   const likelihood::Noise& noise = beside ? found.free_force->fit.noise : fit.noise;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
     const double share = explained(problem, noise[axis], axis);

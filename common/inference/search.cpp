@@ -354,10 +354,12 @@ class Search {
     return exchanged;
   }
 
-  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const {
+  /// `relatives`: in whose place it stands.
+  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted,
+                                                 std::span<const model::ActiveEffect> relatives = {}) const {
     begin(kFreeForceFit);
-    FreeForceFound found =
-        find_free_force(problem_, see(problem_, fitted.fit, threads_), scene_, thresholds_, threads_, deadline_);
+    FreeForceFound found = find_free_force(problem_, see(problem_, fitted.fit, threads_), scene_, thresholds_, threads_,
+                                           deadline_, relatives);
     progress_.done(kFreeForceFit.phase);
     return found;
   }
@@ -397,7 +399,9 @@ class Search {
 
   /// If the free force beside `rest`, which lacks these effects, does what they do, they are gone.
   void takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest) {
-    FreeForceFound force = free_force_beside(rest);
+    std::vector<model::ActiveEffect> relatives;
+    for (const std::size_t e : gone) relatives.push_back(effects()[e]);
+    FreeForceFound force = free_force_beside(rest, relatives);
     if (force.size.share < thresholds_.smallest_size) return;
     const double odds = found_.best.score + worth(*found_.free_force) - rest.score - worth(force);
     const bool stays = odds >= thresholds_.name_odds;

@@ -15,21 +15,25 @@ struct Thresholds {
   double score_worth{8.0};       ///< nats a score must promise to be fitted: less cannot become a name
   int fits_per_round{3};         ///< best by score; the true one was among them in every simulated set
   int pairs_per_round{2};
-  int most_effects{4};     ///< the prior has next to nothing beyond
-  double group_gain{3.0};  ///< nats, after its price, for which a group of features is taken up
-  int most_groups{5};
-  double group_price{2.5};      ///< nats of a variance of unknown order of magnitude
+  int most_effects{4};       ///< the prior has next to nothing beyond
+  double group_gain{3.0};    ///< nats, after its price, for which a group of features is taken up
+  int most_groups{8};        ///< more has never held on a new recording
+  int free_force_rounds{2};  ///< screens of a free force: what the first leaves is seen with less random force
+  double same_thing{0.98};  ///< share of an effect's information in a group, from which on they are one thing: the rest
+                            ///< of an effect of hundreds of nats is less than the odds of a name
+  double group_price{2.5};  ///< nats of a variance of unknown order of magnitude
   double searched_price{10.0};  ///< nats more where a moment or a frequency was sought in the data
   double large_random{0.03};  ///< random over applied acceleration above which the scan is repeated with a fifth of it
   double swallowing_memory{2.0};  ///< s: and its memory, above which it may have swallowed what is slow
   double slow_memory{10.0};       ///< s: a random force that remembers for longer, above the smallest size, is no noise
   double following{0.0};          ///< least share of an axis' acceleration that the model must explain
-  double no_skill{1e-3};          ///< p-value over windows of a model that is no worse than "nothing changes"
-  double idle_input{3.0};         ///< Student's t below which an axis' thrust does not act on it
-  double foreign_unit{5.0};       ///< fitted over expected inertia, or its inverse: thrust in another unit
-  double absurd{10.0};            ///< times its prior's mean and sigma together: a number that nothing can have
-  double shortest{20.0};          ///< s of data to judge at all: ten blocks for each number of an ordinary model
-  double disagreement{5.0};       ///< median over numbers of the difference of both scores, in standard deviations
+  double thrust_taken{-1.0};  ///< of the applied thrust: a free force that takes so much stands in the model's place
+  double no_skill{1e-3};      ///< p-value over windows of a model that is no worse than "nothing changes"
+  double idle_input{3.0};     ///< Student's t below which an axis' thrust does not act on it
+  double foreign_unit{5.0};   ///< fitted over expected inertia, or its inverse: thrust in another unit
+  double absurd{10.0};        ///< times its prior's mean and sigma together: a number that nothing can have
+  double shortest{20.0};      ///< s of data to judge at all: ten blocks for each number of an ordinary model
+  double disagreement{5.0};   ///< median over numbers of the difference of both scores, in standard deviations
 };
 
 }  // namespace fathom::inference

@@ -27,8 +27,14 @@ constexpr double kAmplitudeSigma = 0.3;  // of the applied wrench: prior of a fo
 constexpr std::size_t kBatch = 48;       // columns that pass through the filter together
 constexpr std::size_t kFitted = 3;       // forms that are fitted in full
 constexpr int kMoments = 30;
-constexpr std::array<const char*, 9> kDirections{"tau_X", "tau_Y",   "tau_Z",  "tau_K", "tau_M",
-                                                 "tau_N", "f_north", "f_east", "f_down"};
+constexpr int kMostAmplitudes = 6;                      // of a law that can still be read
+constexpr double kMomentRoom = 8.0, kMomentStep = 1.0;  // s about a moment that the learned force has found
+
+/// "tau_Y", "f_north".
+std::string symbol_of(int axis) {
+  const std::string left = model::direction_symbol(axis);
+  return left.substr(0, left.find(' '));
+}
 
 Feature along(int axis, std::initializer_list<Factor> factors) {
   Feature feature{.axis = axis, .count = static_cast<int>(factors.size())};
@@ -37,6 +43,35 @@ Feature along(int axis, std::initializer_list<Factor> factors) {
 }
 Factor of(Quantity quantity, int index = 0, double a = 0.0, double b = 1.0) {
   return {.quantity = quantity, .index = index, .a = a, .b = b};
+}
+
+/// Sum of amplitudes times products; `moment`: what stands in place of a moment that is sought.
+std::string equation_of(const std::vector<Feature>& features, const std::string& moment = {}) {
+  std::string sum;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    Feature feature = features[k];
+    std::string since;
+    for (int i = 0; i < feature.count && !moment.empty(); ++i) {
+      if (feature.factors[static_cast<std::size_t>(i)].quantity != Quantity::kAfter) continue;
+      feature.factors[static_cast<std::size_t>(i)] = feature.factors[static_cast<std::size_t>(feature.count - 1)];
+      --feature.count;
+      since = " 1(t > " + moment + ")";
+    }
+    const std::string product = feature.words();
+    sum += (k == 0 ? "c" : " + c") + (features.size() > 1 ? "_" + std::to_string(k + 1) : std::string{}) +
+           (product.empty() ? "" : " ") + product + since;
+  }
+  return features.size() > 1 && features.front().axis >= model::kHullDrag ? "(" + sum + ")" : sum;
+}
+
+void take_amplitudes(const Fit& fit, FormulaFound& found) {
+  const Eigen::VectorXd sigma = fit.sigma();
+  for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+    if (fit.numbers[j].kind != likelihood::NumberKind::kWeight) continue;
+    const auto k = static_cast<std::size_t>(fit.numbers[j].index);
+    found.amplitude.push_back(fit.hypothesis.force.weights[k] * fit.hypothesis.force.features[k].scale);
+    found.amplitude_sigma.push_back(sigma[static_cast<Eigen::Index>(j)] * fit.hypothesis.force.features[k].scale);
+  }
 }
 
 class Grammar {
@@ -75,7 +110,7 @@ class Grammar {
     const std::string own = model::kVelocityNames[static_cast<std::size_t>(axis)];
     for (int i = 0; i < problem_.simulated; ++i) {
       const int j = problem_.axes[static_cast<std::size_t>(i)];
-      const std::string tau = kDirections[static_cast<std::size_t>(j)];
+      const std::string tau = symbol_of(j);
       if (j != axis)
         add(axis, "thrust of another axis", "c " + tau,
             [=](double) { return std::vector{along(axis, {of(Quantity::kWrench, j)})}; });
@@ -86,8 +121,7 @@ class Grammar {
       });
     }
     moment(axis, "a moment", "c", {});
-    moment(axis, "a thrust that changes at a moment", std::string("c ") + kDirections[static_cast<std::size_t>(axis)],
-           {of(Quantity::kWrench, axis)});
+    moment(axis, "a thrust that changes at a moment", "c " + symbol_of(axis), {of(Quantity::kWrench, axis)});
     moment(axis, "a drag that changes at a moment", "c |" + own + "| " + own,
            {of(Quantity::kSpeed, axis), of(Quantity::kVelocity, axis)});
   }
@@ -106,14 +140,39 @@ class Grammar {
     });
   }
 
+  /// What the learned force holds from a moment on, the moment left open.
+  void again(const inference::GroupFound& group, const model::FreeForce& force) {
+    for (const model::FeatureGroup& own : force.groups) {
+      if (own.kind != group.kind || own.axis != group.axis || !own.closed || !own.searched) continue;
+      const std::vector<Feature> features(force.features.begin() + own.first,
+                                          force.features.begin() + own.first + own.count);
+      const auto is_moment = [](const Factor& factor) { return factor.quantity == Quantity::kAfter; };
+      const auto& first = features.front().factors;
+      const auto moment = std::find_if(first.begin(), first.begin() + features.front().count, is_moment);
+      if (moment == first.begin() + features.front().count) continue;
+      std::vector<double> grid;
+      for (double t = -kMomentRoom; t <= kMomentRoom; t += kMomentStep) grid.push_back(moment->a + t);
+      add(own.axis, own.kind, equation_of(features, "t_1"), "t_1", "s", grid, kMomentPrice, [=](double t) {
+        std::vector<Feature> moved = features;
+        for (Feature& feature : moved) {
+          for (int i = 0; i < feature.count; ++i) {
+            if (is_moment(feature.factors[static_cast<std::size_t>(i)]))
+              feature.factors[static_cast<std::size_t>(i)].a = t;
+          }
+        }
+        return moved;
+      });
+    }
+  }
+
   std::vector<Form> forms;
 
  private:
   void add(int axis, const std::string& words, const std::string& equation, const std::string& symbol,
            const std::string& unit, std::vector<double> grid, double price,
            std::function<std::vector<Feature>(double)> features) {
-    forms.push_back({words, std::string(kDirections[static_cast<std::size_t>(axis)]) + " = " + equation, symbol, unit,
-                     axis, std::move(grid), price, std::move(features)});
+    forms.push_back({words, model::direction_symbol(axis) + " " + equation, symbol, unit, axis, std::move(grid), price,
+                     std::move(features)});
   }
   void add(int axis, const std::string& words, const std::string& equation,
            std::function<std::vector<Feature>(double)> features) {
@@ -246,8 +305,8 @@ double rms_of(const Problem& problem, const inference::Seen& seen, const Feature
     plant.begin(problem.runs[r].start());
     for (std::size_t b = 0; b < problem.runs[r].blocks().size(); ++b) {
       plant.at_middle(b);
-      model::FeatureState state = plant.features();
-      state.nu = seen.reference[r].nu_middle.col(static_cast<Eigen::Index>(b));
+      const model::FeatureState state =
+          plant.features_at(seen.reference[r].nu_middle.col(static_cast<Eigen::Index>(b)));
       const double value = feature.value(state);
       square += value * value;
       count += 1.0;
@@ -270,6 +329,7 @@ std::vector<Form> grammar(const Problem& problem, const model::Scene& scene, con
     if (asked[static_cast<std::size_t>(axis)]) grammar.body(axis);
     if (scene.attitude && axis < 3) grammar.world(kWorldAxis + axis);
   }
+  for (const inference::GroupFound& group : found.groups) grammar.again(group, found.fit.hypothesis.force);
   return std::move(grammar.forms);
 }
 
@@ -292,6 +352,7 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
     force.features = form.features(place.inner);
     const double wrench = form.axis < kWorldAxis ? scene.tau_rms[form.axis] : scene.tau_rms.head<3>().norm();
     for (Feature& feature : force.features) {
+      if (form.axis >= model::kHullDrag) continue;  // as the learned force has them
       const double rms = rms_of(problem, seen, feature);
       feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
     }
@@ -308,17 +369,39 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
     if (best && over <= best->over_learned) continue;
     FormulaFound one{.form = form, .inner = place.inner, .over_learned = over};
     one.inner_sigma = inner_sigma(problem, seen, forms, place, threads);
-    const Eigen::VectorXd sigma = fit.sigma();
-    for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
-      if (fit.numbers[j].kind != likelihood::NumberKind::kWeight) continue;
-      const auto k = static_cast<std::size_t>(fit.numbers[j].index);
-      one.amplitude.push_back(fit.hypothesis.force.weights[k] * fit.hypothesis.force.features[k].scale);
-      one.amplitude_sigma.push_back(sigma[static_cast<Eigen::Index>(j)] * fit.hypothesis.force.features[k].scale);
-    }
+    take_amplitudes(fit, one);
     one.fit = std::move(fit);
     best = std::move(one);
   }
   return best;
+}
+
+std::optional<FormulaFound> as_formula(const inference::FreeForceFound& found) {
+  const model::FreeForce& force = found.fit.hypothesis.force;
+  if (!found.fit.finite || force.empty() || force.features.size() > kMostAmplitudes ||
+      !std::ranges::all_of(force.groups, &model::FeatureGroup::closed))
+    return std::nullopt;
+  FormulaFound formula{.fit = found.fit};
+  formula.form.axis = force.features.front().axis;
+  std::size_t named = 0;
+  for (std::size_t g = 0; g < force.groups.size(); ++g) {
+    const model::FeatureGroup& group = force.groups[g];
+    const std::vector<Feature> features(force.features.begin() + group.first,
+                                        force.features.begin() + group.first + group.count);
+    std::string sum = equation_of(features);
+    if (force.features.size() > 1) {  // numbered through all groups
+      std::string numbered;
+      for (std::size_t k = 0; k < features.size(); ++k) {
+        const std::string product = features[k].words();
+        numbered += (k == 0 ? "c_" : " + c_") + std::to_string(++named) + (product.empty() ? "" : " ") + product;
+      }
+      sum = features.size() > 1 && group.axis >= model::kHullDrag ? "(" + numbered + ")" : numbered;
+    }
+    formula.form.words += (g == 0 ? "" : "; ") + inference::words({.kind = group.kind, .axis = group.axis});
+    formula.form.equation += (g == 0 ? "" : ", ") + model::direction_symbol(group.axis) + " " + sum;
+  }
+  take_amplitudes(found.fit, formula);
+  return formula;
 }
 
 FormulaGiven given_of(const FormulaFound& found) {
@@ -328,8 +411,8 @@ FormulaGiven given_of(const FormulaFound& found) {
     return std::string{buffer};
   };
   FormulaGiven given{.equation = found.form.equation, .over_learned = found.over_learned};
-  given.words = "A closed form fits: along " + std::string{kDirections[static_cast<std::size_t>(found.form.axis)]} +
-                ", with " + found.form.words + ": " + found.form.equation;
+  given.words = "A closed form fits: along " + model::direction_words(found.form.axis) + ", with " + found.form.words +
+                ": " + found.form.equation;
   for (std::size_t k = 0; k < found.amplitude.size(); ++k) {
     const std::string name = found.amplitude.size() == 1 ? "c" : "c_" + std::to_string(k + 1);
     given.numbers.push_back({name, found.amplitude[k], found.amplitude_sigma[k], "SI"});

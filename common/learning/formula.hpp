@@ -39,6 +39,9 @@ struct FormulaFound {
                                                        const model::Scene& scene,
                                                        const inference::FreeForceFound& found, int threads);
 
+/// The learned force itself, where all of it can be written as a law of a few amplitudes.
+[[nodiscard]] std::optional<FormulaFound> as_formula(const inference::FreeForceFound& found);
+
 /// As result.json holds it.
 [[nodiscard]] FormulaGiven given_of(const FormulaFound& found);
 

@@ -241,6 +241,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   if (formula && formula->over_learned < -limits.form) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
   if (!formula && !adopt(free->fit)) return learned;
+  if (!formula) formula = as_formula(*free);
   if (formula) given.formula = given_of(*formula);
   const Fit& with = formula ? formula->fit : free->fit;
   describe(with, visited, given);

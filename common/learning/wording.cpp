@@ -15,6 +15,44 @@ std::string text(const char* format, Arguments... arguments) {
   return buffer;
 }
 
+/// What may lie behind a correction of a kind: words of the group, the first that fits. Hints, no findings.
+struct Hint {
+  const char *term, *modulator, *look_for;
+};
+constexpr Hint kHints[]{
+    {"force toward down", "time", "water in a housing, gas, a line that is paid out, or water that becomes lighter"},
+    {"force in Z", "time", "water in a housing, gas, or a line that is paid out"},
+    {"drag", "growing with time", "weed or fouling, or more and more line in the water"},
+    {"drag", "from a moment on", "something that was caught or lost at that moment"},
+    {"drag", "depth", "the surface, the bottom or a layer of other water"},
+    {"drag", "place", "walls, or line in the water whose length goes with the place"},
+    {"thrust", "growing with time", "motors that warm, or a supply that sags"},
+    {"thrust", "from a moment on", "damage, a reset or a changed setting at that moment"},
+    {"thrust", "by", "flow into the thrusters that goes with the motion, or a supply that is shared"},
+    {"thruster", "by thruster", "the wash of one thruster in another"},
+    {"thruster off its line", "", "a thruster that is turned, or whose wash meets the hull"},
+    {"thruster", "", "that thruster and its driver"},
+    {"stream", "time", "a tide that turns, or water that is set in motion by the craft itself"},
+    {"stream", "moment", "a stream that has set in or turned"},
+    {"stream", "depth", "a stream that differs with depth"},
+    {"stream", "place", "an eddy or a jet in part of the site"},
+    {"force toward", "place", "a tether, an outlet, or a stream in part of the site"},
+    {"force toward", "", "a tether, or water in motion"},
+    {"swing", "", "waves, or a pump or motor of that frequency"},
+    {"force", "heading", "magnets, cables that wind, or a sensor whose error turns with the craft"},
+    {"velocity a moment ago", "", "flow that is slow to follow: wakes, water in the frame"},
+    {"thrust a moment ago", "", "thrust that is slow to follow, by speed or by direction"},
+    {"velocity", "", "lift, drag across the axis, or a part of the hull that no symmetry plane holds"}};
+
+std::string hint_for(const inference::GroupFound& group) {
+  const std::string kind = inference::words(group);
+  for (const Hint& hint : kHints) {
+    if (kind.find(hint.term) != std::string::npos && kind.find(hint.modulator) != std::string::npos)
+      return hint.look_for;
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string too_little(const std::string& what, double value, const std::string& how, double needed) {
@@ -30,6 +68,8 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
                              100.0 * given.size, model::kAxisNames[static_cast<std::size_t>(found.size.axis)]) +
                          with + "." + (given.formula ? " " + given.formula->words : "") +
                          " It is a correction with arguments, not a cause.";
+  if (const std::string look_for = found.groups.empty() ? "" : hint_for(found.groups.front()); !look_for.empty())
+    sentence += " Look for " + look_for + ".";
   const double fall = 100.0 * (1.0 - given.held_out);
   sentence += text(" Where its weights were not fitted, the open-loop error is %.0f %% lower (%d predictions).", fall,
                    given.windows);

@@ -30,6 +30,8 @@ Plant::Plant(const Hypothesis& hypothesis, const std::vector<Number>& numbers, c
   for (const model::ActiveEffect& active : model_.effects) stages_.push_back(stage_of(active));
   feels_ = std::ranges::find(stages_, Stage::kHull) != stages_.end();
   free_moves_ = std::ranges::any_of(free_.features, [](const Feature& f) { return f.moves_with_velocity(); });
+  free_drags_ = free_.reads_drag();
+  features_.allocation = &model_.allocation;
   thrust_forces(model_, run_, own_.command_offset, forces_);
   mean_over_blocks(forces_, mean_);
   motion_.vehicle = model_.vehicle;
@@ -128,7 +130,15 @@ Vector6d Plant::outside_wrench(const Vector6d& nu) {
   if (free_.empty()) return wrench;
   if (!free_moves_) return wrench + free_still_;
   features_.nu = nu;
+  if (free_drags_) features_.drag = model::hull_drag(model_, nu);
   return wrench + free_.wrench(features_);
+}
+
+FeatureState Plant::features_at(const Vector6d& nu) const {
+  FeatureState state = features_;
+  state.nu = nu;
+  state.drag = model::hull_drag(model_, nu);
+  return state;
 }
 
 Vector6d Plant::acceleration(const Vector6d& nu) {
@@ -196,6 +206,7 @@ void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_do
   const auto b = static_cast<Eigen::Index>(block);
   const Matrix6d inverse = inverse_inertia(nu, nu_dot);
   features_.nu = nu;
+  if (free_drags_) features_.drag = model::hull_drag(model_, nu);
   for (std::size_t j = 0; j < numbers_.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     const Number& number = numbers_[j];

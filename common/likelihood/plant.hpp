@@ -48,7 +48,8 @@ class Plant {
   /// Mean over every block of what is given at substeps, column after column.
   void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
   [[nodiscard]] const Eigen::MatrixXd& mean_forces() const { return mean_; }  ///< actuators x blocks
-  [[nodiscard]] const FeatureState& features() const { return features_; }
+  /// What features read at a velocity, of the moment that was set.
+  [[nodiscard]] FeatureState features_at(const Vector6d& nu) const;
   [[nodiscard]] const model::Motion& motion() const { return motion_; }
 
  private:
@@ -68,6 +69,7 @@ class Plant {
   std::vector<Stage> stages_;            // of the model's effects
   bool feels_{};                         // some hull effect alters what is felt
   bool free_moves_{};                    // some feature goes with the velocity
+  bool free_drags_{};                    // some feature acts along the hull's drag
   Eigen::MatrixXd forces_, mean_;        // actuators x substeps, x blocks
   std::vector<Eigen::MatrixXd> slopes_;  // of the mean forces, per number that has one
   std::vector<int> slope_of_;            // number -> place in slopes_, -1: none

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/model/learned/factors/factor_kind.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -12,34 +13,10 @@ using Json = nlohmann::ordered_json;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-constexpr std::array<const char*, 9> kDirections{"X", "Y", "Z", "K", "M", "N", "north", "east", "down"};
-
 std::string factor_words(const CorrectionFactor& factor) {
-  constexpr std::array<const char*, 6> kVelocities{"u", "v", "w", "p", "q", "r"};
-  const auto index = static_cast<std::size_t>(factor.index);
-  const auto axis = [&](const char* const* names) { return index < 6 ? std::string{names[index]} : std::string{"?"}; };
-  const std::string& q = factor.quantity;
-  if (q == "velocity") return axis(kVelocities.data());
-  if (q == "speed") return "|" + axis(kVelocities.data()) + "|";
-  if (q == "slow_velocity") return axis(kVelocities.data()) + " a moment ago";
-  if (q == "wrench") return "tau_" + axis(kDirections.data());
-  if (q == "wrench_size") return "|tau_" + axis(kDirections.data()) + "|";
-  if (q == "slow_wrench") return "tau_" + axis(kDirections.data()) + " a moment ago";
-  if (q == "thruster") return "f_" + std::to_string(index);
-  if (q == "thruster_size") return "|f_" + std::to_string(index) + "|";
-  if (q == "depth_bump") return "near depth " + number(factor.a) + " m";
-  if (q == "plan_bump") return "near (" + number(factor.a) + ", " + number(factor.b) + ") m";
-  if (q == "heading_cosine") return "cos " + std::to_string(index) + " psi";
-  if (q == "heading_sine") return "sin " + std::to_string(index) + " psi";
-  if (q == "after") return "after " + number(factor.a) + " s";
-  if (q == "tone_cosine") return "cos(" + number(factor.a) + " t)";
-  if (q == "tone_sine") return "sin(" + number(factor.a) + " t)";
-  if (q == "flow_speed") return "speed";
-  if (q == "power_odd")
-    return "sign(" + axis(kVelocities.data()) + ") |" + axis(kVelocities.data()) + "|^" + number(factor.a);
-  if (q == "power_even") return "|" + axis(kVelocities.data()) + "|^" + number(factor.a);
-  if (q == "ramp") return "time";
-  return q;
+  const auto quantity = model::quantity_from(factor.quantity);
+  if (!quantity) return factor.quantity;
+  return model::kind_of(*quantity).words({*quantity, factor.index, factor.bank, factor.a, factor.b, factor.c});
 }
 
 }  // namespace
@@ -115,8 +92,7 @@ std::string correction_section(const DiagnosisResult& result) {
     std::string product;
     for (const CorrectionFactor& factor : term.factors)
       product += (product.empty() ? "" : " · ") + factor_words(factor);
-    const auto axis = static_cast<std::size_t>(term.axis);
-    html += "<tr><td>" + std::string{axis < kDirections.size() ? kDirections[axis] : "?"} + "</td><td>" +
+    html += "<tr><td>" + escape(model::direction_words(term.axis)) + "</td><td>" +
             escape(product.empty() ? "always" : product) + "</td><td>" + number(term.weight * term.scale) +
             "</td><td>" + number(term.sigma * term.scale) + "</td></tr>\n";
   }

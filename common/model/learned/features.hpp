@@ -30,29 +30,28 @@ struct FeatureState {
   model::ActuatorForces force{};   ///< N
   std::array<Vector6d, kThrustMemories.size()> slow_tau{};
   std::array<Vector6d, kVelocityMemories.size()> slow_nu{};
+  Vector6d drag{Vector6d::Zero()};  ///< N, N m: the hull's own by the base numbers
+  const Allocation* allocation{};   ///< tau = B f
 };
 
-enum class Quantity : std::uint8_t {
-  kVelocity,  ///< of axis `index`
-  kSpeed,     ///< its size
-  kWrench,    ///< of axis `index`
-  kWrenchSize,
-  kThruster,  ///< force of actuator `index`
-  kThrusterSize,
-  kSlowWrench,  ///< of axis `index` through low pass `bank`
-  kSlowVelocity,
-  kDepthBump,      ///< Gaussian about a, width b
-  kPlanBump,       ///< about (a, b), width c
-  kHeadingCosine,  ///< of `index` times the heading
-  kHeadingSine,
-  kAfter,       ///< smooth step at a, over b seconds
-  kToneCosine,  ///< of a rad/s
-  kToneSine,
-  kFlowSpeed,  ///< size of u, v and w together
-  kPowerOdd,   ///< of the velocity of axis `index`, its sign kept: exponent a
-  kPowerEven,  ///< of its size
-  kRamp        ///< (t - a) / b
+/// Largest sizes that a recording has shown of what features read.
+struct Visited {
+  Vector6d nu{Vector6d::Zero()};                                                    ///< m/s, rad/s
+  Vector6d tau{Vector6d::Zero()};                                                   ///< N, N m
+  ActuatorForces force{};                                                           ///< N
+  Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
 };
+
+constexpr double kVisitedReach = 1.15;  ///< times the visited size, up to which features are taken at their word
+
+/// What a factor reads: one kind each, in a source of factors/.
+enum class Quantity : std::uint8_t {
+#define FACTOR(enumerator, name) enumerator,
+#include "common/model/learned/factors/factors.def"
+#undef FACTOR
+};
+struct FactorKind;  ///< factors/factor_kind.hpp
+[[nodiscard]] const FactorKind& kind_of(Quantity quantity);
 /// As result.json names it.
 [[nodiscard]] std::string_view word(Quantity quantity);
 [[nodiscard]] std::optional<Quantity> quantity_from(std::string_view word);
@@ -63,19 +62,26 @@ struct Factor {
   double a{}, b{1.0}, c{1.0};
 };
 
-/// Axes of a feature: X..N of the body, then north, east and down of the world.
-constexpr int kWorldAxis = 6;
+/// Along what a feature acts: X..N of the body; north, east and down of the world; all of the hull's drag; all thrust,
+/// as it is applied; the line of each thruster.
+constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
+constexpr int kDirections = kThrusterLine + kMaxActuators;
+[[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
+/// What stands before the amplitude in an equation, Fossen's notation: "tau_Y =", "tau = b_2" (column of B).
+[[nodiscard]] std::string direction_symbol(int axis);
 
 struct Feature {
   int axis{};
   int count{};  ///< of factors
-  std::array<Factor, 3> factors{};
+  std::array<Factor, 4> factors{};
   double scale{1.0};
-  /// Scaled value, N or N m.
+  /// Scaled value: N, N m, or a share of the drag or thrust that it acts along.
   [[nodiscard]] double value(const FeatureState& state) const;
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
-  [[nodiscard]] bool remembers() const;  ///< reads low passes
+  [[nodiscard]] bool remembers() const;     ///< reads low passes
+  [[nodiscard]] bool reads_thrust() const;
+  [[nodiscard]] std::string words() const;  ///< its product, Fossen's notation; empty: it is constant
   void add(const FeatureState& state, double weight, Vector6d& wrench) const;
 };
 
@@ -85,6 +91,7 @@ struct FeatureGroup {
   int first{}, count{};  ///< of the features
   double sigma{0.05};    ///< of its weights
   bool searched{false};  ///< its moment or frequency was sought in the data
+  bool closed{false};    ///< few columns that are a law together, none of a table of bumps or steps
 };
 
 struct FreeForce {
@@ -93,6 +100,7 @@ struct FreeForce {
   std::vector<double> weights;
   [[nodiscard]] bool empty() const { return features.empty(); }
   [[nodiscard]] Vector6d wrench(const FeatureState& state) const;
+  [[nodiscard]] bool reads_drag() const;
 };
 
 }  // namespace fathom::model

@@ -4,6 +4,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/model/learned/factors/factor_kind.hpp"
 #include "common/model/parameters.hpp"
 
 namespace fathom::model {
@@ -23,13 +24,12 @@ Factor factor_of(const Config& config) {
   factor.a = config.quantity("a", "");
   factor.b = config.quantity("b", "");
   factor.c = config.quantity("c", "");
-  const bool slow = *quantity == Quantity::kSlowWrench || *quantity == Quantity::kSlowVelocity;
-  const auto banks =
-      static_cast<int>(*quantity == Quantity::kSlowWrench ? kThrustMemories.size() : kVelocityMemories.size());
-  if (slow && (factor.bank < 0 || factor.bank >= banks)) config.fail("bank", "there is no such low pass");
-  const bool thruster = *quantity == Quantity::kThruster || *quantity == Quantity::kThrusterSize;
-  if (factor.index < 0 || factor.index >= (thruster ? kMaxActuators : 6))
+  const FactorKind& kind = kind_of(*quantity);
+  if (kind.banks > 0 && (factor.bank < 0 || factor.bank >= kind.banks))
+    config.fail("bank", "there is no such low pass");
+  if (factor.index < 0 || factor.index >= (kind.indexed == Indexed::kThrusters ? kMaxActuators : 6))
     config.fail("index", "there is no such axis or thruster");
+  if (factor.b == 0.0 || factor.c == 0.0) config.fail("b", "a width is not 0");
   return factor;
 }
 
@@ -44,8 +44,10 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
   for (const Config& term : config.list("terms")) {
     const std::vector<Config> factors = term.list("factors");
     Feature feature{.axis = term.integer("axis"), .count = static_cast<int>(factors.size())};
-    if (feature.axis < 0 || feature.axis > kWorldAxis + 2) term.fail("axis", "'axis' must be from 0 to 8");
-    if (factors.size() > feature.factors.size()) term.fail("factors", "a term has three factors at most");
+    if (feature.axis < 0 || feature.axis >= kDirections)
+      term.fail("axis", "'axis' must be from 0 to " + std::to_string(kDirections - 1));
+    if (factors.size() > feature.factors.size())
+      term.fail("factors", "a term has " + std::to_string(feature.factors.size()) + " factors at most");
     for (std::size_t i = 0; i < factors.size(); ++i) feature.factors[i] = factor_of(factors[i]);
     feature.scale = term.quantity("scale", "");
     const std::string kind = term.text("group");
@@ -71,9 +73,11 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
   visited.p_low = seen.vector3("p_low", "");
   visited.p_high = seen.vector3("p_high", "");
   for (const Feature& feature : force.features) {
+    if (feature.axis - kThrusterLine >= vehicle.allocation.cols())
+      config.fail("terms", "a term acts along a thruster that " + vehicle.name + " does not have");
     for (int i = 0; i < feature.count; ++i) {
       const Factor& factor = feature.factors[static_cast<std::size_t>(i)];
-      const bool thruster = factor.quantity == Quantity::kThruster || factor.quantity == Quantity::kThrusterSize;
+      const bool thruster = kind_of(factor.quantity).indexed == Indexed::kThrusters;
       if (thruster && factor.index >= visited.force.size())
         config.fail("terms", "a term reads a thruster that " + vehicle.name + " does not have");
     }

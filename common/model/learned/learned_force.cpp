@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/learned/factors/factor_kind.hpp"
+
 namespace fathom::model {
 namespace {
 
-constexpr double kFadeWidth = 0.5;  // of the visited size: half of it beyond the reach leaves 61 %, all of it 14 %
 constexpr double kLeastVisited = 1e-6;
 constexpr Eigen::Index kTaps = kThrustMemories.size(), kSlow = kVelocityMemories.size();
-
-double beyond(double x, double visited) {
-  const double over = std::abs(x) / std::max(visited, kLeastVisited) - kVisitedReach;
-  return over <= 0.0 ? 1.0 : std::exp(-0.5 * over * over / (kFadeWidth * kFadeWidth));
-}
 
 double clipped(double x, double visited) {
   const double most = kVisitedReach * std::max(visited, kLeastVisited);
@@ -42,6 +38,7 @@ FeatureState LearnedForm::state_of(const Motion& motion) const {
   state.heading_cosine = across > 0.0 ? motion.R_WB(0, 0) / across : 1.0;
   state.heading_sine = across > 0.0 ? motion.R_WB(1, 0) / across : 0.0;
   state.tau = allocation_ * motion.force;
+  state.allocation = &allocation_;
   return state;
 }
 
@@ -49,34 +46,8 @@ double LearnedForm::fade(const Feature& feature, const FeatureState& state) cons
   double left = 1.0;
   for (int i = 0; i < feature.count; ++i) {
     const Factor& factor = feature.factors[static_cast<std::size_t>(i)];
-    const auto bank = static_cast<std::size_t>(factor.bank);
-    switch (factor.quantity) {
-      case Quantity::kVelocity:
-      case Quantity::kSpeed:
-      case Quantity::kPowerOdd:
-      case Quantity::kPowerEven:
-        left *= beyond(state.nu[factor.index], visited_.nu[factor.index]);
-        break;
-      case Quantity::kSlowVelocity:
-        left *= beyond(state.slow_nu[bank][factor.index], visited_.nu[factor.index]);
-        break;
-      case Quantity::kWrench:
-      case Quantity::kWrenchSize:
-        left *= beyond(state.tau[factor.index], visited_.tau[factor.index]);
-        break;
-      case Quantity::kSlowWrench:
-        left *= beyond(state.slow_tau[bank][factor.index], visited_.tau[factor.index]);
-        break;
-      case Quantity::kThruster:
-      case Quantity::kThrusterSize:
-        left *= beyond(state.force[factor.index], visited_.force[factor.index]);
-        break;
-      case Quantity::kFlowSpeed:
-        left *= beyond(state.nu.head<3>().norm(), visited_.nu.head<3>().norm());
-        break;
-      default:  // bumps fade by themselves; all headings are near one that was visited
-        break;
-    }
+    const FactorKind& kind = kind_of(factor.quantity);
+    if (kind.within != nullptr) left *= kind.within(factor, state, visited_);
   }
   return left;
 }
@@ -107,7 +78,8 @@ void LearnedForm::feel(Motion& motion, EffectTheta, std::span<const double> z) c
 }
 
 void LearnedForm::load(const Motion& motion, EffectTheta, Load& load) const {
-  const FeatureState state = state_of(motion);
+  FeatureState state = state_of(motion);
+  state.drag = load.drag;
   load.wrench += sum(state, Part::kStill);
   Vector6d moving = sum(state, Part::kMoves);
   const Vector6d nu_r = motion.nu_r();

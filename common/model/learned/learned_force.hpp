@@ -8,16 +8,6 @@
 
 namespace fathom::model {
 
-/// Largest sizes that the recording has shown of what features read.
-struct Visited {
-  Vector6d nu{Vector6d::Zero()};                                                    ///< m/s, rad/s
-  Vector6d tau{Vector6d::Zero()};                                                   ///< N, N m
-  ActuatorForces force{};                                                           ///< N
-  Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
-};
-
-constexpr double kVisitedReach = 1.15;  ///< times the visited size, up to which features are taken at their word
-
 class LearnedForm final : public Form {
  public:
   LearnedForm(FreeForce force, Visited visited, Allocation allocation);

@@ -1,0 +1,48 @@
+// The library of a free force as a product: terms (what acts, and along what) times modulators (what makes it weaker or
+// stronger). Most causes that no list holds are a known term that something else modulates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/inference/scan.hpp"
+#include "common/likelihood/features.hpp"
+
+namespace fathom::inference {
+
+using Columns = std::vector<std::vector<likelihood::Factor>>;  ///< products of factors, one per column
+
+/// What kind of term: which modulations are asked of it.
+enum TermKind : unsigned {
+  kPlainTerm = 1,
+  kConstantTerm = 2,
+  kStreamTerm = 4,
+  kDragTerm = 8,
+  kThrustTerm = 16,
+  kThrusterTerm = 32
+};
+
+/// Something that acts along a direction.
+struct Term {
+  std::string words;  ///< "drag", "a stream toward north"
+  int axis{};         ///< Feature::axis
+  Columns columns;    ///< that act together
+  TermKind kind{kPlainTerm};
+  bool held{};  ///< base numbers hold it: only its modulations are new
+  bool closed{true};
+};
+
+/// What a term may go with besides.
+struct Modulator {
+  std::string words;  ///< ", by depth"
+  Columns columns;
+  unsigned of{};      ///< kinds of terms of which it is asked; of others it is another plain term, or costs too much
+  bool closed{true};  ///< a law, not a table
+};
+
+[[nodiscard]] std::vector<Term> terms_of(const likelihood::Problem& problem, const Seen& seen,
+                                         const model::Scene& scene);
+/// A moment is sought for each term besides.
+[[nodiscard]] std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const model::Scene& scene);
+
+}  // namespace fathom::inference

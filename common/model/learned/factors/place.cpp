@@ -1,0 +1,82 @@
+// Factors that read the place and the heading. Bumps fade by themselves; all headings are near one that was visited.
+#include "common/model/learned/factors/factor_kind.hpp"
+
+namespace fathom::model {
+namespace {
+
+double square(double x) { return x * x; }
+
+template <int axis>
+double in_box(const Factor&, const FeatureState& s, const Visited& visited) {
+  return fade_outside(s.p_WB[axis], visited.p_low[axis], visited.p_high[axis]);
+}
+template <int axis>
+double along(const Factor& f, const FeatureState& s) {
+  return (s.p_WB[axis] - f.a) / f.b;
+}
+std::string line(const char* symbol, const Factor& f) {
+  return "(" + std::string{symbol} + (f.a < 0.0 ? " + " : " - ") + brief(std::abs(f.a)) + " m) / " + brief(f.b) + " m";
+}
+std::string turns(const Factor& f) { return f.index == 1 ? "psi" : std::to_string(f.index) + " psi"; }
+
+}  // namespace
+
+constinit const FactorKind factor_depth{.word = "depth",
+                                        .sentence = "depth, about the middle of the range",
+                                        .unit = "1",
+                                        .value = along<2>,
+                                        .words = [](const Factor& f) { return line("z", f); },
+                                        .within = in_box<2>};
+constinit const FactorKind factor_north{.word = "north",
+                                        .sentence = "place along north",
+                                        .unit = "1",
+                                        .value = along<0>,
+                                        .words = [](const Factor& f) { return line("x", f); },
+                                        .within = in_box<0>};
+constinit const FactorKind factor_east{.word = "east",
+                                       .sentence = "place along east",
+                                       .unit = "1",
+                                       .value = along<1>,
+                                       .words = [](const Factor& f) { return line("y", f); },
+                                       .within = in_box<1>};
+
+constinit const FactorKind factor_depth_bump{
+    .word = "depth_bump",
+    .sentence = "depth, near one value of it",
+    .unit = "1",
+    .value = [](const Factor& f, const FeatureState& s) { return std::exp(-0.5 * square((s.p_WB.z() - f.a) / f.b)); },
+    .words = [](const Factor& f) { return "near depth " + brief(f.a) + " m"; }};
+
+constinit const FactorKind factor_plan_bump{
+    .word = "plan_bump",
+    .sentence = "place, near one point of the plan",
+    .unit = "1",
+    .value =
+        [](const Factor& f, const FeatureState& s) {
+          return std::exp(-0.5 * (square(s.p_WB.x() - f.a) + square(s.p_WB.y() - f.b)) / square(f.c));
+        },
+    .words = [](const Factor& f) { return "near (" + brief(f.a) + ", " + brief(f.b) + ") m"; }};
+
+constinit const FactorKind factor_heading_cosine{
+    .word = "heading_cosine",
+    .sentence = "the cosine of the heading",
+    .unit = "1",
+    .indexed = Indexed::kHarmonics,
+    .value =
+        [](const Factor& f, const FeatureState& s) {
+          return f.index == 1 ? s.heading_cosine : square(s.heading_cosine) - square(s.heading_sine);
+        },
+    .words = [](const Factor& f) { return "cos " + turns(f); }};
+
+constinit const FactorKind factor_heading_sine{.word = "heading_sine",
+                                               .sentence = "the sine of the heading",
+                                               .unit = "1",
+                                               .indexed = Indexed::kHarmonics,
+                                               .value =
+                                                   [](const Factor& f, const FeatureState& s) {
+                                                     return f.index == 1 ? s.heading_sine
+                                                                         : 2.0 * s.heading_cosine * s.heading_sine;
+                                                   },
+                                               .words = [](const Factor& f) { return "sin " + turns(f); }};
+
+}  // namespace fathom::model
