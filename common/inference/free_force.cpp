@@ -359,7 +359,7 @@ class Seeker {
   [[nodiscard]] bool swallows(const Seen& seen) const {
     for (int i = 0; i < problem_.simulated; ++i) {
       const auto axis = static_cast<std::size_t>(i);
-      if (seen.fit.noise[axis][likelihood::kForce] > thresholds_.large_random * seen.applied[problem_.axes[axis]] &&
+      if (seen.fit.noise[axis][likelihood::kForce] > thresholds_.smallest_size * seen.applied[problem_.axes[axis]] &&
           seen.fit.noise[axis][likelihood::kForceMemory] > thresholds_.swallowing_memory)
         return true;
     }

@@ -360,7 +360,8 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
     force.groups.push_back({.kind = form.words,
                             .axis = form.axis,
                             .count = static_cast<int>(force.features.size()),
-                            .sigma = kAmplitudeSigma});
+                            .sigma = kAmplitudeSigma,
+                            .closed = true});
     Fit fit = likelihood::fit(problem, hypothesis, found.fit.noise,
                               {.noise_rounds = 2, .steps = 3, .enough = 0.3, .threads = threads});
     if (!fit.finite) continue;

@@ -76,7 +76,7 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
       compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), windows, leaving, compared);
     };
     compare_with(fitted.hypothesis.force, judged.whole);
-    compare_with(model::without_time(fitted.hypothesis.force), judged.carried);
+    compare_with(model::lasting_of(fitted.hypothesis.force), judged.carried);
   }
   return judged;
 }
@@ -230,9 +230,14 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     given.adopted = true;
     learned.fit = std::move(chosen);
     learned.here = here;
-    const model::FreeForce lasting = model::without_time(learned.fit.hypothesis.force);
+    const model::FreeForce lasting = model::lasting_of(learned.fit.hypothesis.force);
     given.carried = !lasting.empty() && passes(carried, limits.carried, limits);
     if (given.carried) learned.elsewhere = made(learned.fit, lasting, visited);
+    // A recording that goes on where these have ended finds what has begun and what has grown.
+    learned.until = problem.t_high;
+    const model::FreeForce standing = model::as_it_stands(learned.fit.hypothesis.force, learned.until);
+    given.goes_on = standing.features.size() > model::without_time(learned.fit.hypothesis.force).features.size();
+    learned.later = given.goes_on ? made(learned.fit, standing, visited) : learned.elsewhere;
     return true;
   };
   // A law in closed form first, where it is as likely: it has fewer numbers to err with.

@@ -22,6 +22,8 @@ struct Learned {
   likelihood::Fit fit;  ///< numbers with the force, by the multi-horizon score where that errs less; adopted only
   std::shared_ptr<const model::LearnedForce> here;       ///< on the recordings that it was learned from
   std::shared_ptr<const model::LearnedForce> elsewhere;  ///< on others; empty: nothing is carried there
+  std::shared_ptr<const model::LearnedForce> later;      ///< on those whose clock goes on after these; empty likewise
+  double until{};                                        ///< s: the end of the recordings on that clock
 };
 
 /// `of`: the trials of `problem`.

@@ -79,6 +79,9 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
     sentence += text(" Without what depends on time, which other runs are not told, it is %.0f %% lower.",
                      100.0 * (1.0 - given.held_out_carried));
   }
+  if (given.goes_on)
+    sentence +=
+        " A recording whose clock goes on after these is told what had begun or grown, as it stood at their end.";
   if (given.left.empty()) return sentence;
   sentence += " What remains as a random force, share of the applied force:";
   for (const CorrectionLeft& left : given.left)

@@ -4,12 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "common/model/learned/factors/factor_kind.hpp"
+#include "common/report/correction_figures.hpp"
+#include "common/report/page_parts.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+constexpr std::size_t kMostCurves = 8;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -41,6 +44,7 @@ Json correction_json(const CorrectionGiven& given) {
   Json json;
   json["adopted"] = given.adopted;
   json["carried_to_other_runs"] = given.carried;
+  json["stands_in_later_runs"] = given.goes_on;
   json["refused"] = given.refused;
   json["words"] = given.words;
   json["log_odds"] = finite(given.log_odds);
@@ -78,12 +82,30 @@ std::string correction_words(const DiagnosisResult& result) {
   return "What no listed effect explains could not be made a part of the model: " + given.refused + ".";
 }
 
-std::string correction_section(const DiagnosisResult& result) {
+std::string correction_section(const DiagnosisResult& result, Album* album) {
   const std::string words = correction_words(result);
   if (words.empty()) return "";
   std::string html = "<section><h2>A correction, not a cause</h2>\n<p class=\"lead\">" + escape(words) + "</p>\n";
   const CorrectionGiven& given = *result.correction;
   if (!given.adopted) return html + "</section>\n";
+  if (given.formula) {
+    html += "<p class=\"equation\">" + escape(given.formula->equation) +
+            "</p>\n<table><tr><th>number</th><th>value</th>"
+            "<th>95 % interval</th></tr>\n";
+    for (const NamedValue& one : given.formula->numbers)
+      html += "<tr><td>" + escape(one.name) + "</td><td>" + number(one.value) + "</td><td>" +
+              number(one.value - 1.96 * one.std) + " to " + number(one.value + 1.96 * one.std) + " " +
+              escape(one.unit) + "</td></tr>\n";
+    html += "</table>\n";
+  }
+  if (album != nullptr) {
+    const std::vector<CorrectionCurve> curves = correction_curves(given);
+    for (std::size_t i = 0; i < curves.size() && i < kMostCurves; ++i) html += album->place(draw_correction(curves[i]));
+    if (!curves.empty())
+      html +=
+          "<p>The force over what it goes with, with its 95 % band, as far as the recording has been; what else it "
+          "reads stays at half of what was visited.</p>\n";
+  }
   html +=
       "<p>Each term is its weight times a scale times what it goes with; it fades where the recording has not been. "
       "result.json holds all of it, with the weights' covariance.</p>\n<details><summary>Terms</summary><table><tr>"

@@ -8,10 +8,12 @@
 
 namespace fathom::report {
 
+class Album;
+
 /// Complete: common/model/learned/learned_file.hpp reads it back.
 [[nodiscard]] nlohmann::ordered_json correction_json(const CorrectionGiven& given);
 /// HTML; empty where nothing unlisted was there to be learned.
-[[nodiscard]] std::string correction_section(const DiagnosisResult& result);
+[[nodiscard]] std::string correction_section(const DiagnosisResult& result, Album* album = nullptr);
 /// Plain words for the terminal; empty likewise.
 [[nodiscard]] std::string correction_words(const DiagnosisResult& result);
 

@@ -53,7 +53,7 @@ std::string to_html(const DiagnosisReport& report, const std::string& gnuplot) {
                      "</head>\n<body><main>\n";
   page += front_section(report, album);
   page += kKey;
-  page += folded(correction_section(result));
+  page += folded(correction_section(result, &album));
   page += folded(error_section(result, album));
   page += folded(motion_section(report, album));
   page += folded(candidate_section(result));

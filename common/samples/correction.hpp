@@ -45,6 +45,7 @@ struct CorrectionGiven {
   bool asked{false};    ///< something unlisted was there to be learned
   bool adopted{false};  ///< it is part of the model that is reported and exported
   bool carried{false};  ///< and of what is told of other runs, without what depends on time
+  bool goes_on{false};  ///< time-dependent laws of it stand as they were at the end where a recording's clock goes on
   std::string refused;  ///< why it is not adopted, with numbers
   std::string words;    ///< a sentence
   double log_odds{}, size{};

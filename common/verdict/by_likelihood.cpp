@@ -53,7 +53,10 @@ const model::LearnedForce* force_for(const learning::Learned& learned, std::span
   const bool here = std::ranges::all_of(validate, [&](const Trial& judging) {
     return std::ranges::any_of(train, [&](const Trial& fitted) { return same_run(judging, fitted); });
   });
-  return here ? learned.here.get() : learned.elsewhere.get();
+  if (here) return learned.here.get();
+  const bool later = std::ranges::all_of(
+      validate, [&](const Trial& judging) { return judging.size() > 0 && judging.t.front() >= learned.until; });
+  return later ? learned.later.get() : learned.elsewhere.get();
 }
 
 /// Where the reported numbers are not the likelihood's own, what they differ by is an error of the model that no noise

@@ -176,7 +176,7 @@ void score_correction(const Json& result, Score& score) {
   if (!result.contains("correction") || !result.at("correction").is_object()) return;
   const Json& correction = result.at("correction");
   score.learned = correction.value("adopted", false);
-  score.carried = correction.value("carried_to_other_runs", false);
+  score.carried = correction.value("carried_to_other_runs", false) || correction.value("stands_in_later_runs", false);
   if (!score.learned) {
     score.correction = correction.value("refused", "");
   } else if (correction.contains("formula")) {

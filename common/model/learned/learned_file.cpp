@@ -82,7 +82,7 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
         config.fail("terms", "a term reads a thruster that " + vehicle.name + " does not have");
     }
   }
-  FreeForce lasting = without_time(force);  // another run is another time
+  FreeForce lasting = lasting_of(force);
   if (lasting.empty()) return nullptr;
   return std::make_shared<const LearnedForce>(std::move(lasting), std::move(visited), vehicle.allocation);
 }

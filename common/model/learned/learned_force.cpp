@@ -130,14 +130,17 @@ LearnedForce::LearnedForce(FreeForce force, Visited visited, Allocation allocati
              {},
              forms(LearnedForm{std::move(force), std::move(visited), std::move(allocation)})} {}
 
-FreeForce without_time(const FreeForce& force) {
+namespace {
+
+template <typename Keep>
+FreeForce kept_of(const FreeForce& force, const Keep& keep) {
   FreeForce rest;
   for (const FeatureGroup& group : force.groups) {
     FeatureGroup kept = group;
     kept.first = static_cast<int>(rest.features.size());
     for (int j = group.first; j < group.first + group.count; ++j) {
       const auto at = static_cast<std::size_t>(j);
-      if (force.features[at].depends_on_time()) continue;
+      if (!keep(group, force.features[at])) continue;
       rest.features.push_back(force.features[at]);
       rest.weights.push_back(force.weights[at]);
     }
@@ -145,6 +148,41 @@ FreeForce without_time(const FreeForce& force) {
     if (kept.count > 0) rest.groups.push_back(std::move(kept));
   }
   return rest;
+}
+
+}  // namespace
+
+FreeForce without_time(const FreeForce& force) {
+  return kept_of(force, [](const FeatureGroup&, const Feature& feature) { return !feature.depends_on_time(); });
+}
+
+FreeForce lasting_of(const FreeForce& force) {
+  return kept_of(force, [](const FeatureGroup&, const Feature& feature) {
+    return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [](const Factor& factor) {
+      return !kind_of(factor.quantity).in_time || factor.quantity == Quantity::kRamp;
+    });
+  });
+}
+
+FreeForce as_it_stands(const FreeForce& force, double t) {
+  const FeatureState then{.t = t};
+  FreeForce rest = force;
+  for (const FeatureGroup& group : force.groups) {
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      Feature& feature = rest.features[static_cast<std::size_t>(j)];
+      for (int i = 0; i < feature.count;) {
+        const Factor factor = feature.factors[static_cast<std::size_t>(i)];
+        const bool stays = factor.quantity == Quantity::kAfter || factor.quantity == Quantity::kRamp;
+        if (!stays || !group.closed) {
+          ++i;
+          continue;
+        }
+        feature.scale *= kind_of(factor.quantity).value(factor, then);
+        feature.factors[static_cast<std::size_t>(i)] = feature.factors[static_cast<std::size_t>(--feature.count)];
+      }
+    }
+  }
+  return without_time(rest);
 }
 
 }  // namespace fathom::model

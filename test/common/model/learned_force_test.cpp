@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "common/model/dynamics.hpp"
+#include "common/model/learned/factors/factor_kind.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -95,4 +98,89 @@ TEST_CASE("learned force: what depends on time is not carried") {
   REQUIRE(rest.groups.size() == 2);
   CHECK(rest.weights == std::vector<double>{1.0, 3.0});
   CHECK(rest.groups[1].first == 1);
+}
+
+TEST_CASE(
+    "learned force: where the clock goes on, what has begun or grown stands as it stood, and tables are left out") {
+  const Factor moment{.quantity = Quantity::kAfter, .a = 3.0}, ramp{.quantity = Quantity::kRamp, .a = 5.0, .b = 5.0};
+  const Factor swing{.quantity = Quantity::kToneSine, .a = 2.0};
+  FreeForce force;
+  force.features = {along(0, {kU, moment}, 2.0), along(1, {ramp}), along(2, {moment}), along(0, {swing}),
+                    along(3, {kV})};
+  force.weights = {1.0, 2.0, 3.0, 4.0, 5.0};
+  for (int j = 0; j < 5; ++j)
+    force.groups.push_back({.kind = "test",
+                            .axis = force.features[static_cast<std::size_t>(j)].axis,
+                            .first = j,
+                            .count = 1,
+                            .closed = j != 2});
+  const FreeForce rest = as_it_stands(force, 20.0);
+  REQUIRE(rest.weights == std::vector<double>{1.0, 2.0, 5.0});
+  FeatureState state{.t = -7.0};  // whatever its clock shows
+  state.nu[0] = 0.25;
+  CHECK(rest.features[0].value(state) == doctest::Approx(2.0 * 0.25));
+  CHECK(rest.features[1].value(state) == doctest::Approx(3.0));     // (20 - 5) / 5
+  CHECK(as_it_stands(force, 1.0).features[0].value(state) == 0.0);  // not begun yet
+}
+
+TEST_CASE(
+    "learned force: a ramp begins anew with a run and ends where its recording did; a moment is told of no other "
+    "clock") {
+  const Factor ramp{.quantity = Quantity::kRamp, .a = 5.0, .b = 5.0}, moment{.quantity = Quantity::kAfter, .a = 3.0};
+  FreeForce force;
+  force.features = {along(0, {ramp}), along(1, {moment})};
+  force.weights = {1.0, 2.0};
+  for (int j = 0; j < 2; ++j)
+    force.groups.push_back({.kind = "test", .axis = j, .first = j, .count = 1, .closed = true});
+  const FreeForce rest = lasting_of(force);
+  REQUIRE(rest.weights == std::vector<double>{1.0});
+  FeatureState state{.t = 7.0};
+  CHECK(rest.features[0].value(state) == doctest::Approx(0.4));
+  state.t = 1000.0;
+  CHECK(rest.features[0].value(state) == 1.0);
+}
+
+TEST_CASE("learned force: the hull's drag, all thrust and a thruster's line are directions of their own") {
+  const Bench bench;
+  Feature more = along(kHullDrag, {}), thrust = along(kAllThrust, {}), line = along(kThrusterLine + 2, {});
+  FeatureState state{.tau = Vector6d::Constant(3.0), .drag = Vector6d::Constant(-2.0)};
+  state.allocation = &bench.vehicle.allocation;
+  Vector6d wrench = Vector6d::Zero();
+  more.add(state, 0.5, wrench);
+  CHECK(wrench.isApprox(Vector6d::Constant(-1.0)));
+  thrust.add(state, 1.0, wrench);
+  CHECK(wrench.isApprox(Vector6d::Constant(2.0)));
+  wrench.setZero();
+  line.add(state, 4.0, wrench);
+  CHECK(wrench.isApprox(4.0 * bench.vehicle.allocation.col(2)));
+  CHECK(bench.made(one(more, -0.5)).force().reads_drag());
+  // A share of the drag: within the model it makes the drag weaker or stronger.
+  CHECK(bench.wrench(bench.made(one(more, 0.5)), Vector6d::Unit(0) * 0.3, Vector6d::Unit(0) * -8.0)[0] ==
+        doctest::Approx(-4.0));
+}
+
+TEST_CASE("factors: every kind has a name of its own, words and a value") {
+  FeatureState state{.t = 2.0,
+                     .p_WB = {0.1, 0.2, 0.3},
+                     .nu = Vector6d::Constant(0.4),
+                     .tau = Vector6d::Constant(5.0),
+                     .force = ActuatorForces::Constant(6, 2.0)};
+  for (auto& slow : state.slow_tau) slow.setOnes();
+  for (auto& slow : state.slow_nu) slow.setOnes();
+  const Bench bench;
+#define FACTOR(enumerator, name)                                                        \
+  {                                                                                     \
+    const FactorKind& kind = kind_of(Quantity::enumerator);                             \
+    CAPTURE(kind.word);                                                                 \
+    const Factor factor{.quantity = Quantity::enumerator, .index = 1, .a = 1.5};        \
+    CHECK(quantity_from(kind.word) == Quantity::enumerator);                            \
+    CHECK(!kind.sentence.empty());                                                      \
+    CHECK(!kind.unit.empty());                                                          \
+    CHECK(!kind.words(factor).empty());                                                 \
+    CHECK(std::isfinite(kind.value(factor, state)));                                    \
+    if (kind.within != nullptr) CHECK(kind.within(factor, state, bench.visited) > 0.0); \
+  }
+#include "common/model/learned/factors/factors.def"
+#undef FACTOR
+  CHECK_FALSE(quantity_from("no such thing"));
 }

@@ -1,4 +1,5 @@
-// Factors that read the clock: they are told of no other run.
+// Factors that read the clock: what of them another run is told, lasting_of and as_it_stands say. A ramp ends where its
+// recording did.
 #include "common/model/learned/factors/factor_kind.hpp"
 
 namespace fathom::model {
@@ -19,7 +20,7 @@ constinit const FactorKind factor_ramp{
     .sentence = "time",
     .unit = "1",
     .in_time = true,
-    .value = [](const Factor& f, const FeatureState& s) { return (s.t - f.a) / f.b; },
+    .value = [](const Factor& f, const FeatureState& s) { return std::clamp((s.t - f.a) / f.b, -1.0, 1.0); },
     .words = [](const Factor& f) { return "(t - " + brief(f.a) + " s) / " + brief(f.b) + " s"; }};
 
 constinit const FactorKind factor_tone_cosine{
