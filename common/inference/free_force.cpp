@@ -223,16 +223,18 @@ class Seeker {
       // What the random force has swallowed shows where it is smaller.
       std::optional<Picked> quiet;
       if (round == 0 && swallows(now)) {
-        likelihood::Fit louder = now.fit;
-        for (likelihood::AxisNoise& axis : louder.noise) axis.log[likelihood::kForce] -= std::log(kFactor);
-        quiet = pick(see(problem_, std::move(louder), threads_), true);
+        likelihood::Fit quick = now.fit;
+        quick.noise = quickened(now);
+        quiet = pick(see(problem_, std::move(quick), threads_), true);
       }
       if (deadline_.over()) break;
       const bool settled = round > 0 || found.at_fixed_noise >= kSettled * thresholds_.free_force_odds;
       std::vector<likelihood::Fit> fits(quiet || !settled ? 2 : 1);
       for_each_index(fits.size(), threads_, [&](std::size_t start) {
         likelihood::Noise noise = now.fit.noise;
-        if (start > 0) {
+        if (start > 0 && quiet) {
+          noise = quickened(now);
+        } else if (start > 0) {
           for (likelihood::AxisNoise& axis : noise) axis.log[likelihood::kForce] -= std::log(kFactor);
         }
         fits[start] = fitted(now.fit.hypothesis, start > 0 && quiet ? quiet->force : picked.force, noise,
@@ -356,14 +358,31 @@ class Seeker {
     });
   }
 
+  /// A random force of practical size that remembers for long may have taken something slow for its own.
+  [[nodiscard]] bool swallows(const Seen& seen, std::size_t i) const {
+    const likelihood::AxisNoise& noise = seen.fit.noise[i];
+    return noise[likelihood::kForce] > thresholds_.smallest_size * seen.applied[problem_.axes[i]] &&
+           noise[likelihood::kForceMemory] > thresholds_.swallowing_memory;
+  }
   [[nodiscard]] bool swallows(const Seen& seen) const {
-    for (int i = 0; i < problem_.simulated; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
-      if (seen.fit.noise[axis][likelihood::kForce] > thresholds_.smallest_size * seen.applied[problem_.axes[axis]] &&
-          seen.fit.noise[axis][likelihood::kForceMemory] > thresholds_.swallowing_memory)
-        return true;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(problem_.simulated); ++i) {
+      if (swallows(seen, i)) return true;
     }
     return false;
+  }
+
+  /// The noise without what is slow in such random forces: as quick as they are at first, sigma^2 / tau stays what it
+  /// is.
+  [[nodiscard]] likelihood::Noise quickened(const Seen& seen) const {
+    likelihood::Noise noise = seen.fit.noise;
+    const likelihood::Noise usual = likelihood::prior_noise(problem_);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(problem_.simulated); ++i) {
+      if (!swallows(seen, i)) continue;
+      const double shorter = usual[i].log[likelihood::kForceMemory] - noise[i].log[likelihood::kForceMemory];
+      noise[i].log[likelihood::kForceMemory] += shorter;
+      noise[i].log[likelihood::kForce] += 0.5 * shorter;
+    }
+    return noise;
   }
 
   [[nodiscard]] likelihood::Fit fitted(const likelihood::Hypothesis& from, const likelihood::FreeForce& more,
