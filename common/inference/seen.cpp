@@ -41,8 +41,7 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
   constexpr double kRidge = 1e-9;  // of the largest, for numbers that an axis does not know
   std::vector<Eigen::Index> base;
   for (std::size_t j = 0; j < seen.fit.numbers.size(); ++j) {
-    const NumberKind kind = seen.fit.numbers[j].kind;
-    if (kind == NumberKind::kBase || kind == NumberKind::kCommandOffset) base.push_back(static_cast<Eigen::Index>(j));
+    if (seen.fit.numbers[j].kind == NumberKind::kBase) base.push_back(static_cast<Eigen::Index>(j));
   }
   const auto p = static_cast<Eigen::Index>(base.size());
   Size worst;
