@@ -93,8 +93,8 @@ void Searching::judge_effects() {
 void Searching::note(const Promise& promise) {
   auto [place, fresh] = noted_.try_emplace(laws_[promise.law].name, promise);
   if (!fresh && promise.score > place->second.score) place->second = promise;
-  auto [of_form, new_form] = promised_.try_emplace(promise.law, promise.score);
-  if (!new_form) of_form->second = std::max(of_form->second, promise.score);
+  auto [of_form, new_form] = promised_.try_emplace(promise.law, promise);
+  if (!new_form && promise.score > of_form->second.score) of_form->second = promise;
 }
 
 Refusal Searching::refusal(const std::string& name, double promised) const {

@@ -207,21 +207,26 @@ bool Searching::counts(const Fitted& fitted) {
 void Searching::simplify(const std::vector<model::ActiveEffect>& before) {
   const std::vector<model::ActiveEffect> now = effects();
   for (const model::ActiveEffect& active : now) {
-    if (held(before, active) || forms_matter(active)) continue;
+    if (held(before, active) || !held(effects(), active)) continue;
+    std::vector<std::size_t> forms;
     double promised = 0.0;
-    for (std::size_t l = 0; l < laws_.size(); ++l) {
-      if (laws_[l].seed.effect == active.effect && promised_.contains(l)) promised = std::max(promised, promised_[l]);
+    for (const auto& [law, promise] : promised_) {
+      if (laws_[law].seed.effect != active.effect) continue;
+      promised = std::max(promised, promise.score);
+      if (!held(now, laws_[law].seed)) forms.push_back(law);
     }
+    std::erase_if(forms, [&](std::size_t law) { return promised_.at(law).score < 0.5 * promised; });
+    std::ranges::sort(forms, std::greater{}, [&](std::size_t law) { return promised_.at(law).score; });
+    forms.resize(std::min(forms.size(), kOtherForms));
     std::vector<Proposal> others;
-    for (std::size_t l = 0; l < laws_.size() && others.size() < kOtherForms; ++l) {
-      const Law& law = laws_[l];
-      if (law.seed.effect != active.effect || law.seed.variant == active.variant) continue;
-      if (!promised_.contains(l) || promised_[l] < 0.5 * promised) continue;
-      others.push_back({{law.seed}, found_.best.fit.noise});
+    for (const std::size_t law : forms) {
+      // From its own best and from the numbers that it shares with what was found.
+      others.push_back({{effect_of(law, promised_.at(law).theta)}, found_.best.fit.noise});
+      others.push_back({{laws_[law].seed}, found_.best.fit.noise});
       std::vector<double>& theta = others.back().added.front().theta;
       for (std::size_t c = 0; c < active.theta.size(); ++c) {
-        if (moves(law.seed, c) && moves(active, c)) theta[c] = active.theta[c];
-        if (!moves(law.seed, c)) theta[c] = 0.0;
+        if (moves(laws_[law].seed, c) && moves(active, c)) theta[c] = active.theta[c];
+        if (!moves(laws_[law].seed, c)) theta[c] = 0.0;
       }
     }
     likelihood::Hypothesis rest = found_.best.fit.hypothesis;

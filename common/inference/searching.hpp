@@ -98,7 +98,7 @@ class Searching {
   FittedModels models_;
   Found found_;
   std::map<std::string, Promise> noted_;
-  std::map<std::size_t, double> promised_;   // by law, in the last look
+  std::map<std::size_t, Promise> promised_;  // by law, in the last look
   std::map<std::string, Refusal> failed_;    // what evidence alone would have named
   std::map<std::string, Refusal> gave_way_;  // to a free force in its place
   std::map<std::string, double> in_place_;   // nats by which a name is worth more than that
