@@ -49,7 +49,8 @@ struct Scan {
 
 /// Share of the applied acceleration that an effect of the seen model adds, least squares on the base numbers' columns
 /// taken out, on its worst axis. An effect on the sensors: of the velocity.
-[[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect);
+[[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect,
+                                    int threads = 1);
 
 /// Accelerations that an effect adds to a hypothesis at the seen model's filtered velocities: axes x blocks, `shown`
 /// likewise.

@@ -193,7 +193,7 @@ bool Searching::counts(const Fitted& fitted) {
   const auto& those = seen.fit.hypothesis.model.effects;
   for (std::size_t e = 0; e < those.size(); ++e) {
     if (held(effects(), those[e])) continue;
-    const double size = size_of_effect(problem_, seen, e);
+    const double size = size_of_effect(problem_, seen, e, threads_);
     const bool at_limit = stopped(those[e], *problem_.vehicle);
     if (!at_limit && size >= thresholds_.smallest_size) continue;
     failed_[std::string(those[e].effect->name())] =
@@ -307,7 +307,8 @@ void Searching::drop() {
     const Seen seen = see(problem_, found_.best.fit, threads_);
     std::vector<Start> small, weak;
     for (std::size_t e = 0; e < effects().size(); ++e) {
-      if (stopped(effects()[e], *problem_.vehicle) || size_of_effect(problem_, seen, e) < thresholds_.smallest_size) {
+      if (stopped(effects()[e], *problem_.vehicle) ||
+          size_of_effect(problem_, seen, e, threads_) < thresholds_.smallest_size) {
         small.push_back(without(found_.best, e));
       } else if (guessed_loss(seen, e) < kDoubtful * thresholds_.name_odds) {
         weak.push_back(without(found_.best, e));
