@@ -64,7 +64,7 @@ Screen screen(const likelihood::Problem& problem, const Seen& seen, const likeli
   const Eigen::MatrixXd X = sums.with_numbers;
   screen.gram = sums.gram.selfadjointView<Eigen::Lower>();
   screen.gram -= X.transpose() * (seen.covariance * X);
-  screen.gradient = sums.gradient;
+  screen.gradient = sums.gradient - X.transpose() * seen.step;
   return screen;
 }
 

@@ -232,6 +232,7 @@ void score(const Problem& problem, const inference::Seen& seen, const std::vecto
     }
     Eigen::MatrixXd gram = sums.gram.selfadjointView<Eigen::Lower>();
     gram -= sums.with_numbers.transpose() * (seen.covariance * sums.with_numbers);
+    sums.gradient -= sums.with_numbers.transpose() * seen.step;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto first = static_cast<Eigen::Index>(library.groups[g].first);
       const auto count = static_cast<Eigen::Index>(library.groups[g].count);
