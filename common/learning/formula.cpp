@@ -369,7 +369,10 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
     const double price = std::log(static_cast<double>(forms.size())) + form.price;
     const double over = fit.log_evidence - price - (found.fit.log_evidence - std::max(paid, 0.0));
     if (best && over <= best->over_learned) continue;
-    FormulaFound one{.form = form, .inner = place.inner, .over_learned = over};
+    FormulaFound one{.form = form,
+                     .inner = place.inner,
+                     .over_learned = over,
+                     .over_base = fit.log_evidence - price - base.log_evidence};
     one.inner_sigma = inner_sigma(problem, seen, forms, place, threads);
     take_amplitudes(fit, one);
     one.fit = std::move(fit);

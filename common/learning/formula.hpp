@@ -27,6 +27,7 @@ struct FormulaFound {
   double inner{}, inner_sigma{};
   std::vector<double> amplitude, amplitude_sigma;  ///< SI, per product of the features
   double over_learned{};                           ///< nats over the learned force, prices of both paid
+  double over_base{};                              ///< nats over the model without either, its price paid
   likelihood::Fit fit;
 };
 

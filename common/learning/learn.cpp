@@ -243,7 +243,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   // A law in closed form first, where it is as likely: it has fewer numbers to err with.
   std::optional<FormulaFound> formula =
       find_formula(problem, base, model::scene_of(*problem.vehicle, of), *free, threads);
-  if (formula && formula->over_learned < -limits.form) formula.reset();
+  if (formula && (formula->over_learned < -limits.form || formula->over_base < limits.odds)) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
   if (!formula && !adopt(free->fit)) return learned;
   if (!formula) formula = as_formula(*free);

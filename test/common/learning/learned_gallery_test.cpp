@@ -50,12 +50,16 @@ std::vector<Hidden> hidden() {
          return -m * 0.012 * (t - 0.5 * kDuration) * u * std::abs(u);  // the mean is the model's own
        },
        0});
-  all.push_back({"Weight that is gained at a moment", "0.05 m/s^2 downwards from 60 s on", "from a moment on",
-                 dive_with(6, [](double t, const Vector6d&) { return along(2, t > 60.0 ? 0.05 : 0.0); }), "t",
-                 [](double t, double m, const CorrectionGiven&) { return t > 60.0 ? m * 0.05 : 0.0; }, 2});
-  all.push_back({"A pump shakes the hull", "0.06 cos(1.3 t) m/s^2 downwards", "a swing toward down",
-                 dive_with(7, [](double t, const Vector6d&) { return along(2, 0.06 * std::cos(1.3 * t)); }), "t",
-                 [](double t, double m, const CorrectionGiven&) { return m * 0.06 * std::cos(1.3 * t); }, 2});
+  all.push_back(
+      {"Something is caught at a moment", "1.2 /m u |u| against the motion ahead, from 60 s on",
+       "drag, from a moment on in X",
+       dive_with(
+           6, [](double t, const Vector6d& nu) { return along(0, t > 60.0 ? -1.2 * nu[0] * std::abs(nu[0]) : 0.0); }),
+       "u", [](double u, double m, const CorrectionGiven&) { return -m * 1.2 * u * std::abs(u); }, 0});
+  all.push_back({"Drifting while going ahead presses the hull down", "1.5 /m u v of acceleration downwards",
+                 "velocity in Z",
+                 dive_with(7, [](double, const Vector6d& nu) { return along(2, 1.5 * nu[0] * nu[1]); }), "v",
+                 [half](double v, double m, const CorrectionGiven& given) { return m * 1.5 * half(given, 0) * v; }, 2});
   all.push_back({"Speed ahead lifts the hull", "0.5 /m u^2 of acceleration upwards", "velocity in Z",
                  dive_with(8, [](double, const Vector6d& nu) { return along(2, -0.5 * nu[0] * nu[0]); }), "u",
                  [](double u, double m, const CorrectionGiven&) { return -m * 0.5 * u * u; }, 2});

@@ -119,7 +119,7 @@ TEST_CASE(
   FeatureState state{.t = -7.0};  // whatever its clock shows
   state.nu[0] = 0.25;
   CHECK(rest.features[0].value(state) == doctest::Approx(2.0 * 0.25));
-  CHECK(rest.features[1].value(state) == doctest::Approx(3.0));     // (20 - 5) / 5
+  CHECK(rest.features[1].value(state) == 1.0);                      // its end
   CHECK(as_it_stands(force, 1.0).features[0].value(state) == 0.0);  // not begun yet
 }
 
@@ -144,7 +144,8 @@ TEST_CASE("learned force: the hull's drag, all thrust and a thruster's line are 
   const Bench bench;
   Feature more = along(kHullDrag, {}), thrust = along(kAllThrust, {}), line = along(kThrusterLine + 2, {});
   FeatureState state{.tau = Vector6d::Constant(3.0), .drag = Vector6d::Constant(-2.0)};
-  state.allocation = &bench.vehicle.allocation;
+  const Allocation B = bench.vehicle.allocation;
+  state.allocation = &B;
   Vector6d wrench = Vector6d::Zero();
   more.add(state, 0.5, wrench);
   CHECK(wrench.isApprox(Vector6d::Constant(-1.0)));
@@ -167,18 +168,20 @@ TEST_CASE("factors: every kind has a name of its own, words and a value") {
                      .force = ActuatorForces::Constant(6, 2.0)};
   for (auto& slow : state.slow_tau) slow.setOnes();
   for (auto& slow : state.slow_nu) slow.setOnes();
-  const Bench bench;
-#define FACTOR(enumerator, name)                                                        \
-  {                                                                                     \
-    const FactorKind& kind = kind_of(Quantity::enumerator);                             \
-    CAPTURE(kind.word);                                                                 \
-    const Factor factor{.quantity = Quantity::enumerator, .index = 1, .a = 1.5};        \
-    CHECK(quantity_from(kind.word) == Quantity::enumerator);                            \
-    CHECK(!kind.sentence.empty());                                                      \
-    CHECK(!kind.unit.empty());                                                          \
-    CHECK(!kind.words(factor).empty());                                                 \
-    CHECK(std::isfinite(kind.value(factor, state)));                                    \
-    if (kind.within != nullptr) CHECK(kind.within(factor, state, bench.visited) > 0.0); \
+  Visited visited = Bench{}.visited;
+  visited.p_low.setConstant(-1.0);
+  visited.p_high.setConstant(1.0);
+#define FACTOR(enumerator, name)                                                  \
+  {                                                                               \
+    const FactorKind& kind = kind_of(Quantity::enumerator);                       \
+    CAPTURE(kind.word);                                                           \
+    const Factor factor{.quantity = Quantity::enumerator, .index = 1, .a = 1.5};  \
+    CHECK(quantity_from(kind.word) == Quantity::enumerator);                      \
+    CHECK(!kind.sentence.empty());                                                \
+    CHECK(!kind.unit.empty());                                                    \
+    CHECK(!kind.words(factor).empty());                                           \
+    CHECK(std::isfinite(kind.value(factor, state)));                              \
+    if (kind.within != nullptr) CHECK(kind.within(factor, state, visited) > 0.0); \
   }
 #include "common/model/learned/factors/factors.def"
 #undef FACTOR
