@@ -106,6 +106,10 @@ void read_names(std::string_view line, char separator, const std::string& where,
   std::vector<std::string> headers;
   for (bool more = true; more;) {
     const std::string_view name = take_cell(line, separator, more);
+    if (name.empty() && headers.empty() && more) {  // the numbers of the rows, as data frames write them
+      headers.emplace_back("(row)");
+      continue;
+    }
     if (name.empty())
       throw InputError(where + ": column " + std::to_string(headers.size() + 1) +
                        " has no name; give it one, or take its separator away");
@@ -238,6 +242,9 @@ class Parser {
     for (bool more = true; more; ++cells) {
       const std::string_view cell = take_cell(line, separator_, more);
       if (cells >= table_.columns.size()) continue;
+      if (cells == 0 && !cell.empty() && cell == table_.names.front())
+        throw InputError(path_ + ":" + std::to_string(number_) +
+                         ": the header stands here again: another table was joined to this one; part them");
       double value{};
       std::string& fault = table_.faults[cells];
       if (!read_number(cell, separator_, value) && !read_date_cell(cell, cells, table_, value) && fault.empty()) {
