@@ -68,7 +68,7 @@ class Reader {
                          "). Part them with: fathom repair-log LOG --out PART.lcmlog");
       take(*event);
     }
-    if (!log.warning().empty()) damage_.add(log.warning());
+    if (!log.warning().empty()) damage_.add("events cut off by the end of the log");
   }
 
  private:

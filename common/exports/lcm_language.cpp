@@ -53,8 +53,11 @@ class Lexer {
   /// A comment without the stars and line ends of its frame.
   static std::string words(std::string_view text) {
     std::string plain;
+    bool begins = true;  // a line
     for (const char c : text) {
-      const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0 || (c == '*' && plain.empty());
+      const bool space = std::isspace(static_cast<unsigned char>(c)) != 0;
+      const bool blank = space || (c == '*' && begins);
+      begins = c == '\n' || (begins && blank);
       if (!blank) plain += c;
       if (blank && !plain.empty() && plain.back() != ' ') plain += ' ';
     }

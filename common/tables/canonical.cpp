@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
 #include "common/tables/import.hpp"
-#include "common/tables/map_writer.hpp"
+#include "common/tables/likely_time.hpp"
 
 namespace fathom::tables {
 namespace {
@@ -141,43 +141,12 @@ class Shelf {
   std::set<std::string> left_;
 };
 
-/// The unit in which the rows of a column lie as far apart as those of a recording do.
-const char* likely_unit(const Paged<double>& column) {
-  constexpr double kLongest = 2.0;  // s between rows
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < std::min<std::size_t>(column.size(), 1000); ++i) {
-    if (column[i] > column[i - 1]) steps.push_back(column[i] - column[i - 1]);
-  }
-  if (steps.empty()) return nullptr;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  double factor = 1.0;
-  for (const char* unit : {"s", "ms", "us", "ns"}) {
-    if (factor * *middle <= kLongest) return unit;
-    factor *= 1e-3;
-  }
-  return nullptr;
-}
-
-/// What to write where another column looks like the time; empty when none does.
-std::string likely_time(const CsvTable& table) {
-  for (std::size_t i = 0; i < table.names.size(); ++i) {
-    std::string name = table.names[i];
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name.find("time") == std::string::npos && name.find("stamp") == std::string::npos && name != "date") continue;
-    for (const char* rest : {"nanosec", "nsec", "nsecs"}) {  // ROS: seconds and nanoseconds beside them
-      const std::string parts = table.names[i].substr(0, table.names[i].find_last_of("._") + 1) + rest;
-      if (parts == table.names[i] || table.find(parts) == nullptr) continue;
-      return "; '" + table.names[i] + "' and '" + parts + "' look like it: write in a map 'time: {columns: [" +
-             written_name(table.names[i]) + ", " + written_name(parts) + "], units: [s, ns]}'";
-    }
-    const char* unit = table.cells_of(i) == Cells::kNumbers ? likely_unit(table.columns[i]) : "date";
-    if (unit == nullptr || !table.faults[i].empty()) continue;
-    return "; '" + table.names[i] +
-           "' looks like it: call it 't', or write in a map 'time: {column: " + written_name(table.names[i]) +
-           ", unit: " + unit + "}'";
-  }
-  return "";
+std::string said_of(const std::optional<LikelyTime>& time) {
+  if (!time) return "";
+  return time->columns.size() == 1
+             ? "; '" + time->columns.front() + "' looks like it: call it 't', or write in a map '" + time->key + "'"
+             : "; '" + time->columns[0] + "' and '" + time->columns[1] + "' look like it: write in a map '" +
+                   time->key + "'";
 }
 
 std::optional<AttitudeColumns> as_euler(const std::optional<ColumnGroup>& group) {
@@ -196,7 +165,7 @@ ColumnMap canonical_map(const CsvTable& table) {
   const auto time = shelf.take({"t"});
   if (!time) {
     throw InputError(table.path + ":1: column 't' (time in seconds, or as a date) is missing" +
-                     (table.find("T") != nullptr ? " (is it 'T'?)" : likely_time(table)) +
+                     (table.find("T") != nullptr ? " (is it 'T'?)" : said_of(likely_time(table))) +
                      "; describe other columns with a map (--map)");
   }
   map.time = *time;

@@ -167,6 +167,18 @@ bool read_date_cell(std::string_view cell, std::size_t column, CsvTable& table, 
   return table.cells[column] == kind;
 }
 
+/// "05/06/2024": which of the two is the month depends on who wrote it.
+bool has_two_dates(std::string_view cell) {
+  std::size_t at = 0;
+  const auto digits = [&](std::size_t most) {
+    const std::size_t begin = at;
+    while (at < cell.size() && at - begin < most && cell[at] >= '0' && cell[at] <= '9') ++at;
+    return at - begin;
+  };
+  const auto stroke = [&] { return at < cell.size() && (cell[at] == '/' || cell[at] == '-') && ++at > 0; };
+  return digits(2) > 0 && stroke() && digits(2) > 0 && stroke() && digits(4) == 4;
+}
+
 /// A unit as people write it, in the words of unit_factor; empty when it is none.
 std::string known_unit(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kOtherwise{
@@ -249,7 +261,11 @@ class Parser {
       std::string& fault = table_.faults[cells];
       if (!read_number(cell, separator_, value) && !read_date_cell(cell, cells, table_, value) && fault.empty()) {
         fault = path_ + ":" + std::to_string(number_) + ": column '" + table_.names[cells] + "': '" +
-                std::string(cell.substr(0, kShownCell)) + "' is not a number";
+                std::string(cell.substr(0, kShownCell)) + "'" +
+                (has_two_dates(cell) ? " leaves open which is the day and which the month (write the year first, "
+                                       "2024-06-05 10:00:00): it"
+                                     : "") +
+                " is not a number";
       }
       table_.columns[cells].push_back(value);
     }

@@ -13,6 +13,7 @@
 #include "common/recordings/draft.hpp"
 #include "common/recordings/import.hpp"
 #include "common/recordings/little.hpp"
+#include "common/recordings/table_draft.hpp"
 #include "common/recordings/worth.hpp"
 #include "common/tables/import.hpp"
 #include "common/wire/log_reader.hpp"
@@ -310,11 +311,12 @@ FromSource read_source(const Source& source, const std::string& map,
 }
 
 std::string describe_source(const Source& source, const std::optional<tables::SimulatedAxes>& simulated) {
+  if (source.is_table()) return recordings::describe_table(tables::read_csv(source.files.front()));
   if (source.format == nullptr && !source.types)
     throw InputError(source.files.front() + ": --describe is for recordings with topics; " +
                      (source.lcm ? "an LCM log of Fathom is read by 'fathom check' and the others as it is; for one of "
                                    "another project give the files that define its types: --types FILE.lcm"
-                                 : "the columns of a table stand in its first line"));
+                                 : "tables of a log's channels are the log again, without a map"));
   const recordings::Content content = look_at(source);
   std::string text = recordings::description(content);
   const std::string draft = recordings::draft_map(content);

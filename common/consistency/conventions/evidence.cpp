@@ -160,6 +160,10 @@ struct Evidence::Windows {
 Evidence::Evidence(const PoseSeries& pose, const Series& velocity, const Series& rates, const Series& force,
                    const Series& depth)
     : pose_(pose), velocity_(velocity), rates_(rates), force_(force), depth_(depth) {
+  heading_alone_ = pose.has_attitude && std::ranges::all_of(pose.q_WB, [](const Eigen::Quaterniond& q) {
+                     constexpr double kRounding = 1e-12;
+                     return std::abs(q.x()) < kRounding && std::abs(q.y()) < kRounding;
+                   });
   // Speeds and rates of turn over half a second.
   const double step = estimation::typical_step(pose.t);
   if (step <= 0.0 || !pose.has_attitude) return;

@@ -150,4 +150,28 @@ TEST_CASE("conventions: a craft at rest, level and accelerometer two degrees apa
   }
 }
 
+TEST_CASE("conventions: a boat's heading is never taken for a quaternion in another order, whatever contradicts it") {
+  // A track straight to the north-east; a course from another instrument, which drifts away by 30 degrees.
+  Recording run{.name = "boat"};
+  for (int k = 0; k < 600; ++k) {
+    const double t = 0.1 * k, heading = (60.0 + 0.5 * t) * kDegree, course = (45.0 + 0.5 * t) * kDegree;
+    const Eigen::Quaterniond q_WB{rotation_from_euler({0.0, 0.0, heading})};
+    const Utime utime = 100'000 * k;
+    run.pose_capture.push_back({.utime = utime,
+                                .p_WB = {0.8 * t, 0.8 * t, 0.0},
+                                .q_WB = q_WB,
+                                .valid = true,
+                                .has_position = true,
+                                .has_attitude = true});
+    run.dvl.push_back(
+        {.utime = utime,
+         .v_WB_B = q_WB.conjugate() * Eigen::Vector3d{1.1 * std::cos(course), 1.1 * std::sin(course), 0.0},
+         .valid = true});
+  }
+  const ConsistencyResult result = consistency::check_consistency(std::span(&run, 1));
+  print(result.findings);
+  CHECK(result.corrections[0].quaternion == estimation::QuaternionForm::kAsRead);
+  CHECK(result.corrections[0].attitude_axes(2, 2) * result.corrections[0].attitude_world(2, 2) > 0.5);
+}
+
 }  // namespace fathom

@@ -78,6 +78,8 @@ TEST_CASE("csv: what is wrong is said in one line with the file's line") {
   CHECK(of_u("t,u\n0,1\n1,1 2\n") == "run.csv:3: column 'u': '1 2' is not a number");
   CHECK(of_u("t,u\n0,1e999\n") == "run.csv:2: column 'u': '1e999' is not a number");
   CHECK(of_u("t,u\n0,1\n") == "");
+  CHECK(of_u("t,u\n0,05/06/2024 10:00:00\n").find("'05/06/2024 10:00:00' leaves open which is the day") !=
+        std::string::npos);
   CHECK(std::isnan(parse_csv("t,u\n0,1 2\n", "run.csv").find("u")->front()));
   CHECK(complaint("t,u\n0,1\n1\n2,3\n") == "run.csv:3: this row has 1 cells, the header names 2");
   CHECK(complaint("t,u\n0,1\n1,2,3\n4,5\n") == "run.csv:3: this row has 3 cells, the header names 2");
