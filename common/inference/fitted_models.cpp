@@ -132,8 +132,11 @@ std::vector<Fitted> FittedModels::fit_all(const std::vector<Start>& starts) {
 Standing FittedModels::standing(const Fitted& best, double base, const std::string& name) const {
   std::map<std::vector<std::string>, double> of_set;  // the best of each set of names
   for (const Fitted& fitted : fitted_) {
-    const auto [place, fresh] = of_set.try_emplace(fitted.names, fitted.score);
-    if (!fresh) place->second = std::max(place->second, fitted.score);
+    // What scores more than the best was refused for its size or for numbers on a limit: it is no model to compare
+    // with.
+    const double score = fitted.score > best.score ? kNever : fitted.score;
+    const auto [place, fresh] = of_set.try_emplace(fitted.names, score);
+    if (!fresh) place->second = std::max(place->second, score);
   }
   std::vector<std::string> others = best.names;
   others.erase(std::ranges::find(others, name));

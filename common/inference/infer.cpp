@@ -112,19 +112,17 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
                        model::kAxisNames[static_cast<std::size_t>(force.axis)]});
     unexplained = true;
   }
-  const bool any = !found.best.names.empty();
   if (found.cut_short) reasons.push_back({Cause::kOutOfTime, found.spent, found.given, ""});
-  if (any) {
+  // Odds of names are those of models that are complete; here none is, so none of them is a claim.
+  if (unexplained) {
+    conclusion.verdict = Verdict::unexplained;
+    return;
+  }
+  if (!found.best.names.empty()) {
     const double least = *std::ranges::min_element(found.probability);
     const bool sure = least >= thresholds.name_probability;
     reasons.push_back({sure ? Cause::kNamed : Cause::kRivals, least, thresholds.name_probability, ""});
-    conclusion.verdict = unexplained                ? Verdict::unexplained
-                         : sure && !found.cut_short ? Verdict::effect
-                                                    : Verdict::ambiguous;
-    return;
-  }
-  if (unexplained) {
-    conclusion.verdict = Verdict::unexplained;
+    conclusion.verdict = sure && !found.cut_short ? Verdict::effect : Verdict::ambiguous;
     return;
   }
   const double promised = found.refused.empty() ? 0.0 : found.refused.front().promised;
