@@ -93,7 +93,8 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, double 
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool far = all[i].score < best() - kNear && all[i].score < from + kStillOpen * (best() - from);
-    if (all[i].fit.finite && !far) open.push_back(i);
+    // What promised most goes on whatever its first step: a number that is none of the linear ones needs several.
+    if (all[i].fit.finite && (!far || i == 0)) open.push_back(i);
   }
   for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
     std::vector<Start> on;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -18,6 +19,8 @@ constexpr std::size_t kBatch = 48;    // columns that run through the filter tog
 constexpr std::size_t kPairsOf = 24;  // best promises, of which all pairs are asked
 constexpr int kOnsetSteps = 8;        // finer times about the best one
 constexpr int kFiner = 2;             // so often
+constexpr std::size_t kFurther = 2;   // grid points beside a law's best one, from which it is fitted too
+constexpr double kNearly = 0.3;       // of the best one's score, for that
 
 /// One grid point of a law as columns.
 struct Question {
@@ -147,7 +150,9 @@ class Scanner {
     for (std::size_t c = 0; c < law.linear.size(); ++c) {
       const model::EffectParameter parameter =
           model::parameter_of(*law.seed.effect, law.seed.variant, law.linear[c], *problem_.vehicle);
-      const double x = gain.amplitude[static_cast<Eigen::Index>(c)] * question.amplitude[c];
+      // Of numbers that are not told to be amplitudes a column is a secant, and says nothing beyond its end.
+      const double most = law.seed.effect->amplitudes() > 0 ? std::numeric_limits<double>::infinity() : 1.0;
+      const double x = std::clamp(gain.amplitude[static_cast<Eigen::Index>(c)], -most, most) * question.amplitude[c];
       // What the linear solution has on the wrong side of a limit promises nothing there.
       if (law.linear.size() == 1 && (x < parameter.low || x > parameter.high)) promise.gain = promise.score = 0.0;
       promise.theta[law.linear[c]] = std::clamp(x, parameter.low, parameter.high);
@@ -191,6 +196,21 @@ double onset_spacing(std::span<const Law> laws) {
   return spacing;
 }
 
+/// Grid points of the same law after its best one. A promise is linear: numbers that are none (a delay, a time, a
+/// place) are far off where the grid is.
+std::vector<std::vector<double>> next_best(std::span<const Question> questions, std::span<const Promise> promises,
+                                           std::size_t best) {
+  std::vector<std::size_t> order;
+  for (std::size_t q = 0; q < questions.size(); ++q) {
+    if (q != best && questions[q].law == questions[best].law && promises[q].score > kNearly * promises[best].score)
+      order.push_back(q);
+  }
+  std::ranges::sort(order, std::greater{}, [&](std::size_t q) { return promises[q].score; });
+  std::vector<std::vector<double>> thetas;
+  for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) thetas.push_back(promises[order[k]].theta);
+  return thetas;
+}
+
 /// Asks times about these questions' own, `spacing` to both sides; the first of those that came.
 std::size_t ask_finer(const Scanner& scanner, const likelihood::Problem& problem, std::span<const Law> laws,
                       const std::vector<std::size_t>& about, double spacing, std::vector<Question>& questions,
@@ -212,7 +232,7 @@ std::size_t ask_finer(const Scanner& scanner, const likelihood::Problem& problem
 
 }  // namespace
 
-bool shaped(const Law& law) { return law.grid.size() > 1 && law.seed.effect->amplitudes() > 0; }
+bool shaped(const Law& law) { return law.grid.size() > 1; }
 
 std::vector<std::vector<double>> starts_of(const likelihood::Problem& problem, const Seen& seen, const Law& law,
                                            std::size_t count, const Thresholds& thresholds, int threads) {
@@ -289,6 +309,8 @@ Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vecto
     }
   };
   take_best(0);
+  std::map<std::size_t, std::vector<std::vector<double>>> also;
+  for (const auto& [l, q] : best) also[l] = next_best(questions, promises, q);
   const auto centres = [&] {
     std::vector<std::size_t> of;
     for (const auto& [l, q] : best) {
@@ -309,6 +331,7 @@ Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vecto
   for (const std::size_t q : order) {
     scan.promises.push_back(promises[q]);
     scan.promises.back().law = open[promises[q].law];
+    scan.promises.back().also = std::move(also.at(questions[q].law));
   }
   std::vector<Question> pairing;
   for (std::size_t k = 0; k < std::min(order.size(), kPairsOf); ++k) pairing.push_back(questions[order[k]]);

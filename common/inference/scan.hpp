@@ -23,9 +23,10 @@ struct Seen {
 /// What a law promises at its best grid point.
 struct Promise {
   std::size_t law{};
-  std::vector<double> theta;  ///< where a fit begins: the linear solution
-  double gain{};              ///< nats of likelihood
-  double score{};             ///< with the Occam factor of its linear numbers
+  std::vector<double> theta;                ///< where a fit begins: the linear solution
+  double gain{};                            ///< nats of likelihood
+  double score{};                           ///< with the Occam factor of its linear numbers
+  std::vector<std::vector<double>> also{};  ///< other grid points that promise nearly as much: fits begin there too
 };
 struct PairPromise {
   std::size_t first{}, second{};  ///< of the promises

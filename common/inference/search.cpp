@@ -109,7 +109,9 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
       if (promise.score < least || (!first && promise.score < kFarBehind * best)) continue;
       if (of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
       if (!first && singles++ >= thresholds_.fits_per_round) continue;
-      proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first});
+      proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first, {}});
+      for (const std::vector<double>& theta : promise.also)
+        proposals.back().also.push_back(effect_of(promise.law, theta));
     }
     int pairs = 0;
     for (const PairPromise& pair : scan.pairs) {
@@ -139,6 +141,10 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
              });
     });
     if (!same) unlike.push_back(std::move(proposal));
+  }
+  for (std::size_t k = 0, count = unlike.size(); k < count; ++k) {
+    for (const model::ActiveEffect& active : std::vector{unlike[k].also})
+      unlike.push_back({{active}, unlike[k].noise, unlike[k].first, {}});
   }
   return unlike;
 }
@@ -269,7 +275,7 @@ void Searching::seek_again(const std::vector<model::ActiveEffect>& before) {
       if (!fit.finite) return;
       for (std::vector<double>& theta :
            starts_of(problem_, see(problem_, fit, threads_), *law, kTimesAgain, thresholds_, threads_)) {
-        again.push_back({{law->seed}, found_.best.fit.noise});
+        again.push_back({{law->seed}, found_.best.fit.noise, false, {}});
         again.back().added.front().theta = std::move(theta);
       }
     };

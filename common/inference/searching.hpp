@@ -11,8 +11,9 @@ namespace fathom::inference {
 
 struct Proposal {
   std::vector<model::ActiveEffect> added;
-  likelihood::Noise noise;  ///< from which its fit begins
-  bool first{};             ///< asked before the others
+  likelihood::Noise noise;                  ///< from which its fit begins
+  bool first{};                             ///< asked before the others
+  std::vector<model::ActiveEffect> also{};  ///< in place of the one that is added, other numbers to begin from
 };
 
 class Searching {

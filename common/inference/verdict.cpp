@@ -30,8 +30,6 @@ std::string_view word(Cause cause) {
       return "rivals";
     case Cause::kFreeForce:
       return "free_force";
-    case Cause::kNotForetold:
-      return "not_foretold";
     case Cause::kSlowRandomForce:
       return "slow_random_force";
     case Cause::kNotFollowing:

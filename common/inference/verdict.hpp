@@ -22,7 +22,6 @@ enum class Cause {
   kNamed,            ///< least probability of an accepted name against others
   kRivals,           ///< the same, below what a name needs
   kFreeForce,        ///< log odds of a force that no list holds
-  kNotForetold,      ///< fall of the error on runs that no fit has seen: it surely rises with the names
   kSlowRandomForce,  ///< memory [s] of a random force of practical size: no noise
   kNotFollowing,     ///< share of an axis' acceleration that the model explains
   kNoSkill,          ///< 1 - (error / error where nothing changes)^2 of an axis at 5 s, on runs that no fit has seen

@@ -11,8 +11,6 @@ constexpr std::array kWords{
     CauseWords{"named", "probability", "The evidence sets an effect apart from every other"},
     CauseWords{"rivals", "probability", "The data fits more than one name", false},
     CauseWords{"free_force", "log odds", "A force acts that no listed effect explains"},
-    CauseWords{"not_foretold", "fraction of the error",
-               "With what the evidence names, runs that no fit has seen are foretold worse", false},
     CauseWords{"slow_random_force", "memory [s]", "A random force remembers itself for too long to be noise"},
     CauseWords{"not_following", "fraction of the acceleration", "The model does not follow its thrust", false},
     CauseWords{"absurd_number", "size over its prior's", "A number lies where none can be"},

@@ -126,24 +126,14 @@ void list_refused(const inference::Found& found, DiagnosisResult& result, Verdic
   }
 }
 
-/// By how much the error falls with the names on runs that no fit has seen. Where it surely rises, the odds have not
-/// found what acts there, whatever they are: something unlisted does.
+/// By how much the error falls with the names on runs that no fit has seen.
 Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
-                   Conclusion& conclusion) {
+                   const Conclusion& conclusion) {
   const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
   const model::Model after = learning::as_model(conclusion.reported.hypothesis, input_step);
   const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
-  const Interval gain =
-      diagnosis::improvement(diagnosis::predict(before, windows), diagnosis::predict(after, windows), vehicle);
-  if (names_claim(conclusion.verdict) && gain.high < 0.0) {
-    std::erase_if(conclusion.reasons, [](const inference::Reason& reason) {
-      return reason.cause == inference::Cause::kNamed || reason.cause == inference::Cause::kRivals;
-    });
-    conclusion.reasons.push_back({inference::Cause::kNotForetold, gain.value, 0.0, ""});
-    conclusion.verdict = Verdict::unexplained;
-  }
-  return gain;
+  return diagnosis::improvement(diagnosis::predict(before, windows), diagnosis::predict(after, windows), vehicle);
 }
 
 /// Predictions on runs that no fit has seen, beside the simplest ones. An axis that is foretold worse than by saying
@@ -229,7 +219,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     input_step = std::max(input_step, trial.input_step);
   }
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
-  if (conclusion.reported.finite && !conclusion.found.best.names.empty())
+  if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
     gain = held_back(vehicle, unseen, input_step, conclusion);
   learning::Learned learned;
   if (learning.learn && conclusion.verdict == Verdict::unexplained) {

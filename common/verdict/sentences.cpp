@@ -76,11 +76,6 @@ std::string unexplained(const Conclusion& conclusion) {
                 text(", log odds %.0f. It goes with ", free->value) + free->of +
                 ". These are its arguments, not its cause. ";
   }
-  if (const Reason* worse = reason(conclusion, Cause::kNotForetold))
-    sentence += text(
-        "With what the likelihood names, runs that no fit has seen are foretold %.0f %% worse: something "
-        "acts that no listed effect explains. ",
-        -100.0 * worse->value);
   if (const Reason* slow = reason(conclusion, Cause::kSlowRandomForce)) {
     sentence += text("A force in %s remembers itself for %.0f s: that is no noise, and nothing recorded goes with it. ",
                      slow->of.c_str(), slow->value);
