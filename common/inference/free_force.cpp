@@ -473,35 +473,6 @@ class Seeker {
     std::ranges::stable_sort(found.groups, std::greater{}, &GroupFound::gain);
     if (force->empty()) return;
     found.size = size_at(*force);
-    found.of_thrust = of_thrust(*force);
-  }
-
-  /// Least squares of what is read off the thrust on the thrust itself, axis by axis.
-  [[nodiscard]] double of_thrust(const likelihood::FreeForce& force) const {
-    Vector6d product = Vector6d::Zero(), square = Vector6d::Zero();
-    const std::vector<likelihood::Number> none;
-    for (std::size_t r = 0; r < problem_.runs.size(); ++r) {
-      likelihood::Plant plant{seen_.fit.hypothesis, none, problem_.runs[r], r, false};
-      plant.begin(problem_.runs[r].start());
-      for (std::size_t b = 0; b < problem_.runs[r].blocks().size(); ++b) {
-        plant.at_middle(b);
-        const likelihood::FeatureState state =
-            plant.features_at(seen_.reference[r].nu_middle.col(static_cast<Eigen::Index>(b)));
-        Vector6d wrench = Vector6d::Zero();
-        for (std::size_t j = 0; j < force.features.size(); ++j) {
-          if (force.features[j].reads_thrust()) force.features[j].add(state, force.weights[j], wrench);
-        }
-        product += wrench.cwiseProduct(state.tau);
-        square += state.tau.cwiseAbs2();
-        plant.end_block(b, seen_.reference[r].nu_end.col(static_cast<Eigen::Index>(b)));
-      }
-    }
-    double least = 0.0;
-    for (int i = 0; i < problem_.simulated; ++i) {
-      const int axis = problem_.axes[static_cast<std::size_t>(i)];
-      if (square[axis] > 0.0) least = std::min(least, product[axis] / square[axis]);
-    }
-    return least;
   }
 
   /// At the seen states.

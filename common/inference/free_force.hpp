@@ -22,7 +22,6 @@ struct FreeForceFound {
   double at_fixed_noise{};          ///< of the linear screen alone
   std::vector<double> explainable;  ///< per simulated axis: share of the random force's variance that it takes away
   Size size{};                      ///< share of the applied acceleration
-  double of_thrust{};               ///< what of it goes with thrust, over the thrust of its axis: the least of all axes
   likelihood::Fit fit{};            ///< with the force; finite only where it was fitted
 };
 

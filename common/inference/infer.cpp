@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/statistics.hpp"
+#include "common/model/learned/learned_force.hpp"
 #include "common/model/rollout.hpp"
 
 namespace fathom::inference {
@@ -165,12 +166,17 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
   if (found.best.fit.finite) {
     const Seen seen = see(problem, found.best.fit, settings.threads);
     // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
-    // What takes all thrust away, or turns it around, does not stand beside the model but in its place.
+    // A force that is read off the thrust itself is no reason to believe it: it could turn all thrust around.
     const bool beside = found.free_force && found.free_force->fit.finite &&
-                        found.free_force->log_odds >= settings.thresholds.free_force_odds &&
-                        found.free_force->of_thrust > settings.thresholds.thrust_taken;
-    conclusion.followed =
-        followed(problem, beside ? see(problem, found.free_force->fit, settings.threads) : Seen{seen});
+                        found.free_force->log_odds >= settings.thresholds.free_force_odds;
+    if (beside) {
+      likelihood::Fit apart = found.free_force->fit;
+      apart.hypothesis.force = model::without_thrust(apart.hypothesis.force);
+      apart.numbers = problem.numbers(apart.hypothesis);
+      conclusion.followed = followed(problem, see(problem, std::move(apart), settings.threads));
+    } else {
+      conclusion.followed = followed(problem, seen);
+    }
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
       const likelihood::AxisNoise& noise = found.best.fit.noise[axis];
       const int of = problem.axes[axis];

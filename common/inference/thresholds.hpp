@@ -27,7 +27,6 @@ struct Thresholds {
   double swallowing_memory{2.0};  ///< s: and its memory, above which it may have swallowed what is slow
   double slow_memory{10.0};       ///< s: a random force that remembers for longer, above the smallest size, is no noise
   double following{0.0};          ///< least share of an axis' acceleration that the model must explain
-  double thrust_taken{-1.0};  ///< of the applied thrust: a free force that takes so much stands in the model's place
   double pushed{0.5};      ///< thrust's over the motion's acceleration, below which an axis is moved by something else
                            ///< (roll by sway): it has no thrust to follow
   double no_skill{1e-3};   ///< p-value over windows of a model that is no worse than "nothing changes"
