@@ -1,14 +1,17 @@
 #include "common/wire/log_parts.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
 #include <sstream>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "common/base/error.hpp"
 #include "common/base/event_log.hpp"

@@ -65,12 +65,10 @@ TEST_CASE("long runs: a check holds a part of a recording, whatever its length, 
                           " " + log + " >" + out + " 2>&1");
     REQUIRE(measured[which].code == 0);
     said[which] = test::read_bytes(out);
-    CAPTURE(said[which]);
-    CHECK(said[which].find(" parts, one after the other") != std::string::npos);
-    CHECK(said[which].find("dvl.u          pose_capture   scale") != std::string::npos);
+    CHECK_MESSAGE(said[which].find(" parts, one after the other") != std::string::npos, said[which]);
+    CHECK_MESSAGE(said[which].find("dvl.u          pose_capture   scale") != std::string::npos, said[which]);
   }
-  CAPTURE(said[1]);
-  CHECK(said[1].find("parts (long, long from") != std::string::npos);
+  CHECK_MESSAGE(said[1].find("parts (long, long from") != std::string::npos, said[1]);
   // Held as a whole, a moment takes some 1000 bytes: samples, signals, what is reconstructed of them.
   const double added = 1024.0 * static_cast<double>(measured[1].peak - measured[0].peak) / ((kLong - kShort) * kRate);
   MESSAGE(added << " bytes for a moment that was added, " << measured[1].peak << " kB at most");
