@@ -51,6 +51,10 @@ class Result:
         for effect in data.get("effects", []):
             if effect["accepted"]:
                 self.effects[effect["name"]] = _numbers(effect["parameters"])
+        self.stand_ins = {}  # of the model as well, without a claim of a cause
+        for one in data.get("stand_ins", []):
+            if one["in_model"]:
+                self.stand_ins[one["name"]] = _numbers(one["parameters"])
 
     def __getitem__(self, key):
         return self.data[key]

@@ -93,7 +93,8 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, double 
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool far = all[i].score < best() - kNear && all[i].score < from + kStillOpen * (best() - from);
-    if (all[i].fit.finite && !far) open.push_back(i);
+    // What promised most goes on whatever its first step: a number that is none of the linear ones needs several.
+    if (all[i].fit.finite && (!far || i == 0)) open.push_back(i);
   }
   for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
     std::vector<Start> on;
@@ -132,8 +133,11 @@ std::vector<Fitted> FittedModels::fit_all(const std::vector<Start>& starts) {
 Standing FittedModels::standing(const Fitted& best, double base, const std::string& name) const {
   std::map<std::vector<std::string>, double> of_set;  // the best of each set of names
   for (const Fitted& fitted : fitted_) {
-    const auto [place, fresh] = of_set.try_emplace(fitted.names, fitted.score);
-    if (!fresh) place->second = std::max(place->second, fitted.score);
+    // What scores more than the best was refused for its size or for numbers on a limit: it is no model to compare
+    // with.
+    const double score = fitted.score > best.score ? kNever : fitted.score;
+    const auto [place, fresh] = of_set.try_emplace(fitted.names, score);
+    if (!fresh) place->second = std::max(place->second, score);
   }
   std::vector<std::string> others = best.names;
   others.erase(std::ranges::find(others, name));

@@ -50,8 +50,9 @@ class FittedModels {
       : problem_{problem}, laws_{laws}, threads_{threads}, progress_{progress} {}
 
   Fitted add(likelihood::Fit fit);
-  /// Each start moved a little; those that came near enough to the best of them and to `to_beat`, seen from `from`, go
-  /// on round by round, until what is still to be gained cannot make them the best. All are kept.
+  /// Each start, the most promising first, moved a little; it and those that came near enough to the best of them and
+  /// to `to_beat`, seen from `from`, go on round by round, until what is still to be gained cannot make them the best.
+  /// All are kept.
   std::vector<Fitted> race(const std::vector<Start>& starts, double from,
                            double to_beat = -std::numeric_limits<double>::infinity());
   /// All fitted to the end.

@@ -12,17 +12,39 @@ namespace {
 
 using likelihood::NumberKind;
 
-/// Share of an Ornstein-Uhlenbeck force's variance that its mean over `span` s keeps.
-double kept_in_mean(double memory, double span) {
-  const double x = span / memory;
-  return 2.0 / x * (1.0 + std::expm1(-x) / x);
-}
-
-/// Of the acceleration over a quarter of a second, what the random force does not have to make up for.
-double explained(const likelihood::Problem& problem, const likelihood::AxisNoise& noise, std::size_t axis) {
-  const double random = noise[likelihood::kForce] * noise[likelihood::kForce] *
-                        kept_in_mean(noise[likelihood::kForceMemory], likelihood::kAccelerationSpan);
-  return 1.0 - random / (problem.acceleration[axis] * problem.acceleration[axis]);
+/// Per simulated axis, the share of the filtered acceleration over a quarter of a second that the model foretells from
+/// where the vehicle was. Below zero it would do better to foretell none.
+std::vector<Following> followed(const likelihood::Problem& problem, const Seen& seen) {
+  std::vector<Following> shares;
+  for (int i = 0; i < problem.simulated; ++i) {
+    const int axis = problem.axes[static_cast<std::size_t>(i)];
+    double all = 0.0, left = 0.0;
+    for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+      const auto& blocks = problem.runs[r].blocks();
+      const likelihood::RunReference& reference = seen.reference[r];
+      double span = 0.0, foretold = 0.0;
+      std::size_t from = 0;
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
+        if (!blocks[b].scored || b == 0) {
+          span = foretold = 0.0;
+          from = b;
+          continue;
+        }
+        span += blocks[b].dt;
+        foretold += blocks[b].dt * reference.nu_dot(axis, static_cast<Eigen::Index>(b));
+        if (span < likelihood::kAccelerationSpan) continue;
+        const double moved = reference.nu_end(axis, static_cast<Eigen::Index>(b)) -
+                             reference.nu_end(axis, static_cast<Eigen::Index>(from));
+        all += moved * moved / span;
+        left += (moved - foretold) * (moved - foretold) / span;
+        span = foretold = 0.0;
+        from = b;
+      }
+    }
+    shares.push_back({all > 0.0 ? 1.0 - left / all : 1.0,
+                      seen.applied[axis] / std::max(problem.acceleration[static_cast<std::size_t>(i)], 1e-9)});
+  }
+  return shares;
 }
 
 /// In standard deviations, the median over base numbers by which both scores differ.
@@ -72,14 +94,10 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   }
 
   const likelihood::Fit& fit = found.best.fit;
-  // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
-  const bool beside =
-      found.free_force && found.free_force->fit.finite && found.free_force->log_odds >= thresholds.free_force_odds;
-  const likelihood::Noise& noise = beside ? found.free_force->fit.noise : fit.noise;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
-    const double share = explained(problem, noise[axis], axis);
-    if (share < thresholds.following)
-      reasons.push_back({Cause::kNotFollowing, share, thresholds.following,
+  for (std::size_t axis = 0; axis < conclusion.followed.size(); ++axis) {
+    const Following& following = conclusion.followed[axis];
+    if (following.pushed >= thresholds.pushed && following.share < thresholds.following)
+      reasons.push_back({Cause::kNotFollowing, following.share, thresholds.following,
                          model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});
   }
   for (const likelihood::Number& number : fit.numbers) {
@@ -112,19 +130,17 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
                        model::kAxisNames[static_cast<std::size_t>(force.axis)]});
     unexplained = true;
   }
-  const bool any = !found.best.names.empty();
   if (found.cut_short) reasons.push_back({Cause::kOutOfTime, found.spent, found.given, ""});
-  if (any) {
+  // Odds of names are those of models that are complete; here none is, so none of them is a claim.
+  if (unexplained) {
+    conclusion.verdict = Verdict::unexplained;
+    return;
+  }
+  if (!found.best.names.empty()) {
     const double least = *std::ranges::min_element(found.probability);
     const bool sure = least >= thresholds.name_probability;
     reasons.push_back({sure ? Cause::kNamed : Cause::kRivals, least, thresholds.name_probability, ""});
-    conclusion.verdict = unexplained                ? Verdict::unexplained
-                         : sure && !found.cut_short ? Verdict::effect
-                                                    : Verdict::ambiguous;
-    return;
-  }
-  if (unexplained) {
-    conclusion.verdict = Verdict::unexplained;
+    conclusion.verdict = sure && !found.cut_short ? Verdict::effect : Verdict::ambiguous;
     return;
   }
   const double promised = found.refused.empty() ? 0.0 : found.refused.front().promised;
@@ -148,6 +164,11 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
   const Found& found = conclusion.found;
   if (found.best.fit.finite) {
     const Seen seen = see(problem, found.best.fit, settings.threads);
+    // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
+    const bool beside = found.free_force && found.free_force->fit.finite &&
+                        found.free_force->log_odds >= settings.thresholds.free_force_odds;
+    conclusion.followed =
+        followed(problem, beside ? see(problem, found.free_force->fit, settings.threads) : Seen{seen});
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
       const likelihood::AxisNoise& noise = found.best.fit.noise[axis];
       const int of = problem.axes[axis];

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -16,7 +17,10 @@ namespace {
 constexpr double kZeroStart = 0.3;    // of its sigma, for a number whose grid value is zero
 constexpr std::size_t kBatch = 48;    // columns that run through the filter together
 constexpr std::size_t kPairsOf = 24;  // best promises, of which all pairs are asked
-constexpr int kOnsetSteps = 8;        // finer times about the best one, twice
+constexpr int kOnsetSteps = 8;        // finer times about the best one
+constexpr int kFiner = 2;             // so often
+constexpr std::size_t kFurther = 2;   // grid points beside a law's best one, from which it is fitted too
+constexpr double kNearly = 0.3;       // of the best one's score, for that
 
 /// One grid point of a law as columns.
 struct Question {
@@ -145,7 +149,9 @@ class Scanner {
     for (std::size_t c = 0; c < law.linear.size(); ++c) {
       const model::EffectParameter parameter =
           model::parameter_of(*law.seed.effect, law.seed.variant, law.linear[c], *problem_.vehicle);
-      const double x = gain.amplitude[static_cast<Eigen::Index>(c)] * question.amplitude[c];
+      // Of numbers that are not told to be amplitudes a column is a secant, and says nothing beyond its end.
+      const double most = law.seed.effect->amplitudes() > 0 ? std::numeric_limits<double>::infinity() : 1.0;
+      const double x = std::clamp(gain.amplitude[static_cast<Eigen::Index>(c)], -most, most) * question.amplitude[c];
       // What the linear solution has on the wrong side of a limit promises nothing there.
       if (law.linear.size() == 1 && (x < parameter.low || x > parameter.high)) promise.gain = promise.score = 0.0;
       promise.theta[law.linear[c]] = std::clamp(x, parameter.low, parameter.high);
@@ -177,7 +183,82 @@ std::vector<Question> all_questions(const std::vector<Law>& laws, const model::V
   return questions;
 }
 
+/// Between times of events that the grids of these laws hold; zero: they hold none.
+double onset_spacing(std::span<const Law> laws) {
+  double spacing = 0.0;
+  for (const Law& law : laws) {
+    if (law.onset < 0 || law.grid.size() < 2) continue;
+    const auto at = static_cast<std::size_t>(law.onset);
+    spacing = std::max(
+        spacing, std::abs(law.grid.back()[at] - law.grid.front()[at]) / (static_cast<double>(law.grid.size()) - 1.0));
+  }
+  return spacing;
+}
+
+/// Grid points of the same law after its best one. A promise is linear: numbers that are none (a delay, a time, a
+/// place) are far off where the grid is.
+std::vector<std::vector<double>> next_best(std::span<const Question> questions, std::span<const Promise> promises,
+                                           std::size_t best) {
+  std::vector<std::size_t> order;
+  for (std::size_t q = 0; q < questions.size(); ++q) {
+    if (q != best && questions[q].law == questions[best].law && promises[q].score > kNearly * promises[best].score)
+      order.push_back(q);
+  }
+  std::ranges::sort(order, std::greater{}, [&](std::size_t q) { return promises[q].score; });
+  std::vector<std::vector<double>> thetas;
+  for (std::size_t k = 0; k < std::min(kFurther, order.size()); ++k) thetas.push_back(promises[order[k]].theta);
+  return thetas;
+}
+
+/// Asks times about these questions' own, `spacing` to both sides; the first of those that came.
+std::size_t ask_finer(const Scanner& scanner, const likelihood::Problem& problem, std::span<const Law> laws,
+                      const std::vector<std::size_t>& about, double spacing, std::vector<Question>& questions,
+                      std::vector<Promise>& promises) {
+  const std::size_t from = questions.size();
+  for (const std::size_t q : about) {
+    const Law& law = laws[questions[q].law];
+    for (int s = -kOnsetSteps / 2; law.onset >= 0 && s <= kOnsetSteps / 2; ++s) {
+      std::vector<double> theta = questions[q].theta;
+      double& onset = theta[static_cast<std::size_t>(law.onset)];
+      onset = std::clamp(onset + s * spacing / kOnsetSteps, problem.t_low, problem.t_high);
+      if (s != 0) questions.push_back(question(law, questions[q].law, theta, *problem.vehicle));
+    }
+  }
+  const std::vector<Question> more{questions.begin() + static_cast<std::ptrdiff_t>(from), questions.end()};
+  std::ranges::move(scanner.ask(more), std::back_inserter(promises));
+  return from;
+}
+
 }  // namespace
+
+bool shaped(const Law& law) { return law.grid.size() > 1; }
+
+std::vector<std::vector<double>> starts_of(const likelihood::Problem& problem, const Seen& seen, const Law& law,
+                                           std::size_t count, const Thresholds& thresholds, int threads) {
+  const std::vector<Law> one{law};
+  const Scanner scanner{problem, seen, one, threads};
+  std::vector<Question> questions = all_questions(one, *problem.vehicle);
+  std::vector<Promise> promises = scanner.ask(questions);
+  const double spacing = onset_spacing(one);
+  // Points of the grid are apart; about each of the best, its finest time.
+  std::vector<std::size_t> order(questions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, std::greater{}, [&](std::size_t q) { return promises[q].score; });
+  std::vector<std::vector<double>> starts;
+  for (std::size_t k = 0; k < std::min(count, order.size()); ++k) {
+    std::size_t best = order[k];
+    double about = spacing;
+    for (int finer = 0; finer < kFiner && about > 0.0; ++finer) {
+      for (std::size_t q = ask_finer(scanner, problem, one, {best}, about, questions, promises); q < questions.size();
+           ++q) {
+        if (promises[q].score > promises[best].score) best = q;
+      }
+      about /= kOnsetSteps;
+    }
+    if (promises[best].score >= thresholds.score_worth) starts.push_back(promises[best].theta);
+  }
+  return starts;
+}
 
 Gain linear_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, const Eigen::VectorXd& sigma) {
   constexpr int kTurns = 3;  // of the prior's weight, which goes with the amplitude
@@ -227,27 +308,18 @@ Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vecto
     }
   };
   take_best(0);
-  double spacing = 0.0;
-  for (const Law& law : asked) {
-    if (law.onset >= 0 && law.grid.size() > 1)
-      spacing = std::max(spacing, std::abs(law.grid.back()[static_cast<std::size_t>(law.onset)] -
-                                           law.grid.front()[static_cast<std::size_t>(law.onset)]) /
-                                      std::max<double>(1.0, static_cast<double>(law.grid.size()) - 1.0));
-  }
-  for (int finer = 0; finer < 2 && spacing > 0.0; ++finer) {
-    const std::size_t from = questions.size();
-    for (const auto& [l, q] : std::map{best}) {
-      if (asked[l].onset < 0 || promises[q].score < thresholds.score_worth) continue;
-      for (int s = -kOnsetSteps / 2; s <= kOnsetSteps / 2; ++s) {
-        std::vector<double> theta = questions[q].theta;
-        double& onset = theta[static_cast<std::size_t>(asked[l].onset)];
-        onset = std::clamp(onset + s * spacing / kOnsetSteps, problem.t_low, problem.t_high);
-        if (s != 0) questions.push_back(question(asked[l], l, theta, *problem.vehicle));
-      }
+  std::map<std::size_t, std::vector<std::vector<double>>> also;
+  for (const auto& [l, q] : best) also[l] = next_best(questions, promises, q);
+  const auto centres = [&] {
+    std::vector<std::size_t> of;
+    for (const auto& [l, q] : best) {
+      if (promises[q].score >= thresholds.score_worth) of.push_back(q);
     }
-    const std::vector<Question> more{questions.begin() + static_cast<std::ptrdiff_t>(from), questions.end()};
-    std::ranges::move(scanner.ask(more), std::back_inserter(promises));
-    take_best(from);
+    return of;
+  };
+  double spacing = onset_spacing(asked);
+  for (int finer = 0; finer < kFiner && spacing > 0.0; ++finer) {
+    take_best(ask_finer(scanner, problem, asked, centres(), spacing, questions, promises));
     spacing /= kOnsetSteps;
   }
 
@@ -258,6 +330,7 @@ Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vecto
   for (const std::size_t q : order) {
     scan.promises.push_back(promises[q]);
     scan.promises.back().law = open[promises[q].law];
+    scan.promises.back().also = std::move(also.at(questions[q].law));
   }
   std::vector<Question> pairing;
   for (std::size_t k = 0; k < std::min(order.size(), kPairsOf); ++k) pairing.push_back(questions[order[k]]);

@@ -22,9 +22,10 @@ struct Seen {
 /// What a law promises at its best grid point.
 struct Promise {
   std::size_t law{};
-  std::vector<double> theta;  ///< where a fit begins: the linear solution
-  double gain{};              ///< nats of likelihood
-  double score{};             ///< with the Occam factor of its linear numbers
+  std::vector<double> theta;                ///< where a fit begins: the linear solution
+  double gain{};                            ///< nats of likelihood
+  double score{};                           ///< with the Occam factor of its linear numbers
+  std::vector<std::vector<double>> also{};  ///< other grid points that promise nearly as much: fits begin there too
 };
 struct PairPromise {
   std::size_t first{}, second{};  ///< of the promises
@@ -39,9 +40,18 @@ struct Scan {
 [[nodiscard]] Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vector<Law>& laws,
                         const Thresholds& thresholds, int threads);
 
+/// Where fits of one law beside a seen model begin: the maxima of its score over its times, frequencies and places, the
+/// best `count` that promise enough to be fitted.
+[[nodiscard]] std::vector<std::vector<double>> starts_of(const likelihood::Problem& problem, const Seen& seen,
+                                                         const Law& law, std::size_t count,
+                                                         const Thresholds& thresholds, int threads);
+/// Whether its score has more than one place to begin from.
+[[nodiscard]] bool shaped(const Law& law);
+
 /// Share of the applied acceleration that an effect of the seen model adds, least squares on the base numbers' columns
 /// taken out, on its worst axis. An effect on the sensors: of the velocity.
-[[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect);
+[[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect,
+                                    int threads = 1);
 
 /// Accelerations that an effect adds to a hypothesis at the seen model's filtered velocities: axes x blocks, `shown`
 /// likewise.

@@ -1,5 +1,6 @@
 // A fitted model made ready for questions, and the size of what an effect does in it.
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "common/inference/scan.hpp"
@@ -37,13 +38,39 @@ Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   return seen;
 }
 
+namespace {
+
+/// Of the least squares of `G`, `b` what they take away, numbers that no axis knows held by a small ridge.
+Eigen::VectorXd solved(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
+  constexpr double kRidge = 1e-9;  // of the largest
+  const Eigen::VectorXd scale = G.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
+  Eigen::MatrixXd scaled = scale.asDiagonal() * Eigen::MatrixXd{G.selfadjointView<Eigen::Lower>()} * scale.asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  const Eigen::VectorXd of = scale.asDiagonal() * b;
+  return scale.asDiagonal() * scaled.ldlt().solve(of);
+}
+
+/// Square that least squares take away, with numbers from `limit(x)` on held within their limits.
+double taken_away(const Eigen::MatrixXd& lower, const Eigen::VectorXd& b, const auto& limit) {
+  const Eigen::MatrixXd G = lower.selfadjointView<Eigen::Lower>();
+  Eigen::VectorXd x = solved(G, b);
+  const Eigen::Index free = limit(x), held = x.size() - free;
+  x.head(free) = solved(G.topLeftCorner(free, free), b.head(free) - G.topRightCorner(free, held) * x.tail(held));
+  return 2.0 * b.dot(x) - x.dot(G * x);
+}
+
+}  // namespace
+
 Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::vector<Eigen::MatrixXd>& accelerations) {
-  constexpr double kRidge = 1e-9;  // of the largest, for numbers that an axis does not know
+  // Base numbers first, then what the clocks of the commands leave open.
   std::vector<Eigen::Index> base;
-  for (std::size_t j = 0; j < seen.fit.numbers.size(); ++j) {
-    const NumberKind kind = seen.fit.numbers[j].kind;
-    if (kind == NumberKind::kBase || kind == NumberKind::kCommandOffset) base.push_back(static_cast<Eigen::Index>(j));
+  for (const NumberKind kind : {NumberKind::kBase, NumberKind::kCommandOffset}) {
+    for (std::size_t j = 0; j < seen.fit.numbers.size(); ++j) {
+      if (seen.fit.numbers[j].kind == kind) base.push_back(static_cast<Eigen::Index>(j));
+    }
   }
+  const auto offsets = static_cast<Eigen::Index>(
+      std::ranges::count(seen.fit.numbers, NumberKind::kCommandOffset, &likelihood::Number::kind));
   const auto p = static_cast<Eigen::Index>(base.size());
   Size worst;
   for (int i = 0; i < problem.simulated; ++i) {
@@ -63,12 +90,15 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
       }
     }
     if (count == 0.0) continue;
-    const Eigen::VectorXd scale = G.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
-    Eigen::MatrixXd scaled =
-        scale.asDiagonal() * Eigen::MatrixXd{G.selfadjointView<Eigen::Lower>()} * scale.asDiagonal();
-    scaled.diagonal().array() += kRidge;
-    const Eigen::VectorXd of = scale.asDiagonal() * b;
-    const double left = std::max(0.0, square - of.dot(scaled.ldlt().solve(of)));
+    const double left = std::max(0.0, square - taken_away(G, b, [&](Eigen::VectorXd& x) {
+                                        for (Eigen::Index j = p - offsets; j < p; ++j) {
+                                          const auto of = static_cast<std::size_t>(base[static_cast<std::size_t>(j)]);
+                                          const likelihood::Number& number = seen.fit.numbers[of];
+                                          const double now = value(seen.fit.hypothesis, number);
+                                          x[j] = std::clamp(x[j], number.low - now, number.high - now);
+                                        }
+                                        return p - offsets;
+                                      }));
     const int axis = problem.axes[static_cast<std::size_t>(i)];
     const double share = std::sqrt(left / count) / std::max(seen.applied[axis], 1e-9);
     if (share > worst.share) worst = {share, axis};
@@ -76,7 +106,7 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
   return worst;
 }
 
-double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect) {
+double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect, int threads) {
   // The model without it, with what it adds as a column.
   likelihood::Hypothesis without = seen.fit.hypothesis;
   const model::ActiveEffect active = without.model.effects[effect];
@@ -101,7 +131,14 @@ double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std:
   }
   if (likelihood::stage_of(active) == likelihood::Stage::kSensor)
     return moved_square > 0.0 ? std::sqrt(shown_square / moved_square) : 0.0;
-  return size_of(problem, seen, accelerations).share;
+  if (likelihood::stage_of(active) != likelihood::Stage::kHull) return size_of(problem, seen, accelerations).share;
+  // What base numbers alone can do. Beside an effect that couples axes they move axes that are not theirs, through the
+  // very inertia that is asked about.
+  Seen rest{.fit = seen.fit, .applied = seen.applied};
+  rest.fit.hypothesis = without;
+  rest.fit.numbers = problem.numbers(without);
+  likelihood::refer(problem, rest.fit, rest.reference, threads);
+  return size_of(problem, rest, accelerations).share;
 }
 
 }  // namespace fathom::inference

@@ -13,7 +13,8 @@ namespace {
 constexpr double kSmallestMass = 1e-3;  // of the prior's size: without inertia nothing can be simulated
 constexpr double kStep = 1e-5;          // of a number's size, for differences
 constexpr double kLeastSize = 1e-2;     // of the prior's sigma: size of a number that is still zero
-constexpr double kOffsetBound = 0.5;    // s
+// Of clocks and of how commands are held between their stamps; what is later than that acts late, and has a name.
+constexpr double kOffsetSigmas = 2.0, kOffsetOfStep = 0.5;
 
 void add_base(const Hypothesis& hypothesis, std::vector<Number>& numbers) {
   const model::Vehicle& vehicle = *hypothesis.model.vehicle;
@@ -43,8 +44,9 @@ void add_run(std::size_t run, const NumberSettings& settings, double input_step,
   if (settings.command_offset) {
     add(NumberKind::kCommandOffset, 0, "command offset", "s",
         settings.offset_sigma + settings.offset_of_step * input_step);
-    numbers.back().low = -kOffsetBound;
-    numbers.back().high = kOffsetBound;
+    const double most = kOffsetSigmas * settings.offset_sigma + kOffsetOfStep * input_step;
+    numbers.back().low = -most;
+    numbers.back().high = most;
     numbers.back().step = 1e-3;
   }
   constexpr std::array<const char*, 3> kWorld{"force north", "force east", "force down"};

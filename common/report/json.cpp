@@ -110,6 +110,17 @@ Json effects(const std::vector<EffectFound>& found) {
   return array;
 }
 
+Json stand_ins(const std::vector<StandIn>& found) {
+  Json array = Json::array();
+  for (const StandIn& one : found)
+    array.push_back({{"name", one.name},
+                     {"variant", one.variant},
+                     {"in_model", one.in_model},
+                     {"size", number_or_null(one.size)},
+                     {"parameters", named(one.parameters)}});
+  return array;
+}
+
 Json candidates(const std::vector<CandidateTried>& tried, const VerdictGiven& given) {
   Json array = Json::array();
   for (const auto& c : tried) {
@@ -231,6 +242,7 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   file["paragraph"] = result.paragraph;
   file["next"] = next(result);
   file["effects"] = effects(result.effects);
+  if (!result.stand_ins.empty()) file["stand_ins"] = stand_ins(result.stand_ins);
   if (result.correction && result.correction->asked) file["correction"] = correction_json(*result.correction);
   file["candidates"] = candidates(result.candidates, given);
   file["not_measured"] = not_measured(result.not_measured);

@@ -188,6 +188,12 @@ std::string parameter_section(const DiagnosisResult& result) {
               "</td></tr>\n" + own;
     }
   }
+  for (const StandIn& one : result.stand_ins) {
+    if (!one.in_model) continue;
+    rows += "<tr class=\"sub\"><td colspan=\"5\">" + escape(effect_title(one.name, one.variant)) +
+            " (stand-in)</td></tr>\n";
+    for (const NamedValue& value : one.parameters) rows += parameter_row(nullptr, &value);
+  }
   if (rows.empty()) return html + "<p>No parameter was fitted.</p></section>\n";
   return html + "<table>" +
          heading_cells({"Parameter", "before", "after", "unit", "before (orange, above) and after (blue, below)"},
@@ -198,7 +204,8 @@ std::string parameter_section(const DiagnosisResult& result) {
 std::string certainty_section(const DiagnosisResult& result) {
   std::string html = "<section><h2>How sure this is, and what would settle the rest</h2>\n";
   const Interval& gain = result.improvement;
-  if (std::ranges::none_of(result.effects, &EffectFound::accepted)) {
+  if (std::ranges::none_of(result.effects, &EffectFound::accepted) &&
+      std::ranges::none_of(result.stand_ins, &StandIn::in_model)) {
     html += "<p>Nothing was added to the model: it foretells what it foretold before.</p>\n";
   } else if (std::isfinite(gain.value)) {
     const bool sure = gain.low > 0.0;

@@ -219,6 +219,11 @@ std::string causes(const DiagnosisResult& result) {
              "it is this cause: " + escape(sure(probability_of(effect))) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
   }
+  for (const StandIn& one : result.stand_ins)
+    items += "<li>A stand-in, no cause: " + escape(effect_title(one.name, one.variant)) + " <span class=\"soft\">" +
+             escape(percent(one.size)) + " of the applied force; " +
+             (one.in_model ? "lowers the error on what was not fitted" : "not taken: the error does not fall") +
+             "</span></li>\n";
   if (result.correction && result.correction->adopted)
     items += "<li>A correction, not a cause: " + escape(result.correction->words) + "</li>\n";
   if (items.empty()) {
@@ -265,7 +270,9 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +
                      "<div class=\"tiles\">";
   const auto acts = [](const EffectFound& effect) { return effect.accepted && !of_sensor(effect); };
-  const bool added = std::ranges::any_of(result.effects, acts) || (result.correction && result.correction->adopted);
+  const bool added = std::ranges::any_of(result.effects, acts) ||
+                     std::ranges::any_of(result.stand_ins, &StandIn::in_model) ||
+                     (result.correction && result.correction->adopted);
   if (std::isfinite(result.improvement.value) && !added) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {

@@ -126,6 +126,17 @@ void accepted(Text& out, const DiagnosisResult& result) {
   if (!any) out.line("  none");
 }
 
+void stand_ins(Text& out, const DiagnosisResult& result) {
+  if (result.stand_ins.empty()) return;
+  out.title("Stand-ins: no cause is claimed");
+  for (const StandIn& one : result.stand_ins) {
+    out.paragraph(effect_title(one.name, one.variant) + ": " + percent(one.size) + " of the applied force; " +
+                  (one.in_model ? "it lowers the error on what was not fitted, so the model has it"
+                                : "it does not lower the error on what was not fitted, so the model lacks it"));
+    for (const NamedValue& value : one.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");
+  }
+}
+
 void refused(Text& out, const DiagnosisResult& result) {
   out.title("Effects refused");
   bool any = false;
@@ -165,6 +176,7 @@ std::string to_table(const DiagnosisResult& result) {
   out.paragraph(result.paragraph);
   errors(out, result);
   accepted(out, result);
+  stand_ins(out, result);
   if (const std::string words = correction_words(result); !words.empty()) {
     out.title("Correction: no cause");
     out.paragraph(words);

@@ -97,6 +97,11 @@ void evidence(Lines& out, const Stored& stored) {
     if (!effect.unlisted.empty()) out.line("or, unlisted: " + effect.unlisted, "", 6);
     for (const std::string& forms : effect.other_forms) out.line("form open: " + forms, "", 6);
   }
+  for (const StandIn& one : stored.result.stand_ins)
+    out.line(report::effect_title(one.name, one.variant) + ": a stand-in for something unlisted, " + percent(one.size) +
+                 " of the applied force; " +
+                 (one.in_model ? "in the model" : "not in the model: the error does not fall with it"),
+             "  ~ ");
   std::size_t told = 0, more = 0;
   for (const CandidateTried& candidate : stored.result.candidates) {
     if (report::accepted_form(stored.result, candidate) != nullptr) continue;

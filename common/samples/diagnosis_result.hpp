@@ -100,6 +100,15 @@ struct EffectFound {
   bool last{false};  ///< acts on the thrust that the others leave, not on the command
 };
 
+/// A listed effect that takes up a part of what no listed effect explains. It claims no cause: it is a correction of
+/// the numbers, as a learned force is.
+struct StandIn {
+  std::string name, variant;
+  bool in_model{};  ///< it lowers the error on runs that no fit has seen, so the model after has it
+  double size{};    ///< share of the applied acceleration, on its worst axis
+  std::vector<NamedValue> parameters;
+};
+
 struct CandidateTried {
   std::string name;
   std::string variant;
@@ -137,6 +146,7 @@ struct DiagnosisResult {
   std::string paragraph;  ///< verdict in plain words: how sure, and which manoeuvre would settle what is open
   std::string manoeuvre;  ///< the motion that would settle what is open; empty when nothing is (report only)
   std::vector<EffectFound> effects;
+  std::vector<StandIn> stand_ins{};
   std::vector<CandidateTried> candidates;
   std::vector<NotMeasured> not_measured;
   ModelError error_before;

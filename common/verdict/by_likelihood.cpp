@@ -66,30 +66,51 @@ Eigen::VectorXd with_difference(const likelihood::Fit& of, const likelihood::Fit
       .sqrt();
 }
 
-/// Numbers of `fit`, which holds the effects that were found and gives all other numbers too.
-void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, const Eigen::VectorXd& sigma,
-                  DiagnosisResult& result, VerdictGiven& given) {
+/// A name claims a cause only where nothing that no list holds stands beside it: with such a thing in the data every
+/// listed law that resembles a part of it has enormous odds, and none means anything (docs/decisions/194).
+bool names_claim(Verdict verdict) { return verdict == Verdict::effect || verdict == Verdict::ambiguous; }
+
+/// Numbers of the effect of that place in the model.
+std::vector<NamedValue> numbers_of_effect(const likelihood::Fit& fit, std::size_t effect,
+                                          const Eigen::VectorXd& sigma) {
+  std::vector<NamedValue> values;
+  for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+    const likelihood::Number& number = fit.numbers[j];
+    if (number.kind != NumberKind::kEffect || number.index != static_cast<int>(effect)) continue;
+    values.push_back({number.name.substr(number.name.find('.') + 1), value(fit.hypothesis, number),
+                      sigma[static_cast<Eigen::Index>(j)], number.unit});
+  }
+  return values;
+}
+
+/// Effects of `fit`, which gives all other numbers too. `in_model`: of stand-ins.
+void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, const Eigen::VectorXd& sigma, bool in_model,
+                  DiagnosisResult& result) {
   const inference::Found& found = conclusion.found;
   const auto& effects = fit.hypothesis.model.effects;
   for (std::size_t e = 0; e < effects.size() && e < found.odds.size(); ++e) {
-    EffectFound effect{.name = std::string(effects[e].effect->name()),
-                       .variant = effects[e].variant_name,
+    const std::string name{effects[e].effect->name()}, &form = effects[e].variant_name;
+    if (!names_claim(conclusion.verdict)) {
+      result.stand_ins.push_back({name, form, in_model, found.size[e], numbers_of_effect(fit, e, sigma)});
+      result.candidates.push_back({name, form, found.odds[e], kNotAsked, {}, "stand-in"});
+      continue;
+    }
+    EffectFound effect{.name = name,
+                       .variant = form,
+                       .parameters = numbers_of_effect(fit, e, sigma),
                        .log_odds = found.odds[e],
                        .error_reduction = kNotAsked,
                        .sentence = std::string(effects[e].effect->sentence())};
-    for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
-      const likelihood::Number& number = fit.numbers[j];
-      if (number.kind != NumberKind::kEffect || number.index != static_cast<int>(e)) continue;
-      effect.parameters.push_back({number.name.substr(number.name.find('.') + 1), value(fit.hypothesis, number),
-                                   sigma[static_cast<Eigen::Index>(j)], number.unit});
-    }
     if (!found.rival[e].empty() && found.probability[e] < inference::Thresholds{}.name_probability)
       effect.alternatives.push_back(
           {.name = found.rival[e],
            .log_odds = std::log(found.probability[e] / std::max(1.0 - found.probability[e], 1e-300))});
-    result.candidates.push_back({effect.name, effect.variant, effect.log_odds, kNotAsked, {}, "accepted"});
+    result.candidates.push_back({name, form, effect.log_odds, kNotAsked, {}, "accepted"});
     result.effects.push_back(std::move(effect));
   }
+}
+
+void list_refused(const inference::Found& found, DiagnosisResult& result, VerdictGiven& given) {
   for (const inference::Refused& refused : found.refused) {
     CandidateTried candidate{
         .name = refused.name, .variant = refused.form, .log_odds = kNotAsked, .error_reduction = kNotAsked};
@@ -100,6 +121,16 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
     }
     result.candidates.push_back(std::move(candidate));
   }
+}
+
+/// By how much the error falls with the names on runs that no fit has seen.
+Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
+                   const Conclusion& conclusion) {
+  const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+  const model::Model after = learning::as_model(conclusion.reported.hypothesis, input_step);
+  const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
+  if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
+  return diagnosis::improvement(diagnosis::predict(before, windows), diagnosis::predict(after, windows), vehicle);
 }
 
 /// Predictions on runs that no fit has seen, beside the simplest ones. An axis that is foretold worse than by saying
@@ -178,6 +209,15 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.improvement = {kNotAsked, kNotAsked, kNotAsked};
   progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
+  std::vector<Trial> unseen;
+  double input_step = 0.0;
+  for (const Trial& trial : validate) {
+    unseen.push_back(identification::sparse(trial, kStep));
+    input_step = std::max(input_step, trial.input_step);
+  }
+  Interval gain{kNotAsked, kNotAsked, kNotAsked};
+  if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
+    gain = held_back(vehicle, unseen, input_step, conclusion);
   learning::Learned learned;
   if (learning.learn && conclusion.verdict == Verdict::unexplained) {
     progress.begin(kLearning.phase, kLearning.what);
@@ -187,13 +227,10 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   }
   progress.expect(kLearning.phase, 0);
   const model::LearnedForce* force = force_for(learned, train, validate);
-  const likelihood::Fit& best = force != nullptr ? learned.fit : conclusion.reported;
-  std::vector<Trial> unseen;
-  double input_step = 0.0;
-  for (const Trial& trial : validate) {
-    unseen.push_back(identification::sparse(trial, kStep));
-    input_step = std::max(input_step, trial.input_step);
-  }
+  const likelihood::Fit& named = force != nullptr ? learned.fit : conclusion.reported;
+  // Stand-ins stay where they help.
+  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || gain.low > 0.0;
+  const likelihood::Fit& best = with_names ? named : conclusion.reported_base;
   if (conclusion.reported.finite) {
     const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
@@ -217,20 +254,22 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
     return likelihood::between_runs(problem, fit, settings.threads).sigma;
   };
-  const Eigen::VectorXd of_best =
-      force != nullptr ? best.sigma()
-                       : with_difference(conclusion.found.best.fit, best, deviations(conclusion.found.best.fit));
-  list_effects(conclusion, best, of_best, result, answer.given);
+  const Eigen::VectorXd of_base = with_difference(conclusion.found.base.fit, conclusion.reported_base,
+                                                  deviations(conclusion.found.base.fit)),
+                        of_named = force != nullptr ? named.sigma()
+                                                    : with_difference(conclusion.found.best.fit, named,
+                                                                      deviations(conclusion.found.best.fit));
+  const bool told = conclusion.reported.finite && conclusion.verdict != Verdict::no_model;
+  list_effects(conclusion, named, of_named, with_names && told, result);
+  list_refused(conclusion.found, result, answer.given);
   if (!result.effects.empty()) result.explained = kNotAsked;
   for (const std::string& name : settings.without)
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
   result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
-  if (conclusion.reported.finite && conclusion.verdict != Verdict::no_model) {
-    result.parameters_before = numbers_of(
-        conclusion.reported_base,
-        with_difference(conclusion.found.base.fit, conclusion.reported_base, deviations(conclusion.found.base.fit)));
-    result.parameters_after = numbers_of(best, of_best);
+  if (told) {
+    result.parameters_before = numbers_of(conclusion.reported_base, of_base);
+    result.parameters_after = numbers_of(best, with_names ? of_named : of_base);
   }
   return answer;
 }

@@ -41,6 +41,18 @@ std::string names(const Conclusion& conclusion) {
   return all;
 }
 
+/// Without odds, which mean nothing beside something unlisted.
+std::string stand_ins(const Conclusion& conclusion) {
+  std::string all;
+  const auto& effects = conclusion.found.best.fit.hypothesis.model.effects;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    all += (e > 0 ? ", " : "") + title(std::string(effects[e].effect->name()));
+    if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
+    all += ": " + percent(conclusion.found.size[e]) + " of the applied force";
+  }
+  return all;
+}
+
 const Reason* reason(const Conclusion& conclusion, Cause cause) {
   const auto found = std::ranges::find(conclusion.reasons, cause, &Reason::cause);
   return found != conclusion.reasons.end() ? &*found : nullptr;
@@ -113,7 +125,9 @@ std::string paragraph(const Conclusion& conclusion) {
     case Verdict::unexplained:
       words = unexplained(conclusion);
       if (!conclusion.found.best.names.empty())
-        words += "Listed effects that take a part of it, as stand-ins or beside it: " + names(conclusion) + ". ";
+        words +=
+            "Listed effects that stand in for a part of it, without a claim that they act: " + stand_ins(conclusion) +
+            ". ";
       break;
     case Verdict::no_model:
       words = "The model does not follow its thrust, so its numbers are withheld: ";

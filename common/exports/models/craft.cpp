@@ -40,13 +40,19 @@ Vector6d lumped(const result::Stored& stored, const model::Vehicle& vehicle, std
 void put_effects(const result::Stored& stored, std::vector<std::string>& notes) {
   if (stored.result.correction && stored.result.correction->adopted)
     notes.push_back("not in this file: the learned correction ('correction' in " + stored.path + ")");
-  for (const EffectFound& effect : stored.result.effects) {
-    if (!effect.accepted) continue;
-    std::string note = "not in this file: the effect " + report::effect_title(effect.name, effect.variant);
+  const auto lacks = [&](const char* what, const auto& effect) {
+    std::string note =
+        std::string{"not in this file: the "} + what + " " + report::effect_title(effect.name, effect.variant);
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       note += (i == 0 ? " (" : ", ") + effect.parameters[i].name + " = " + report::with_interval(effect.parameters[i]);
     }
     notes.push_back(note + (effect.parameters.empty() ? "" : ")"));
+  };
+  for (const EffectFound& effect : stored.result.effects) {
+    if (effect.accepted) lacks("effect", effect);
+  }
+  for (const StandIn& stand_in : stored.result.stand_ins) {
+    if (stand_in.in_model) lacks("stand-in", stand_in);
   }
 }
 

@@ -22,6 +22,10 @@ ModelFile to_json(const Craft& craft, const result::Stored& stored) {
   Json effects = Json::array();
   for (const EffectFound& effect : stored.result.effects)
     effects.push_back({{"name", effect.name}, {"variant", effect.variant}, {"parameters", numbers(effect.parameters)}});
+  for (const StandIn& one : stored.result.stand_ins) {
+    if (one.in_model)
+      effects.push_back({{"name", one.name}, {"variant", one.variant}, {"parameters", numbers(one.parameters)}});
+  }
   Json thrusters = Json::array();
   for (const model::Thruster& t : craft.thrusters)
     thrusters.push_back(

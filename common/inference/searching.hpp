@@ -1,0 +1,108 @@
+// The search's moves and what they share. Room-internal: search.hpp is what others see.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/inference/search.hpp"
+
+namespace fathom::inference {
+
+struct Proposal {
+  std::vector<model::ActiveEffect> added;
+  likelihood::Noise noise;                  ///< from which its fit begins
+  bool first{};                             ///< asked before the others
+  std::vector<model::ActiveEffect> also{};  ///< in place of the one that is added, other numbers to begin from
+};
+
+class Searching {
+ public:
+  Searching(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
+            const Thresholds& thresholds, int threads, const Progress& progress, const Deadline& deadline)
+      : problem_{problem},
+        scene_{scene},
+        laws_{catalogue(scene, without)},
+        thresholds_{thresholds},
+        threads_{threads},
+        progress_{progress},
+        deadline_{deadline},
+        models_{problem, laws_, threads, progress} {}
+  Found run();
+
+ private:
+  /// The better of two after a round of each: begun from the noise's prior means, and with random forces as large as
+  /// the motion's own. There the filter leans on the measurements: whatever the numbers it begins from, it does not run
+  /// away, and the first steps are a fit of accelerations.
+  [[nodiscard]] likelihood::Fit fit_base() const;
+  void expect(const Step& step, double units) const;
+  void begin(const Step& step) const;
+  /// Scans and fits of so many rounds, this one included.
+  void expect_rounds(double rounds);
+  /// There is time for more.
+  bool goes_on();
+  [[nodiscard]] const std::vector<model::ActiveEffect>& effects() const;
+  [[nodiscard]] model::ActiveEffect effect_of(std::size_t law, const std::vector<double>& theta) const;
+  /// What promises most beside a model: the best laws and pairs, seen at its noise and, where a random force may have
+  /// swallowed something slow, at a fifth of it. `least`: what a promise must come to, in nats.
+  std::vector<Proposal> proposals(const Fitted& from, double least, bool with_pairs);
+  static std::vector<Start> starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals);
+  [[nodiscard]] static Start without(const Fitted& from, std::size_t effect);
+  /// Takes the best of these where it is a name's worth better; else false.
+  bool take_best(std::vector<Fitted> fits);
+  bool add_some();
+  static bool held(const std::vector<model::ActiveEffect>& effects, const model::ActiveEffect& active);
+  /// Every effect that the best model does not hold yet has the smallest practical size and numbers of its own; else
+  /// it is noted why not.
+  [[nodiscard]] bool counts(const Fitted& fitted);
+  /// Other forms of the effects that were just found, begun from their shared numbers, where the score promised at
+  /// least half as much: the best stays.
+  void simplify(const std::vector<model::ActiveEffect>& before);
+  /// Times, frequencies and places of the effects that were just found, sought once more: they have many maxima, and
+  /// the noise at which they were found had taken a part of them.
+  void seek_again(const std::vector<model::ActiveEffect>& before);
+  /// The random force of some axis may have swallowed something slow; if so, `fit` has a fifth of it afterwards.
+  [[nodiscard]] bool quieten(const Seen& seen, likelihood::Fit& fit) const;
+  /// Nats that the best model would lose without the effect, by Wald's test of its leading numbers: a linear guess.
+  [[nodiscard]] double guessed_loss(const Seen& seen, std::size_t effect) const;
+  /// What another effect has made small or worthless, or pushed to a limit, goes.
+  void drop();
+  [[nodiscard]] std::vector<std::string> names_without(std::size_t effect) const;
+  /// The best model without each effect, where none has been fitted yet.
+  void leave_out();
+  /// For each of several effects: leave it out, scan, fit in its place what promises about as much. Whether any was
+  /// exchanged.
+  bool swap();
+  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const;
+  static double worth(const FreeForceFound& force);
+  /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
+  /// best there. Names that are not worth their odds over that are none, and the free force stays in their place. First
+  /// all together that are worth less than the free force beside them, then each once, the weakest first.
+  void give_way();
+  /// If the free force beside `rest`, which lacks these effects, does what they do, they are gone.
+  void takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest);
+  void judge_effects();
+  void note(const Promise& promise);
+  /// By its best fit: beside all that was found it lacks odds, size or numbers of its own; in place of something that
+  /// was found it is less probable.
+  [[nodiscard]] Refusal refusal(const std::string& name, double promised) const;
+  void list_refused();
+  static constexpr double kDoubtful = 5.0;  // times a name's odds: a guess of less is asked of a fit
+
+  const likelihood::Problem& problem_;
+  const model::Scene& scene_;
+  std::vector<Law> laws_;
+  const Thresholds& thresholds_;
+  int threads_;
+  const Progress& progress_;
+  const Deadline& deadline_;
+  FittedModels models_;
+  Found found_;
+  std::map<std::string, Promise> noted_;
+  std::map<std::size_t, Promise> promised_;  // by law, in the last look
+  std::map<std::string, Refusal> failed_;    // what evidence alone would have named
+  std::map<std::string, Refusal> gave_way_;  // to a free force in its place
+  std::map<std::string, double> in_place_;   // nats by which a name is worth more than that
+};
+
+}  // namespace fathom::inference

@@ -1,0 +1,52 @@
+// What is listed as a cause, and what is not.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "common/verdict/by_likelihood.hpp"
+#include "test/common/likelihood/noisy_dive.hpp"
+
+using namespace fathom;
+using namespace fathom::verdict;
+
+namespace {
+
+Answer answer_to(const test::NoisyDive& settings, const std::vector<std::string>& without) {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto train = test::fly(vehicle, settings);
+  test::NoisyDive other = settings;
+  other.seed += 1;
+  const auto validate = test::fly(vehicle, other);
+  return diagnose(vehicle, {&train.trial, 1}, {&validate.trial, 1}, {.without = without}, {}, {.learn = false});
+}
+
+}  // namespace
+
+TEST_CASE("claims: beside something that no list holds nothing is a cause, and the model is not worse") {
+  const test::NoisyDive settings{
+      .duration = 90.0, .seed = 11, .force = 0.05, .effects = {test::active("current", {0.15, 0.1})}};
+  const Answer answer = answer_to(settings, {"current"});
+  const DiagnosisResult& result = answer.report.result;
+  CHECK(result.verdict == "unexplained");
+  CHECK(result.effects.empty());
+  CHECK(std::ranges::none_of(answer.given.causes, [](const CauseGiven& cause) { return cause.cause == "named"; }));
+  CHECK_FALSE(result.improvement.high < 0.0);
+  for (const StandIn& one : result.stand_ins) {
+    const auto tried = std::ranges::find(result.candidates, one.name, &CandidateTried::name);
+    REQUIRE(tried != result.candidates.end());
+    CHECK(tried->reason == "stand-in");
+    if (one.in_model) CHECK(result.improvement.low > 0.0);
+  }
+}
+
+TEST_CASE("claims: a listed effect is a cause, and no stand-in") {
+  const Answer answer =
+      answer_to({.duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}}, {});
+  const DiagnosisResult& result = answer.report.result;
+  CHECK(result.verdict == "effect");
+  REQUIRE(result.effects.size() == 1);
+  CHECK(result.effects[0].name == "current");
+  CHECK(result.stand_ins.empty());
+  REQUIRE(!result.effects[0].parameters.empty());
+  CHECK(result.effects[0].parameters[0].value == doctest::Approx(0.1).epsilon(0.1));  // m/s toward north
+}
