@@ -20,8 +20,11 @@ class Decoder {
       : definitions_{definitions}, bytes_{bytes}, kept_{kept} {}
 
   Json structure(const Type& type) {
+    constexpr int kDeepest = 32;  // a type may hold a list of its own kind
+    if (++depth_ > kDeepest) throw Cut{};
     Json object = Json::object();
     for (const Field& field : type.fields) object[field.name] = value(type, field, object, 0);
+    --depth_;
     return object;
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
@@ -79,6 +82,7 @@ class Decoder {
   const Definitions& definitions_;
   std::span<const std::uint8_t> bytes_;
   Bytes kept_;
+  int depth_{};
 };
 
 Json schema_of_field(const Definitions& definitions, const Type& type, const Field& field) {
