@@ -20,8 +20,11 @@ class Decoder {
       : definitions_{definitions}, bytes_{bytes}, kept_{kept} {}
 
   Json structure(const Type& type) {
+    constexpr int kDeepest = 32;  // a type may hold a list of its own kind
+    if (++depth_ > kDeepest) throw Cut{};
     Json object = Json::object();
     for (const Field& field : type.fields) object[field.name] = value(type, field, object, 0);
+    --depth_;
     return object;
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
@@ -46,6 +49,8 @@ class Decoder {
   }
 
   Json value(const Type& type, const Field& field, const Json& object, std::size_t dimension) {
+    // Elements without a byte (lists of nothing) must not come without end.
+    if (++elements_ > most_) throw Cut{};
     if (dimension == field.sizes.size()) return scalar(type, field);
     const std::size_t count = length(field.sizes[dimension], object);
     if (field.type == "byte" && dimension + 1 == field.sizes.size()) {
@@ -79,6 +84,8 @@ class Decoder {
   const Definitions& definitions_;
   std::span<const std::uint8_t> bytes_;
   Bytes kept_;
+  int depth_{};
+  std::size_t elements_{}, most_{bytes_.size() + 65536};
 };
 
 Json schema_of_field(const Definitions& definitions, const Type& type, const Field& field) {

@@ -1,49 +1,12 @@
 #include "common/exports/definitions.hpp"
 
 #include <algorithm>
-#include <regex>
-#include <sstream>
 
 #include "common/base/error.hpp"
 #include "common/base/event_format.hpp"
 
 namespace fathom::exports {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto begin = text.find_first_not_of(" \t");
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-/// The subset of LCM's language that Fathom's files use: one struct a file, a field a line, its comment behind it.
-Type parsed(std::string_view text) {
-  static const std::regex kPackage{R"(^\s*package\s+(\w+)\s*;.*$)"}, kStruct{R"(^\s*struct\s+(\w+)\s*(\{.*)?$)"},
-      kField{R"(^\s*(\w+)\s+(\w+)((?:\s*\[\s*\w+\s*\])*)\s*;\s*(?://\s*(.*))?$)"}, kSize{R"(\[\s*(\w+)\s*\])"};
-  Type type;
-  bool inside = false;
-  std::istringstream lines{std::string{text}};
-  for (std::string line; std::getline(lines, line);) {
-    std::smatch found;
-    if (std::regex_match(line, found, kPackage)) {
-      type.package = found[1];
-    } else if (std::regex_match(line, found, kStruct)) {
-      type.name = found[1];
-      inside = true;
-    } else if (inside && std::regex_match(line, found, kField)) {
-      Field field{.type = found[1], .name = found[2], .sizes = {}, .comment = trimmed(found[4])};
-      const std::string sizes = found[3];
-      for (std::sregex_iterator size{sizes.begin(), sizes.end(), kSize}, end; size != end; ++size)
-        field.sizes.push_back((*size)[1]);
-      type.fields.push_back(std::move(field));
-    } else if (const std::string rest = trimmed(line); rest.starts_with("//")) {
-      std::string& comment = inside && !type.fields.empty() ? type.fields.back().comment : type.comment;
-      comment += (comment.empty() ? "" : " ") + trimmed(rest.substr(2));
-    } else if (!rest.empty() && rest != "}" && rest != "{") {
-      throw InputError("message type " + type.name + ": cannot read '" + rest + "'");
-    }
-  }
-  return type;
-}
 
 // LCM's fingerprints (lcmgen.c, lcm_struct_hash): names of fields, names of primitive types and shapes.
 void take(std::uint64_t& hash, std::int8_t byte) {
@@ -73,10 +36,10 @@ std::uint64_t own_hash(const Type& type) {
 
 }  // namespace
 
-Definitions::Definitions(std::span<const std::string_view> texts) {
-  for (const std::string_view text : texts) {
-    Type type = parsed(text);
-    types_[type.package + "." + type.name] = std::move(type);
+Definitions::Definitions(std::span<const std::string_view> texts, std::span<const std::string> paths) {
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    for (Type& type : types_in(texts[i], i < paths.size() ? paths[i] : "message types"))
+      types_[type.package + "." + type.name] = std::move(type);
   }
   for (const auto& [name, type] : types_) by_fingerprint_[fingerprint(type)] = &type;
 }
@@ -87,7 +50,8 @@ const Definitions& Definitions::built_in() {
 }
 
 const Type& Definitions::type(const std::string& package, const std::string& name) const {
-  const auto found = types_.find(package + "." + name);
+  const bool whole = name.find('.') != std::string::npos;  // of another package
+  const auto found = types_.find(whole ? name : package + "." + name);
   if (found == types_.end()) throw InputError("message type " + package + "." + name + ": is not defined");
   return found->second;
 }

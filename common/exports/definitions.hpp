@@ -9,26 +9,16 @@
 #include <string_view>
 #include <vector>
 
+#include "common/exports/lcm_language.hpp"
+
 namespace fathom::exports {
-
-struct Field {
-  std::string type;  ///< "double", "int64_t", ..., or the name of another type
-  std::string name;
-  std::vector<std::string> sizes;  ///< of an array: numbers, or names of earlier fields
-  std::string comment;             ///< "[m] Bo from Wo, in W (NED)"
-  [[nodiscard]] bool primitive() const { return type.find("_t") == std::string::npos || type.starts_with("int"); }
-};
-
-struct Type {
-  std::string package, name, comment;
-  std::vector<Field> fields;
-};
 
 /// All types by "package.name".
 class Definitions {
  public:
-  /// Of .lcm texts, a type each. InputError for what cannot be read.
-  explicit Definitions(std::span<const std::string_view> texts);
+  /// Of .lcm texts; `paths` stand for them in messages. InputError for what cannot be read, or names a type that none
+  /// of them has.
+  explicit Definitions(std::span<const std::string_view> texts, std::span<const std::string> paths = {});
   /// Those that this build was made with.
   [[nodiscard]] static const Definitions& built_in();
 

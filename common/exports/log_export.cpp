@@ -9,6 +9,7 @@
 #include "common/base/event_log.hpp"
 #include "common/base/version.hpp"
 #include "common/exports/any_message.hpp"
+#include "common/exports/channel_tables.hpp"
 #include "common/exports/log_visit.hpp"
 #include "common/recordings/mcap/writer.hpp"
 
@@ -91,6 +92,7 @@ Exported to_csv(const std::string& log, const std::string& folder, std::span<con
     file << "\n";
   });
   std::ofstream about{path_of("columns.txt"), std::ios::binary};
+  if (origin) about << line_of_origin(*origin) << "\n\n";
   for (const auto& [channel, type] : types) describe(about, channel, *type);
   files["columns.txt"] = std::move(about);
   for (auto& [channel, file] : files) {
@@ -99,16 +101,17 @@ Exported to_csv(const std::string& log, const std::string& folder, std::span<con
   return exported;
 }
 
-Exported to_mcap(const std::string& log, const std::string& file, std::span<const std::string> channels) {
-  const Definitions& definitions = Definitions::built_in();
+Exported to_mcap(const std::string& log, const std::string& file, std::span<const std::string> channels,
+                 const Definitions& definitions) {
   static_cast<void>(EventLog{log});  // refuses what is no log before anything is written
   recordings::mcap::Writer writer{file};
   writer.metadata("fathom",
                   {{"log", std::filesystem::path{log}.filename().string()}, {"version", std::string{version()}}});
   std::map<std::pair<std::string, const Type*>, std::uint16_t> opened;
   const auto nanoseconds = [](Utime time) { return static_cast<std::uint64_t>(std::max<Utime>(time, 0)) * 1000; };
-  Exported exported =
-      visit(log, channels, Bytes::kBase64, [&](const LogEvent& event, const Type& type, const Json& message) {
+  Exported exported = visit(
+      log, channels, Bytes::kBase64,
+      [&](const LogEvent& event, const Type& type, const Json& message) {
         const auto [place, fresh] = opened.try_emplace({std::string{event.channel}, &type});
         if (fresh)
           place->second = writer.open(std::string{event.channel}, type.package + "." + type.name,
@@ -117,7 +120,8 @@ Exported to_mcap(const std::string& log, const std::string& file, std::span<cons
         writer.message(place->second, nanoseconds(event.time),
                        nanoseconds(stamped ? message.at("utime").get<Utime>() : event.time),
                        message.dump(-1, ' ', false, Json::error_handler_t::replace));
-      });
+      },
+      definitions);
   writer.close();
   return exported;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/exports/definitions.hpp"
+
 namespace fathom::exports {
 
 struct Exported {
@@ -21,8 +23,9 @@ struct Exported {
 Exported to_csv(const std::string& log, const std::string& folder, std::span<const std::string> channels);
 
 /// One MCAP file with JSON messages and a JSON schema per channel; log time is the recorder's, publish time the
-/// message's own.
-Exported to_mcap(const std::string& log, const std::string& file, std::span<const std::string> channels);
+/// message's own. With the definitions of another project its logs are understood.
+Exported to_mcap(const std::string& log, const std::string& file, std::span<const std::string> channels,
+                 const Definitions& definitions = Definitions::built_in());
 
 /// One .npz with an array per field, named "CHANNEL/field": a row per message, then the field's own dimensions, in the
 /// order of the log. "CHANNEL/t" is [s] since the log's first message. Lists of other lengths are filled with NaN,

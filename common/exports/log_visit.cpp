@@ -9,8 +9,8 @@ namespace fathom::exports {
 
 using Json = nlohmann::ordered_json;
 
-Exported visit(const std::string& log, std::span<const std::string> channels, Bytes bytes, const VisitMessage& take) {
-  const Definitions& definitions = Definitions::built_in();
+Exported visit(const std::string& log, std::span<const std::string> channels, Bytes bytes, const VisitMessage& take,
+               const Definitions& definitions) {
   Exported exported;
   EventLog events{log};
   std::set<std::string> seen;

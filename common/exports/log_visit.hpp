@@ -15,7 +15,8 @@ namespace fathom::exports {
 using VisitMessage = std::function<void(const LogEvent&, const Type&, const nlohmann::ordered_json&)>;
 
 /// Every message of these channels (empty: of all) that can be decoded. InputError when a channel is not in the log.
-Exported visit(const std::string& log, std::span<const std::string> channels, Bytes bytes, const VisitMessage& take);
+Exported visit(const std::string& log, std::span<const std::string> channels, Bytes bytes, const VisitMessage& take,
+               const Definitions& definitions = Definitions::built_in());
 
 /// Scalars by the names of their columns: "utime", "nu[0]", "parameters[2].value".
 void flatten(const nlohmann::ordered_json& value, const std::string& name,

@@ -34,6 +34,9 @@ void append(Recording& to, Recording&& from) {
   append(to.usbl, std::move(from.usbl));
   append(to.ranges, std::move(from.ranges));
   append(to.loads, std::move(from.loads));
+  append(to.tag_pose, std::move(from.tag_pose));
+  append(to.optical_flow, std::move(from.optical_flow));
+  append(to.laser_range, std::move(from.laser_range));
 }
 
 std::string topics_of(const Content& content) {
@@ -81,9 +84,10 @@ std::optional<std::size_t> topic_of(const tables::MappedStream& stream, const Co
   return topic;
 }
 
-/// Rows of one recording of a topic as a table, in the order of time.
+/// Rows of one recording of a topic as a table, in the order of time. A message that stands there twice, as in bags
+/// whose index was made anew and in files that were joined to themselves, is one; `twice` counts them.
 tables::CsvTable table_of(const Content& content, std::size_t topic, std::uint32_t recording,
-                          const std::vector<std::int64_t>& times) {
+                          const std::vector<std::int64_t>& times, std::size_t& twice) {
   const TopicRows& rows = content.topics->rows()[topic];
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < rows.stamps.size(); ++i) {
@@ -92,6 +96,15 @@ tables::CsvTable table_of(const Content& content, std::size_t topic, std::uint32
   std::vector<std::size_t> sorted(order.size());
   std::iota(sorted.begin(), sorted.end(), std::size_t{0});
   std::ranges::stable_sort(sorted, {}, [&](std::size_t i) { return times[i]; });
+  const auto same = [&](std::size_t a, std::size_t b) {
+    return times[a] == times[b] && std::ranges::all_of(rows.columns, [&](const std::vector<double>& column) {
+             const double x = column[order[a]], y = column[order[b]];
+             return x == y || (std::isnan(x) && std::isnan(y));
+           });
+  };
+  const auto repeated = std::ranges::unique(sorted, same);
+  twice = repeated.size();
+  sorted.erase(repeated.begin(), repeated.end());
   tables::CsvTable table;
   table.path = content.path() + ": " + content.topics->topics()[topic].topic.name;
   table.names.push_back(tables::kOwnTime);
@@ -112,7 +125,8 @@ tables::CsvTable table_of(const Content& content, std::size_t topic, std::uint32
 /// Streams of one recording, all on one clock.
 std::optional<ImportedRun> import_run(Content& content, const std::vector<tables::MappedStream>& streams,
                                       const std::vector<std::optional<std::size_t>>& topics, std::uint32_t recording,
-                                      const std::optional<tables::SimulatedAxes>& simulated, bool strict) {
+                                      const std::optional<tables::SimulatedAxes>& simulated, bool strict,
+                                      std::vector<std::string>& reasons) {
   ImportedRun run;
   std::vector<TopicStamps> stamps;
   std::map<std::size_t, std::size_t> place;  // of a topic among `stamps`
@@ -136,7 +150,11 @@ std::optional<ImportedRun> import_run(Content& content, const std::vector<tables
       run.notes.push_back(streams[s].name + ": no message of " + own.topic);
       continue;
     }
-    const tables::CsvTable table = table_of(content, *topics[s], recording, aligned.times[place[*topics[s]]]);
+    std::size_t twice = 0;
+    const tables::CsvTable table = table_of(content, *topics[s], recording, aligned.times[place[*topics[s]]], twice);
+    if (twice > 0)
+      run.notes.push_back(own.topic + ": " + std::to_string(twice) +
+                          " messages stand there twice (same time, same numbers) and are taken once");
     const bool last =
         recording + 1 == content.topics->recordings() &&
         std::ranges::count(topics.begin() + static_cast<std::ptrdiff_t>(s) + 1, topics.end(), topics[s]) == 0;
@@ -152,7 +170,8 @@ std::optional<ImportedRun> import_run(Content& content, const std::vector<tables
       any = true;
     } catch (const InputError& error) {
       if (strict) throw;
-      run.notes.push_back(streams[s].name + " left out: " + error.what());
+      reasons.push_back(streams[s].name + " left out: " + error.what());
+      run.notes.push_back(reasons.back());
     }
   }
   if (!any) return std::nullopt;
@@ -166,11 +185,15 @@ Content read_files(const Files& files, std::set<std::string> columns, Collector:
   content.topics = std::make_unique<Collector>(files.format->clock, std::move(columns), take);
   JoinedParts joined{*content.topics};
   for (const std::string& path : files.paths) {
-    if (files.paths.size() == 1) {
-      files.format->read(path, *content.topics, content.damage);
-    } else {
+    Sink* sink = content.topics.get();
+    if (files.paths.size() > 1) {
       joined.next_part();
-      files.format->read(path, joined, content.damage);
+      sink = &joined;
+    }
+    if (files.read) {
+      files.read(path, *sink, content.damage);
+    } else {
+      files.format->read(path, *sink, content.damage);
     }
   }
   content.topics->finish();
@@ -192,6 +215,13 @@ std::vector<std::string> remarks(const Content& content) {
   return notes;
 }
 
+void require_messages(const Content& content) {
+  if (content.topics->messages() > 0) return;
+  std::string why;
+  for (const std::string& remark : remarks(content)) why += "; " + remark;
+  throw InputError(content.path() + ": holds no message that can be read" + why);
+}
+
 ImportedFiles import_files(const Files& files, const std::vector<tables::MappedStream>& streams,
                            const std::optional<tables::SimulatedAxes>& simulated, bool strict) {
   std::set<std::string> columns;
@@ -199,17 +229,21 @@ ImportedFiles import_files(const Files& files, const std::vector<tables::MappedS
   Content content = read_files(files, std::move(columns), Collector::Take::kColumns);
   ImportedFiles out;
   for (const std::string& note : remarks(content)) out.notes.push_back(content.path() + ": " + note);
-  if (content.topics->messages() == 0) throw InputError(content.path() + ": holds no message that can be read");
+  require_messages(content);
   std::vector<std::optional<std::size_t>> topics;
   for (const tables::MappedStream& stream : streams) {
     topics.push_back(topic_of(stream, content, strict));
     if (!topics.back()) out.notes.push_back(stream.name + " left out: no topic holds all columns of " + stream.where);
   }
   const std::uint32_t recordings = content.topics->recordings();
+  std::string why;
   for (std::uint32_t r = 0; r < recordings; ++r) {
     // A short start that lacks what a long one has is no reason to refuse the long one.
-    std::optional<ImportedRun> run = import_run(content, streams, topics, r, simulated, strict && recordings == 1);
+    std::vector<std::string> reasons;
+    std::optional<ImportedRun> run =
+        import_run(content, streams, topics, r, simulated, strict && recordings == 1, reasons);
     if (!run) {
+      if (why.empty() && !reasons.empty()) why = ": " + reasons.front();
       out.notes.push_back(content.path() + ": recording " + std::to_string(r + 1) + " of " +
                           std::to_string(recordings) + " holds nothing that the map names");
       continue;
@@ -219,7 +253,8 @@ ImportedFiles import_files(const Files& files, const std::vector<tables::MappedS
     out.runs.push_back(std::move(*run));
   }
   if (out.runs.empty())
-    throw InputError(content.path() + ": holds nothing that the map names; 'fathom import --describe' lists it");
+    throw InputError(content.path() + ": holds nothing of what the map names" + why +
+                     "; 'fathom import --describe' lists what is there");
   return out;
 }
 

@@ -1,6 +1,7 @@
 // Recordings of others to a Recording: topics through a map, each stream at the times of its topic.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -20,6 +21,8 @@ namespace fathom::recordings {
 struct Files {
   std::vector<std::string> paths;
   const Format* format{};
+  /// In the place of the format's own, where reading needs more than the file.
+  std::function<void(const std::string& path, Sink& sink, Damage& damage)> read{};
 };
 
 /// What was read of it.
@@ -36,6 +39,9 @@ struct Content {
 
 /// What is to be said of what was read: damage, refused stamps.
 [[nodiscard]] std::vector<std::string> remarks(const Content& content);
+
+/// InputError where not one message could be read: with what was seen instead.
+void require_messages(const Content& content);
 
 struct ImportedRun {
   Recording recording;

@@ -335,7 +335,9 @@ void ros_topics(const TopicAccount& topic, const Columns& c, Out& out) {
 std::vector<Entry> entries_of(const TopicAccount& topic) {
   std::vector<Entry> out;
   const Columns columns{topic};
-  if (topic.topic.type.find('/') != std::string::npos) {
+  if (topic.topic.type.starts_with("arrays of ")) {
+    named_arrays(topic, out);
+  } else if (topic.topic.type.find('/') != std::string::npos) {
     ros_topics(topic, columns, out);
   } else {
     ardupilot(topic, columns, out);

@@ -27,4 +27,7 @@ struct Entry {
 /// Entries that a topic offers; none for a topic that is not known.
 [[nodiscard]] std::vector<Entry> entries_of(const TopicAccount& topic);
 
+/// Of a topic that is a file's named arrays (arrays/arrays.hpp).
+void named_arrays(const TopicAccount& topic, std::vector<Entry>& out);
+
 }  // namespace fathom::recordings

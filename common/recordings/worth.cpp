@@ -58,6 +58,15 @@ double Worth::Ranges::widest() const {
   return widest;
 }
 
+double Worth::Ranges::widest_share() const {
+  double widest = 0.0;
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    const double size = std::max(std::abs(low[i]), std::abs(high[i]));
+    if (size > 0.0) widest = std::max(widest, (high[i] - low[i]) / size);
+  }
+  return widest;
+}
+
 double Worth::Ranges::largest() const {
   double largest = 0.0;
   for (std::size_t i = 0; i < low.size(); ++i) largest = std::max({largest, std::abs(low[i]), std::abs(high[i])});
@@ -94,8 +103,12 @@ void Worth::thrusters(const WorthThresholds& limits, std::vector<std::string>& f
     found.push_back("thruster commands come at " + number("%.1f Hz", rate) +
                     ": what happens between them cannot be explained; log them at 10 Hz or more");
   const bool has_pulses = !pulses_.low.empty(), has_forces = !forces_.low.empty() || !wrench_.low.empty();
-  if (has_pulses && !has_forces && pulses_.widest() < limits.pulse_span)
+  // Commands may be shaft speeds and angles as well (rad/s, rad): those are judged by their own size.
+  const bool are_pulses = has_pulses && pulses_.largest() >= limits.least_pulse;
+  if (are_pulses && !has_forces && pulses_.widest() < limits.pulse_span)
     found.push_back("thruster pulses stay within " + number("%.0f us", pulses_.widest()) + ": nothing was commanded");
+  if (has_pulses && !are_pulses && !has_forces && pulses_.widest_share() <= limits.relative_span)
+    found.emplace_back("commands never change: nothing was commanded");
   if (has_forces && std::max(forces_.widest(), wrench_.widest()) <=
                         limits.relative_span * std::max(forces_.largest(), wrench_.largest()))
     found.emplace_back("thrust never changes: nothing was commanded");

@@ -15,6 +15,7 @@ namespace fathom::recordings {
 
 struct WorthThresholds {
   double command_rate{5.0};    ///< Hz: between slower commands the thrust is not known well enough to explain motion
+  double least_pulse{500.0};   ///< us: smaller commands are no pulses, but shaft speeds or angles
   double pulse_span{20.0};     ///< us: below, a speed controller stays within its dead band
   double relative_span{0.02};  ///< of the largest force or wrench: below, nothing was commanded
   double rate_spread{0.02};    ///< rad/s, standard deviation: a gyro of a craft at rest scatters less
@@ -51,6 +52,7 @@ class Worth {
     void add(std::span<const double> values);
     [[nodiscard]] double widest() const;
     [[nodiscard]] double largest() const;
+    [[nodiscard]] double widest_share() const;  ///< of a number's own size: units may differ
   };
   void thrusters(const WorthThresholds& limits, std::vector<std::string>& found) const;
 

@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
 #include "common/tables/import.hpp"
+#include "common/tables/likely_time.hpp"
 
 namespace fathom::tables {
 namespace {
@@ -140,6 +141,14 @@ class Shelf {
   std::set<std::string> left_;
 };
 
+std::string said_of(const std::optional<LikelyTime>& time) {
+  if (!time) return "";
+  return time->columns.size() == 1
+             ? "; '" + time->columns.front() + "' looks like it: call it 't', or write in a map '" + time->key + "'"
+             : "; '" + time->columns[0] + "' and '" + time->columns[1] + "' look like it: write in a map '" +
+                   time->key + "'";
+}
+
 std::optional<AttitudeColumns> as_euler(const std::optional<ColumnGroup>& group) {
   if (!group) return std::nullopt;
   AttitudeColumns attitude;
@@ -156,7 +165,7 @@ ColumnMap canonical_map(const CsvTable& table) {
   const auto time = shelf.take({"t"});
   if (!time) {
     throw InputError(table.path + ":1: column 't' (time in seconds, or as a date) is missing" +
-                     (table.find("T") != nullptr ? " (is it 'T'?)" : "") +
+                     (table.find("T") != nullptr ? " (is it 'T'?)" : said_of(likely_time(table))) +
                      "; describe other columns with a map (--map)");
   }
   map.time = *time;

@@ -6,85 +6,18 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
-#include "common/drafts/ardusub_mixer.hpp"
+#include "common/tables/map_keys.hpp"
+#include "common/tables/map_sections.hpp"
 #include "common/tables/mapped_streams.hpp"
 
 namespace fathom::tables {
+
+using namespace map_keys;      // NOLINT(google-build-using-namespace)
+using namespace map_sections;  // NOLINT(google-build-using-namespace)
+
 namespace {
 
 constexpr const char* kDateUnit = "date";  // of a time: texts
-constexpr const char* kNone = "none";      // in a list of columns: this component was not measured
-
-double factor_to(const Config& config, const std::string& key, const std::string& unit) {
-  try {
-    return unit_factor(config.text(key), unit);
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    if (message.rfind("unit '", 0) != 0 && message.rfind("the unit", 0) != 0) throw;
-    config.fail(key, message);
-  }
-}
-
-void need_count(const Config& config, const std::string& key, const std::vector<Column>& columns, std::size_t count) {
-  if (columns.size() == count) return;
-  config.fail(key, "'" + key + "' needs " + std::to_string(count) + " columns, not " + std::to_string(columns.size()));
-}
-
-std::vector<Column> columns_of(const Config& config, const std::string& key) {
-  std::vector<Column> columns;
-  for (const std::string& name : config.texts(key)) columns.push_back({name, config.where(key)});
-  if (columns.empty()) config.fail(key, "'" + key + "' names no column");
-  return columns;
-}
-
-/// Components of a group, one column each, 'none' where there is none; fewer when the vehicle file tells which.
-std::vector<Column> components_of(const Config& config, const std::string& key, std::size_t count) {
-  std::vector<Column> columns = columns_of(config, key);
-  if (columns.size() > count) need_count(config, key, columns, count);
-  for (Column& column : columns) {
-    if (column.name == kNone) column = {"", column.where, true};
-  }
-  if (std::ranges::all_of(columns, &Column::absent)) config.fail(key, "'" + key + "' names no column");
-  if (columns.size() < count && std::ranges::any_of(columns, &Column::absent)) need_count(config, key, columns, count);
-  return columns;
-}
-
-Eigen::Matrix3d body_frame(const Config& config, const std::string& key) {
-  const std::string name = config.text(key);
-  if (name == "FRD") return Eigen::Matrix3d::Identity();
-  if (name == "FLU") return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
-  config.fail(key, "'" + name + "' is no body frame: FRD (forward, right, down) or FLU (forward, left, up)");
-}
-
-std::optional<Eigen::Matrix3d> world_axes(const std::string& name) {
-  if (name == "NED") return Eigen::Matrix3d::Identity();
-  if (name == "NWU") return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
-  if (name == "ENU") return (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished();
-  return std::nullopt;
-}
-
-Eigen::Matrix3d world_frame(const Config& config, const std::string& key) {
-  const std::string name = config.text(key);
-  if (const auto axes = world_axes(name)) return *axes;
-  config.fail(key, "'" + name + "' is no world frame: NED, NWU (z up, y to the left of x) or ENU");
-}
-
-ColumnGroup group_of(const Config& config, const std::string& unit) {
-  ColumnGroup group;
-  group.columns = columns_of(config, "columns");
-  group.factor = factor_to(config, "unit", unit);
-  return group;
-}
-
-ColumnGroup vector_of(const Config& config, const std::string& unit) {
-  return {components_of(config, "columns", 3), factor_to(config, "unit", unit)};
-}
-
-ColumnGroup body_vector(const Config& config, const std::string& unit) {
-  ColumnGroup group = vector_of(config, unit);
-  group.to_house = body_frame(config, "frame");
-  return group;
-}
 
 /// A velocity or rates: along body axes, or along the world's, as simulators and motion capture have them.
 ColumnGroup moving_vector(const Config& config, const std::string& unit, bool& in_world) {
@@ -101,13 +34,6 @@ ColumnGroup moving_vector(const Config& config, const std::string& unit, bool& i
   return group;
 }
 
-ColumnGroup scalar(const Config& config, const std::string& unit) {
-  ColumnGroup group;
-  group.columns = {{config.text("column"), config.where("column")}};
-  group.factor = factor_to(config, "unit", unit);
-  return group;
-}
-
 // Whichever of `quaternion` and `euler` the section holds.
 std::optional<AttitudeColumns> attitude_of(const Config& config) {
   const bool quaternion = config.has("quaternion");
@@ -120,12 +46,7 @@ std::optional<AttitudeColumns> attitude_of(const Config& config) {
   if (euler) {
     attitude.group = vector_of(section, "rad");
   } else {
-    std::vector<Column> columns = columns_of(section, "columns");
-    need_count(section, "columns", columns, 4);
-    const std::string order = section.text("order");
-    if (order != "wxyz" && order != "xyzw") section.fail("order", "'order' must be wxyz or xyzw, not '" + order + "'");
-    if (order == "xyzw") std::rotate(columns.begin(), columns.begin() + 3, columns.end());
-    attitude.group.columns = std::move(columns);
+    attitude.group.columns = quaternion_columns(section);
   }
   if (euler && section.has("heading")) {
     const std::string sense = section.text("heading");
@@ -147,16 +68,6 @@ std::optional<AttitudeColumns> attitude_of(const Config& config) {
   attitude.world_to_house = world_frame(section, "world");
   attitude.body_to_house = body_frame(section, "body");
   return attitude;
-}
-
-std::vector<Column> invalid_of(const Config& config) {
-  std::vector<Column> flags = config.has("invalid_where") ? columns_of(config, "invalid_where") : std::vector<Column>{};
-  if (!config.has("valid_where")) return flags;
-  for (Column& column : columns_of(config, "valid_where")) {
-    column.negated = true;
-    flags.push_back(std::move(column));
-  }
-  return flags;
 }
 
 /// Latitude, longitude and, if there is one, height.
@@ -214,109 +125,8 @@ HeldRule held_of(const Config& config) {
   return rule;
 }
 
-StickColumns sticks_of(const Config& config) {
-  constexpr std::size_t kSticks = 6;
-  StickColumns sticks{.pulses = {components_of(config, "columns", kSticks), 1.0},
-                      .frame = config.text("frame"),
-                      .coupling = config.has("coupling") ? config.not_negative("coupling", "") : 1.0,
-                      .reversed = {},
-                      .neutral = config.positive("neutral", "us"),
-                      .full = config.positive("full", "us")};
-  need_count(config, "columns", sticks.pulses.columns, kSticks);
-  if (config.has("reversed")) {
-    for (const double number : config.quantities("reversed", "")) {
-      if (number != std::round(number)) config.fail("reversed", "'reversed' lists numbers of motors, 1 the first");
-      sticks.reversed.push_back(static_cast<int>(number));
-    }
-  }
-  try {
-    (void)drafts::ArdusubMixer{sticks.frame, sticks.coupling, sticks.reversed};
-  } catch (const InputError& error) {
-    config.fail("frame", error.what());
-  }
-  return sticks;
-}
-
-/// To the unit in which a vehicle file's actuators take their commands.
-double command_factor(const Config& config, const std::string& unit) {
-  for (const char* wanted : {"us", "rad/s", "rad", "N"}) {
-    try {
-      return unit_factor(unit, wanted);
-    } catch (const InputError&) {  // of another kind
-    }
-  }
-  config.fail("units", "'" + unit + "' is no unit of a command: us (a pulse), rpm (a shaft), deg (a rudder) or N");
-}
-
-InputColumns inputs_of(const Config& config) {
-  InputColumns inputs{.group = {columns_of(config, "columns"), 1.0}, .units = config.texts("units")};
-  if (inputs.units.size() != inputs.group.columns.size())
-    config.fail("units", "'units' needs one unit for each of 'columns', [rpm, rpm, deg] for example");
-  for (const std::string& unit : inputs.units) inputs.factors.push_back(command_factor(config, unit));
-  return inputs;
-}
-
-ThrusterColumns thrusters_of(const Config& config) {
-  ThrusterColumns thrusters;
-  if (config.has("inputs")) {
-    if (config.has("pwm") || config.has("command"))
-      config.fail("inputs", "state 'inputs' alone: pulses are columns of it with the unit us");
-    thrusters.inputs = inputs_of(config.section("inputs"));
-  }
-  if (config.has("pwm")) thrusters.pwm = group_of(config.section("pwm"), "us");
-  if (config.has("force")) thrusters.force = group_of(config.section("force"), "N");
-  if (config.has("command")) {
-    const Config command = config.section("command");
-    if (thrusters.pwm) config.fail("command", "state 'pwm' or 'command', not both: a command becomes a pulse");
-    thrusters.command = {
-        {columns_of(command, "columns"), 1.0}, command.positive("neutral", "us"), command.positive("full", "us")};
-  }
-  if (config.has("sticks")) {
-    const Config sticks = config.section("sticks");
-    if (thrusters.pwm || thrusters.command || thrusters.inputs)
-      config.fail("sticks", "state one of 'pwm', 'command', 'inputs' and 'sticks': each tells commands");
-    thrusters.sticks = sticks_of(sticks);
-  }
-  if (config.has("speed")) {
-    const Config speed = config.section("speed");
-    constexpr const char* kUnit = "N/(rad/s)^2";
-    if (thrusters.force) config.fail("speed", "state 'force' or 'speed', not both: a speed becomes a force");
-    const double ahead = speed.positive("ahead", kUnit);
-    thrusters.speed = {group_of(speed, "rad/s"), ahead, speed.has("astern") ? speed.positive("astern", kUnit) : ahead};
-  }
-  if (config.has("wrench")) {
-    const Config wrench = config.section("wrench");
-    const std::vector<Column> columns = components_of(wrench, "columns", 6);
-    const auto split = columns.begin() + (columns.size() == 6 ? 3 : static_cast<std::ptrdiff_t>(columns.size()));
-    const Eigen::Matrix3d frame = body_frame(wrench, "frame");
-    thrusters.wrench_force = {{columns.begin(), split}, factor_to(wrench, "force_unit", "N"), frame};
-    thrusters.wrench_moment = {{split, columns.end()}, factor_to(wrench, "moment_unit", "N m"), frame};
-  }
-  if (!thrusters.pwm && !thrusters.command && !thrusters.sticks && !thrusters.inputs && !thrusters.force &&
-      !thrusters.speed && !thrusters.wrench_force) {
-    config.fail("", "'thrusters' needs pwm, command, force, speed or wrench");
-  }
-  thrusters.invalid_where = invalid_of(config);
-  return thrusters;
-}
-
-constexpr std::array kStreams{"pose_capture", "ahrs", "dvl",    "depth", "thrusters",
-                              "battery",      "usbl", "ranges", "loads"};
-
-UsblColumns usbl_of(const Config& config) {
-  UsblColumns usbl;
-  const Config position = config.section("position");
-  usbl.position = vector_of(position, "m");
-  usbl.position.to_house = world_frame(position, "frame");
-  if (config.is_section("sigma")) {
-    usbl.sigma = vector_of(config.section("sigma"), "m");
-    usbl.sigma->to_house = usbl.position.to_house.cwiseAbs();
-  } else {
-    usbl.stated_sigma = config.positive("sigma", "m");
-  }
-  usbl.invalid_where = invalid_of(config);
-  return usbl;
-}
+constexpr std::array kStreams{"pose_capture", "ahrs",   "dvl",   "depth",    "thrusters",    "battery",
+                              "usbl",         "ranges", "loads", "tag_pose", "optical_flow", "laser_range"};
 
 PoseColumns pose_of(const Config& section) {
   PoseColumns pose;
@@ -402,6 +212,9 @@ void read_stream(ColumnMap& map, const std::string& name, const Config& section)
   if (name == "usbl") map.usbl = usbl_of(section);
   if (name == "ranges") map.ranges = ListColumns{group_of(section, "m"), invalid_of(section)};
   if (name == "loads") map.loads = ListColumns{group_of(section, "N"), invalid_of(section)};
+  if (name == "tag_pose") map.tag_pose = tags_of(section);
+  if (name == "optical_flow") map.optical_flow = flow_of(section);
+  if (name == "laser_range") map.laser_range = laser_of(section);
 }
 
 ColumnMap read(const Config& config) {

@@ -129,6 +129,39 @@ struct ListColumns {
   std::vector<Column> invalid_where;
 };
 
+/// A column of its own, or one number for all rows.
+struct ColumnOrNumber {
+  std::optional<ColumnGroup> group;  ///< one column
+  std::optional<double> number;
+};
+
+/// Poses of tags as a camera saw them, in its frame C (x right, y down, z out).
+struct TagColumns {
+  std::string camera;  ///< name in the vehicle file
+  ColumnOrNumber tag;  ///< number of the tag
+  ColumnGroup position;
+  ColumnGroup quaternion;  ///< w x y z, of the tag in C
+  ColumnOrNumber error;    ///< px
+  std::vector<Column> invalid_where;
+};
+
+struct FlowColumns {
+  std::string camera;
+  ColumnGroup flow;         ///< along x and y of C
+  ColumnOrNumber interval;  ///< s
+  ColumnOrNumber sigma;     ///< rad/s
+  ColumnOrNumber tracks;
+  std::vector<Column> invalid_where;
+};
+
+/// Laser dots, in the frame C of the camera that saw them.
+struct LaserColumns {
+  std::string camera;
+  ColumnGroup position;
+  ColumnOrNumber sigma;  ///< m, along the line of sight
+  std::vector<Column> invalid_where;
+};
+
 struct ColumnMap {
   std::string source;   ///< where the data come from
   std::string licence;  ///< under which terms
@@ -143,6 +176,9 @@ struct ColumnMap {
   std::optional<UsblColumns> usbl;
   std::optional<ListColumns> ranges;
   std::optional<ListColumns> loads;
+  std::optional<TagColumns> tag_pose;
+  std::optional<FlowColumns> optical_flow;
+  std::optional<LaserColumns> laser_range;
 
   /// Reads a map; InputError "file:line: what" for an unknown key, unit or frame.
   [[nodiscard]] static ColumnMap load(const std::string& path);

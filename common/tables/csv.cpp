@@ -106,6 +106,10 @@ void read_names(std::string_view line, char separator, const std::string& where,
   std::vector<std::string> headers;
   for (bool more = true; more;) {
     const std::string_view name = take_cell(line, separator, more);
+    if (name.empty() && headers.empty() && more) {  // the numbers of the rows, as data frames write them
+      headers.emplace_back("(row)");
+      continue;
+    }
     if (name.empty())
       throw InputError(where + ": column " + std::to_string(headers.size() + 1) +
                        " has no name; give it one, or take its separator away");
@@ -161,6 +165,18 @@ bool read_date_cell(std::string_view cell, std::size_t column, CsvTable& table, 
   value = date->seconds;
   table.zoneless_dates = table.zoneless_dates || (!date->zone && !date->time_only);
   return table.cells[column] == kind;
+}
+
+/// "05/06/2024": which of the two is the month depends on who wrote it.
+bool has_two_dates(std::string_view cell) {
+  std::size_t at = 0;
+  const auto digits = [&](std::size_t most) {
+    const std::size_t begin = at;
+    while (at < cell.size() && at - begin < most && cell[at] >= '0' && cell[at] <= '9') ++at;
+    return at - begin;
+  };
+  const auto stroke = [&] { return at < cell.size() && (cell[at] == '/' || cell[at] == '-') && ++at > 0; };
+  return digits(2) > 0 && stroke() && digits(2) > 0 && stroke() && digits(4) == 4;
 }
 
 /// A unit as people write it, in the words of unit_factor; empty when it is none.
@@ -238,11 +254,18 @@ class Parser {
     for (bool more = true; more; ++cells) {
       const std::string_view cell = take_cell(line, separator_, more);
       if (cells >= table_.columns.size()) continue;
+      if (cells == 0 && !cell.empty() && cell == table_.names.front())
+        throw InputError(path_ + ":" + std::to_string(number_) +
+                         ": the header stands here again: another table was joined to this one; part them");
       double value{};
       std::string& fault = table_.faults[cells];
       if (!read_number(cell, separator_, value) && !read_date_cell(cell, cells, table_, value) && fault.empty()) {
         fault = path_ + ":" + std::to_string(number_) + ": column '" + table_.names[cells] + "': '" +
-                std::string(cell.substr(0, kShownCell)) + "' is not a number";
+                std::string(cell.substr(0, kShownCell)) + "'" +
+                (has_two_dates(cell) ? " leaves open which is the day and which the month (write the year first, "
+                                       "2024-06-05 10:00:00): it"
+                                     : "") +
+                " is not a number";
       }
       table_.columns[cells].push_back(value);
     }

@@ -8,6 +8,7 @@
 #include "common/tables/header_units.hpp"
 #include "common/tables/streams/ahrs_import.hpp"
 #include "common/tables/streams/beside_imports.hpp"
+#include "common/tables/streams/camera_imports.hpp"
 #include "common/tables/streams/dvl_import.hpp"
 #include "common/tables/streams/plain_imports.hpp"
 #include "common/tables/streams/pose_import.hpp"
@@ -24,6 +25,9 @@ struct TableImport::Streams {
   std::optional<UsblImport> usbl;
   std::optional<RangesImport> ranges;
   std::optional<LoadsImport> loads;
+  std::optional<TagImport> tags;
+  std::optional<FlowImport> flow;
+  std::optional<LaserImport> laser;
 
   template <typename Use>
   void each(const Use& use) {
@@ -36,6 +40,9 @@ struct TableImport::Streams {
     if (usbl) use(*usbl);
     if (ranges) use(*ranges);
     if (loads) use(*loads);
+    if (tags) use(*tags);
+    if (flow) use(*flow);
+    if (laser) use(*laser);
   }
 };
 
@@ -55,6 +62,9 @@ TableImport::TableImport(const CsvTable& table, ColumnMap map, const std::option
   if (map_.usbl) streams_->usbl.emplace(resolve_, *map_.usbl);
   if (map_.ranges) streams_->ranges.emplace(resolve_, *map_.ranges);
   if (map_.loads) streams_->loads.emplace(resolve_, *map_.loads);
+  if (map_.tag_pose) streams_->tags.emplace(resolve_, *map_.tag_pose);
+  if (map_.optical_flow) streams_->flow.emplace(resolve_, *map_.optical_flow);
+  if (map_.laser_range) streams_->laser.emplace(resolve_, *map_.laser_range);
 }
 
 TableImport::~TableImport() = default;
@@ -80,6 +90,9 @@ bool TableImport::next(std::size_t rows, Recording& out) {
   if (streams_->usbl) streams_->usbl->take(slice, out);
   if (streams_->ranges) streams_->ranges->take(slice, out);
   if (streams_->loads) streams_->loads->take(slice, out);
+  if (streams_->tags) streams_->tags->take(slice, out);
+  if (streams_->flow) streams_->flow->take(slice, out);
+  if (streams_->laser) streams_->laser->take(slice, out);
   return true;
 }
 

@@ -153,6 +153,40 @@ std::string usbl(const UsblColumns& columns) {
   return text + "\n" + flags(columns.invalid_where, "  ");
 }
 
+/// "tag: {column: id}" or "tag: 7"; nothing where a number is not stated.
+std::string column_or_number(const char* name, const ColumnOrNumber& value, const char* si, const Names& units) {
+  const std::string key = std::string{"  "} + name + ": ";
+  if (!value.group)
+    return value.number ? key + number_of(*value.number) + (*si != 0 ? std::string{" "} + si : "") + "\n" : "";
+  if (*si == 0) return key + "{column: " + written_name(value.group->columns.front().name) + "}\n";
+  return key + scalar(*value.group, si, units) + "\n";
+}
+
+std::string vector_in_camera(const char* name, const ColumnGroup& group, const char* si, const Names& units) {
+  return std::string{"  "} + name + ": {columns: " + listed(group.columns) +
+         ", unit: " + unit_of(group.factor, si, units) + "}\n";
+}
+
+std::string cameras(const ColumnMap& map) {
+  std::string text;
+  if (const auto& tags = map.tag_pose)
+    text += "tag_pose:\n  camera: " + written_name(tags->camera) + "\n" + column_or_number("tag", tags->tag, "", {}) +
+            vector_in_camera("position", tags->position, "m", kLengths) +
+            "  quaternion: {columns: " + listed(tags->quaternion.columns) + ", order: wxyz}\n" +
+            column_or_number("reprojection_error", tags->error, "", {}) + flags(tags->invalid_where, "  ");
+  if (const auto& flow = map.optical_flow)
+    text += "optical_flow:\n  camera: " + written_name(flow->camera) + "\n" +
+            vector_in_camera("flow", flow->flow, "rad/s", kRates) +
+            column_or_number("interval", flow->interval, "s", kTimes) +
+            column_or_number("sigma", flow->sigma, "rad/s", kRates) + column_or_number("tracks", flow->tracks, "", {}) +
+            flags(flow->invalid_where, "  ");
+  if (const auto& laser = map.laser_range)
+    text += "laser_range:\n  camera: " + written_name(laser->camera) + "\n" +
+            vector_in_camera("position", laser->position, "m", kLengths) +
+            column_or_number("sigma", laser->sigma, "m", kLengths) + flags(laser->invalid_where, "  ");
+  return text;
+}
+
 std::string thrusters(const ThrusterColumns& columns) {
   std::string text = "thrusters:\n";
   if (columns.command)
@@ -268,7 +302,7 @@ std::string to_yaml(const ColumnMap& map) {
   if (map.usbl) text += usbl(*map.usbl);
   if (map.ranges) text += list("ranges", *map.ranges, "m", kLengths);
   if (map.loads) text += list("loads", *map.loads, "N", kForces);
-  return text;
+  return text + cameras(map);
 }
 
 }  // namespace fathom::tables

@@ -45,7 +45,9 @@ template <class Message>
 [[noreturn]] void refuse_version(const std::string& path, const LogEvent& event) {
   throw InputError(path + ": byte " + std::to_string(event.offset) + ": channel " + std::string{event.channel} +
                    " does not hold this version's " + Message::getTypeName() + " (fingerprint " +
-                   fingerprint(event.data) + "); read the log with the version of Fathom that made it");
+                   fingerprint(event.data) +
+                   "); read the log with the version of Fathom that made it, or, if another program did, with "
+                   "'fathom import --types ITS.lcm'");
 }
 
 template <class Sample>
@@ -145,9 +147,9 @@ bool LogParts::next(std::size_t most, Recording& part) {
     }
   }
   if (reader.ended && !reader.pictures && reader.report().channels.empty()) {
-    throw InputError(
-        path + ": none of its " + std::to_string(reader.log.events()) +
-        " events is on a channel that Fathom knows (docs/messages.md); was another program's bus recorded?");
+    throw InputError(path + ": none of its " + std::to_string(reader.log.events()) +
+                     " events is on a channel that Fathom knows (docs/messages.md); was another program's bus "
+                     "recorded? 'fathom import --types ITS.lcm' reads it");
   }
   visit_streams(reader.part, [](const char*, auto& samples) {
     const auto older = [](const auto& a, const auto& b) { return a.utime < b.utime; };

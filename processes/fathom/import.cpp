@@ -25,9 +25,9 @@ namespace fathom::tool {
 namespace {
 
 struct ImportOptions {
-  std::vector<std::string> data, maps, shifts;
+  std::vector<std::string> data, maps, shifts, types;
   std::string vehicle, out;
-  bool describe{};
+  bool describe{}, merge{};
 };
 
 /// "NAME=SECONDS" to the source that it names.
@@ -122,6 +122,20 @@ void write_table(const Source& source, const std::string& map, const std::option
   say(worth, log, path);
 }
 
+/// The tables of a log's channels to the log: whatever they are of, message by message.
+void write_channels(const Source& source, const std::string& path, const std::vector<Source>& sources) {
+  refuse_source(path, sources);
+  const exports::Restored restored = exports::from_csv(source.channels, path);
+  if (!restored.note.empty()) std::printf("%s: %s\n", source.files.front().c_str(), restored.note.c_str());
+  std::string counts;
+  std::uint64_t messages = 0;
+  for (const auto& [channel, count] : restored.written) {
+    counts += (counts.empty() ? "" : ", ") + channel + " " + std::to_string(count);
+    messages += count;
+  }
+  std::printf("%s: %llu messages (%s)\n", path.c_str(), static_cast<unsigned long long>(messages), counts.c_str());
+}
+
 /// All runs that came, each to a log of its own; `out` with the run's number where there are several.
 void write_each(const std::vector<Recording>& runs, const std::string& out, const std::vector<Source>& sources) {
   const std::filesystem::path path{out};
@@ -133,6 +147,31 @@ void write_each(const std::vector<Recording>& runs, const std::string& out, cons
   }
 }
 
+/// Recordings of one name, from whatever folder and in whatever format, to one run each.
+void write_merged(const ImportOptions& options, const std::vector<Source>& sources,
+                  const std::optional<tables::SimulatedAxes>& simulated) {
+  std::filesystem::create_directories(options.out);
+  std::map<std::string, std::vector<Recording>> runs;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    FromSource read =
+        read_source(sources[i], options.maps.empty() ? "" : options.maps[options.maps.size() == 1 ? 0 : i], simulated);
+    for (const std::string& note : read.notes) std::printf("%s\n", note.c_str());
+    if (read.runs.size() > 1)
+      throw InputError(sources[i].files.front() + ": holds " + std::to_string(read.runs.size()) +
+                       " recordings, one behind the other; import it alone first, then merge what comes of it");
+    std::vector<Recording>& parts = runs[sources[i].name];
+    parts.push_back(std::move(read.runs.front()));
+    parts.back().name = sources[i].files.front();  // parts of a run have its name in common
+  }
+  for (auto& [name, parts] : runs) {
+    std::vector<std::string> notes;
+    const std::vector<std::optional<double>> stated(parts.size());
+    const Recording merged = recordings::merge(std::move(parts), stated, notes);
+    for (const std::string& note : notes) std::printf("%s\n", note.c_str());
+    write(merged, (std::filesystem::path(options.out) / (name + ".lcmlog")).string(), sources);
+  }
+}
+
 void run_import(const ImportOptions& options) {
   std::optional<tables::SimulatedAxes> simulated;
   if (!options.vehicle.empty()) {
@@ -140,7 +179,7 @@ void run_import(const ImportOptions& options) {
     simulated = vehicle.dof;
     if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
   }
-  const std::vector<Source> sources = sources_of(options.data);
+  const std::vector<Source> sources = sources_of(options.data, options.types);
   if (options.describe) {
     for (const Source& source : sources) std::printf("%s", describe_source(source, simulated).c_str());
     return;
@@ -152,6 +191,12 @@ void run_import(const ImportOptions& options) {
   const bool folder = options.out.ends_with('/') || std::filesystem::is_directory(options.out);
   const std::map<std::string, double> shifts = shifts_of(options, sources);
   if (folder && !shifts.empty()) throw InputError("--shift is for files of one run; --out names a folder of several");
+  if (options.merge && !folder)
+    throw InputError("--merge makes a run of the recordings of each name, in a folder: --out FOLDER/");
+  if (options.merge) {
+    write_merged(options, sources, simulated);
+    return;
+  }
   const std::vector<std::string> names = folder ? names_of(sources) : std::vector<std::string>{};
   std::vector<Recording> parts;
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -161,6 +206,13 @@ void run_import(const ImportOptions& options) {
       write_table(sources[i], map, simulated, shift_of(sources[i], shifts),
                   folder ? (std::filesystem::path(options.out) / (names[i] + ".lcmlog")).string() : options.out,
                   sources);
+      continue;
+    }
+    if (!sources[i].channels.empty() && map.empty() && (folder || sources.size() == 1) &&
+        !shift_of(sources[i], shifts)) {
+      write_channels(sources[i],
+                     folder ? (std::filesystem::path(options.out) / (names[i] + ".lcmlog")).string() : options.out,
+                     sources);
       continue;
     }
     FromSource read = read_source(sources[i], map, simulated);
@@ -202,6 +254,8 @@ void add_import(runtime::CommandLine& app) {
   command->add_option(
       "--map", options->maps,
       "YAML file that says what each column is; without: canonical columns, or the draft of --describe");
+  command->add_flag("--merge", options->merge, "recordings of one name are one run each, in --out FOLDER/");
+  command->add_option("--types", options->types, ".lcm files that define the types of another project's LCM logs");
   command->add_option("--vehicle", options->vehicle,
                       "vehicle file: columns of axes that it does not simulate may lack");
   command->add_option("--shift", options->shifts, "NAME=SECONDS: added to the times of this file");

@@ -3,17 +3,21 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/recordings/draft.hpp"
 #include "common/recordings/import.hpp"
 #include "common/recordings/little.hpp"
+#include "common/recordings/table_draft.hpp"
 #include "common/recordings/worth.hpp"
 #include "common/tables/import.hpp"
 #include "common/wire/log_reader.hpp"
+#include "common/wire/streams.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -48,8 +52,11 @@ Source source_of(const std::string& path) {
   source.format = recordings::format_of(path);
   if (source.format != nullptr) return source;
   source.lcm = is_lcm(path);
-  if (!source.lcm && !is_text(path))
-    throw InputError(path + ": what it holds is not known; known are: " + known_formats());
+  if (!source.lcm && is_text(path)) {
+    if (const auto table = exports::channel_table(path)) source.channels.push_back(*table);
+    return source;
+  }
+  if (!source.lcm) throw InputError(path + ": what it holds is not known; known are: " + known_formats());
   return source;
 }
 
@@ -132,16 +139,78 @@ std::vector<std::string> expanded(const std::vector<std::string>& arguments) {
   return paths;
 }
 
+/// The folder of a log's channels, named after the log.
+std::string log_name(const fs::path& table) {
+  constexpr std::string_view kExported = "_csv";  // as 'fathom export' names it
+  std::string name = fs::absolute(table).lexically_normal().parent_path().filename().string();
+  if (name.ends_with(kExported) && name.size() > kExported.size()) name.resize(name.size() - kExported.size());
+  return name;
+}
+
+/// Where a channel's messages stand in a log among those of the same time: causes first (wire/streams.hpp).
+std::size_t place_among_equals(const exports::ChannelTable& table) {
+  static const std::vector<std::string> kOrder = [] {
+    std::vector<std::string> order;
+    const Recording none;
+    wire::visit_streams(none, [&](const char* channel, const auto&) { order.emplace_back(channel); });
+    return order;
+  }();
+  return static_cast<std::size_t>(std::ranges::find(kOrder, table.channel) - kOrder.begin());
+}
+
+/// Tables of channels that lie in one folder are one recording.
+void join_channels(std::vector<Source>& sources) {
+  std::vector<Source> joined;
+  for (Source& source : sources) {
+    const auto folder = [](const Source& one) { return fs::path{one.files.front()}.parent_path(); };
+    const auto same = std::ranges::find_if(joined, [&](const Source& other) {
+      return !source.channels.empty() && !other.channels.empty() && folder(other) == folder(source);
+    });
+    if (same == joined.end()) {
+      joined.push_back(std::move(source));
+      continue;
+    }
+    same->name = log_name(same->files.front());
+    same->files.push_back(source.files.front());
+    same->channels.push_back(source.channels.front());
+  }
+  for (Source& source : joined) std::ranges::stable_sort(source.channels, {}, place_among_equals);
+  sources = std::move(joined);
+}
+
+/// Tables of one log's channels, given one by one ("run_csv/*.csv"), as their folder.
+std::vector<std::string> by_folder(const std::vector<std::string>& paths) {
+  const auto folder_of = [](const std::string& path) -> std::string {
+    const bool table = fs::path{path}.extension() == ".csv" && !fs::is_directory(path) && exports::channel_table(path);
+    const std::string folder = fs::path{path}.parent_path().string();
+    return !table ? "" : folder.empty() ? "." : folder;
+  };
+  std::vector<std::string> folders, out;
+  for (const std::string& path : paths) folders.push_back(folder_of(path));
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const bool several = !folders[i].empty() && std::ranges::count(folders, folders[i]) > 1;
+    if (!several) {
+      out.push_back(paths[i]);
+    } else if (std::ranges::find(out, folders[i]) == out.end()) {
+      out.push_back(folders[i]);
+    }
+  }
+  return out;
+}
+
 recordings::Content look_at(const Source& source) {
-  recordings::Content content =
-      recordings::read_files({source.files, source.format}, {}, recordings::Collector::Take::kEverything);
-  if (content.topics->messages() == 0) throw InputError(source.files.front() + ": holds no message that can be read");
+  recordings::Content content = recordings::read_files(source.topics(), {}, recordings::Collector::Take::kEverything);
+  recordings::require_messages(content);
   return content;
 }
 
 }  // namespace
 
-std::vector<Source> sources_of(const std::vector<std::string>& arguments) {
+recordings::Files Source::topics() const {
+  return types ? types->files(files) : recordings::Files{.paths = files, .format = format};
+}
+
+std::vector<Source> sources_of(const std::vector<std::string>& arguments, const std::vector<std::string>& types) {
   std::vector<Source> sources;
   for (const std::string& path : expanded(arguments)) {
     if (fs::is_directory(path)) {
@@ -150,28 +219,63 @@ std::vector<Source> sources_of(const std::vector<std::string>& arguments) {
       sources.push_back(source_of(path));
     }
   }
+  join_channels(sources);
+  if (types.empty()) return sources;
+  const auto foreign = std::make_shared<const exports::ForeignLcm>(types);
+  for (Source& source : sources) {
+    if (std::exchange(source.lcm, false)) source.types = foreign;
+  }
   return sources;
 }
 
 std::vector<std::string> paths_of(const std::vector<std::string>& arguments) {
   std::vector<std::string> paths;
-  for (const std::string& path : expanded(arguments)) {
+  for (const std::string& path : by_folder(expanded(arguments))) {
     if (!fs::is_directory(path)) {
       paths.push_back(path);
       continue;
     }
     std::vector<Source> sources;
     take_folder(path, sources);
+    join_channels(sources);
     for (const Source& each : sources) paths.push_back(each.files.size() > 1 ? path : each.files.front());
   }
   return paths;
 }
 
+RestoredLog::RestoredLog(const Source& source) {
+  std::string pattern = (fs::temp_directory_path() / "fathom-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr)
+    throw InputError(pattern + ": cannot be made; set TMPDIR to a folder that can be written");
+  folder_ = pattern;
+  path_ = (fs::path{folder_} / (source.name + ".lcmlog")).string();
+  try {
+    note_ = exports::from_csv(source.channels, path_).note;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    throw;
+  }
+}
+
+RestoredLog::~RestoredLog() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
 FromSource read_source(const Source& source, const std::string& map,
                        const std::optional<tables::SimulatedAxes>& simulated) {
   FromSource out;
-  const std::string& path = source.files.front();
-  if (source.lcm) {
+  std::string path = source.files.front();
+  std::optional<RestoredLog> restored;
+  if (!source.channels.empty() && map.empty()) {
+    restored.emplace(source);
+    if (!restored->note().empty()) out.notes.push_back(path + ": " + restored->note());
+    path = restored->path();
+  } else if (source.channels.size() > 1) {
+    throw InputError(path + ": these are channels of one log, which need no --map; or give one table alone");
+  }
+  if (source.lcm || restored) {
     wire::LogContents contents = wire::read_log(path);
     std::istringstream lines{wire::complaints(path, contents.report)};
     for (std::string line; std::getline(lines, line);) out.notes.push_back(line);
@@ -179,7 +283,7 @@ FromSource read_source(const Source& source, const std::string& map,
     out.runs.back().name = source.name;
     return out;
   }
-  if (source.format == nullptr) {
+  if (source.is_table() || !source.channels.empty()) {
     tables::Imported imported = tables::import_csv(path, map, simulated);
     for (const std::string& note : imported.notes) out.notes.push_back(path + ": " + note);
     out.runs.push_back(std::move(imported.recording));
@@ -196,8 +300,7 @@ FromSource read_source(const Source& source, const std::string& map,
   } else {
     streams = tables::load_streams(map);
   }
-  recordings::ImportedFiles imported =
-      recordings::import_files({source.files, source.format}, streams, simulated, !map.empty());
+  recordings::ImportedFiles imported = recordings::import_files(source.topics(), streams, simulated, !map.empty());
   out.notes.insert(out.notes.end(), imported.notes.begin(), imported.notes.end());
   for (recordings::ImportedRun& run : imported.runs) {
     for (const std::string& note : run.notes) out.notes.push_back(path + ": " + note);
@@ -208,17 +311,19 @@ FromSource read_source(const Source& source, const std::string& map,
 }
 
 std::string describe_source(const Source& source, const std::optional<tables::SimulatedAxes>& simulated) {
-  if (source.format == nullptr)
+  if (source.is_table()) return recordings::describe_table(tables::read_csv(source.files.front()));
+  if (source.format == nullptr && !source.types)
     throw InputError(source.files.front() + ": --describe is for recordings with topics; " +
-                     (source.lcm ? "an LCM log is read by 'fathom check' and the others as it is"
-                                 : "the columns of a table stand in its first line"));
+                     (source.lcm ? "an LCM log of Fathom is read by 'fathom check' and the others as it is; for one of "
+                                   "another project give the files that define its types: --types FILE.lcm"
+                                 : "tables of a log's channels are the log again, without a map"));
   const recordings::Content content = look_at(source);
   std::string text = recordings::description(content);
   const std::string draft = recordings::draft_map(content);
   if (draft.empty())
     return text + "# None of the topics is a usual one: a map must be written by hand (docs/configuration.md).\n";
-  const recordings::ImportedFiles imported = recordings::import_files(
-      {source.files, source.format}, tables::parse_streams(draft, "draft map"), simulated, false);
+  const recordings::ImportedFiles imported =
+      recordings::import_files(source.topics(), tables::parse_streams(draft, "draft map"), simulated, false);
   for (const recordings::ImportedRun& run : imported.runs) {
     const std::string name = imported.runs.size() > 1 ? run.recording.name + ": " : "";
     for (const std::string& reason : recordings::against_fitting(run.recording)) text += "# ! " + name + reason + "\n";

@@ -105,7 +105,8 @@ TEST_CASE("fathom: runs of one name in two folders are two, one file twice is re
 TEST_CASE("fathom: vehicle files to begin with are listed, printed as they are, and a slip of the name is told") {
   const Ran listed = shell(kTool + " vehicle");
   CHECK(listed.code == 0);
-  for (const char* name : {"bluerov2_heavy", "otter", "remus100", "slocum", "cybership2"}) CHECK(listed.says(name));
+  for (const char* name : {"bluerov2_heavy", "blueboat", "otter", "remus100", "slocum", "cybership2", "kvlcc2_l3"})
+    CHECK(listed.says(name));
   const Ran otter = shell(kTool + " vehicle otter");
   CHECK(otter.code == 0);
   CHECK(otter.text == test::read_bytes(FATHOM_SOURCE_DIR "/config/vehicles/otter.yaml"));

@@ -241,6 +241,17 @@ TEST_CASE("fathom import: several files of one run on one clock, folders, patter
   CHECK_MESSAGE(twins.code == 0, twins.text);
   CHECK(std::filesystem::exists(scratch.path("all/more-pilot.lcmlog")));
 
+  // Of each name one run, from the pilot's folder and motion capture's.
+  std::filesystem::create_directories(scratch.path("mocap"));
+  std::filesystem::copy_file(scratch.path("dives/mocap.mcap"), scratch.path("mocap/pilot.mcap"));
+  const std::string by_name =
+      kTool + " import --merge " + scratch.path("dives/pilot.ulg") + " " + scratch.path("mocap");
+  const Ran joined = shell(by_name + " --out " + scratch.path("joined/"));
+  CHECK_MESSAGE(joined.code == 0, joined.text);
+  CHECK(joined.says("are added to its times, by the turn rate"));
+  CHECK(std::filesystem::exists(scratch.path("joined/pilot.lcmlog")));
+  CHECK(shell(by_name + out).says("--out FOLDER/"));
+
   const auto refused = [&](const std::string& words, const std::string& because) {
     const Ran ran = shell(kTool + " import " + words);
     CAPTURE(ran.text);
@@ -266,6 +277,31 @@ TEST_CASE("fathom import: several files of one run on one clock, folders, patter
   refused("--describe " + scratch.path("empty.ulg"), "holds no message");
   test::write_bytes(scratch.path("noise.bin"), std::string("\x01\x00\x02\x00", 4));
   refused(scratch.path("noise.bin") + out, "known are: ArduPilot DataFlash");
+}
+
+TEST_CASE("fathom: the tables of a log's channels are the log again, for import and for every command") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const auto dive =
+      test::make_dive(model::Vehicle::load(scratch.path("v.yaml")), {.duration = 20.0, .dt = 0.05, .seed = 5});
+  test::write_bytes(scratch.path("dive.mcap"), mcap_of(moments_of(dive.trial, 1)));
+  const std::string log = scratch.path("dive.lcmlog"), folder = scratch.path("dive_csv"),
+                    back = scratch.path("b.lcmlog");
+  REQUIRE(shell(kTool + " import " + scratch.path("dive.mcap") + " --out " + log).code == 0);
+  REQUIRE(shell(kTool + " export " + log + " --to csv --out " + folder).code == 0);
+  for (const std::string& given : {folder, "'" + folder + "/*.csv'"}) {
+    const Ran imported = shell(kTool + " import " + given + " --out " + back);
+    CHECK_MESSAGE(imported.code == 0, imported.text);
+    CHECK(imported.says("POSE_CAPTURE 399"));
+    CHECK(test::read_bytes(back) == test::read_bytes(log));
+  }
+  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
+  const Ran of_log = shell(check + log), of_tables = shell(check + folder);
+  CHECK(of_log.code == 0);
+  CHECK(of_tables.text == of_log.text);
+  CHECK(shell(check + "'" + folder + "/*.csv'").text == of_log.text);
+  CHECK(shell(kTool + " import " + folder + " --map " + scratch.path("v.yaml") + " --out " + back)
+            .says("which need no --map"));
 }
 
 }  // namespace fathom

@@ -32,8 +32,10 @@ constexpr double kFreedom = 4.0;       // of Student's t
 constexpr std::array<double, kRelations> kFloor{0.004 /* m */, 0.004 /* rad */, 0.05 /* m/s^2 */, 0.01 /* m */};
 constexpr std::array<double, kRelations> kDimension{3.0, 3.0, 3.0, 1.0};
 constexpr std::array<double, kRelations> kMedianChi2{2.366, 2.366, 2.366, 0.455};  // median of chi-square
-constexpr double kUpsideDown = 15.0;                                               // nats: vehicles do not run keel up
-constexpr std::size_t kMemory = 6;  // windows over which misfits may be alike (Newey-West)
+constexpr double kMostBias =
+    0.5;  // m/s^2: 50 mg of an accelerometer's zero, or 3 deg of its mount and the attitude's level
+constexpr double kUpsideDown = 15.0;  // nats: vehicles do not run keel up
+constexpr std::size_t kMemory = 6;    // windows over which misfits may be alike (Newey-West)
 
 /// sum over the window of w R_ij x_l; rows i + 3 j.
 using Tensor = Eigen::Matrix<double, 9, 3>;
@@ -158,6 +160,10 @@ struct Evidence::Windows {
 Evidence::Evidence(const PoseSeries& pose, const Series& velocity, const Series& rates, const Series& force,
                    const Series& depth)
     : pose_(pose), velocity_(velocity), rates_(rates), force_(force), depth_(depth) {
+  heading_alone_ = pose.has_attitude && std::ranges::all_of(pose.q_WB, [](const Eigen::Quaterniond& q) {
+                     constexpr double kRounding = 1e-12;
+                     return std::abs(q.x()) < kRounding && std::abs(q.y()) < kRounding;
+                   });
   // Speeds and rates of turn over half a second.
   const double step = estimation::typical_step(pose.t);
   if (step <= 0.0 || !pose.has_attitude) return;
@@ -344,7 +350,8 @@ Judged Evidence::judge(const Reading& reading) const {
   }
   add_relation(kTurning, squares, energy, judged);
 
-  // Gravity: mean of R_WB f = -c e_z, and the vehicle's own acceleration as noise.
+  // Gravity: mean of R_WB (f - b) = -c e_z, and the vehicle's own acceleration as noise. The bias b is free within what
+  // accelerometers and mounts do: of a craft that keeps its attitude a small misfit says nothing about axes.
   squares.assign(all.size(), none);
   energy = 0.0;
   std::vector<double> up;
@@ -357,8 +364,21 @@ Judged Evidence::judge(const Reading& reading) const {
   if (!up.empty()) {
     const double felt = std::max(median(up), 0.0);
     const double unit = felt > 0.0 ? 9.81 / felt : 9.81 / std::max(std::abs(median(up)), 1e-9);
+    Matrix3d normal = Matrix3d::Zero();
+    Vector3d right = Vector3d::Zero();
+    const auto turn_of = [&](std::size_t i) { return Matrix3d(W * all[i].mean * A / all[i].length); };
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (all[i].has_force) squares[i] = unit * unit * (x[i] + felt * Vector3d::UnitZ()).squaredNorm();
+      if (!all[i].has_force) continue;
+      const Matrix3d turn = turn_of(i);
+      normal += turn.transpose() * turn;
+      right += turn.transpose() * (x[i] + felt * Vector3d::UnitZ());
+    }
+    normal.diagonal().array() += 1e-9 * normal.trace() + 1e-12;
+    Vector3d bias = normal.ldlt().solve(right);
+    if (const double most = kMostBias / unit; bias.norm() > most) bias *= most / bias.norm();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].has_force)
+        squares[i] = unit * unit * (x[i] + felt * Vector3d::UnitZ() - turn_of(i) * bias).squaredNorm();
     }
     energy *= unit * unit;
   }

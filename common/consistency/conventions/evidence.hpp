@@ -47,6 +47,8 @@ class Evidence {
   [[nodiscard]] Judged judge(const Reading& reading) const;
   /// Enough windows, and at least one relation.
   [[nodiscard]] bool speaks() const;
+  /// The attitude as read never tilts, to the last digit: it was made of a heading, as for a craft that only turns.
+  [[nodiscard]] bool heading_alone() const { return heading_alone_; }
 
  private:
   struct Windows;
@@ -54,6 +56,7 @@ class Evidence {
   const estimation::PoseSeries& pose_;
   const estimation::Series &velocity_, &rates_, &force_, &depth_;
   double velocity_delay_{}, rates_delay_{};  ///< s, by what no turn of axes changes: speeds
+  bool heading_alone_{};
   mutable std::map<std::pair<int, int>, std::unique_ptr<Windows>> forms_;
 };
 

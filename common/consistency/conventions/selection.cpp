@@ -39,11 +39,21 @@ double worst(const Judged& judged) {
   return most;
 }
 
+/// What a heading alone cannot have been: four numbers in another order, or axes that lay the craft on its side.
+bool tilts(const Reading& change) {
+  using estimation::QuaternionForm;
+  return (change.quaternion != QuaternionForm::kAsRead && change.quaternion != QuaternionForm::kInverse) ||
+         change.attitude_world(2, 2) * change.attitude_axes(2, 2) < 0.5;
+}
+
 std::optional<Candidate> made(const Evidence& evidence, const Reading& base, const Hypothesis& hypothesis) {
+  if (evidence.heading_alone() && tilts(hypothesis.change)) return std::nullopt;
   Candidate one{.first = &hypothesis};
   if (!compose(base, hypothesis.change, one.reading)) return std::nullopt;
   one.judged = evidence.judge(one.reading);
   one.penalty = penalty(hypothesis.kind);
+  const bool turned = hypothesis.kind == Kind::kTurn || hypothesis.kind == Kind::kReflection;
+  if (turned && !hypothesis.change.attitude_axes.isIdentity()) one.penalty += PriorPenalties{}.body_axes;
   if (one.reading.free_heading && !base.free_heading && std::abs(one.judged.heading) < kThresholds.heading)
     return std::nullopt;
   return one;

@@ -123,7 +123,9 @@ void say(const std::vector<Array>& arrays, Sink& sink, Damage& damage) {
     if (taken || array.values.size() < 2) continue;
     if (++more <= kMostNamed) others += (others.empty() ? "" : ", ") + array.path;
   }
-  if (more > 0) damage.add("list of arrays that no time goes with: " + others + (more > kMostNamed ? ", ..." : ""));
+  if (more > 0)
+    damage.add("list of arrays that no time goes with (a vector called t or time, rising, and as long as they are): " +
+               others + (more > kMostNamed ? ", ..." : ""));
   std::size_t number = 0;
   std::map<std::string, int> names;
   std::vector<double> values;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 
+#include "common/base/spatial.hpp"
 #include "common/base/units.hpp"
 #include "common/consistency/summary.hpp"
 #include "common/tables/import.hpp"
@@ -115,6 +117,73 @@ TEST_CASE("agreement is only said where a fault of practical size would have bee
   const std::string planar = said({.seed = 3, .duration = 120.0, .activity = {1, 1, 0, 0, 0, 1}});
   CHECK(planar.find("nobody can tell") != std::string::npos);
   CHECK(planar.find("gyro.p axis") != std::string::npos);
+}
+
+TEST_CASE("conventions: a craft at rest, level and accelerometer two degrees apart, says nothing of their axes") {
+  std::mt19937 random{5};
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double sigma) {
+    return Eigen::Vector3d{sigma * normal(random), sigma * normal(random), sigma * normal(random)};
+  };
+  // Tilts of a vehicle on the shore; the zero of a cheap accelerometer.
+  for (const Eigen::Vector2d& tilt : {Eigen::Vector2d{1.5, -1.0}, {-2.0, 2.0}, {0.3, 2.5}}) {
+    for (const Eigen::Vector3d& zero : {Eigen::Vector3d{0.25, -0.2, 0.1}, {-0.2, -0.3, 0.0}, {0.3, 0.2, -0.1}}) {
+      Recording run{.name = "shore"};
+      for (int k = 0; k < 600; ++k) {
+        const double swing = 0.1 * kDegree * std::sin(0.3 * k);  // people walk by
+        const Eigen::Vector3d angles{tilt.x() * kDegree + swing, tilt.y() * kDegree - 0.5 * swing, 0.7};
+        const Eigen::Quaterniond q_WB{rotation_from_euler(angles)};
+        run.ahrs.push_back({.utime = 100'000 * k,
+                            .w_WB_B = noise(0.001),
+                            .f_B = q_WB.conjugate() * Eigen::Vector3d{0.0, 0.0, -9.81} + zero + noise(0.02),
+                            .q_WB = q_WB,
+                            .has_rates = true,
+                            .has_specific_force = true,
+                            .has_attitude = true});
+      }
+      const ConsistencyResult result = consistency::check_consistency(std::span(&run, 1));
+      print(result.findings);
+      CHECK(result.corrections[0].attitude_axes.isIdentity());
+      CHECK(result.corrections[0].attitude_world.isIdentity());
+      CHECK(untouched(result.corrections[0].gyro));
+    }
+  }
+}
+
+TEST_CASE("conventions: a boat's heading is never taken for a quaternion in another order, whatever contradicts it") {
+  // A track straight to the north-east; a course from another instrument, which drifts away by 30 degrees.
+  Recording run{.name = "boat"};
+  for (int k = 0; k < 600; ++k) {
+    const double t = 0.1 * k, heading = (60.0 + 0.5 * t) * kDegree, course = (45.0 + 0.5 * t) * kDegree;
+    const Eigen::Quaterniond q_WB{rotation_from_euler({0.0, 0.0, heading})};
+    const Utime utime = 100'000 * k;
+    run.pose_capture.push_back({.utime = utime,
+                                .p_WB = {0.8 * t, 0.8 * t, 0.0},
+                                .q_WB = q_WB,
+                                .valid = true,
+                                .has_position = true,
+                                .has_attitude = true});
+    run.dvl.push_back(
+        {.utime = utime,
+         .v_WB_B = q_WB.conjugate() * Eigen::Vector3d{1.1 * std::cos(course), 1.1 * std::sin(course), 0.0},
+         .valid = true});
+  }
+  const ConsistencyResult result = consistency::check_consistency(std::span(&run, 1));
+  print(result.findings);
+  CHECK(result.corrections[0].quaternion == estimation::QuaternionForm::kAsRead);
+  CHECK(result.corrections[0].attitude_axes(2, 2) * result.corrections[0].attitude_world(2, 2) > 0.5);
+}
+
+TEST_CASE(
+    "conventions: where attitude and gyro contradict each other and nothing else speaks, the gyro's mount is turned") {
+  // Six degrees of freedom, no velocity log: which of the two is turned about z these data cannot say.
+  Recording run = test::synthetic_recording({.seed = 3, .duration = 60.0});
+  run.dvl.clear();
+  for (Ahrs& one : run.ahrs) one.w_WB_B = Eigen::Vector3d{-1.0, -1.0, 1.0}.cwiseProduct(one.w_WB_B);
+  const ConsistencyResult result = consistency::check_consistency(std::span(&run, 1));
+  print(result.findings);
+  CHECK(result.corrections[0].attitude_axes.isIdentity());
+  CHECK(result.corrections[0].gyro.base.isApprox(Eigen::Matrix3d{Eigen::Vector3d{-1.0, -1.0, 1.0}.asDiagonal()}));
 }
 
 }  // namespace fathom

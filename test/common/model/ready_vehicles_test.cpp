@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "common/model/driven_axes.hpp"
@@ -24,13 +25,32 @@ double mean_of(const Vehicle& vehicle, const std::string& parameter) {
 }  // namespace
 
 TEST_CASE("ready vehicles: each loads, and water adds to its mass") {
-  for (const char* name : {"bluerov2_heavy", "otter", "remus100", "slocum", "cybership2"}) {
+  for (const char* name : {"bluerov2_heavy", "blueboat", "otter", "remus100", "slocum", "cybership2", "kvlcc2_l3"}) {
     CAPTURE(name);
     const Vehicle vehicle = test::vehicle_from_repository(name);
     for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
       if (vehicle.parameters[i].starts_with("m_")) CHECK(vehicle.priors[i].mean >= vehicle.mass);
     }
   }
+}
+
+TEST_CASE("ready vehicles: every file of the repository flies") {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator{FATHOM_SOURCE_DIR "/config/vehicles"}) {
+    const std::string name = entry.path().stem().string();
+    CAPTURE(name);
+    const Vehicle vehicle = test::vehicle_from_repository(name);
+    const auto dive = test::make_dive(vehicle, {.duration = 20.0, .dt = 0.05, .seed = 3});
+    double fastest = 0.0;
+    for (const Vector6d& nu : dive.trial.nu) {
+      REQUIRE(nu.allFinite());
+      fastest = std::max(fastest, nu.cwiseAbs().maxCoeff());
+    }
+    CHECK(fastest > 1e-3);  // it moves
+    CHECK(fastest < 10.0);  // m/s or rad/s: and no faster than any such craft
+    ++files;
+  }
+  CHECK(files >= 12);
 }
 
 TEST_CASE("ready vehicles: the outputs of BlueROV2 Heavy push as ArduSub's frame VECTORED_6DOF says") {
@@ -66,6 +86,18 @@ TEST_CASE("ready vehicles: numbers that follow from others") {
   CHECK(-mean_of(otter, "X_u") * 6.0 * 0.5144 == doctest::Approx(24.4 * 9.81).epsilon(0.01));
   CHECK(2.0 * otter.largest_thrust == doctest::Approx(24.4 * 9.81).epsilon(0.01));
   CHECK(undriven_note(otter).find("sway") != std::string::npos);
+  // 8.2 kgf of both motors at rest: about what drag takes at the maker's top speed, and no less.
+  const Vehicle boat = test::vehicle_from_repository("blueboat");
+  CHECK(-3.0 * mean_of(boat, "X_u") - 9.0 * mean_of(boat, "X_u|u|") == doctest::Approx(8.2 * 9.81).epsilon(0.01));
+  CHECK(2.0 * boat.largest_thrust == doctest::Approx(8.2 * 9.81).epsilon(0.01));
+  // The printed non-dimensional numbers of the MMG standard method with 0.5 rho L d.
+  const Vehicle ship = test::vehicle_from_repository("kvlcc2_l3");
+  const double area = 0.5 * 1000.0 * 2.909 * 0.189;  // kg/m
+  CHECK(mean_of(ship, "m_X") == doctest::Approx(235.0 + 0.022 * area * 2.909).epsilon(1e-3));
+  CHECK(mean_of(ship, "m_Y") == doctest::Approx(235.0 + 0.223 * area * 2.909).epsilon(1e-3));
+  CHECK(mean_of(ship, "X_u|u|") == doctest::Approx(-0.022 * area).epsilon(1e-3));
+  CHECK(mean_of(ship, "Y_v") == doctest::Approx(-0.315 * area * 0.76).epsilon(1e-3));
+  CHECK(mean_of(ship, "N_r") == doctest::Approx(-0.049 * area * 2.909 * 2.909 * 0.76).epsilon(1e-3));
   const Vehicle remus = test::vehicle_from_repository("remus100");
   CHECK_FALSE(remus.has_thrusters());
   CHECK(mean_of(remus, "m_Y") == mean_of(remus, "m_Z"));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/recordings/draft.hpp"
 #include "common/recordings/numpy/header.hpp"
 #include "test/support/foreign_logs.hpp"
 #include "test/support/heard.hpp"
@@ -140,6 +141,28 @@ TEST_CASE("arrays: the length of the time decides which side is time; what no ti
   CHECK(data.stamps[0].log == static_cast<std::int64_t>((738260.5 - 719529.0) * 86400e6));
   CHECK(data.stamps[1].log - data.stamps[0].log == doctest::Approx(1e6).epsilon(2e-5));
   CHECK(damage.sentences().front().find("gain") != std::string::npos);
+}
+
+TEST_CASE("arrays: those with Fossen's names are drafted as what they are, others are left to a person") {
+  const auto draft_of = [](const std::string& name) {
+    const recordings::Files files{{kData + name}, recordings::format_of(kData + name)};
+    return recordings::draft_map(recordings::read_files(files, {}, recordings::Collector::Take::kEverything));
+  };
+  const auto holds = [](const std::string& text, const char* words) { return text.find(words) != std::string::npos; };
+  const std::string mat = draft_of("beluga_log_struct.mat");
+  CAPTURE(mat);
+  CHECK(holds(mat, "velocity: {columns: ['log.nu[0]', 'log.nu[1]', 'log.nu[2]'], unit: m/s, frame: FRD}"));
+  CHECK(holds(mat, "rates: {columns: ['log.nu[3]', 'log.nu[4]', 'log.nu[5]'], unit: rad/s, frame: FRD}"));
+  CHECK(holds(mat, "quaternion: {columns: ['log.quat_wxyz[0]', "));
+  CHECK(holds(mat, "pwm: {columns: ['log.pwm[0]', "));
+  CHECK(holds(mat, "column: log.battery.V"));
+  CHECK_FALSE(holds(mat, "log.eta"));  // three of it: position, or position and heading?
+  const std::string npz = draft_of("beluga_compressed.npz");
+  CAPTURE(npz);
+  CHECK(holds(npz, "rates: {columns: ['data.rates[0]', "));
+  CHECK(holds(npz, "velocity: {columns: ['data.nu[0]', "));
+  CHECK_FALSE(holds(npz, "quat"));  // in which order its numbers stand nobody says
+  CHECK(tables::parse_streams(mat, "draft").size() == 4);
 }
 
 }  // namespace fathom

@@ -8,7 +8,9 @@
 #include <sstream>
 #include <string>
 
+#include "common/recordings/import.hpp"
 #include "test/support/heard.hpp"
+#include "test/support/scratch.hpp"
 
 namespace fathom {
 namespace {
@@ -82,6 +84,44 @@ TEST_CASE("recordings: every number of recorded files is what independent decode
     compare(entry.path());
   }
   CHECK(files >= 9);
+}
+
+TEST_CASE("recordings: the sticks of a real ArduSub log become the pulses of eight motors, and a doubled file is one") {
+  const test::Scratch scratch;
+  const std::string log = std::string{FATHOM_SOURCE_DIR} + "/test/data/recordings/ardusub_12s.BIN";
+  const auto sticks = tables::parse_streams(
+      "source: s\nlicence: l\nthrusters:\n  sticks: {frame: vectored-6dof, columns: [RCIN.C1, RCIN.C2, RCIN.C3, "
+      "RCIN.C4, "
+      "RCIN.C5, RCIN.C6], neutral: 1500 us, full: 400 us}\n",
+      "map.yaml");
+  const auto import = [&](const std::string& path) {
+    return recordings::import_files({{path}, recordings::format_of(path)}, sticks, {}, true);
+  };
+  const auto thrusters = import(log).runs.at(0).recording.thrusters;
+  REQUIRE(thrusters.size() == 120);
+  // The first row has yaw at 1493 and forward at 1499: factors of VECTORED_6DOF give -7 and -1 us with their signs.
+  const std::vector<double> first{1494.0, 1508.0, 1506.0, 1492.0, 1500.0, 1500.0, 1500.0, 1500.0};
+  for (std::size_t i = 0; i < first.size(); ++i) CHECK(thrusters[0].pwm_us[i] == doctest::Approx(first[i]));
+
+  // A bag whose index was made anew tells its messages twice; here a whole file stands twice in one of its formats.
+  const std::string mcap = std::string{FATHOM_SOURCE_DIR} + "/test/data/recordings/beluga_15s_lz4.mcap";
+  const auto dvl = tables::parse_streams(
+      "source: s\nlicence: l\ndvl: {velocity: {columns: [/dvl/twist.twist.twist.linear.x, "
+      "/dvl/twist.twist.twist.linear.y, /dvl/twist.twist.twist.linear.z], unit: m/s, frame: FLU}}\n",
+      "map.yaml");
+  const auto count = [&](const std::string& path, std::vector<std::string>& notes) {
+    const auto imported = recordings::import_files({{path}, recordings::format_of(path)}, dvl, {}, true);
+    notes = imported.runs.at(0).notes;
+    return imported.runs[0].recording.dvl.size();
+  };
+  std::vector<std::string> notes;
+  const std::size_t once = count(mcap, notes);
+  const std::string bytes = test::read_bytes(mcap);
+  test::write_bytes(scratch.path("twice.mcap"), bytes + bytes);
+  CHECK(count(scratch.path("twice.mcap"), notes) == once);
+  CHECK(std::ranges::any_of(notes, [](const std::string& note) {
+    return note.find("messages stand there twice (same time, same numbers)") != std::string::npos;
+  }));
 }
 
 }  // namespace fathom

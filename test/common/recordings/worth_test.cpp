@@ -65,4 +65,13 @@ TEST_CASE("worth: rare commands, none, pulses within the dead band and a craft a
   CHECK_FALSE(says(adrift, "neither velocity nor position was measured"));
 }
 
+TEST_CASE("worth: shaft speeds and rudder angles are no pulses, and are told only where they never change") {
+  Recording run = dive({.speed = 0.5, .turning = 0.2});
+  for (std::size_t i = 0; i < run.thrusters.size(); ++i)
+    run.thrusters[i].pwm_us = {94.2, 0.1 * std::sin(0.1 * static_cast<double>(i))};  // rad/s, rad
+  CHECK(against_fitting(run).empty());
+  for (Thrusters& one : run.thrusters) one.pwm_us = {94.2, 0.05};
+  CHECK(says(run, "commands never change: nothing was commanded"));
+}
+
 }  // namespace fathom::recordings

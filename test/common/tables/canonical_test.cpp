@@ -68,6 +68,16 @@ TEST_CASE("canonical: attitude alone is an attitude sensor, position alone a pos
 TEST_CASE("canonical: unknown and incomplete columns are named") {
   CHECK(complaint("time,u,v,w\n0,1,2,3\n") ==
         "run.csv:1: column 't' (time in seconds, or as a date) is missing; describe other columns with a map (--map)");
+  // What looks like the time is named, with its unit by how far its rows lie apart.
+  CHECK(
+      complaint("original_timestamp,u,v,w\n1444243.083,1,2,3\n1444343.083,1,2,3\n")
+          .find(
+              "'original_timestamp' looks like it: call it 't', or write in a map 'time: {column: original_timestamp, "
+              "unit: ms}'") != std::string::npos);
+  CHECK(complaint("header.stamp.sec,header.stamp.nanosec,u\n1,5,1\n1,6,2\n")
+            .find("time: {columns: [header.stamp.sec, header.stamp.nanosec], units: [s, ns]}") != std::string::npos);
+  CHECK(complaint("Timestamp,u,v,w\n2024-05-27 09:40:00.0,1,2,3\n").find("'time: {column: Timestamp, unit: date}'") !=
+        std::string::npos);
   CHECK(complaint("t,u,v\n0,1,2\n") == "run.csv:1: columns 'u', 'v' stand without 'w'; they go together");
   CHECK(complaint("t,u,v,w,foo,Phi,Theta\n0,1,2,3,4,5,6\n")
             .rfind("run.csv:1: unknown columns 'Phi' (did you mean 'phi'?), 'Theta' (did you mean 'theta'?); without a "

@@ -78,11 +78,15 @@ TEST_CASE("csv: what is wrong is said in one line with the file's line") {
   CHECK(of_u("t,u\n0,1\n1,1 2\n") == "run.csv:3: column 'u': '1 2' is not a number");
   CHECK(of_u("t,u\n0,1e999\n") == "run.csv:2: column 'u': '1e999' is not a number");
   CHECK(of_u("t,u\n0,1\n") == "");
+  CHECK(of_u("t,u\n0,05/06/2024 10:00:00\n").find("'05/06/2024 10:00:00' leaves open which is the day") !=
+        std::string::npos);
   CHECK(std::isnan(parse_csv("t,u\n0,1 2\n", "run.csv").find("u")->front()));
   CHECK(complaint("t,u\n0,1\n1\n2,3\n") == "run.csv:3: this row has 1 cells, the header names 2");
   CHECK(complaint("t,u\n0,1\n1,2,3\n4,5\n") == "run.csv:3: this row has 3 cells, the header names 2");
   CHECK(complaint("t,u\n0,1\n1") == "run.csv:3: this row has 1 cells, the header names 2 (was the file cut off?)");
   CHECK(complaint("t,u,t\n0,1,2\n") == "run.csv:1: column 't' stands here twice");
+  CHECK(parse_csv(",t,u\n0,0.0,1\n1,0.1,2\n", "run.csv").names == std::vector<std::string>{"(row)", "t", "u"});
+  CHECK(complaint("t,u\n0,1\nt,u\n0,2\n").starts_with("run.csv:3: the header stands here again"));
   CHECK(complaint("t,,u\n0,1,2\n") == "run.csv:1: column 2 has no name; give it one, or take its separator away");
   CHECK(complaint("") == "run.csv: the file is empty");
   CHECK(complaint("t,u\n") == "run.csv: there is a header but not one row of numbers");

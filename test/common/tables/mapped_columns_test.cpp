@@ -286,3 +286,46 @@ TEST_CASE("columns: ranges and loads by their names need no map") {
   CHECK(imported.recording.ranges.at(1).valid == std::vector<std::uint8_t>{1, 0});
   CHECK(imported.recording.loads.size() == 2);
 }
+
+TEST_CASE("columns: tags, optical flow and laser dots come in from tables, and their map can be written again") {
+  const std::string csv =
+      "t,id,tx,ty,tz,qx,qy,qz,qw,err,fx,fy,dt,n,lx,ly,lz,ok\n"
+      "0,7,1,2,3,0,0,0.6,0.8,0.4,1,2,100,35,4,5,6,1\n"
+      "0.1,8.5,1,2,3,0,0,0.6,0.8,0.4,,,,,4,5,6,0\n"
+      "0.2,9,1,2,3,0,0,0,0.5,0.4,1,2,100,,4,,6,1\n";
+  const std::string map =
+      "tag_pose: {camera: front, tag: {column: id}, position: {columns: [tx, ty, tz], unit: cm}, quaternion: {columns: "
+      "[qx, qy, qz, qw], order: xyzw}, reprojection_error: {column: err}}\n"
+      "optical_flow: {camera: down, flow: {columns: [fx, fy], unit: deg/s}, interval: {column: dt, unit: ms}, sigma: "
+      "0.02 rad/s, tracks: {column: n}}\n"
+      "laser_range: {camera: down, position: {columns: [lx, ly, lz], unit: m}, sigma: 5 mm, valid_where: [ok]}\n";
+  const ColumnMap first = ColumnMap::parse(kAbout + map, "map.yaml");
+  for (const std::string& text : {kAbout + map, to_yaml(first)}) {
+    CAPTURE(text);
+    const Imported in = import_table(parse_csv(csv, "run.csv"), ColumnMap::parse(text, "map.yaml"));
+    const Recording& run = in.recording;
+    REQUIRE(run.tag_pose.size() == 1);  // a tag of half a number, and a quaternion that is none
+    CHECK(run.tag_pose[0].camera == "front");
+    CHECK(run.tag_pose[0].tag == 7);
+    CHECK((run.tag_pose[0].p_CT - Vector3d(0.01, 0.02, 0.03)).norm() < kRounding);
+    CHECK(run.tag_pose[0].q_CT.angularDistance(Eigen::Quaterniond(0.8, 0, 0, 0.6)) < kRounding);
+    CHECK(run.tag_pose[0].reprojection_error == 0.4);
+    CHECK(noted(in, "tag_pose: 1 samples refused"));
+    CHECK(noted(in, "tag_pose: 1 samples invalid because their quaternion is not of unit length"));
+    REQUIRE(run.optical_flow.size() == 1);
+    CHECK(run.optical_flow[0].flow_C.y() == doctest::Approx(2.0 * std::numbers::pi / 180.0));
+    CHECK(run.optical_flow[0].interval == doctest::Approx(0.1));
+    CHECK(run.optical_flow[0].sigma == doctest::Approx(0.02));
+    CHECK(run.optical_flow[0].n_tracks == 35);
+    REQUIRE(run.laser_range.size() == 1);
+    CHECK(run.laser_range[0].p_CL == Vector3d(4, 5, 6));
+    CHECK(run.laser_range[0].sigma_range == doctest::Approx(0.005));
+    CHECK(noted(in, "laser_range: 1 samples marked or left out as invalid by their flags"));
+  }
+  CHECK_THROWS_WITH_AS(import_text(csv,
+                                   "laser_range: {camera: c, position: {columns: [lx, none, lz], unit: m}, sigma: "
+                                   "5 mm}\n"),
+                       doctest::Contains("each component is needed"), InputError);
+  CHECK_THROWS_WITH_AS(import_text(csv, "usbl: {position: {columns: [lx, ly], unit: m, frame: ENU}, sigma: 1 m}\n"),
+                       doctest::Contains("'columns' needs 3 columns, not 2"), InputError);
+}

@@ -1,0 +1,56 @@
+#include "common/tables/likely_time.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "common/tables/map_writer.hpp"
+
+namespace fathom::tables {
+namespace {
+
+/// The unit in which the rows of a column lie as far apart as those of a recording do; null where it does not rise.
+const char* likely_unit(const Paged<double>& column) {
+  constexpr double kLongest = 2.0;  // s between rows
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < std::min<std::size_t>(column.size(), 1000); ++i) {
+    if (column[i] > column[i - 1]) steps.push_back(column[i] - column[i - 1]);
+  }
+  if (steps.empty()) return nullptr;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  double factor = 1.0;
+  for (const char* unit : {"s", "ms", "us", "ns"}) {
+    if (factor * *middle <= kLongest) return unit;
+    factor *= 1e-3;
+  }
+  return nullptr;
+}
+
+bool is_named_so(const std::string& name) {
+  std::string small = name;
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return small == "t" || small == "date" || small == "utc" || small.find("time") != std::string::npos ||
+         small.find("stamp") != std::string::npos;
+}
+
+}  // namespace
+
+std::optional<LikelyTime> likely_time(const CsvTable& table) {
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const std::string& name = table.names[i];
+    if (!is_named_so(name)) continue;
+    for (const char* rest : {"nanosec", "nsec", "nsecs"}) {  // ROS: seconds and nanoseconds beside them
+      const std::string other = name.substr(0, name.find_last_of("._") + 1) + rest;
+      if (other == name || table.find(other) == nullptr) continue;
+      return LikelyTime{{name, other},
+                        "time: {columns: [" + written_name(name) + ", " + written_name(other) + "], units: [s, ns]}"};
+    }
+    const char* unit = table.cells_of(i) == Cells::kNumbers ? likely_unit(table.columns[i]) : "date";
+    if (unit == nullptr || !table.faults[i].empty()) continue;
+    return LikelyTime{{name}, "time: {column: " + written_name(name) + ", unit: " + unit + "}"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace fathom::tables
