@@ -14,7 +14,7 @@ using Names = std::vector<std::string>;
 
 constexpr std::size_t kLargestAliasSet = 3;
 constexpr double kConfident = 0.9;
-constexpr double kScored = 5.0;  // s, the horizon that is compared
+constexpr double kScored = 5.0, kFar = 10.0;  // s, horizons that are compared
 
 bool contains(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -48,11 +48,11 @@ std::vector<Named> accepted(const Json& result) {
   return list;
 }
 
-/// RMSE over standard deviation of the motion, mean over the axes, at 5 s.
-double normalised(const Json& error) {
+/// RMSE over standard deviation of the motion, mean over the axes.
+double normalised(const Json& error, double horizon = kScored) {
   double sum = 0.0, axes = 0.0;
   for (const Json& row : error.at("prediction")) {
-    if (row.at("horizon_s").get<double>() != kScored) continue;
+    if (row.at("horizon_s").get<double>() != horizon) continue;
     for (const Json& r2 : row.at("r2")) {
       if (!r2.is_number()) continue;
       sum += std::sqrt(std::max(1.0 - r2.get<double>(), 0.0));
@@ -172,6 +172,25 @@ void compare_parameters(const Json& truth, const Named& named, Score& score) {
   }
 }
 
+void score_correction(const Json& result, Score& score) {
+  if (!result.contains("correction") || !result.at("correction").is_object()) return;
+  const Json& correction = result.at("correction");
+  score.learned = correction.value("adopted", false);
+  score.carried = correction.value("carried_to_other_runs", false) || correction.value("stands_in_later_runs", false);
+  if (!score.learned) {
+    score.correction = correction.value("refused", "");
+  } else if (correction.contains("formula")) {
+    score.correction = correction.at("formula").value("equation", "");
+  } else {
+    Names groups;
+    for (const Json& term : correction.at("terms")) {
+      const std::string group = term.at("group");
+      if (!contains(groups, group)) groups.push_back(group);
+    }
+    for (const std::string& group : groups) score.correction += (score.correction.empty() ? "" : "; ") + group;
+  }
+}
+
 }  // namespace
 
 Score judge(const Json& truth, const Json& result, const Json& run) {
@@ -214,6 +233,9 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
   }
   score.before = normalised(result.at("error").at("before"));
   score.after = normalised(result.at("error").at("after"));
+  score.before_far = normalised(result.at("error").at("before"), kFar);
+  score.after_far = normalised(result.at("error").at("after"), kFar);
+  score_correction(result, score);
   score.tilts = truth.at("base").contains("K_p") || truth.at("base").contains("M_q");
   if (truth.contains("bound")) {
     for (const auto& [name, bound] : truth.at("bound").items()) {
@@ -243,6 +265,11 @@ Json to_json(const Score& score) {
             {"after", finite(score.after)},
             {"floor", finite(score.floor)},
             {"base", finite(score.base)},
+            {"before_10_s", finite(score.before_far)},
+            {"after_10_s", finite(score.after_far)},
+            {"learned", score.learned},
+            {"carried", score.carried},
+            {"correction", score.correction},
             {"seconds", finite(score.seconds)},
             {"processor", finite(score.processor)},
             {"megabytes", finite(score.megabytes)},

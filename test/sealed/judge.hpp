@@ -30,7 +30,10 @@ struct Score {
   int strangers{};         ///< accepted names that are not in the truth nor an alias of it
   bool in_sensor_check{};  ///< a fault of an instrument that the comparison of sensors reported by itself
   double before{kUnknown}, after{kUnknown}, floor{kUnknown}, base{kUnknown};  ///< normalised 5 s errors
-  double seconds{}, processor{}, megabytes{};                                 ///< processor: of both cores together, s
+  double before_far{kUnknown}, after_far{kUnknown};                           ///< the same at 10 s
+  bool learned{false}, carried{false};  ///< a correction was adopted; it is part of the model on the new recording
+  std::string correction;               ///< equation, groups or why it was refused
+  double seconds{}, processor{}, megabytes{};  ///< processor: of both cores together, s
   std::vector<Claim> claims;
   /// (found - true) over what is 1.96 at the end of the stated 95 % interval, of effect parameters that mean the same.
   std::vector<double> deviations;

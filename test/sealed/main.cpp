@@ -11,6 +11,7 @@
 
 #include "common/base/progress_line.hpp"
 #include "test/sealed/comparison.hpp"
+#include "test/sealed/learning.hpp"
 #include "test/sealed/page.hpp"
 #include "test/sealed/tool.hpp"
 #include "test/sealed/writing.hpp"
@@ -25,7 +26,7 @@ struct Options {
   std::string seeds{"0..122"}, only, size, out, tool, page;
   std::vector<std::string> cores;  ///< of the tool; none: the one that it takes by itself
   int jobs{1};
-  bool draw_only{}, score_only{};
+  bool draw_only{}, score_only{}, learning{};
   std::uint64_t first{}, last{};
 };
 
@@ -47,7 +48,7 @@ void parse_seeds(Options& options) {
 }
 
 Wish wish_of(const Options& options) {
-  Wish wish{.effect = options.only};
+  Wish wish{.effect = options.only, .new_recording = options.learning};
   for (std::size_t i = 0; i < kSizeNames.size(); ++i) {
     if (options.size == kSizeNames[i]) wish.size = static_cast<Size>(i);
   }
@@ -77,7 +78,12 @@ std::vector<std::string> command(const Options& options, const std::string& core
   if (fs::exists(where.data + "/validate.csv")) words.insert(words.end(), {"--validate", where.data + "/validate.csv"});
   words.insert(words.end(), {"--out", where.found, "--threads",
                              std::to_string(std::max(1U, cores / static_cast<unsigned>(options.jobs)))});
-  if (!core.empty()) words.insert(words.end(), {"--core", core});
+  if (core == kLeftOut) {
+    const Json truth = read_json(where.truth);
+    for (const Json& effect : truth.at("effects"))
+      words.insert(words.end(), {"--without", effect.at("name").get<std::string>()});
+  }
+  if (!core.empty()) words.insert(words.end(), {"--core", core == kLeftOut ? kTold : core});
   return words;
 }
 
@@ -142,6 +148,7 @@ void work(const Options& options) {
         for (const std::string& core : cores) {
           const Places where = places(options.out, seed, core);
           draw(seed, options, where);
+          if (core == kLeftOut && read_json(where.truth).value("kind", "") != kKindNames[0]) continue;
           if (!options.draw_only) diagnose(options, core, where);
           said += (said.empty() ? "" : "\n") + (options.draw_only ? where.data : line(score_of(where)));
           if (!core.empty()) said += "  " + core;
@@ -181,6 +188,7 @@ std::string how_of(const Options& options) {
   std::string how = "./check --sealed --seeds " + options.seeds;
   if (!options.only.empty()) how += " --only " + options.only;
   if (!options.size.empty()) how += " --size " + options.size;
+  if (options.learning) return how + " --learning";
   for (const std::string& core : options.cores) how += " --core " + core;
   return how;
 }
@@ -192,6 +200,14 @@ void write_scores(const std::vector<Score>& scores, const std::string& path) {
 }
 
 void conclude(const Options& options) {
+  if (options.learning) {
+    const std::string page = options.page.empty() ? options.out + "/learning.md" : options.page;
+    std::ofstream(page) << to_learning_page(scores_of(options, kTold), scores_of(options, kLeftOut), how_of(options));
+    write_scores(scores_of(options, kTold), options.out + "/scores-told.json");
+    write_scores(scores_of(options, kLeftOut), options.out + "/scores-left-out.json");
+    std::printf("%s\n", page.c_str());
+    return;
+  }
   if (options.cores.size() > 1) {
     std::vector<CoreScores> cores;
     for (const std::string& core : options.cores) {
@@ -220,7 +236,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Draws sealed data sets, has them diagnosed, and keeps the score.", "sealed"};
   app.add_option("--seeds", options.seeds, "A..B or one number (default " + options.seeds + ")");
-  app.add_option("--only", options.only, "an effect's name, or: single clean noise pair foreign");
+  app.add_option("--only", options.only, "an effect's name, or: single clean noise pair foreign unlisted");
   app.add_option("--size", options.size)->check(CLI::IsMember({"weak", "medium", "strong"}));
   app.add_option("--out", options.out, "folder of data, truth and answers")->required();
   app.add_option("--tool", options.tool, "the program fathom")->required();
@@ -229,11 +245,15 @@ int main(int argc, char** argv) {
       ->take_all()
       ->check(CLI::IsMember({"trajectories", "likelihood"}));
   app.add_option("-j", options.jobs, "sets at a time")->check(CLI::Range(1, 64));
+  app.add_flag("--learning", options.learning,
+               "what is learned: every set by the likelihood's core, single effects once more with theirs taken out of "
+               "the list; errors on a new recording");
   app.add_flag("--draw-only", options.draw_only, "only draw the sets");
   app.add_flag("--score-only", options.score_only, "only score the answers that are there");
   try {
     app.parse(argc, argv);
     parse_seeds(options);
+    if (options.learning) options.cores = {kTold, kLeftOut};
     if (!options.score_only) work(options);
     if (!options.draw_only) conclude(options);
     return 0;

@@ -110,6 +110,8 @@ struct Entry {
 [[nodiscard]] const std::vector<Entry>& foreign();
 /// Forms and effects that no number draws: only --only names them.
 [[nodiscard]] const std::vector<Entry>& further();
+/// Things that happen and that neither it nor what it learns from holds, for --learning: drawn by name, or in turn.
+[[nodiscard]] const std::vector<Entry>& unlisted();
 /// Coloured noise: not an effect, and never to be named.
 [[nodiscard]] const Entry& coloured_noise();
 [[nodiscard]] const Entry* find_entry(const std::string& name);

@@ -128,7 +128,12 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
   Plan plan{
       .seed = seed, .kind = turn.kind, .size = static_cast<Size>((seed % kRound.size() + round) % kShares.size())};
   const Entry* entry = turn.entry;
-  if (!wish.effect.empty()) {
+  if (wish.effect == "unlisted") {
+    entry = &unlisted()[seed % unlisted().size()];
+    plan.kind = Kind::kForeign;
+    // Each of them in each size.
+    plan.size = static_cast<Size>(seed / unlisted().size() % kShares.size());
+  } else if (!wish.effect.empty()) {
     entry = nullptr;
     const auto* kind = std::find(kKindNames.begin(), kKindNames.end(), wish.effect);
     if (kind != kKindNames.end()) {
@@ -175,7 +180,7 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
   plan.one_clock = random.chance(0.5);
   const double files = random.unit();
   plan.train_files = files < 0.25 && !clock ? 3 : 1;
-  plan.validates = files < 0.8;
+  plan.validates = files < 0.8 || wish.new_recording;
   plan.wrench = random.chance(0.25) && !thrusters;
   plan.voltage = random.chance(0.3);
   plan.priors = random.chance(0.5);

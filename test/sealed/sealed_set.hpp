@@ -15,8 +15,9 @@ constexpr std::array<double, 3> kShares{0.05, 0.15, 0.40};  ///< of the applied 
 
 /// What the caller wants instead of what the number would draw.
 struct Wish {
-  std::string effect;  ///< or "clean", "pair", "foreign", "single"
+  std::string effect;  ///< or "clean", "pair", "foreign", "single"; "unlisted": one of those in turn
   std::optional<Size> size;
+  bool new_recording{false};  ///< a file for validation in any case
 };
 
 struct Plan {
