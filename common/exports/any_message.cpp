@@ -49,6 +49,8 @@ class Decoder {
   }
 
   Json value(const Type& type, const Field& field, const Json& object, std::size_t dimension) {
+    // Elements without a byte (lists of nothing) must not come without end.
+    if (++elements_ > most_) throw Cut{};
     if (dimension == field.sizes.size()) return scalar(type, field);
     const std::size_t count = length(field.sizes[dimension], object);
     if (field.type == "byte" && dimension + 1 == field.sizes.size()) {
@@ -83,6 +85,7 @@ class Decoder {
   std::span<const std::uint8_t> bytes_;
   Bytes kept_;
   int depth_{};
+  std::size_t elements_{}, most_{bytes_.size() + 65536};
 };
 
 Json schema_of_field(const Definitions& definitions, const Type& type, const Field& field) {

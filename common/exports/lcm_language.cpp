@@ -120,9 +120,22 @@ class Parser {
     Field field{.type = type, .name = take_word("a field's name"), .sizes = {}, .comment = {}};
     while (take("[")) {
       field.sizes.push_back(take_word("an array's length"));
+      check_length(field.sizes.back());
       expect("]");
     }
     type_.fields.push_back(std::move(field));
+  }
+
+  /// A number, or an earlier field that holds a whole one.
+  void check_length(const std::string& size) const {
+    constexpr std::size_t kMostDigits = 9;
+    const bool digits = std::ranges::all_of(size, [](char c) { return c >= '0' && c <= '9'; });
+    const auto counts = [&](const Field& field) {
+      return field.name == size && field.sizes.empty() && (field.type.starts_with("int") || field.type == "byte") &&
+             field.primitive();
+    };
+    if (digits ? size.size() > kMostDigits : std::ranges::none_of(type_.fields, counts))
+      fail("'" + size + "' is no length: a number, or an earlier field that holds a whole one");
   }
 
   /// To the next token that is no comment; comments go where they belong.

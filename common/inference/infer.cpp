@@ -13,37 +13,63 @@ namespace {
 
 using likelihood::NumberKind;
 
-/// Per simulated axis, the share of the filtered acceleration over a quarter of a second that the model foretells from
-/// where the vehicle was. Below zero it would do better to foretell none.
-std::vector<Following> followed(const likelihood::Problem& problem, const Seen& seen) {
-  std::vector<Following> shares;
-  for (int i = 0; i < problem.simulated; ++i) {
-    const int axis = problem.axes[static_cast<std::size_t>(i)];
-    double all = 0.0, left = 0.0;
-    for (std::size_t r = 0; r < problem.runs.size(); ++r) {
-      const auto& blocks = problem.runs[r].blocks();
-      const likelihood::RunReference& reference = seen.reference[r];
-      double span = 0.0, foretold = 0.0;
-      std::size_t from = 0;
-      for (std::size_t b = 0; b < blocks.size(); ++b) {
-        if (!blocks[b].scored || b == 0) {
-          span = foretold = 0.0;
-          from = b;
-          continue;
-        }
-        span += blocks[b].dt;
-        foretold += blocks[b].dt * reference.nu_dot(axis, static_cast<Eigen::Index>(b));
-        if (span < likelihood::kAccelerationSpan) continue;
-        const double moved = reference.nu_end(axis, static_cast<Eigen::Index>(b)) -
-                             reference.nu_end(axis, static_cast<Eigen::Index>(from));
-        all += moved * moved / span;
-        left += (moved - foretold) * (moved - foretold) / span;
-        span = foretold = 0.0;
-        from = b;
-      }
+/// Of one axis of one run, squares about their means over kSlow: of the accelerations over kAccelerationSpan as they
+/// were filtered, and of what the model did not foretell of them from where the vehicle was.
+struct Squares {
+  double all{}, left{};
+};
+Squares squares_of(const likelihood::RunData& run, const likelihood::RunReference& reference, int axis) {
+  constexpr double kSlow = 5.0;  // s: what changes more slowly is missing, but it is not thrust that nothing follows
+  Squares squares;
+  std::vector<double> moved, foretold;
+  const auto close = [&] {
+    const auto n = static_cast<double>(moved.size());
+    double mean_moved = 0.0, mean_left = 0.0;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      mean_moved += moved[k] / n;
+      mean_left += (moved[k] - foretold[k]) / n;
     }
-    shares.push_back({all > 0.0 ? 1.0 - left / all : 1.0,
-                      seen.applied[axis] / std::max(problem.acceleration[static_cast<std::size_t>(i)], 1e-9)});
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      squares.all += std::pow(moved[k] - mean_moved, 2);
+      squares.left += std::pow(moved[k] - foretold[k] - mean_left, 2);
+    }
+    moved.clear();
+    foretold.clear();
+  };
+  double span = 0.0, sum = 0.0;
+  Eigen::Index from = 0;
+  for (std::size_t b = 1; b < run.blocks().size(); ++b) {
+    const likelihood::Block& block = run.blocks()[b];
+    const auto at = static_cast<Eigen::Index>(b);
+    if (!block.scored) {
+      span = sum = 0.0;
+      from = at;
+      continue;
+    }
+    span += block.dt;
+    sum += block.dt * reference.nu_dot(axis, at);
+    if (span < likelihood::kAccelerationSpan) continue;
+    moved.push_back((reference.nu_end(axis, at) - reference.nu_end(axis, from)) / span);
+    foretold.push_back(sum / span);
+    span = sum = 0.0;
+    from = at;
+    if (static_cast<double>(moved.size()) * likelihood::kAccelerationSpan >= kSlow) close();
+  }
+  close();
+  return squares;
+}
+
+/// Per simulated axis, the share of the acceleration that the model foretells. Below zero: it had better foretell none.
+std::vector<double> followed(const likelihood::Problem& problem, const Seen& seen) {
+  std::vector<double> shares;
+  for (int i = 0; i < problem.simulated; ++i) {
+    Squares sum;
+    for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+      const Squares squares = squares_of(problem.runs[r], seen.reference[r], problem.axes[static_cast<std::size_t>(i)]);
+      sum.all += squares.all;
+      sum.left += squares.left;
+    }
+    shares.push_back(sum.all > 0.0 ? 1.0 - sum.left / sum.all : 1.0);
   }
   return shares;
 }
@@ -96,9 +122,8 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
 
   const likelihood::Fit& fit = found.best.fit;
   for (std::size_t axis = 0; axis < conclusion.followed.size(); ++axis) {
-    const Following& following = conclusion.followed[axis];
-    if (following.pushed >= thresholds.pushed && following.share < thresholds.following)
-      reasons.push_back({Cause::kNotFollowing, following.share, thresholds.following,
+    if (conclusion.followed[axis] < thresholds.following)
+      reasons.push_back({Cause::kNotFollowing, conclusion.followed[axis], thresholds.following,
                          model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});
   }
   for (const likelihood::Number& number : fit.numbers) {
@@ -165,18 +190,7 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
   const Found& found = conclusion.found;
   if (found.best.fit.finite) {
     const Seen seen = see(problem, found.best.fit, settings.threads);
-    // Where a force that goes with what was recorded does it, the model follows, and something beside it is not listed.
-    // A force that is read off the thrust itself is no reason to believe it: it could turn all thrust around.
-    const bool beside = found.free_force && found.free_force->fit.finite &&
-                        found.free_force->log_odds >= settings.thresholds.free_force_odds;
-    if (beside) {
-      likelihood::Fit apart = found.free_force->fit;
-      apart.hypothesis.force = model::without_thrust(apart.hypothesis.force);
-      apart.numbers = problem.numbers(apart.hypothesis);
-      conclusion.followed = followed(problem, see(problem, std::move(apart), settings.threads));
-    } else {
-      conclusion.followed = followed(problem, seen);
-    }
+    conclusion.followed = followed(problem, seen);
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(problem.simulated); ++axis) {
       const likelihood::AxisNoise& noise = found.best.fit.noise[axis];
       const int of = problem.axes[axis];

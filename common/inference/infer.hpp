@@ -24,18 +24,12 @@ struct RandomForce {
   double share{};   ///< of the applied acceleration
 };
 
-/// How the model follows an axis.
-struct Following {
-  double share{};   ///< of the acceleration over a quarter of a second that it foretells; below zero: worse than none
-  double pushed{};  ///< the thrust's acceleration over the motion's
-};
-
 struct Conclusion {
   Verdict verdict{Verdict::not_judged};
   std::vector<Reason> reasons;
   Found found;
   std::vector<RandomForce> random;
-  std::vector<Following> followed;  ///< per simulated axis
+  std::vector<double> followed;  ///< per simulated axis: share of the acceleration that the model foretells
   /// Numbers for reports and exports, all of one fit, of the base model and of the best: those of the likelihood, or
   /// of the multi-horizon score where the two differ by more than Thresholds::disagreement.
   likelihood::Fit reported_base, reported;

@@ -26,15 +26,13 @@ struct Thresholds {
   double large_random{0.03};  ///< random over applied acceleration above which the scan is repeated with a fifth of it
   double swallowing_memory{2.0};  ///< s: and its memory, above which it may have swallowed what is slow
   double slow_memory{10.0};       ///< s: a random force that remembers for longer, above the smallest size, is no noise
-  double following{0.0};          ///< least share of an axis' acceleration that the model must explain
-  double pushed{0.5};      ///< thrust's over the motion's acceleration, below which an axis is moved by something else
-                           ///< (roll by sway): it has no thrust to follow
-  double no_skill{1e-3};   ///< p-value over windows of a model that is no worse than "nothing changes"
-  double idle_input{3.0};  ///< Student's t below which an axis' thrust does not act on it
-  double foreign_unit{5.0};  ///< fitted over expected inertia, or its inverse: thrust in another unit
-  double absurd{10.0};       ///< times its prior's mean and sigma together: a number that nothing can have
-  double shortest{20.0};     ///< s of data to judge at all: ten blocks for each number of an ordinary model
-  double disagreement{5.0};  ///< median over numbers of the difference of both scores, in standard deviations
+  double following{0.0};          ///< least share of an axis' acceleration that the model must foretell
+  double no_skill{1e-3};          ///< p-value over windows of a model that is no worse than "nothing changes"
+  double idle_input{3.0};         ///< Student's t below which an axis' thrust does not act on it
+  double foreign_unit{5.0};       ///< fitted over expected inertia, or its inverse: thrust in another unit
+  double absurd{10.0};            ///< times its prior's mean and sigma together: a number that nothing can have
+  double shortest{20.0};          ///< s of data to judge at all: ten blocks for each number of an ordinary model
+  double disagreement{5.0};       ///< median over numbers of the difference of both scores, in standard deviations
 };
 
 }  // namespace fathom::inference

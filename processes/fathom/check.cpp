@@ -11,6 +11,7 @@
 #include "common/consistency/consistency.hpp"
 #include "common/consistency/dead_axes.hpp"
 #include "common/consistency/flow_check.hpp"
+#include "common/consistency/merged.hpp"
 #include "common/consistency/summary.hpp"
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/reconstruct.hpp"
@@ -24,7 +25,7 @@
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/mended_map.hpp"
-#include "processes/fathom/recordings.hpp"
+#include "processes/fathom/parts.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -32,6 +33,7 @@ namespace {
 struct CheckOptions {
   std::string vehicle, site, map, write, write_map, json;
   std::vector<std::string> runs;
+  double held{static_cast<double>(kMostHeld) / 1e6};  // MB of samples in memory
 };
 
 void print(const std::vector<ConsistencyFinding>& findings) {
@@ -45,39 +47,87 @@ void print(const std::vector<ConsistencyFinding>& findings) {
   }
 }
 
+/// Recordings, or parts of one, on their way through the check. Of samples no more is held than of one group.
+class Checking {
+ public:
+  Checking(const model::Vehicle& vehicle, const std::string& site, std::vector<std::string> runs)
+      : vehicle_{vehicle}, runs_{std::move(runs)}, worth_(runs_.size()), merged_{runs_} {
+    if (!site.empty()) site_ = model::Site::load(site);
+  }
+
+  void take(std::vector<RunPart>& group) {
+    std::vector<Recording> recordings;
+    std::vector<consistency::CheckedPart> parts;
+    for (RunPart& one : group) {
+      worth_[one.run].take(one.recording);
+      parts.push_back({one.recording.name, one.run});
+      recordings.push_back(std::move(one.recording));
+    }
+    const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle_.dof);
+    consistency::ConsistencyResult result = consistency::check_consistency(recordings);
+    result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
+    consistency::check_thrusters(recordings, vehicle_, result);
+    if (site_) consistency::check_flow(recordings, vehicle_.mounts, *site_, result);
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      if (recordings[i].thrusters.empty()) continue;  // sensors alone can be compared too
+      try {
+        const Trial trial = estimation::reconstruct(recordings[i], result.corrections[i], vehicle_);
+        std::ranges::copy(estimation::gap_findings({&trial, 1}), std::back_inserter(result.findings));
+      } catch (const InputError& error) {  // what fathom diagnose would say of it
+        const std::string note = std::string{"not looked for gaps: "} + error.what();
+        if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);
+      }
+    }
+    merged_.add(std::move(result), parts);
+  }
+
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  [[nodiscard]] std::vector<std::string> reasons() const {
+    std::vector<std::string> reasons;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      for (const std::string& reason : worth_[i].against_fitting()) reasons.push_back(runs_[i] + ": ! " + reason);
+    }
+    return reasons;
+  }
+  [[nodiscard]] const std::vector<std::string>& runs() const { return runs_; }
+  [[nodiscard]] std::size_t checks() const { return merged_.checks(); }
+  [[nodiscard]] consistency::ConsistencyResult result() { return std::move(merged_).result(); }
+
+ private:
+  const model::Vehicle& vehicle_;
+  std::vector<std::string> runs_;
+  std::optional<model::Site> site_;
+  std::vector<recordings::Worth> worth_;  ///< of every run
+  std::vector<std::string> notes_;
+  consistency::Merged merged_;
+};
+
 void run_check(const CheckOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
-  std::vector<std::string> notes, reasons;
+  std::vector<std::string> notes;
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   const std::vector<std::string> runs = paths_of(options.runs);
   if (!options.json.empty()) {
     for (const std::string& run : runs) refuse_over(options.json, run);
   }
+  Checking checking{vehicle, options.site, names_of_runs(runs)};
   std::optional<ProgressLine> shown{std::in_place};
   const Progress progress = shown->progress();
   progress.begin("reading", "reading recordings");
-  std::vector<Recording> recordings = read_recordings(runs, options.map, notes, vehicle.dof);
-  for (const Recording& recording : recordings) {
-    for (const std::string& reason : recordings::against_fitting(recording))
-      reasons.push_back(recording.name + ": ! " + reason);
+  GroupOptions in_memory{.map = options.map, .simulated = vehicle.dof};
+  in_memory.most = static_cast<std::size_t>(options.held * 1e6);
+  in_groups(runs, in_memory, notes, [&](std::vector<RunPart>& group) {
+    progress.begin("sensors", "comparing the sensors of " + group.front().recording.name + " with each other");
+    checking.take(group);
+    progress.begin("reading", "reading recordings");
+  });
+  notes.insert(notes.end(), checking.notes().begin(), checking.notes().end());
+  if (checking.checks() > 1) {
+    notes.push_back("looked at in " + std::to_string(checking.checks()) +
+                    " parts, one after the other: all samples together would not fit into memory");
   }
-  progress.begin("sensors", "comparing the sensors with each other");
-  const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
-  consistency::ConsistencyResult result = consistency::check_consistency(recordings);
-  result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
-  consistency::check_thrusters(recordings, vehicle, result);
-  if (!options.site.empty()) {
-    consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), result);
-  }
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    if (recordings[i].thrusters.empty()) continue;  // sensors alone can be compared too
-    try {
-      const Trial trial = estimation::reconstruct(recordings[i], result.corrections[i], vehicle);
-      std::ranges::copy(estimation::gap_findings({&trial, 1}), std::back_inserter(result.findings));
-    } catch (const InputError& error) {  // what fathom diagnose would say of it
-      notes.push_back(std::string{"not looked for gaps: "} + error.what());
-    }
-  }
+  const std::vector<std::string> reasons = checking.reasons();
+  consistency::ConsistencyResult result = checking.result();
   shown.reset();
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
   for (const std::string& reason : reasons) std::printf("%s\n", reason.c_str());
@@ -91,7 +141,7 @@ void run_check(const CheckOptions& options) {
   }
   if (!options.json.empty()) {
     report::CheckGiven given{.vehicle = vehicle.name, .compared = consistency::table_of(result), .notes = notes};
-    for (const Recording& recording : recordings) given.runs.push_back(recording.name);
+    given.runs = checking.runs();
     given.findings = result.findings;
     if (given.findings.empty()) given.conclusion = consistency::conclusion_of(result);
     tables::write_file(options.json, report::check_json(given));
@@ -112,7 +162,8 @@ void run_check(const CheckOptions& options) {
   }
   const estimation::Shared shared = estimation::most_shared(result.corrections);
   tables::write_file(options.write, estimation::to_yaml(shared.corrections));
-  std::printf("%s: corrections of %zu of %zu recordings\n", options.write.c_str(), shared.count, recordings.size());
+  std::printf("%s: corrections of %zu of %zu recordings\n", options.write.c_str(), shared.count,
+              result.corrections.size());
 }
 
 }  // namespace
@@ -129,6 +180,10 @@ void add_check(runtime::CommandLine& app) {
                       "write the map of the tables as it should be to this file: conventions, heading, unit");
   command->add_option("--json", options->json, "write what was found to this file (docs/schema/check-1.schema.json)");
   command->add_option("--write", options->write, "write the corrections for live processes to this file");
+  command
+      ->add_option("--memory", options->held,
+                   "MB of samples that are held at a time; a recording that takes more is looked at part by part")
+      ->within(1.0, 1e6);
   command->callback([options] { run_check(*options); });
 }
 

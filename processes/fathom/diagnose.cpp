@@ -39,6 +39,7 @@
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/origin.hpp"
+#include "processes/fathom/parts.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/rehearsals.hpp"
 #include "processes/fathom/search_progress.hpp"
@@ -69,6 +70,7 @@ struct DiagnoseOptions {
   bool no_learning{false};
   int threads{2};
   double time_budget{std::numeric_limits<double>::infinity()};
+  double held{static_cast<double>(kMostHeld) / 1e6};  // MB of samples of a recording
   int folds{0};
 };
 
@@ -155,30 +157,68 @@ bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double
   return event.t < first + share * (last - first);
 }
 
+/// Recordings as they are looked at: sorted by time, a long one in stretches.
+struct Looked {
+  std::vector<Recording> recordings;
+  std::vector<std::string> paths;  ///< of each
+  std::size_t fitted{};            ///< the first so many are fitted
+};
+
+Looked look_at(const DiagnoseOptions& options, const model::Vehicle& vehicle, std::vector<std::string>& notes) {
+  std::vector<std::string> given = paths_of(options.train);
+  const std::size_t trained = given.size();
+  std::ranges::move(paths_of(options.validate), std::back_inserter(given));
+  Stretched read = read_stretches(
+      given, {.map = options.map, .simulated = vehicle.dof, .most = static_cast<std::size_t>(options.held * 1e6)},
+      notes);
+  Looked looked{.recordings = std::move(read.recordings), .paths = {}, .fitted = 0};
+  for (const std::size_t run : read.run) {
+    looked.paths.push_back(given[run]);
+    looked.fitted += run < trained ? 1 : 0;
+  }
+  const auto sort = [&](std::size_t from, std::size_t count) {
+    sort_by_time(std::span{looked.recordings}.subspan(from, count), std::span{looked.paths}.subspan(from, count));
+  };
+  sort(0, looked.fitted);
+  sort(looked.fitted, looked.paths.size() - looked.fitted);
+  for (Recording& recording : looked.recordings) {
+    if (!estimation::take_state_as_measured(recording)) continue;
+    notes.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
+  }
+  return looked;
+}
+
 /// Hashes of all that is read, and the command with the recordings in the order of their time.
-ResultOrigin origin_of(const DiagnoseOptions& options, std::span<const std::string> paths, std::size_t fitted,
-                       std::span<const Recording> recordings) {
+ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   ResultOrigin origin{.command = "fathom diagnose", .files = {}};
   add_file(origin, "vehicle", options.vehicle);
   add_file(origin, "map", options.map);
   add_file(origin, "site", options.site);
   add_file(origin, "config", options.config);
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    add_recording(origin, i < fitted ? "train" : "validate", paths[i], recordings[i]);
+  std::vector<std::string> train, validate;
+  for (std::size_t i = 0, end = 0; i < looked.paths.size(); i = end) {  // stretches of one file stand together
+    const bool fitted = i < looked.fitted;
+    const std::string& path = looked.paths[i];
+    while (end < looked.paths.size() && looked.paths[end] == path && (end < looked.fitted) == fitted) ++end;
+    (fitted ? train : validate).push_back(path);
+    add_recording(origin, fitted ? "train" : "validate", path, std::span{looked.recordings}.subspan(i, end - i));
+  }
   add_words(origin, "--vehicle", options.vehicle);
   add_words(origin, "--map", options.map);
   add_words(origin, "--site", options.site);
   add_words(origin, "--config", options.config);
   if (options.core != kTrajectories) add_words(origin, "--core", options.core);
   add_words(origin, "--without", options.without);
-  if (std::isfinite(options.time_budget)) {
-    std::array<char, 32> seconds{};
-    std::snprintf(seconds.data(), seconds.size(), "%.17g", options.time_budget);
-    add_words(origin, "--time-budget", std::string{seconds.data()});
-  }
+  const auto add_number = [&](const char* option, double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.17g", value);
+    add_words(origin, option, std::string{text.data()});
+  };
+  if (std::isfinite(options.time_budget)) add_number("--time-budget", options.time_budget);
+  if (options.held != DiagnoseOptions{}.held) add_number("--memory", options.held);
   if (options.no_learning) origin.command += " --no-learning";
-  add_words(origin, "--train", paths.first(fitted));
-  add_words(origin, "--validate", paths.subspan(fitted));
+  add_words(origin, "--train", train);
+  add_words(origin, "--validate", validate);
   return origin;
 }
 
@@ -194,34 +234,25 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   if (options.no_learning && options.core != kLikelihood)
     throw InputError("--no-learning is about --core likelihood alone; give that too");
   make_folder(options.out);
-  std::vector<std::string> paths = paths_of(options.train);
-  const std::size_t fitted_runs = paths.size();
-  std::ranges::move(paths_of(options.validate), std::back_inserter(paths));
-  const auto runs = static_cast<double>(paths.size());
-  progress.expect(kReading, runs, kLight);
-  progress.expect(kSensors, 1, kLight * runs);
-  progress.expect(kReconstruction, runs, kLight);
+  const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
+  progress.expect(kReading, files, kLight);
+  progress.expect(kSensors, 1, kLight * files);
+  progress.expect(kReconstruction, files, kLight);
   progress.expect(kReport, 1, 1.0);
   progress.expect(kDiagnosis, 1, kGuessedDiagnosis);
   progress.begin(kReading, "reading recordings");
-  const auto read = [&](std::vector<std::string>& told) {
-    std::vector<Recording> all = read_recordings(paths, options.map, told, vehicle.dof);
-    sort_by_time(std::span{all}.first(fitted_runs), std::span{paths}.first(fitted_runs));
-    sort_by_time(std::span{all}.subspan(fitted_runs), std::span{paths}.subspan(fitted_runs));
-    for (Recording& recording : all) {
-      if (!estimation::take_state_as_measured(recording)) continue;
-      told.push_back(recording.name + ": no motion capture; the estimator's STATE is taken in its place");
-    }
-    return all;
-  };
-  std::vector<Recording> recordings = read(notes);
-  origin = origin_of(options, paths, fitted_runs, recordings);
+  Looked looked = look_at(options, vehicle, notes);
+  origin = origin_of(options, looked);
+  std::vector<Recording> recordings = std::move(looked.recordings);
+  const std::vector<std::string>& paths = looked.paths;
+  const std::size_t fitted_runs = looked.fitted;
+  const auto runs = static_cast<double>(paths.size());
   for (const Recording& recording : recordings) {
     for (const std::string& reason : recordings::against_fitting(recording))
       notes.push_back(recording.name + ": ! " + reason);
   }
 
-  progress.done(kReading, runs);
+  progress.done(kReading, files);
   progress.begin(kSensors, "comparing the sensors with each other");
   const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
   consistency::ConsistencyResult consistency = consistency::check_consistency(recordings);
@@ -236,7 +267,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   const auto trials_of_recordings = [&] {
     if (recordings.empty()) {
       std::vector<std::string> told_already;
-      recordings = read(told_already);
+      recordings = look_at(options, vehicle, told_already).recordings;
       static_cast<void>(consistency::set_aside_dead_axes(recordings, vehicle.dof));
       if (!options.site.empty()) {
         consistency::ConsistencyResult found_already = consistency;
@@ -413,6 +444,11 @@ void add_diagnose(runtime::CommandLine& app) {
       ->within(1.0, 1e6);
   command->add_flag("--no-learning", options->no_learning,
                     "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
+  command
+      ->add_option("--memory", options->held,
+                   "MB of samples of a recording that are looked at; of one that takes more, stretches spread evenly "
+                   "over it")
+      ->within(1.0, 1e6);
   command->add_option("--out", options->out, "folder for result.json and report.html")->required();
   command->add_option("--threads", options->threads, "threads of the fits; the result does not depend on it")
       ->within(1, 64);

@@ -36,18 +36,21 @@ void add_file(ResultOrigin& origin, std::string_view role, const std::string& pa
   if (!path.empty()) origin.files.push_back(hashed(role, path));
 }
 
-void add_recording(ResultOrigin& origin, std::string_view role, const std::string& path, const Recording& recording) {
+void add_recording(ResultOrigin& origin, std::string_view role, const std::string& path,
+                   std::span<const Recording> stretches) {
   std::optional<Utime> begin, end;
-  wire::visit_streams(recording, [&](const char*, const auto& stream) {
-    for (const auto& sample : stream) {
-      begin = std::min(begin.value_or(sample.utime), sample.utime);
-      end = std::max(end.value_or(sample.utime), sample.utime);
-    }
-  });
+  for (const Recording& recording : stretches) {
+    wire::visit_streams(recording, [&](const char*, const auto& stream) {
+      for (const auto& sample : stream) {
+        begin = std::min(begin.value_or(sample.utime), sample.utime);
+        end = std::max(end.value_or(sample.utime), sample.utime);
+      }
+    });
+  }
   for (const Source& source : sources_of({path})) {
     for (const std::string& each : source.files) {
       OriginFile file = hashed(role, each);
-      file.run = recording.name;
+      file.run = stretches.front().name;
       file.begin = begin;
       file.end = end;
       origin.files.push_back(std::move(file));

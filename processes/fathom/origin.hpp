@@ -13,8 +13,9 @@ namespace fathom::tool {
 /// Adds a file that is no recording; nothing where `path` is empty.
 void add_file(ResultOrigin& origin, std::string_view role, const std::string& path);
 
-/// Adds the file, or the files of a split recording, of a run.
-void add_recording(ResultOrigin& origin, std::string_view role, const std::string& path, const Recording& recording);
+/// Adds the file, or the files of a split recording, of a run; `stretches`: what was read of it, all or in stretches.
+void add_recording(ResultOrigin& origin, std::string_view role, const std::string& path,
+                   std::span<const Recording> stretches);
 
 /// Appends an option and its words to the command, quoted where a shell needs it; nothing where `words` is empty.
 void add_words(ResultOrigin& origin, std::string_view option, std::span<const std::string> words);

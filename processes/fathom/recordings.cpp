@@ -1,8 +1,6 @@
 #include "processes/fathom/recordings.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -10,6 +8,7 @@
 #include "common/estimation/run_signals.hpp"
 #include "common/wire/streams.hpp"
 #include "processes/fathom/inputs.hpp"
+#include "processes/fathom/parts.hpp"
 
 namespace fathom::tool {
 
@@ -17,28 +16,15 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& paths, co
                                        std::vector<std::string>& notes,
                                        const std::optional<tables::SimulatedAxes>& simulated) {
   std::vector<Recording> recordings;
-  std::set<std::string> names;
-  for (const std::string& path : paths) {
-    const std::filesystem::path file{path};
-    std::vector<Source> found = sources_of({path});
-    if (found.size() != 1) throw InputError(path + ": holds " + std::to_string(found.size()) + " recordings");
-    FromSource read = read_source(found.front(), map, simulated);
+  const std::vector<std::string> names = names_of_runs(paths);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    FromSource read = read_source(sources_of({paths[i]}).front(), map, simulated);
     notes.insert(notes.end(), read.notes.begin(), read.notes.end());
     if (read.runs.size() != 1)
-      throw InputError(path + ": holds " + std::to_string(read.runs.size()) +
+      throw InputError(paths[i] + ": holds " + std::to_string(read.runs.size()) +
                        " recordings, one behind the other; 'fathom import' writes each to a log of its own");
     recordings.push_back(std::move(read.runs.front()));
-    Recording& last = recordings.back();
-    last.name = found.front().name;
-    if (names.contains(last.name)) last.name = (file.parent_path().filename() / last.name).string();  // day2/run
-    if (!names.insert(last.name).second) {
-      throw InputError(path + ": a second recording named " + last.name + "; give each run once, under its own name");
-    }
-    for (const std::string& other : paths) {
-      if (&other == &path) break;
-      std::error_code unknown;
-      if (std::filesystem::equivalent(other, path, unknown)) throw InputError(path + ": this is " + other + " again");
-    }
+    recordings.back().name = names[i];
   }
   return recordings;
 }

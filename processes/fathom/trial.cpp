@@ -41,7 +41,7 @@ std::optional<estimation::NavigatorSettings> filters_in(const std::string& pipel
 
 ResultOrigin origin_of(const TrialOptions& options, const Recording& recording) {
   ResultOrigin origin{.command = "fathom trial", .files = {}};
-  add_recording(origin, "log", options.log, recording);
+  add_recording(origin, "log", options.log, {&recording, 1});
   add_words(origin, "", options.log);
   const std::pair<const char*, const std::string&> files[] = {
       {"vehicle", options.vehicle}, {"site", options.site}, {"pipeline", options.pipeline}, {"truth", options.truth}};

@@ -72,6 +72,12 @@ std::string npy() {
          std::string(36, '\1');
 }
 
+constexpr const char* kDrawing =
+    "<sdf version='1.9'><model name='r'><link name='b'><pose>0 0 0 0 0 1</pose><inertial><mass>3</mass><inertia>"
+    "<ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link><link name='p'/><joint name='j' type='revolute'>"
+    "<parent>b</parent><child>p</child><axis><xyz>1 0 0</xyz></axis></joint><plugin filename='thruster' name='t'>"
+    "<joint_name>j</joint_name><max_thrust_cmd>9</max_thrust_cmd></plugin></model></sdf>";
+
 /// The beginnings of recorded files, by what their names end in.
 void recorded(const std::filesystem::path& to) {
   constexpr std::size_t kMost = 4096;  // bytes: what a fuzzer is given
@@ -116,6 +122,7 @@ int main(int argc, char** argv) {
                                       {"mcap", mcap()},
                                       {"rosbag1", bag()},
                                       {"npy", npy()},
+                                      {"drawing", kDrawing},
                                       {"ros_definition", std::string{"\0\4\0", 3} + kDefinition}})
     seed(folder / format, "seed", bytes);
   return 0;

@@ -32,6 +32,7 @@ struct PriorPenalties {
   double turn{9.0};         ///< any other of the 24 turns of axes
   double reflection{14.0};  ///< any of the 24 mirrored axes: no rigid mount makes one
   double second{4.0};       ///< a second cause beside the first
+  double body_axes{2.0};  ///< more for turned axes of the attitude: an instrument is sooner mounted turned than a pose
 };
 
 enum class Kind { kNamed, kHeading, kTurn, kReflection };

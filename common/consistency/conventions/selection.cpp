@@ -52,6 +52,8 @@ std::optional<Candidate> made(const Evidence& evidence, const Reading& base, con
   if (!compose(base, hypothesis.change, one.reading)) return std::nullopt;
   one.judged = evidence.judge(one.reading);
   one.penalty = penalty(hypothesis.kind);
+  const bool turned = hypothesis.kind == Kind::kTurn || hypothesis.kind == Kind::kReflection;
+  if (turned && !hypothesis.change.attitude_axes.isIdentity()) one.penalty += PriorPenalties{}.body_axes;
   if (one.reading.free_heading && !base.free_heading && std::abs(one.judged.heading) < kThresholds.heading)
     return std::nullopt;
   return one;

@@ -6,6 +6,18 @@
 #include "common/base/error.hpp"
 
 namespace fathom::tool {
+namespace {
+
+/// What to do about a refusal whose words do not say it.
+std::string remedy_of(const std::string& refusal) {
+  const auto says = [&](const char* words) { return refusal.find(words) != std::string::npos; };
+  if (says("tilted too far")) return "; set it upright, then arm again";
+  if (says(": too far ")) return "; bring it inside the room, by hand or by its own ground station, then arm again";
+  if (says("the state is not valid")) return "; 'fathom status' says what the estimator hears";
+  return {};
+}
+
+}  // namespace
 
 Orders::Orders(Console& console) : console_{console} {
   console.listen(kMeet, [&] { return console.gate.has_value(); });
@@ -70,7 +82,7 @@ void Orders::give(Operator wanted, bool supervisor) {
     const Answer* other = answer(false);
     if (other == nullptr)
       throw InputError(std::string{"NOT CONFIRMED: no supervisor answered (is it running? has it this key?); "} + kGo);
-    if (!done(*other)) throw InputError("refused by " + other->process + ": " + other->text);
+    if (!done(*other)) throw InputError("refused by " + other->process + ": " + other->text + remedy_of(other->text));
     return;
   }
 }

@@ -174,4 +174,16 @@ TEST_CASE("conventions: a boat's heading is never taken for a quaternion in anot
   CHECK(result.corrections[0].attitude_axes(2, 2) * result.corrections[0].attitude_world(2, 2) > 0.5);
 }
 
+TEST_CASE(
+    "conventions: where attitude and gyro contradict each other and nothing else speaks, the gyro's mount is turned") {
+  // Six degrees of freedom, no velocity log: which of the two is turned about z these data cannot say.
+  Recording run = test::synthetic_recording({.seed = 3, .duration = 60.0});
+  run.dvl.clear();
+  for (Ahrs& one : run.ahrs) one.w_WB_B = Eigen::Vector3d{-1.0, -1.0, 1.0}.cwiseProduct(one.w_WB_B);
+  const ConsistencyResult result = consistency::check_consistency(std::span(&run, 1));
+  print(result.findings);
+  CHECK(result.corrections[0].attitude_axes.isIdentity());
+  CHECK(result.corrections[0].gyro.base.isApprox(Eigen::Matrix3d{Eigen::Vector3d{-1.0, -1.0, 1.0}.asDiagonal()}));
+}
+
 }  // namespace fathom

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "common/base/error.hpp"
+#include "common/exports/any_message.hpp"
 #include "common/recordings/import.hpp"
 #include "common/wire/log_writer.hpp"
 #include "test/support/scratch.hpp"
@@ -91,7 +92,26 @@ TEST_CASE(
   CHECK(complaint("package a;\nstruct b_t {\n  int32_t x\n}\n") == "a.lcm:4: ';' is missing before '}'");
   CHECK(complaint("package a;\nstruct b_t { c_t x; }\n") == "message type a.c_t: is not defined");
   CHECK(complaint("package a; enum e_t { A = 1 }") == "a.lcm:1: 'enum' is not read; 'package' and 'struct' are");
+  CHECK(complaint("package a; struct b_t { double n; float x[n]; }") ==
+        "a.lcm:1: 'n' is no length: a number, or an earlier field that holds a whole one");
+  CHECK(complaint("package a; struct b_t { float x[99999999999]; }").find("is no length") != std::string::npos);
   CHECK(complaint("struct") == "a.lcm:1: the struct's name is missing before ''");
+}
+
+TEST_CASE("foreign LCM: types that would never end, and lists of nothing, end") {
+  const auto decodes = [](const std::string& text, std::vector<std::uint8_t> body) {
+    const std::vector<std::string_view> texts{text};
+    const exports::Definitions definitions{texts};
+    const exports::Type& type = definitions.type("a", "b_t");
+    std::vector<std::uint8_t> bytes(8, 0);
+    bytes.insert(bytes.end(), body.begin(), body.end());
+    return exports::decoded(definitions, type, bytes).has_value();
+  };
+  CHECK_FALSE(decodes("package a; struct b_t { a.b_t again; }", {1, 2, 3}));
+  CHECK(decodes("package a; struct e_t { } struct b_t { int8_t n; e_t x[n]; byte rest[3]; }", {3, 0, 0, 0}));
+  std::vector<std::uint8_t> many(1'000'000, 1);
+  many[0] = 0, many[1] = 15;  // n = 983297
+  CHECK_FALSE(decodes("package a; struct e_t { } struct b_t { int32_t n; e_t x[n][n]; }", many));
 }
 
 }  // namespace fathom

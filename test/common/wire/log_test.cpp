@@ -9,7 +9,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/base/error.hpp"
-#include "common/wire/log_reader.hpp"
+#include "common/wire/log_parts.hpp"
 #include "common/wire/log_writer.hpp"
 #include "common/wire/sensors.hpp"
 #include "common/wire/streams.hpp"
@@ -155,6 +155,39 @@ TEST_CASE("log: parts that follow one another give the bytes of the whole; what 
   }
   CHECK(test::read_bytes(path) == bytes);
   CHECK_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+TEST_CASE("log: parts that are read one after the other hold together what the whole holds, and count the same") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("run.lcmlog");
+  Recording recording = everything();
+  for (int i = 0; i < 200; ++i) recording.depth.push_back({.utime = 2'000'000 + 1000 * i, .z = 0.1 * i});
+  wire::write_log(recording, path);
+  const wire::LogContents whole = wire::read_log(path);
+  wire::LogParts parts{path};
+  std::vector<std::size_t> sizes;
+  Recording together;
+  for (Recording part; parts.next(10 * sizeof(Depth), part); part = {}) {
+    CHECK(part.name == "run");
+    CHECK(wire::bytes_of(part) < 10 * sizeof(Depth) + sizeof(StateEstimate) + sizeof(SmoothedState));
+    sizes.push_back(wire::bytes_of(part));
+    wire::visit_streams(part, [&](const char* channel, const auto& stream) {
+      wire::visit_streams(together, [&](const char* other, auto& all) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(stream)>, std::decay_t<decltype(all)>>) {
+          CHECK(std::string{channel} == other);
+          all.insert(all.end(), stream.begin(), stream.end());
+        }
+      });
+    });
+  }
+  CHECK(sizes.size() > 20);
+  const std::string again = scratch.path("again.lcmlog"), once = scratch.path("once.lcmlog");
+  wire::write_log(together, again);
+  wire::write_log(whole.recording, once);
+  CHECK(test::read_bytes(again) == test::read_bytes(once));
+  for (const auto& [channel, count] : whole.report.channels)
+    CHECK(parts.report().channels.at(channel).accepted == count.accepted);
+  CHECK(parts.report().events == whole.report.events);
 }
 
 TEST_CASE("log: a stream that is out of order is put into the order of time") {
