@@ -156,10 +156,6 @@ FreeForce without_time(const FreeForce& force) {
   return kept_of(force, [](const FeatureGroup&, const Feature& feature) { return !feature.depends_on_time(); });
 }
 
-FreeForce without_thrust(const FreeForce& force) {
-  return kept_of(force, [](const FeatureGroup&, const Feature& feature) { return !feature.reads_thrust(); });
-}
-
 FreeForce lasting_of(const FreeForce& force) {
   return kept_of(force, [](const FeatureGroup&, const Feature& feature) {
     return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [](const Factor& factor) {

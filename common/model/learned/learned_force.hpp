@@ -49,8 +49,6 @@ class LearnedForce final : public Effect {
 /// The same without what depends on time: what another run may be told. Empty where nothing else is in it.
 [[nodiscard]] FreeForce without_time(const FreeForce& force);
 
-/// The same without what reads the actuators.
-[[nodiscard]] FreeForce without_thrust(const FreeForce& force);
 /// What a run whose clock begins anew may be told: besides that, laws that grow with a run's time, which begin anew
 /// with it. Whether a moment came before or after that run nobody knows.
 [[nodiscard]] FreeForce lasting_of(const FreeForce& force);

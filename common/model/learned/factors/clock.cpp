@@ -13,7 +13,7 @@ constinit const FactorKind factor_after{.word = "after",
                                               const double x = std::clamp((s.t - f.a) / f.b + 0.5, 0.0, 1.0);
                                               return x * x * (3.0 - 2.0 * x);
                                             },
-                                        .words = [](const Factor& f) { return "1(t > " + brief(f.a) + " s)"; }};
+                                        .words = [](const Factor& f) { return "1(t > " + brief_number(f.a) + " s)"; }};
 
 constinit const FactorKind factor_ramp{
     .word = "ramp",
@@ -21,7 +21,7 @@ constinit const FactorKind factor_ramp{
     .unit = "1",
     .in_time = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::clamp((s.t - f.a) / f.b, -1.0, 1.0); },
-    .words = [](const Factor& f) { return "(t - " + brief(f.a) + " s) / " + brief(f.b) + " s"; }};
+    .words = [](const Factor& f) { return "(t - " + brief_number(f.a) + " s) / " + brief_number(f.b) + " s"; }};
 
 constinit const FactorKind factor_tone_cosine{
     .word = "tone_cosine",
@@ -29,7 +29,7 @@ constinit const FactorKind factor_tone_cosine{
     .unit = "1",
     .in_time = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::cos(f.a * s.t); },
-    .words = [](const Factor& f) { return "cos(" + brief(f.a) + " t)"; }};
+    .words = [](const Factor& f) { return "cos(" + brief_number(f.a) + " t)"; }};
 
 constinit const FactorKind factor_tone_sine{
     .word = "tone_sine",
@@ -37,6 +37,6 @@ constinit const FactorKind factor_tone_sine{
     .unit = "1",
     .in_time = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::sin(f.a * s.t); },
-    .words = [](const Factor& f) { return "sin(" + brief(f.a) + " t)"; }};
+    .words = [](const Factor& f) { return "sin(" + brief_number(f.a) + " t)"; }};
 
 }  // namespace fathom::model

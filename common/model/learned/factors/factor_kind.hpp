@@ -51,7 +51,7 @@ struct FactorKind {
 constexpr const char* kNuNames[6]{"u", "v", "w", "p", "q", "r"};
 constexpr const char* kTauNames[6]{"X", "Y", "Z", "K", "M", "N"};
 
-[[nodiscard]] inline std::string brief(double value) {
+[[nodiscard]] inline std::string brief_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;

@@ -39,7 +39,7 @@ constinit const FactorKind factor_power_odd{
     .moves = true,
     .value = [](const Factor& f,
                 const FeatureState& s) { return std::copysign(std::pow(std::abs(s.nu[f.index]), f.a), s.nu[f.index]); },
-    .words = [](const Factor& f) { return "sign(" + nu(f) + ") |" + nu(f) + "|^" + brief(f.a); },
+    .words = [](const Factor& f) { return "sign(" + nu(f) + ") |" + nu(f) + "|^" + brief_number(f.a); },
     .within = of_axis};
 
 constinit const FactorKind factor_power_even{
@@ -49,7 +49,7 @@ constinit const FactorKind factor_power_even{
     .indexed = Indexed::kAxes,
     .moves = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::pow(std::abs(s.nu[f.index]), f.a); },
-    .words = [](const Factor& f) { return "|" + nu(f) + "|^" + brief(f.a); },
+    .words = [](const Factor& f) { return "|" + nu(f) + "|^" + brief_number(f.a); },
     .within = of_axis};
 
 constinit const FactorKind factor_flow_speed{
@@ -72,7 +72,7 @@ constinit const FactorKind factor_slow_velocity{
                 const FeatureState& s) { return s.slow_nu[static_cast<std::size_t>(f.bank)][f.index]; },
     .words =
         [](const Factor& f) {
-          return nu(f) + " of the last " + brief(kVelocityMemories[static_cast<std::size_t>(f.bank)]) + " s";
+          return nu(f) + " of the last " + brief_number(kVelocityMemories[static_cast<std::size_t>(f.bank)]) + " s";
         },
     .within =
         [](const Factor& f, const FeatureState& s, const Visited& visited) {

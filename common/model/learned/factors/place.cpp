@@ -15,7 +15,8 @@ double along(const Factor& f, const FeatureState& s) {
   return (s.p_WB[axis] - f.a) / f.b;
 }
 std::string line(const char* symbol, const Factor& f) {
-  return "(" + std::string{symbol} + (f.a < 0.0 ? " + " : " - ") + brief(std::abs(f.a)) + " m) / " + brief(f.b) + " m";
+  return "(" + std::string{symbol} + (f.a < 0.0 ? " + " : " - ") + brief_number(std::abs(f.a)) + " m) / " +
+         brief_number(f.b) + " m";
 }
 std::string turns(const Factor& f) { return f.index == 1 ? "psi" : std::to_string(f.index) + " psi"; }
 
@@ -45,7 +46,7 @@ constinit const FactorKind factor_depth_bump{
     .sentence = "depth, near one value of it",
     .unit = "1",
     .value = [](const Factor& f, const FeatureState& s) { return std::exp(-0.5 * square((s.p_WB.z() - f.a) / f.b)); },
-    .words = [](const Factor& f) { return "near depth " + brief(f.a) + " m"; }};
+    .words = [](const Factor& f) { return "near depth " + brief_number(f.a) + " m"; }};
 
 constinit const FactorKind factor_plan_bump{
     .word = "plan_bump",
@@ -55,7 +56,7 @@ constinit const FactorKind factor_plan_bump{
         [](const Factor& f, const FeatureState& s) {
           return std::exp(-0.5 * (square(s.p_WB.x() - f.a) + square(s.p_WB.y() - f.b)) / square(f.c));
         },
-    .words = [](const Factor& f) { return "near (" + brief(f.a) + ", " + brief(f.b) + ") m"; }};
+    .words = [](const Factor& f) { return "near (" + brief_number(f.a) + ", " + brief_number(f.b) + ") m"; }};
 
 constinit const FactorKind factor_heading_cosine{
     .word = "heading_cosine",

@@ -44,7 +44,7 @@ constinit const FactorKind factor_slow_wrench{
                 const FeatureState& s) { return s.slow_tau[static_cast<std::size_t>(f.bank)][f.index]; },
     .words =
         [](const Factor& f) {
-          return tau(f) + " of the last " + brief(kThrustMemories[static_cast<std::size_t>(f.bank)]) + " s";
+          return tau(f) + " of the last " + brief_number(kThrustMemories[static_cast<std::size_t>(f.bank)]) + " s";
         },
     .within =
         [](const Factor& f, const FeatureState& s, const Visited& visited) {
