@@ -13,8 +13,6 @@ std::vector<std::string> listed_names() {
   return names;
 }
 
-bool forms_matter(const model::ActiveEffect& active) { return active.effect->variants_matter(); }
-
 bool moves(const model::ActiveEffect& active, std::size_t number) {
   return active.effect->takes_part(active.variant, number);
 }
@@ -26,7 +24,7 @@ bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle) {
 bool asked_first(const Law& law) { return law.seed.effect->traits().asked_first; }
 
 bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {
-  return a.effect == b.effect && a.effect->rules_out(a.variant, b.variant);
+  return a.effect == b.effect && (!a.effect->variants_matter() || a.effect->rules_out(a.variant, b.variant));
 }
 
 std::vector<Law> catalogue(const model::Scene& scene, const std::vector<std::string>& without) {

@@ -22,8 +22,6 @@ struct Law {
 [[nodiscard]] std::vector<Law> catalogue(const model::Scene& scene, const std::vector<std::string>& without);
 /// The names that are listed, for messages.
 [[nodiscard]] std::vector<std::string> listed_names();
-/// Whether forms of the effect act beside each other (one per thruster), not in place of each other.
-[[nodiscard]] bool forms_matter(const model::ActiveEffect& active);
 /// Whether a fit moves that number in this form.
 [[nodiscard]] bool moves(const model::ActiveEffect& active, std::size_t number);
 /// Whether a search for its numbers was stopped by a limit that says nothing: it has found no effect.
@@ -31,7 +29,7 @@ struct Law {
 /// Whether it is asked before all others: where a sensor sits is the recording's business, and a force would stand in
 /// for it.
 [[nodiscard]] bool asked_first(const Law& law);
-/// Whether two effects may stand in one model.
+/// Whether two effects cannot stand in one model: forms that act in place of each other, or laws of one thing.
 [[nodiscard]] bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b);
 
 }  // namespace fathom::inference

@@ -42,7 +42,11 @@ Found Searching::run() {
   found_.free_force = free_force_beside(found_.best);
   give_way();
   progress_.expect(kFreeForceFit.phase, 0);
-  if (swap()) found_.free_force = free_force_beside(found_.best);
+  if (swap()) {
+    drop();
+    leave_out();
+    found_.free_force = free_force_beside(found_.best);
+  }
   judge_effects();
   expect_rounds(0);
   list_refused();
@@ -271,16 +275,16 @@ void Searching::seek_again(const std::vector<model::ActiveEffect>& before) {
         likelihood::fit(problem_, rest.hypothesis, rest.noise,
                         {.noise_rounds = 1, .steps = 2, .enough = 1.0, .fit_noise = false, .threads = threads_});
     std::vector<Proposal> again;
-    const auto look = [&] {
-      if (!fit.finite) return;
-      for (std::vector<double>& theta :
-           starts_of(problem_, see(problem_, fit, threads_), *law, kTimesAgain, thresholds_, threads_)) {
+    if (!fit.finite) continue;
+    const auto look = [&](const Seen& seen) {
+      for (std::vector<double>& theta : starts_of(problem_, seen, *law, kTimesAgain, thresholds_, threads_)) {
         again.push_back({{law->seed}, found_.best.fit.noise, false, {}});
         again.back().added.front().theta = std::move(theta);
       }
     };
-    look();
-    if (fit.finite && quieten(see(problem_, fit, threads_), fit)) look();
+    const Seen seen = see(problem_, fit, threads_);
+    look(seen);
+    if (quieten(seen, fit)) look(see(problem_, fit, threads_));
     for (const Fitted& other : models_.race(starts(fit.hypothesis, again), found_.base.score, found_.best.score)) {
       if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
     }

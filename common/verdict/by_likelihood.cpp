@@ -265,7 +265,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const bool told = conclusion.reported.finite && conclusion.verdict != Verdict::no_model;
   list_effects(conclusion, named, of_named, with_names && told, result);
   list_refused(conclusion.found, result, answer.given);
-  if (!result.effects.empty()) result.explained = kNotAsked;
+  if (!conclusion.found.best.names.empty()) result.explained = kNotAsked;
   for (const std::string& name : settings.without)
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});

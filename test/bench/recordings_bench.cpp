@@ -42,8 +42,9 @@ void import_dataflash(benchmark::State& state) {
   const std::string bytes = dataflash();
   std::ofstream{path, std::ios::binary} << bytes;
   const auto streams = tables::parse_streams(
-      "source: s\nlicence: l\nahrs:\n  rates: {columns: [IMU.GyrX, IMU.GyrY, IMU.GyrZ], unit: rad/s, frame: FRD}\n"
-      "  specific_force: {columns: [IMU.AccX, IMU.AccY, IMU.AccZ], unit: m/s^2, frame: FRD}\n"
+      "source: s\nlicence: l\nahrs:\n  rates: {columns: ['IMU[0].GyrX', 'IMU[0].GyrY', 'IMU[0].GyrZ'], unit: rad/s, "
+      "frame: FRD}\n"
+      "  specific_force: {columns: ['IMU[0].AccX', 'IMU[0].AccY', 'IMU[0].AccZ'], unit: m/s^2, frame: FRD}\n"
       "thrusters: {pwm: {columns: [RCOU.C1, RCOU.C2, RCOU.C3, RCOU.C4, RCOU.C5, RCOU.C6], unit: us}}\n",
       "map.yaml");
   for (auto _ : state)

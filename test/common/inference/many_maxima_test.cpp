@@ -100,3 +100,14 @@ TEST_CASE("many maxima: what was refused for its size or a limit is no rival of 
   CHECK(standing.probability > 0.9);
   CHECK(standing.probability < 1.0);
 }
+
+TEST_CASE("many maxima: forms that act in place of each other do not stand in one model, others do") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 20.0});
+  const std::vector<Law> laws = catalogue(model::scene_of(vehicle, {&dive.trial, 1}), {});
+  const auto seed = [&](const char* name, const char* form) { return law_of(laws, name, form).seed; };
+  CHECK(exclude(seed("thruster_delay", ""), seed("thruster_delay", "vertical thrusters apart")));
+  CHECK(exclude(seed("thruster_lag", ""), seed("thruster_lag", "second order")));
+  CHECK_FALSE(exclude(seed("cross_coupling", "X_r"), seed("cross_coupling", "X_w")));
+  CHECK_FALSE(exclude(seed("thruster_delay", ""), seed("thruster_lag", "")));
+}
