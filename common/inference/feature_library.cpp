@@ -5,194 +5,213 @@
 #include <complex>
 #include <numbers>
 
-#include "common/inference/terms.hpp"
-
 namespace fathom::inference {
 namespace {
 
 using likelihood::Factor;
 using likelihood::Feature;
+using likelihood::kWorldAxis;
 using likelihood::Quantity;
 
+constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kThrustSteps = 4;
 constexpr double kMomentLasts = 0.3;                     // s
-constexpr double kMomentFromEnd = 0.05;                  // of the recording: nearer to its ends nothing has a before
+constexpr double kSmallestRange = 0.05;                  // m
 constexpr double kLowestTone = 0.2, kHighestTone = 6.0;  // rad/s
+constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
 class Library {
  public:
   Library(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene)
-      : problem_{problem}, seen_{seen}, scene_{scene}, terms_{terms_of(problem, seen, scene)} {
+      : problem_{problem}, seen_{seen}, scene_{scene} {
+    for (int i = 0; i < problem.simulated; ++i) axes_.push_back(problem.axes[static_cast<std::size_t>(i)]);
     for (std::size_t r = 0; r < problem.runs.size(); ++r) adjoint_.push_back(adjoint(problem, seen.reference[r], r));
   }
 
   likelihood::FreeForce make() {
-    const std::vector<Modulator> modulators = modulators_of(problem_, scene_);
-    const std::vector<double> moments = sharpest();
-    for (std::size_t k = 0; k < terms_.size(); ++k) {
-      const Term& term = terms_[k];
-      if (!term.held) multiply(term, {.columns = {{}}});
-      for (const Modulator& modulator : modulators) {
-        if ((modulator.of & term.kind) != 0) multiply(term, modulator);
-      }
-      if (term.kind == kPlainTerm) continue;
-      const Factor step{.quantity = Quantity::kAfter, .a = moments[k], .b = kMomentLasts};
-      multiply(term, {.words = ", from a moment on", .columns = {{step}}}, true);
+    for (const int axis : axes_) {
+      velocity(axis);
+      place(axis);
+      thrust(axis);
+      time(axis);
     }
-    if (scene_.attitude) swings();
+    if (scene_.attitude) world();
     scale();
     force_.weights.assign(force_.features.size(), 0.0);
     return std::move(force_);
   }
 
  private:
-  /// Every column of a term times every column of what modulates it: one group.
-  void multiply(const Term& term, const Modulator& modulator, bool searched = false) {
-    likelihood::FeatureGroup group{.kind = term.words + modulator.words,
-                                   .axis = term.axis,
-                                   .first = static_cast<int>(force_.features.size()),
-                                   .searched = searched,
-                                   .closed = term.closed && modulator.closed};
-    for (const std::vector<Factor>& own : term.columns) {
-      for (const std::vector<Factor>& by : modulator.columns) {
-        Feature feature{.axis = term.axis, .count = static_cast<int>(own.size() + by.size())};
-        std::ranges::copy(by, std::ranges::copy(own, feature.factors.begin()).out);
-        force_.features.push_back(feature);
-        ++group.count;
+  void begin(const std::string& kind, int axis, bool searched = false) {
+    force_.groups.push_back(
+        {.kind = kind, .axis = axis, .first = static_cast<int>(force_.features.size()), .searched = searched});
+  }
+  void add(std::initializer_list<Factor> factors) {
+    Feature feature{.axis = force_.groups.back().axis, .count = static_cast<int>(factors.size())};
+    std::ranges::copy(factors, feature.factors.begin());
+    force_.features.push_back(feature);
+    ++force_.groups.back().count;
+  }
+  static Factor v(int axis) { return {.quantity = Quantity::kVelocity, .index = axis}; }
+  static Factor s(int axis) { return {.quantity = Quantity::kSpeed, .index = axis}; }
+  static Factor tau(int axis) { return {.quantity = Quantity::kWrench, .index = axis}; }
+  static Factor size(int axis) { return {.quantity = Quantity::kWrenchSize, .index = axis}; }
+
+  void velocity(int axis) {
+    begin("velocity", axis);
+    add({v(axis), v(axis)});
+    add({v(axis), v(axis), v(axis)});
+    for (int j = 0; j < 6; ++j) {
+      if (scene_.nu_rms[j] <= 1e-3) continue;
+      if (j != axis) {
+        add({v(j)});
+        add({s(j), v(j)});
+        add({s(j), v(axis)});
+      }
+      for (int k = j + 1; k < 6; ++k) {
+        if (scene_.nu_rms[k] > 1e-3) add({v(j), v(k)});
       }
     }
-    force_.groups.push_back(std::move(group));
+    begin("velocity a moment ago", axis);
+    for (int bank = 0; bank < static_cast<int>(likelihood::kVelocityMemories.size()); ++bank)
+      add({{.quantity = Quantity::kSlowVelocity, .index = axis, .bank = bank}});
   }
 
-  /// For every term that can begin at a moment, the one from which on the likelihood's slope with it, summed, is
-  /// largest against what such a sum is by chance (cumulated sums; Page 1954).
-  [[nodiscard]] std::vector<double> sharpest() const {
-    struct Slope {
-      double t{}, slope{}, square{};
-    };
-    std::vector<std::vector<Slope>> slopes(terms_.size());
-    std::vector<likelihood::Feature> features;
-    for (const Term& term : terms_) {
-      Feature feature{.axis = term.axis, .count = static_cast<int>(term.columns.back().size())};
-      std::ranges::copy(term.columns.back(), feature.factors.begin());
-      features.push_back(feature);
-    }
-    each_block([&](std::size_t r, std::size_t b, const likelihood::FeatureState& state, const Matrix6d& inverse) {
-      for (std::size_t k = 0; k < terms_.size(); ++k) {
-        if (terms_[k].kind == kPlainTerm) continue;
-        Vector6d wrench = Vector6d::Zero();
-        features[k].add(state, 1.0, wrench);
-        const Vector6d nu_dot = inverse * wrench;
-        Slope slope{.t = state.t};
-        for (int i = 0; i < problem_.simulated; ++i) {
-          const double a = nu_dot[problem_.axes[static_cast<std::size_t>(i)]];
-          slope.slope += a * adjoint_[r](i, static_cast<Eigen::Index>(b));
-          slope.square += a * a;
-        }
-        slopes[k].push_back(slope);
-      }
-    });
-    std::vector<double> moments(terms_.size(), problem_.t_low);
-    const double margin = kMomentFromEnd * (problem_.t_high - problem_.t_low);
-    for (std::size_t k = 0; k < terms_.size(); ++k) {
-      std::ranges::sort(slopes[k], std::greater{}, &Slope::t);
-      double whole = 0.0, of_all = 0.0, square = 0.0, sum = 0.0, most = -1.0;
-      for (const Slope& slope : slopes[k]) whole += slope.square, of_all += slope.slope;
-      for (const Slope& slope : slopes[k]) {
-        square += slope.square;
-        sum += slope.slope;
-        if (slope.t < problem_.t_low + margin || slope.t > problem_.t_high - margin || whole <= 0.0) continue;
-        const double share = square / whole;
-        if (share <= 0.0 || share >= 1.0) continue;
-        const double off = (sum - share * of_all) * (sum - share * of_all) / (share * (1.0 - share));
-        if (off > most) most = off, moments[k] = slope.t;
+  void place(int axis) {
+    if (!scene_.position || axis > 2) return;
+    const double low = scene_.p_low.z(), range = scene_.p_high.z() - low;
+    if (range > kSmallestRange) {
+      begin("depth", axis);
+      const double width = range / (kDepthBumps - 1);
+      for (int i = 0; i < kDepthBumps; ++i) {
+        const Factor bump{.quantity = Quantity::kDepthBump, .a = low + i * width, .b = width};
+        add({bump});
+        if (i % 2 == 1) add({bump, s(axis), v(axis)});
+        if (i % 2 == 1) add({bump, v(axis)});
       }
     }
-    return moments;
-  }
-
-  void swings() {
-    for (int w = 0; w < 3; ++w) {
-      if (std::ranges::find(problem_.axes.begin(), problem_.axes.begin() + problem_.simulated, w) ==
-          problem_.axes.begin() + problem_.simulated)
-        continue;
-      const int axis = likelihood::kWorldAxis + w;
-      for (const double omega : tones(w)) {
-        multiply({.words = "a swing toward " + model::direction_words(axis), .axis = axis, .columns = {{}}},
-                 {.columns = {{{.quantity = Quantity::kToneCosine, .a = omega}},
-                              {{.quantity = Quantity::kToneSine, .a = omega}}}},
-                 true);
-      }
-    }
-  }
-
-  /// Two strongest lines of the likelihood's slope with a force in the world, rad/s.
-  std::vector<double> tones(int w) const {
-    std::size_t longest = 0;
-    for (std::size_t r = 0; r < problem_.runs.size(); ++r) {
-      if (problem_.runs[r].blocks().size() > problem_.runs[longest].blocks().size()) longest = r;
-    }
-    const likelihood::RunData& run = problem_.runs[longest];
-    const auto& blocks = run.blocks();
-    std::vector<double> series(blocks.size(), 0.0);
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const std::size_t middle = std::min((blocks[b].first + blocks[b].last) / 2, run.intervals().size() - 1);
-      for (int i = 0; i < problem_.simulated; ++i) {
-        const int axis = problem_.axes[static_cast<std::size_t>(i)];
-        if (axis < 3)
-          series[b] += adjoint_[longest](i, static_cast<Eigen::Index>(b)) * run.intervals()[middle].R_WB(w, axis);
-      }
-    }
-    const double length = run.last_time() - run.first_time(), dt = blocks.front().dt;
-    const double spacing = 0.5 * 2.0 * std::numbers::pi / std::max(length, 1.0);
-    std::vector<std::pair<double, double>> power;  // and frequency
-    for (double omega = kLowestTone; omega < kHighestTone; omega += spacing) {
-      std::complex<double> sum{}, at{1.0, 0.0};
-      const std::complex<double> turn{std::cos(omega * dt), std::sin(omega * dt)};
-      for (const double x : series) {
-        sum += x * at;
-        at *= turn;
-      }
-      power.emplace_back(std::norm(sum), omega);
-    }
-    std::ranges::sort(power, std::greater{});
-    std::vector<double> found;
-    for (const auto& [strength, omega] : power) {
-      if (std::ranges::all_of(found, [&](double other) { return std::abs(other - omega) > 4.0 * spacing; }))
-        found.push_back(omega);
-      if (found.size() == 2) break;
-    }
-    return found;
-  }
-
-  /// Root mean square of each feature becomes that of the applied wrench along it.
-  void scale() {
-    Eigen::VectorXd square = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force_.features.size()));
-    double count = 0.0;
-    Vector6d drag = Vector6d::Zero(), tau = Vector6d::Zero();
-    each_block([&](std::size_t, std::size_t, const likelihood::FeatureState& state, const Matrix6d&) {
-      for (std::size_t j = 0; j < force_.features.size(); ++j) {
-        const double value = force_.features[j].value(state);
-        square[static_cast<Eigen::Index>(j)] += value * value;
-      }
-      drag += state.drag.cwiseAbs2();
-      tau += state.tau.cwiseAbs2();
-      count += 1.0;
-    });
-    // Along the whole drag or thrust a feature is a share of it.
-    const double of_drag = std::sqrt(tau.head<3>().sum() / std::max(drag.head<3>().sum(), 1e-12));
-    for (std::size_t j = 0; j < force_.features.size(); ++j) {
-      Feature& feature = force_.features[j];
-      const double rms = std::sqrt(square[static_cast<Eigen::Index>(j)] / std::max(count, 1.0));
-      double wrench = scene_.tau_rms.head<3>().norm();
-      if (feature.axis < likelihood::kWorldAxis) wrench = scene_.tau_rms[feature.axis];
-      if (feature.axis == model::kHullDrag) wrench = of_drag;
-      if (feature.axis == model::kAllThrust) wrench = 1.0;
-      feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
-    }
+    if (axis == 2) return;
+    begin("drag that changes with place", axis);
+    each_plan_bump([&](const Factor& bump) { add({bump, v(axis)}); });
   }
 
   template <typename Use>
-  void each_block(const Use& use) const {
+  void each_plan_bump(const Use& use) {
+    const Eigen::Vector3d range = scene_.p_high - scene_.p_low;
+    const double width = std::max(range.head<2>().maxCoeff() / (kPlanBumps - 1), kSmallestRange);
+    for (int i = 0; i < kPlanBumps; ++i) {
+      for (int j = 0; j < kPlanBumps; ++j)
+        use({.quantity = Quantity::kPlanBump,
+             .a = scene_.p_low.x() + range.x() * i / (kPlanBumps - 1),
+             .b = scene_.p_low.y() + range.y() * j / (kPlanBumps - 1),
+             .c = width});
+    }
+  }
+
+  void thrust(int axis) {
+    begin("thrust", axis);
+    add({size(axis)});
+    add({size(axis), tau(axis)});
+    for (const int j : axes_) {
+      if (j != axis) add({tau(j)});
+      if (j != axis) add({size(j)});
+    }
+    const Eigen::Index thrusters = seen_.fit.hypothesis.model.allocation.cols();
+    if (!scene_.input_is_wrench) {
+      for (int j = 0; j < thrusters; ++j) {
+        add({{.quantity = Quantity::kThruster, .index = j}});
+        add({{.quantity = Quantity::kThrusterSize, .index = j}});
+        add({{.quantity = Quantity::kThrusterSize, .index = j}, {.quantity = Quantity::kThruster, .index = j}});
+      }
+    }
+    begin("thrust with speed", axis);
+    for (const int j : axes_) add({size(axis), v(j)});
+    begin("thrust a moment ago", axis);
+    for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
+      add({{.quantity = Quantity::kSlowWrench, .index = axis, .bank = bank}});
+    begin("thrust that changes with time", axis);
+    steps(kThrustSteps, [&](const Factor& step) {
+      add({step, tau(axis)});
+      if (scene_.input_is_wrench) return;
+      for (int j = 0; j < thrusters; ++j) {
+        if (seen_.fit.hypothesis.model.allocation.col(j).cwiseAbs()[axis] > 1e-9)
+          add({step, {.quantity = Quantity::kThruster, .index = j}});
+      }
+    });
+  }
+
+  template <typename Use>
+  void steps(int count, const Use& use) {
+    const double length = problem_.t_high - problem_.t_low;
+    for (int i = 0; i < count; ++i)
+      use({.quantity = Quantity::kAfter, .a = problem_.t_low + length * (i + 0.5) / count, .b = length / count});
+  }
+
+  void time(int axis) {
+    begin("time", axis);
+    steps(kTimeSteps, [&](const Factor& step) { add({step}); });
+    begin("heading", axis);
+    if (!scene_.attitude) {
+      force_.groups.pop_back();
+    } else {
+      for (int n = 1; n <= 2; ++n) {
+        for (const Quantity q : {Quantity::kHeadingCosine, Quantity::kHeadingSine}) {
+          const Factor turn{.quantity = q, .index = n};
+          add({turn});
+          for (int j = 0; j < 2; ++j) add({turn, v(j)});
+        }
+      }
+    }
+    // The two times at which the likelihood's slope, summed from there on, is largest either way.
+    begin("a moment", axis, true);
+    const auto [up, down] = sharpest(axis);
+    for (const double t : {up, down}) {
+      const Factor step{.quantity = Quantity::kAfter, .a = t, .b = kMomentLasts};
+      add({step});
+      add({step, tau(axis)});
+    }
+  }
+
+  std::pair<double, double> sharpest(int axis) const {
+    const auto place = static_cast<Eigen::Index>(std::ranges::find(problem_.axes, axis) - problem_.axes.begin());
+    double sum = 0.0, most = -1e300, least = 1e300;
+    std::pair<double, double> at{problem_.t_low, problem_.t_high};
+    for (std::size_t r = 0; r < adjoint_.size(); ++r) {
+      const auto& blocks = problem_.runs[r].blocks();
+      for (std::size_t b = blocks.size(); b-- > 0;) {
+        sum += adjoint_[r](place, static_cast<Eigen::Index>(b));
+        const double t = problem_.runs[r].trial().t[blocks[b].first];
+        if (sum > most) most = sum, at.first = t;
+        if (sum < least) least = sum, at.second = t;
+      }
+    }
+    return at;
+  }
+
+  void world() {
+    for (int w = 0; w < 3; ++w) {
+      if (w < 2 && std::ranges::find(axes_, w) == axes_.end()) continue;
+      if (w == 2 && std::ranges::find(axes_, 2) == axes_.end()) continue;
+      if (scene_.position) {
+        begin(std::string("place, toward ") + kWorldNames[w], kWorldAxis + w);
+        each_plan_bump([&](const Factor& bump) { add({bump}); });
+      } else {
+        begin(std::string("a steady force toward ") + kWorldNames[w], kWorldAxis + w);
+        add({});
+      }
+      begin(std::string("oscillation toward ") + kWorldNames[w], kWorldAxis + w, true);
+      for (const double omega : strongest_tones(problem_, adjoint_, w)) {
+        add({{.quantity = Quantity::kToneCosine, .a = omega}});
+        add({{.quantity = Quantity::kToneSine, .a = omega}});
+      }
+    }
+  }
+
+  /// Root mean square of each feature becomes that of the applied wrench of its axis.
+  void scale() {
+    std::vector<std::size_t> all(force_.groups.size());
+    for (std::size_t g = 0; g < all.size(); ++g) all[g] = g;
+    Eigen::VectorXd square = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force_.features.size()));
+    double count = 0.0;
     const std::vector<likelihood::Number> none;
     for (std::size_t r = 0; r < problem_.runs.size(); ++r) {
       likelihood::Plant plant{seen_.fit.hypothesis, none, problem_.runs[r], r, false};
@@ -200,22 +219,71 @@ class Library {
       for (std::size_t b = 0; b < problem_.runs[r].blocks().size(); ++b) {
         const auto at = static_cast<Eigen::Index>(b);
         plant.at_middle(b);
-        use(r, b, plant.features_at(seen_.reference[r].nu_middle.col(at)),
-            Matrix6d{seen_.inverse[r].col(at).reshaped(6, 6)});
+        const likelihood::FeatureState state = plant.features_at(seen_.reference[r].nu_middle.col(at));
+        for (std::size_t j = 0; j < force_.features.size(); ++j) {
+          const double value = force_.features[j].value(state);
+          square[static_cast<Eigen::Index>(j)] += value * value;
+        }
+        count += 1.0;
         plant.end_block(b, seen_.reference[r].nu_end.col(at));
       }
+    }
+    for (std::size_t j = 0; j < force_.features.size(); ++j) {
+      const int axis = force_.features[j].axis;
+      const double wrench = axis < kWorldAxis ? scene_.tau_rms[axis] : scene_.tau_rms.head<3>().norm() / std::sqrt(3.0);
+      const double rms = std::sqrt(square[static_cast<Eigen::Index>(j)] / std::max(count, 1.0));
+      force_.features[j].scale = rms > 1e-12 ? std::max(wrench, 1e-6) / rms : 0.0;
     }
   }
 
   const likelihood::Problem& problem_;
   const Seen& seen_;
   const model::Scene& scene_;
-  std::vector<Term> terms_;
+  std::vector<int> axes_;
   std::vector<Eigen::MatrixXd> adjoint_;
   likelihood::FreeForce force_;
 };
 
 }  // namespace
+
+std::vector<double> strongest_tones(const likelihood::Problem& problem, const std::vector<Eigen::MatrixXd>& slope,
+                                    int w) {
+  std::size_t longest = 0;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    if (problem.runs[r].blocks().size() > problem.runs[longest].blocks().size()) longest = r;
+  }
+  const likelihood::RunData& run = problem.runs[longest];
+  const auto& blocks = run.blocks();
+  std::vector<double> series(blocks.size(), 0.0);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::size_t middle = std::min((blocks[b].first + blocks[b].last) / 2, run.intervals().size() - 1);
+    for (int i = 0; i < problem.simulated; ++i) {
+      const int axis = problem.axes[static_cast<std::size_t>(i)];
+      if (axis < 3)
+        series[b] += slope[longest](i, static_cast<Eigen::Index>(b)) * run.intervals()[middle].R_WB(w, axis);
+    }
+  }
+  const double length = run.last_time() - run.first_time(), dt = blocks.front().dt;
+  const double spacing = 0.5 * 2.0 * std::numbers::pi / std::max(length, 1.0);
+  std::vector<std::pair<double, double>> power;  // and frequency
+  for (double omega = kLowestTone; omega < kHighestTone; omega += spacing) {
+    std::complex<double> sum{}, at{1.0, 0.0};
+    const std::complex<double> turn{std::cos(omega * dt), std::sin(omega * dt)};
+    for (const double x : series) {
+      sum += x * at;
+      at *= turn;
+    }
+    power.emplace_back(std::norm(sum), omega);
+  }
+  std::ranges::sort(power, std::greater{});
+  std::vector<double> found;
+  for (const auto& [strength, omega] : power) {
+    if (std::ranges::all_of(found, [&](double other) { return std::abs(other - omega) > 4.0 * spacing; }))
+      found.push_back(omega);
+    if (found.size() == 2) break;
+  }
+  return found;
+}
 
 likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene) {
   return Library{problem, seen, scene}.make();

@@ -9,6 +9,11 @@ namespace fathom::inference {
 [[nodiscard]] likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen,
                                                     const model::Scene& scene);
 
+/// Two strongest lines of the likelihood's slope with a force toward world axis `w`, rad/s. `slope`:
+/// likelihood::adjoint per run.
+[[nodiscard]] std::vector<double> strongest_tones(const likelihood::Problem& problem,
+                                                  const std::vector<Eigen::MatrixXd>& slope, int w);
+
 /// Features as accelerations at the seen model's states. `groups`: indices into the library.
 class FeatureColumns {
  public:

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/base/statistics.hpp"
-#include "common/model/learned/learned_force.hpp"
 #include "common/model/rollout.hpp"
 
 namespace fathom::inference {

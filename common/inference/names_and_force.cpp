@@ -15,11 +15,10 @@ void Searching::leave_out() {
   if (!starts.empty() && goes_on()) models_.fit_all(starts);
 }
 
-FreeForceFound Searching::free_force_beside(const Fitted& fitted,
-                                            std::span<const model::ActiveEffect> relatives) const {
+FreeForceFound Searching::free_force_beside(const Fitted& fitted) const {
   begin(kFreeForceFit);
-  FreeForceFound found = find_free_force(problem_, see(problem_, fitted.fit, threads_), scene_, thresholds_, threads_,
-                                         deadline_, relatives);
+  FreeForceFound found =
+      find_free_force(problem_, see(problem_, fitted.fit, threads_), scene_, thresholds_, threads_, deadline_);
   progress_.done(kFreeForceFit.phase);
   return found;
 }
@@ -54,9 +53,7 @@ void Searching::give_way() {
 }
 
 void Searching::takes_the_place(const std::vector<std::size_t>& gone, const Fitted& rest) {
-  std::vector<model::ActiveEffect> relatives;
-  for (const std::size_t e : gone) relatives.push_back(effects()[e]);
-  FreeForceFound force = free_force_beside(rest, relatives);
+  FreeForceFound force = free_force_beside(rest);
   if (force.size.share < thresholds_.smallest_size) return;
   const double odds = found_.best.score + worth(*found_.free_force) - rest.score - worth(force);
   const bool stays = odds >= thresholds_.name_odds;

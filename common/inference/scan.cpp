@@ -128,7 +128,6 @@ class Scanner {
           },
           sums);
     }
-    sums.gradient -= sums.with_numbers.transpose() * seen_.step;  // the numbers move along
     return sums;
   }
 

@@ -14,11 +14,13 @@ struct Seen {
   likelihood::Fit fit;
   likelihood::Reference reference;
   Eigen::MatrixXd covariance;            ///< of the numbers, prior included
-  Eigen::VectorXd step;                  ///< linear, of the numbers: none where they were fitted with this very noise
+  Eigen::VectorXd step;                  ///< take_step; empty: the numbers stay where they were fitted
   std::vector<Eigen::MatrixXd> inverse;  ///< per run: inverse inertia of every block, 36 x blocks
   Vector6d applied{Vector6d::Zero()};    ///< rms of the actuators' acceleration, per axis of the body
 };
 [[nodiscard]] Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads);
+/// The linear step that the numbers would take under the seen noise, for screens that let them move along.
+void take_step(Seen& seen);
 
 /// What a law promises at its best grid point.
 struct Promise {

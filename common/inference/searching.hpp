@@ -73,9 +73,7 @@ class Searching {
   /// For each of several effects: leave it out, scan, fit in its place what promises about as much. Whether any was
   /// exchanged.
   bool swap();
-  /// `relatives`: in whose place it stands.
-  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted,
-                                                 std::span<const model::ActiveEffect> relatives = {}) const;
+  [[nodiscard]] FreeForceFound free_force_beside(const Fitted& fitted) const;
   static double worth(const FreeForceFound& force);
   /// "Something that no list holds" may act in a name's place as well as beside it: both with the free force that is
   /// best there. Names that are not worth their odds over that are none, and the free force stays in their place. First

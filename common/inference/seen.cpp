@@ -14,16 +14,6 @@ Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   likelihood::refer(problem, seen.fit, seen.reference, threads);
   const Eigen::Index p = seen.fit.information.rows();
   seen.covariance = seen.fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
-  Eigen::VectorXd slope = Eigen::VectorXd::Zero(p);
-  for (const likelihood::RunReference& run : seen.reference)
-    slope.noalias() -= run.J.transpose() * Eigen::VectorXd{run.slope.reshaped()};
-  for (Eigen::Index j = 0; j < p; ++j) {
-    const likelihood::Number& number = seen.fit.numbers[static_cast<std::size_t>(j)];
-    const double x = value(seen.fit.hypothesis, number);
-    slope[j] -= (x - number.mean) * likelihood::prior_weight(number, x);
-    if ((x <= number.low && slope[j] < 0.0) || (x >= number.high && slope[j] > 0.0)) slope[j] = 0.0;  // held there
-  }
-  seen.step = seen.covariance * slope;
   Vector6d square = Vector6d::Zero();
   double count = 0.0;
   const std::vector<likelihood::Number> none;
@@ -46,6 +36,20 @@ Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   }
   if (count > 0.0) seen.applied = (square / count).cwiseSqrt();
   return seen;
+}
+
+void take_step(Seen& seen) {
+  const Eigen::Index p = seen.fit.information.rows();
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(p);
+  for (const likelihood::RunReference& run : seen.reference)
+    slope.noalias() -= run.J.transpose() * Eigen::VectorXd{run.slope.reshaped()};
+  for (Eigen::Index j = 0; j < p; ++j) {
+    const likelihood::Number& number = seen.fit.numbers[static_cast<std::size_t>(j)];
+    const double x = value(seen.fit.hypothesis, number);
+    slope[j] -= (x - number.mean) * likelihood::prior_weight(number, x);
+    if ((x <= number.low && slope[j] < 0.0) || (x >= number.high && slope[j] > 0.0)) slope[j] = 0.0;  // held there
+  }
+  seen.step = seen.covariance * slope;
 }
 
 namespace {

@@ -15,13 +15,10 @@ struct Thresholds {
   double score_worth{8.0};       ///< nats a score must promise to be fitted: less cannot become a name
   int fits_per_round{3};         ///< best by score; the true one was among them in every simulated set
   int pairs_per_round{2};
-  int most_effects{4};       ///< the prior has next to nothing beyond
-  double group_gain{3.0};    ///< nats, after its price, for which a group of features is taken up
-  int most_groups{8};        ///< more has never held on a new recording
-  int free_force_rounds{2};  ///< screens of a free force: what the first leaves is seen with less random force
-  double same_thing{0.98};  ///< share of an effect's information in a group, from which on they are one thing: the rest
-                            ///< of an effect of hundreds of nats is less than the odds of a name
-  double group_price{2.5};  ///< nats of a variance of unknown order of magnitude
+  int most_effects{4};     ///< the prior has next to nothing beyond
+  double group_gain{3.0};  ///< nats, after its price, for which a group of features is taken up
+  int most_groups{5};
+  double group_price{2.5};      ///< nats of a variance of unknown order of magnitude
   double searched_price{10.0};  ///< nats more where a moment or a frequency was sought in the data
   double large_random{0.03};  ///< random over applied acceleration above which the scan is repeated with a fifth of it
   double swallowing_memory{2.0};  ///< s: and its memory, above which it may have swallowed what is slow

@@ -342,7 +342,8 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
   // there.
   Fit quiet = base;
   quiet.noise = found.fit.noise;
-  const inference::Seen seen = inference::see(problem, quiet, threads);
+  inference::Seen seen = inference::see(problem, quiet, threads);
+  inference::take_step(seen);
   double paid = 0.0;  // by the learned force
   if (found.fit.finite) paid = found.fit.log_evidence - base.log_evidence - found.log_odds;
   std::optional<FormulaFound> best;

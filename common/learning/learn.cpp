@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "common/learning/formula.hpp"
+#include "common/learning/seek_force.hpp"
 #include "common/learning/wording.hpp"
 #include "common/model/rollout.hpp"
 
@@ -186,10 +187,15 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
               const Settings& settings, int threads) {
   Learned learned;
   CorrectionGiven& given = learned.given;
-  const auto& free = conclusion.found.free_force;
   const Limits& limits = settings.limits;
-  if (!settings.learn || !free || !free->fit.finite || conclusion.verdict != inference::Verdict::unexplained)
+  if (!settings.learn || !conclusion.found.best.fit.finite || conclusion.verdict != inference::Verdict::unexplained)
     return learned;
+  const Fit& base = conclusion.found.best.fit;
+  const model::Scene scene = model::scene_of(*problem.vehicle, of);
+  std::optional<inference::FreeForceFound> free = conclusion.found.free_force;
+  inference::FreeForceFound sought = seek_force(problem, base, scene, limits, threads);
+  if (sought.fit.finite && !(free && free->fit.finite && free->log_odds > sought.log_odds)) free = std::move(sought);
+  if (!free || !free->fit.finite) return learned;
   given.asked = true;
   given.log_odds = free->log_odds;
   given.size = free->size.share;
@@ -200,7 +206,6 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   }
   if (!given.refused.empty()) return learned;
 
-  const Fit& base = conclusion.found.best.fit;
   const model::Visited visited = visited_by(problem, free->fit.hypothesis);
   const auto adopt = [&](const Fit& with) {
     given.refused.clear();
@@ -241,8 +246,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     return true;
   };
   // A law in closed form first, where it is as likely: it has fewer numbers to err with.
-  std::optional<FormulaFound> formula =
-      find_formula(problem, base, model::scene_of(*problem.vehicle, of), *free, threads);
+  std::optional<FormulaFound> formula = find_formula(problem, base, scene, *free, threads);
   if (formula && (formula->over_learned < -limits.form || formula->over_base < limits.odds)) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
   if (!formula && !adopt(free->fit)) return learned;

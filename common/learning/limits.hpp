@@ -11,6 +11,8 @@ struct Limits {
   double sure{1.3};     ///< standard errors by which the logarithm of that ratio lies below 0: one-sided 90 %
   double form{10.0};    ///< nats by which a closed form may lie below the table of features that it replaces
   int fewest_windows{4};
+  int most_groups{8};  ///< of products: more has never held on a new recording
+  int rounds{2};       ///< screens: what the first leaves is seen with less random force
 };
 
 /// How the recording is left out in turn, and predicted where it was.

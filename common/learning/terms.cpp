@@ -1,9 +1,9 @@
-#include "common/inference/terms.hpp"
+#include "common/learning/terms.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fathom::inference {
+namespace fathom::learning {
 namespace {
 
 using likelihood::Factor;
@@ -48,7 +48,7 @@ Columns bumps_over_plan(const model::Scene& scene) {
 
 class Terms {
  public:
-  Terms(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene) : scene_{scene} {
+  Terms(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene) : scene_{scene} {
     for (int i = 0; i < problem.simulated; ++i) axes_.push_back(problem.axes[static_cast<std::size_t>(i)]);
     if (!scene.input_is_wrench) thrusters_ = static_cast<int>(seen.fit.hypothesis.model.allocation.cols());
     for (const int axis : axes_) along(axis, seen.fit.hypothesis.model.allocation);
@@ -142,7 +142,7 @@ class Terms {
 
 }  // namespace
 
-std::vector<Term> terms_of(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene) {
+std::vector<Term> terms_of(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene) {
   return std::move(Terms{problem, seen, scene}.all);
 }
 
@@ -195,4 +195,4 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
   return all;
 }
 
-}  // namespace fathom::inference
+}  // namespace fathom::learning

@@ -1,5 +1,5 @@
-// The library of a free force as a product: terms (what acts, and along what) times modulators (what makes it weaker or
-// stronger). Most causes that no list holds are a known term that something else modulates.
+// The library of a learned force as a product: terms (what acts, and along what) times modulators (what makes it weaker
+// or stronger). Most causes that no list holds are a known term that something else modulates.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 #include "common/inference/scan.hpp"
 #include "common/likelihood/features.hpp"
 
-namespace fathom::inference {
+namespace fathom::learning {
 
 using Columns = std::vector<std::vector<likelihood::Factor>>;  ///< products of factors, one per column
 
@@ -40,9 +40,9 @@ struct Modulator {
   bool closed{true};  ///< a law, not a table
 };
 
-[[nodiscard]] std::vector<Term> terms_of(const likelihood::Problem& problem, const Seen& seen,
+[[nodiscard]] std::vector<Term> terms_of(const likelihood::Problem& problem, const inference::Seen& seen,
                                          const model::Scene& scene);
 /// A moment is sought for each term besides.
 [[nodiscard]] std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const model::Scene& scene);
 
-}  // namespace fathom::inference
+}  // namespace fathom::learning

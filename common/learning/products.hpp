@@ -1,0 +1,13 @@
+// What a learned force may run over: every term times every modulator, each product a group of one to a few columns,
+// scaled to the applied wrench (docs/decisions/189).
+#pragma once
+
+#include "common/inference/scan.hpp"
+
+namespace fathom::learning {
+
+/// Of a seen model. What its base numbers hold enters modulated only.
+[[nodiscard]] likelihood::FreeForce products_of(const likelihood::Problem& problem, const inference::Seen& seen,
+                                                const model::Scene& scene);
+
+}  // namespace fathom::learning

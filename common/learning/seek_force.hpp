@@ -1,0 +1,16 @@
+// The force that is added to a model: products of terms and modulators, screened beside the fitted model, fitted with
+// the noise anew, and what the first fit leaves screened again. It is sought once the listed effects have been, and
+// explains what they leave; what it could do in a name's place is the search's question (docs/decisions/172), which
+// asks broad groups for it.
+#pragma once
+
+#include "common/inference/free_force.hpp"
+#include "common/learning/limits.hpp"
+
+namespace fathom::learning {
+
+/// Beside `base`; groups in the order of what each is worth beside the others. No fit: nothing is worth its price.
+[[nodiscard]] inference::FreeForceFound seek_force(const likelihood::Problem& problem, const likelihood::Fit& base,
+                                                   const model::Scene& scene, const Limits& limits, int threads);
+
+}  // namespace fathom::learning
