@@ -193,8 +193,10 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   const Fit& base = conclusion.found.best.fit;
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
   std::optional<inference::FreeForceFound> free = conclusion.found.free_force;
-  inference::FreeForceFound sought = seek_force(problem, base, scene, limits, threads);
-  if (sought.fit.finite && !(free && free->fit.finite && free->log_odds > sought.log_odds)) free = std::move(sought);
+  if (!conclusion.found.cut_short) {
+    inference::FreeForceFound sought = seek_force(problem, base, scene, limits, threads);
+    if (sought.fit.finite && !(free && free->fit.finite && free->log_odds > sought.log_odds)) free = std::move(sought);
+  }
   if (!free || !free->fit.finite) return learned;
   given.asked = true;
   given.log_odds = free->log_odds;

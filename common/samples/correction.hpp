@@ -18,10 +18,12 @@ struct CorrectionFactor {
   double a{}, b{}, c{};
 };
 
-/// weight times scale times the product of the factors, along an axis: N or N m.
+/// weight times scale times the product of the factors, along an axis: N or N m, or a share of the drag or thrust that
+/// it acts along.
 struct CorrectionTerm {
   std::string group;  ///< in words
-  int axis{};         ///< 0..5 X..N of the body; 6..8 north, east, down of the world
+  int axis{};         ///< 0..5 X..N of the body; 6..8 north, east, down of the world; 9 all of the hull's drag; 10 all
+                      ///< of the thrust; 11.. the line of each thruster
   std::vector<CorrectionFactor> factors;
   double scale{}, weight{}, sigma{};
 };

@@ -73,10 +73,6 @@ bool Feature::depends_on_time() const {
   return any(*this, [](const FactorKind& kind) { return kind.in_time; });
 }
 
-bool Feature::reads_thrust() const {
-  return axis >= kAllThrust || any(*this, [](const FactorKind& kind) { return kind.of_thrust; });
-}
-
 bool Feature::remembers() const {
   return any(*this, [](const FactorKind& kind) { return kind.banks > 0; });
 }

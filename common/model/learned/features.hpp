@@ -79,8 +79,7 @@ struct Feature {
   [[nodiscard]] double value(const FeatureState& state) const;
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
-  [[nodiscard]] bool remembers() const;  ///< reads low passes
-  [[nodiscard]] bool reads_thrust() const;
+  [[nodiscard]] bool remembers() const;     ///< reads low passes
   [[nodiscard]] std::string words() const;  ///< its product, Fossen's notation; empty: it is constant
   void add(const FeatureState& state, double weight, Vector6d& wrench) const;
 };

@@ -20,10 +20,9 @@ struct FactorKind {
   std::string_view sentence;  ///< what it reads
   std::string_view unit;
   Indexed indexed{Indexed::kNothing};
-  int banks{};            ///< low passes that it may read
-  bool of_thrust{false};  ///< it reads the actuators
-  bool moves{false};      ///< it goes with the velocity
-  bool in_time{false};    ///< it goes with the clock: another run is another time
+  int banks{};          ///< low passes that it may read
+  bool moves{false};    ///< it goes with the velocity
+  bool in_time{false};  ///< it goes with the clock: another run is another time
   double (*value)(const Factor&, const FeatureState&){};
   std::string (*words)(const Factor&){};  ///< Fossen's notation
   /// 1 where its recording has been, falling beyond; none: it is bounded by itself.

@@ -28,7 +28,6 @@ constinit const FactorKind factor_wrench_size{
     .sentence = "the size of the applied thrust along an axis",
     .unit = "N or N m",
     .indexed = Indexed::kAxes,
-    .of_thrust = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::abs(s.tau[f.index]); },
     .words = [](const Factor& f) { return "|" + tau(f) + "|"; },
     .within = of_axis};
@@ -39,7 +38,6 @@ constinit const FactorKind factor_slow_wrench{
     .unit = "N or N m",
     .indexed = Indexed::kAxes,
     .banks = static_cast<int>(kThrustMemories.size()),
-    .of_thrust = true,
     .value = [](const Factor& f,
                 const FeatureState& s) { return s.slow_tau[static_cast<std::size_t>(f.bank)][f.index]; },
     .words =
@@ -56,7 +54,6 @@ constinit const FactorKind factor_thruster{
     .sentence = "the force of one thruster",
     .unit = "N",
     .indexed = Indexed::kThrusters,
-    .of_thrust = true,
     .value = [](const Factor& f, const FeatureState& s) { return s.force[f.index]; },
     .words = thruster,
     .within = of_thruster};
@@ -66,7 +63,6 @@ constinit const FactorKind factor_thruster_size{
     .sentence = "the size of the force of one thruster",
     .unit = "N",
     .indexed = Indexed::kThrusters,
-    .of_thrust = true,
     .value = [](const Factor& f, const FeatureState& s) { return std::abs(s.force[f.index]); },
     .words = [](const Factor& f) { return "|" + thruster(f) + "|"; },
     .within = of_thruster};
