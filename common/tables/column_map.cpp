@@ -125,8 +125,8 @@ HeldRule held_of(const Config& config) {
   return rule;
 }
 
-constexpr std::array kStreams{"pose_capture", "ahrs",   "dvl",   "depth",    "thrusters",    "battery",
-                              "usbl",         "ranges", "loads", "tag_pose", "optical_flow", "laser_range"};
+constexpr std::array kStreams{"pose_capture", "ahrs",  "dvl",      "depth",        "thrusters",   "battery", "usbl",
+                              "ranges",       "loads", "tag_pose", "optical_flow", "laser_range", "wind",    "signals"};
 
 PoseColumns pose_of(const Config& section) {
   PoseColumns pose;
@@ -215,6 +215,8 @@ void read_stream(ColumnMap& map, const std::string& name, const Config& section)
   if (name == "tag_pose") map.tag_pose = tags_of(section);
   if (name == "optical_flow") map.optical_flow = flow_of(section);
   if (name == "laser_range") map.laser_range = laser_of(section);
+  if (name == "wind") map.wind = wind_of(section);
+  if (name == "signals") map.signals = signals_of(section);
 }
 
 ColumnMap read(const Config& config) {

@@ -153,6 +153,7 @@ TEST_CASE("wire: every sensor sample comes back whole, and no non-finite number 
   check_pair<Depth, 2>();
   check_pair<Ranges, 3>();
   check_pair<Loads, 2>();
+  check_pair<Signal, 5>();
   check_pair<PoseCapture, 6>();
   check_pair<Battery, 2>();
   check_pair<Thrusters, 5>();
