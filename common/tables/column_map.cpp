@@ -282,6 +282,18 @@ ColumnMap ColumnMap::load(const std::string& path) { return read(Config::load(pa
 
 ColumnMap ColumnMap::parse(const std::string& text, const std::string& name) { return read(Config::parse(text, name)); }
 
+std::vector<InputColumns> inputs_of_map(const std::string& path) {
+  const Config config = Config::load(path);
+  std::vector<InputColumns> all;
+  if (!config.has("thrusters")) return all;
+  for (const Config& section :
+       config.is_section("thrusters") ? std::vector<Config>{config.section("thrusters")} : config.list("thrusters")) {
+    const ThrusterColumns thrusters = thrusters_of(section);
+    if (thrusters.inputs) all.push_back(*thrusters.inputs);
+  }
+  return all;
+}
+
 std::vector<MappedStream> load_streams(const std::string& path) { return read_streams(Config::load(path)); }
 
 std::vector<MappedStream> parse_streams(const std::string& text, const std::string& name) {

@@ -17,6 +17,7 @@
 #include "common/recordings/worth.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/wire/log_writer.hpp"
+#include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -193,6 +194,7 @@ void run_import(const ImportOptions& options) {
   if (!options.vehicle.empty()) {
     const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
     simulated = vehicle.dof;
+    for (const std::string& map : options.maps) check_command_units(map, vehicle);
     if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
   }
   const std::vector<Source> sources = sources_of(options.data, options.types);
