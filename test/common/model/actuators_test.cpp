@@ -24,9 +24,9 @@ Vehicle with_actuators(const std::string& lines, const std::string& dof = "dof: 
   return Vehicle::load(path);
 }
 
-std::string refused(const std::string& lines) {
+std::string refused(const std::string& lines, const std::string& dof = "dof: [surge, sway, yaw]") {
   try {
-    static_cast<void>(with_actuators(lines));
+    static_cast<void>(with_actuators(lines, dof));
   } catch (const InputError& error) {
     return error.what();
   }
@@ -159,8 +159,11 @@ TEST_CASE(
 TEST_CASE("actuators: bad lines are refused by name") {
   CHECK(refused("actuators:\n  - {name: a, kind: moving_mass, axis: 0 0 1, mass: 9 kg}\n").find("straight up") !=
         std::string::npos);
-  CHECK(refused("actuators:\n  - {name: a, kind: moving_mass, position: 0 0 0 m, axis: 1 0 0, mass: 9 kg}\n")
+  CHECK(refused("actuators:\n  - {name: a, kind: moving_mass, position: 0 0 0 m, axis: 1 0 0, mass: 9 kg}\n",
+                "dof: [surge, heave, pitch]")
             .find("position") != std::string::npos);
+  CHECK(refused("actuators:\n  - {name: a, kind: moving_mass, axis: 1 0 0, mass: 9 kg}\n").find("push along none") !=
+        std::string::npos);
   CHECK(refused("actuators:\n  - {name: a, kind: turning_mass, axis: 0 0 1, mass: 9 kg, radius: 1 cm}\n")
             .find("must be level") != std::string::npos);
   CHECK(refused("actuators:\n  - {name: a, kind: sail, position: 0 0 0 m, axis: 1 0 0}\n").find("is no actuator") !=
