@@ -28,12 +28,15 @@ struct Symbol {
 };
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::array<Symbol, 44> kSymbols{{
+constexpr std::array<Symbol, 47> kSymbols{{
     {"m", {1.0, {1}}},
     {"mm", {1e-3, {1}}},
     {"cm", {1e-2, {1}}},
     {"km", {1e3, {1}}},
     {"ft", {0.3048, {1}}},
+    {"in", {0.0254, {1}}},
+    {"cc", {1e-6, {3}}},
+    {"L", {1e-3, {3}}},
     {"kn", {1852.0 / 3600.0, {1, 0, -1}}},
     {"kg", {1.0, {0, 1}}},
     {"g", {1e-3, {0, 1}}},

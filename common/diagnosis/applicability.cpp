@@ -100,7 +100,8 @@ std::string why_not_asked(const Effect& effect, const Scene& scene) {
   vehicle.priors.clear();
   if (has_form(effect, other)) return "not applicable: the base model has it";
   vehicle.windage = 1.0;
-  if (has_form(effect, other)) return "not applicable: the vehicle file states no rudder, fin, propeller or windage";
+  if (has_form(effect, other))
+    return "not applicable: the vehicle file states no rudder, fin, propeller, moved weight or windage";
   return "not applicable: acts along no simulated axis";
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/estimation/wording.hpp"
+#include "common/samples/trial_part.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -17,30 +18,6 @@ void stretches(const std::vector<std::uint8_t>& valid, Use use) {
     while (end < valid.size() && valid[end] == valid[first]) ++end;
     use(valid[first] != 0, first, end);
   }
-}
-
-Trial part(const Trial& trial, std::size_t from, std::size_t to, const std::string& name) {
-  const auto cut = [&](const auto& all, std::size_t each = 1) {
-    using Vector = std::decay_t<decltype(all)>;
-    if (all.empty()) return Vector{};
-    return Vector(all.begin() + static_cast<std::ptrdiff_t>(each * from),
-                  all.begin() + static_cast<std::ptrdiff_t>(each * to));
-  };
-  Trial result = trial;
-  result.name = name;
-  result.t = cut(trial.t);
-  result.p_WB = cut(trial.p_WB);
-  result.q_WB = cut(trial.q_WB);
-  result.nu = cut(trial.nu);
-  result.pose_valid = cut(trial.pose_valid);
-  result.velocity_valid = cut(trial.velocity_valid);
-  result.rates_valid = cut(trial.rates_valid);
-  result.input = cut(trial.input);
-  result.input_valid = cut(trial.input_valid);
-  result.held = cut(trial.held, trial.parts());
-  result.told = cut(trial.told, trial.parts());
-  result.voltage = cut(trial.voltage);
-  return result;
 }
 
 }  // namespace
@@ -58,9 +35,9 @@ Parts split(const Trial& trial, double held_out, Kept kept) {
     return trial.name + " (" + which + " " + std::to_string(std::lround(100.0 * share)) + " %)";
   };
   const char* fitted = kept == Kept::kLast ? "first" : kept == Kept::kEnds ? "middle" : "last";
-  Parts parts{part(trial, from, to, named(fitted, 1.0 - held_out)), {}};
-  if (before > 0.0) parts.judged.push_back(part(trial, 0, from, named("first", before)));
-  if (behind > 0.0) parts.judged.push_back(part(trial, to, trial.size(), named("last", behind)));
+  Parts parts{part_of(trial, from, to, named(fitted, 1.0 - held_out)), {}};
+  if (before > 0.0) parts.judged.push_back(part_of(trial, 0, from, named("first", before)));
+  if (behind > 0.0) parts.judged.push_back(part_of(trial, to, trial.size(), named("last", behind)));
   return parts;
 }
 
@@ -77,7 +54,7 @@ std::vector<Trial> known_stretches(Trial trial, double shortest) {
   }
   stretches(trial.input_valid, [&](bool valid, std::size_t first, std::size_t end) {
     if (!valid || static_cast<double>(end - first - 1) * trial.dt < shortest) return;
-    known.push_back(part(trial, first, end, trial.name));
+    known.push_back(part_of(trial, first, end, trial.name));
   });
   return known;
 }

@@ -47,10 +47,18 @@ struct ProcessSummary {
   std::string process, version, config;
 };
 
+/// One name on the channel SIGNAL.
+struct SignalSummary {
+  std::string name, quantity, unit;
+  std::uint64_t messages{};
+  double least{}, largest{};  ///< unit
+};
+
 struct LogSummary {
   std::uint64_t events{};
   std::int64_t begin{}, end{};  ///< us, stamps of the first and last event
   std::vector<ChannelSummary> channels;
+  std::vector<SignalSummary> signals;     ///< by name
   std::vector<ProcessSummary> processes;  ///< what each said of itself (PROCESS_INFO), the last word of each
   std::string warning;
 };

@@ -49,6 +49,24 @@ void measure(Gathered& gathered, Utime begin) {
       std::ranges::count_if(intervals, [&](double interval) { return interval > kGap * usual; }));
 }
 
+/// One value of a signal_t.
+void count(const nlohmann::ordered_json& message, std::map<std::string, SignalSummary>& signals) {
+  if (!message.at("value").is_number()) return;
+  const double value = message.at("value").get<double>();
+  const auto [at, fresh] = signals.try_emplace(message.at("name").get<std::string>());
+  SignalSummary& one = at->second;
+  if (fresh) one = {message.at("name"), message.at("quantity"), message.at("unit"), 0, value, value};
+  ++one.messages;
+  one.least = std::min(one.least, value);
+  one.largest = std::max(one.largest, value);
+}
+
+std::string number_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
 }  // namespace
 
 LogSummary summary_of(const std::string& log) {
@@ -56,6 +74,7 @@ LogSummary summary_of(const std::string& log) {
   LogSummary summary;
   std::map<std::string, Gathered> channels;
   std::map<std::string, ProcessSummary> processes;
+  std::map<std::string, SignalSummary> signals;
   EventLog events{log};
   while (const auto event = events.next()) {
     if (summary.events++ == 0) summary.begin = event->time;
@@ -71,6 +90,8 @@ LogSummary summary_of(const std::string& log) {
     const auto message = decoded(definitions, *type, event->data, Bytes::kCount);
     if (!message) {
       ++gathered.summary.damaged;
+    } else if (type->name == "signal_t") {
+      count(*message, signals);
     } else if (type->name == "process_info_t") {
       ProcessSummary& process = processes[message->at("process").get<std::string>()];
       process = {message->at("process"), message->at("version"), message->at("config")};
@@ -80,6 +101,7 @@ LogSummary summary_of(const std::string& log) {
     measure(gathered, summary.begin);
     summary.channels.push_back(std::move(gathered.summary));
   }
+  for (auto& [name, one] : signals) summary.signals.push_back(std::move(one));
   for (auto& [name, process] : processes) summary.processes.push_back(std::move(process));
   summary.warning = events.warning();
   return summary;
@@ -113,6 +135,11 @@ std::string words_of(const std::string& log, const LogSummary& summary) {
     if (one.damaged > 0) add("; %llu damaged", static_cast<unsigned long long>(one.damaged));
     text += "\n";
   }
+  if (!summary.signals.empty()) text += "\n  columns carried by SIGNAL\n";
+  for (const SignalSummary& one : summary.signals)
+    text += "  " + one.name + (one.quantity.empty() ? "" : " (" + one.quantity + ")") + ": " +
+            std::to_string(one.messages) + " values from " + number_of(one.least) + " to " + number_of(one.largest) +
+            (one.unit.empty() ? "" : " " + one.unit) + "\n";
   if (summary.processes.empty()) return text + "\n  no PROCESS_INFO: no configuration is embedded\n";
   text += "\n  configuration embedded ('fathom info LOG --config PROCESS' prints it)\n";
   for (const ProcessSummary& one : summary.processes)

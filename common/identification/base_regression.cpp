@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/model/actuators.hpp"
 #include "common/model/parameters.hpp"
 #include "common/model/regressor.hpp"
 
@@ -17,10 +18,14 @@ constexpr int kRounds = 20;
 constexpr double kSettled = 1e-9;  // change, in the priors' sigmas
 constexpr double kLargestPhi = 0.9999;
 
-Vector6d wrench_of(const Thrusters& one, const model::Vehicle& vehicle) {
+/// In this motion, which matters to rudders and weights.
+Vector6d wrench_of(const Thrusters& one, const model::Vehicle& vehicle, const SmoothedState& state) {
   if (!one.force.empty() && static_cast<Eigen::Index>(one.force.size()) == vehicle.allocation.cols()) {
-    return vehicle.allocation *
-           Eigen::Map<const Eigen::VectorXd>(one.force.data(), static_cast<Eigen::Index>(one.force.size()));
+    const Eigen::Map<const Eigen::VectorXd> force{one.force.data(), static_cast<Eigen::Index>(one.force.size())};
+    if (!vehicle.flow_matters && !vehicle.weight_moves) return vehicle.allocation * force;
+    model::Motion motion{.R_WB = state.q_WB.toRotationMatrix(), .nu = state.nu, .vehicle = &vehicle};
+    motion.force = force;
+    return model::acting_wrench(vehicle, motion);
   }
   if (one.has_tau) return Eigen::Map<const Vector6d>(one.tau.data());
   throw InputError("THRUSTERS hold neither forces nor a wrench");
@@ -49,8 +54,8 @@ void add(const BaseRun& run, const model::Vehicle& vehicle, const std::vector<in
     last = state.utime;
     const Thrusters &before = run.thrusters[input], &after = run.thrusters[input + 1];
     const double share = seconds_between(before.utime, state.utime) / seconds_between(before.utime, after.utime);
-    const Vector6d from = wrench_of(before, vehicle);
-    const Vector6d tau = from + share * (wrench_of(after, vehicle) - from);
+    const Vector6d from = wrench_of(before, vehicle, state);
+    const Vector6d tau = from + share * (wrench_of(after, vehicle, state) - from);
     const model::BaseRegressor Y = model::base_regressor(state.nu_dot, state.nu, state.q_WB.toRotationMatrix());
     auto& rows = stretch.emplace_back();
     for (int axis = 0; axis < 6; ++axis) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "common/base/error.hpp"
+#include "common/model/actuators.hpp"
 #include "common/model/effect_size.hpp"
 #include "common/model/expected_inertia.hpp"
 
@@ -186,7 +187,9 @@ std::optional<RowBlock> Identifier::rows_of(const EffectSample& sample) {
   if (sample.valid) {
     motion.down_B = sample.q_WB.conjugate() * Eigen::Vector3d::UnitZ();
     if (input_ == InputKind::kForce) {
-      motion.tau = vehicle_->allocation * sample.force;
+      model::Motion felt{.R_WB = sample.q_WB.toRotationMatrix(), .nu = sample.nu, .vehicle = vehicle_.get()};
+      felt.force = sample.force;
+      motion.tau = model::acting_wrench(*vehicle_, felt);
     } else {
       motion.tau = sample.force;
     }

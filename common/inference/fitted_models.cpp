@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "common/base/parallel.hpp"
+#include "common/likelihood/fitting.hpp"
 
 namespace fathom::inference {
 namespace {
@@ -12,16 +15,14 @@ namespace {
 constexpr std::array kCountPrior{0.5, 0.3, 0.13, 0.05, 0.02};  // of 0 to 4 effects
 constexpr double kNever = -1e300;                              // score of what could not be fitted
 
-// One step of the numbers and one of the noise tell a candidate's rank; only what may still win goes on. What has not
-// gained half of what the best has, and is not near it, has never won afterwards.
-constexpr likelihood::FitOptions kGlance{.noise_rounds = 1, .steps = 1, .enough = 0.5};
+// A round of the numbers and the noise tells a candidate's rank; only what may still win goes on. What has not gained
+// half of what the best has, and is not near it, has never won afterwards.
 // A fit ends when a round gains no nat any more, not after so many: where numbers and noise move each other slowly
 // (drag of third order beside a random force: a hundred nats a round), a fit that is cut short is beaten by anything.
 constexpr int kMostRounds = 20;
 constexpr likelihood::FitOptions kThorough{.noise_rounds = kMostRounds, .steps = 2, .enough = 0.3, .round_enough = 1.0};
 constexpr likelihood::FitOptions kRound{.noise_rounds = 1, .steps = 2, .enough = 0.3};
 constexpr double kStillOpen = 0.5;  // of the best one's gain
-constexpr double kNear = 30.0;      // nats
 // Rounds gain less and less: all that come after one have brought about as much as it did.
 constexpr double kToCome = 2.0;  // times the last round's gain, at most
 
@@ -72,47 +73,77 @@ void FittedModels::expect(double starts) {
   progress_.expect(kCandidateFit.phase, to_come_, kCandidateFit.weight);
 }
 
-std::vector<Fitted> FittedModels::fits(const std::vector<Start>& starts, const likelihood::FitOptions& options) {
-  std::vector<Fitted> fits(starts.size());
-  likelihood::FitOptions one_thread = options;
-  // Few fits side by side, or one whose runs are.
-  if (starts.size() < static_cast<std::size_t>(threads_)) one_thread.threads = threads_;
-  for_each_index(starts.size(), threads_, [&](std::size_t i) {
-    fits[i] = judged(likelihood::fit(problem_, starts[i].hypothesis, starts[i].noise, one_thread));
-  });
-  return fits;
+namespace {
+
+/// Whether two fits of the same forms have come to the same numbers, within their deviations: then one is enough.
+bool at_the_same_place(const Fitted& a, const Fitted& b) {
+  const auto& effects = a.fit.hypothesis.model.effects;
+  const bool alike = std::ranges::equal(
+      effects, b.fit.hypothesis.model.effects,
+      [](const auto& one, const auto& other) { return one.effect == other.effect && one.variant == other.variant; });
+  if (!alike || a.fit.numbers.size() != b.fit.numbers.size()) return false;
+  const Eigen::VectorXd sigma = a.fit.sigma();
+  for (std::size_t j = 0; j < a.fit.numbers.size(); ++j) {
+    if (a.fit.numbers[j].kind != likelihood::NumberKind::kEffect) continue;
+    const double off = value(a.fit.hypothesis, a.fit.numbers[j]) - value(b.fit.hypothesis, a.fit.numbers[j]);
+    if (std::abs(off) > sigma[static_cast<Eigen::Index>(j)]) return false;
+  }
+  return true;
 }
 
-std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, double from, double to_beat) {
+}  // namespace
+
+std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of) {
   if (starts.empty()) return {};
   const auto count = static_cast<double>(starts.size());
   expect(std::max(to_come_, count));
   progress_.begin(kCandidateFit.phase, kCandidateFit.what);
-  std::vector<Fitted> all = fits(starts, kGlance);
-  const auto best = [&] { return std::max(to_beat, std::ranges::max_element(all, {}, &Fitted::score)->score); };
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool far = all[i].score < best() - kNear && all[i].score < from + kStillOpen * (best() - from);
+  // Few fits side by side, or one whose runs are.
+  likelihood::FitOptions options = kRound;
+  if (starts.size() < static_cast<std::size_t>(threads_)) options.threads = threads_;
+  std::vector<std::optional<likelihood::Fitting>> fits(starts.size());
+  std::vector<Fitted> all(starts.size());
+  std::vector<double> gained(starts.size(), 0.0);
+  const auto go_on = [&](const std::vector<std::size_t>& those) {
+    for_each_index(those.size(), threads_, [&](std::size_t k) {
+      const std::size_t i = those[k];
+      if (!fits[i]) fits[i].emplace(problem_, starts[i].hypothesis, starts[i].noise, options);
+      gained[i] = fits[i]->round();
+      all[i] = judged(fits[i]->fit());
+    });
+  };
+  std::vector<std::size_t> open(starts.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  go_on(open);
+  const auto best = [&] { return std::max(of.to_beat, std::ranges::max_element(all, {}, &Fitted::score)->score); };
+  std::erase_if(open, [&](std::size_t i) {
+    const bool far = all[i].score < best() - of.near && all[i].score < of.from + kStillOpen * (best() - of.from);
     // What promised most goes on whatever its first step: a number that is none of the linear ones needs several.
-    if (all[i].fit.finite && (!far || i == 0)) open.push_back(i);
-  }
-  for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
-    std::vector<Start> on;
-    for (const std::size_t i : open) on.push_back({all[i].fit.hypothesis, all[i].fit.noise});
-    const std::vector<Fitted> further = fits(on, kRound);
-    std::vector<double> gained(open.size(), 0.0);
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      if (!further[k].fit.finite) continue;
-      gained[k] = further[k].score - all[open[k]].score;
-      all[open[k]] = further[k];
+    return !all[i].fit.finite || (far && i != 0);
+  });
+  for (int round = 1; round < kMostRounds && !open.empty(); ++round) {
+    std::ranges::sort(open, std::greater{}, [&](std::size_t i) { return all[i].score; });
+    std::vector<std::size_t> apart;
+    for (const std::size_t i : open) {
+      if (std::ranges::none_of(apart, [&](std::size_t other) { return at_the_same_place(all[other], all[i]); }))
+        apart.push_back(i);
     }
-    std::vector<std::size_t> still;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      if (gained[k] >= kThorough.round_enough && all[open[k]].score + kToCome * gained[k] >= best() - kNear)
-        still.push_back(open[k]);
-    }
-    open = std::move(still);
+    open = std::move(apart);
+    go_on(open);
+    std::erase_if(open, [&](std::size_t i) {
+      return !all[i].fit.finite || gained[i] < kThorough.round_enough ||
+             all[i].score + kToCome * gained[i] < best() - of.near;
+    });
   }
+  // What the last step of the noise has left open, where it tells.
+  std::vector<std::size_t> told;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].fit.finite && all[i].score >= best() - of.near) told.push_back(i);
+  }
+  for_each_index(told.size(), threads_, [&](std::size_t k) {
+    fits[told[k]]->settle();
+    all[told[k]] = judged(fits[told[k]]->fit());
+  });
   fitted_.insert(fitted_.end(), all.begin(), all.end());
   progress_.done(kCandidateFit.phase, count);
   to_come_ = std::max(0.0, to_come_ - count);
@@ -123,7 +154,12 @@ std::vector<Fitted> FittedModels::fit_all(const std::vector<Start>& starts) {
   const auto count = static_cast<double>(starts.size());
   expect(std::max(to_come_, count));
   progress_.begin(kCandidateFit.phase, kCandidateFit.what);
-  std::vector<Fitted> all = fits(starts, kThorough);
+  std::vector<Fitted> all(starts.size());
+  likelihood::FitOptions options = kThorough;
+  if (starts.size() < static_cast<std::size_t>(threads_)) options.threads = threads_;
+  for_each_index(starts.size(), threads_, [&](std::size_t i) {
+    all[i] = judged(likelihood::fit(problem_, starts[i].hypothesis, starts[i].noise, options));
+  });
   fitted_.insert(fitted_.end(), all.begin(), all.end());
   progress_.done(kCandidateFit.phase, count);
   to_come_ = std::max(0.0, to_come_ - count);
@@ -165,6 +201,20 @@ const Fitted* FittedModels::best_of(const std::vector<std::string>& names) const
     if (fitted.fit.finite && fitted.names == names && (best == nullptr || fitted.score > best->score)) best = &fitted;
   }
   return best;
+}
+
+std::vector<Fitted> FittedModels::near(const Fitted& best, double within, std::size_t most) const {
+  std::map<std::vector<std::string>, const Fitted*> of_set;
+  for (const Fitted& fitted : fitted_) {
+    if (!fitted.fit.finite || fitted.names == best.names || fitted.score < best.score - within) continue;
+    const auto [place, fresh] = of_set.try_emplace(fitted.names, &fitted);
+    if (!fresh && fitted.score > place->second->score) place->second = &fitted;
+  }
+  std::vector<Fitted> sets;
+  for (const auto& [names, fitted] : of_set) sets.push_back(*fitted);
+  std::ranges::sort(sets, std::greater{}, &Fitted::score);
+  sets.resize(std::min(sets.size(), most));
+  return sets;
 }
 
 const Fitted* FittedModels::best_with(const std::string& name) const {

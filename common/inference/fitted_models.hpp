@@ -43,6 +43,13 @@ struct Standing {
   std::string rival;        ///< the likeliest other name in its place; empty: none
 };
 
+/// What a race is about, in scores.
+struct Odds {
+  double from{};                                             ///< of the model that all starts have in common
+  double to_beat{-std::numeric_limits<double>::infinity()};  ///< of a model that is fitted already
+  double near{10.0};  ///< nats by which what loses still tells something: odds between names
+};
+
 class FittedModels {
  public:
   /// `laws` must outlive it.
@@ -51,10 +58,9 @@ class FittedModels {
 
   Fitted add(likelihood::Fit fit);
   /// Each start, the most promising first, moved a little; it and those that came near enough to the best of them and
-  /// to `to_beat`, seen from `from`, go on round by round, until what is still to be gained cannot make them the best.
-  /// All are kept.
-  std::vector<Fitted> race(const std::vector<Start>& starts, double from,
-                           double to_beat = -std::numeric_limits<double>::infinity());
+  /// to `to_beat`, seen from `from`, go on round by round, until what is still to be gained cannot bring them near it,
+  /// or another has come to the same numbers. All are kept.
+  std::vector<Fitted> race(const std::vector<Start>& starts, Odds of);
   /// All fitted to the end.
   std::vector<Fitted> fit_all(const std::vector<Start>& starts);
   /// For progress: so many starts are still to come.
@@ -64,12 +70,13 @@ class FittedModels {
   [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name) const;
   /// The best of exactly these names, sorted; nothing: none was fitted.
   [[nodiscard]] const Fitted* best_of(const std::vector<std::string>& names) const;
+  /// The best of each other set of names whose score is at most `within` below the best's: `most` of them, best first.
+  [[nodiscard]] std::vector<Fitted> near(const Fitted& best, double within, std::size_t most) const;
   /// The best that holds the name; nothing: none does.
   [[nodiscard]] const Fitted* best_with(const std::string& name) const;
 
  private:
   [[nodiscard]] Fitted judged(likelihood::Fit fit) const;
-  std::vector<Fitted> fits(const std::vector<Start>& starts, const likelihood::FitOptions& options);
 
   const likelihood::Problem& problem_;
   const std::vector<Law>& laws_;

@@ -6,13 +6,19 @@
 #include "common/inference/searching.hpp"
 
 namespace fathom::inference {
+namespace {
+
+constexpr double kPlain = 100.0;  // nats that a name is worth beyond all doubt: how much more is not asked
+
+}  // namespace
 
 void Searching::leave_out() {
   std::vector<Start> starts;
   for (std::size_t e = 0; e < effects().size(); ++e) {
     if (models_.best_of(names_without(e)) == nullptr) starts.push_back(without(found_.best, e));
   }
-  if (!starts.empty() && goes_on()) models_.fit_all(starts);
+  const Odds odds{.from = found_.base.score, .to_beat = found_.best.score, .near = kPlain};
+  if (!starts.empty() && goes_on()) models_.race(starts, odds);
 }
 
 FreeForceFound Searching::free_force_beside(const Fitted& fitted) const {

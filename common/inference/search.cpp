@@ -5,6 +5,7 @@
 
 #include "common/base/parallel.hpp"
 #include "common/inference/searching.hpp"
+#include "common/inference/stretches.hpp"
 
 namespace fathom::inference {
 namespace {
@@ -16,18 +17,22 @@ constexpr std::array kLeaning{1.0, 10.0};  // times the noise's prior mean, wher
 // Of the best promise: what promises less has never been the true one. Promises are linear, so that a law's own is
 // wrong by a factor of two where its numbers are far from its grid.
 constexpr double kFarBehind = 0.2;
+// Sets found on stretches that are asked of whole runs too: nats, and how many.
+constexpr double kHardlyLess = 30.0;
+constexpr std::size_t kMostNear = 4;
 
 }  // namespace
 
-Found Searching::run() {
+Found Searching::run(const Before* before) {
   expect(kBaseFit, 1);
   expect_rounds(2);
   expect(kFreeForceFit, 1);
   begin(kBaseFit);
-  found_.base = models_.add(fit_base());
+  found_.base = before == nullptr ? models_.add(fit_base()) : models_.fit_all({before->base}).front();
   progress_.done(kBaseFit.phase);
   found_.best = found_.base;
   if (!found_.base.fit.finite) return std::move(found_);
+  if (before != nullptr) take_up(before->sets);
   const auto room = [&] { return thresholds_.most_effects - static_cast<int>(effects().size()); };
   while (room() > 0 && goes_on()) {
     expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
@@ -40,9 +45,9 @@ Found Searching::run() {
   // What gives way to something unlisted need not be told from other names.
   progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
   found_.free_force = free_force_beside(found_.best);
-  give_way();
+  if (!sought_) give_way();
   progress_.expect(kFreeForceFit.phase, 0);
-  if (swap()) {
+  if (!sought_ && swap()) {
     drop();
     leave_out();
     found_.free_force = free_force_beside(found_.best);
@@ -50,8 +55,26 @@ Found Searching::run() {
   judge_effects();
   expect_rounds(0);
   list_refused();
+  found_.near = models_.near(found_.best, kHardlyLess, kMostNear);
   found_.fits = models_.size();
   return std::move(found_);
+}
+
+void Searching::know(const Searching& ahead) {
+  sought_ = true;
+  noted_ = ahead.noted_;
+  failed_ = ahead.failed_;
+  gave_way_ = ahead.gave_way_;
+  in_place_ = ahead.in_place_;
+}
+
+void Searching::take_up(const std::vector<Start>& sets) {
+  const std::vector<Fitted> fits = models_.race(sets, {.from = found_.base.score});
+  const auto best = std::ranges::max_element(fits, {}, &Fitted::score);
+  if (best == fits.end() || !best->fit.finite || best->score < found_.base.score + thresholds_.name_odds) return;
+  if (best->names.size() < 2 && !counts(*best)) return;
+  found_.best = *best;
+  drop();
 }
 
 likelihood::Fit Searching::fit_base() const {
@@ -112,9 +135,9 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
       const bool first = asked_first(laws_[promise.law]);
       if (promise.score < least || (!first && promise.score < kFarBehind * best)) continue;
       if (of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
-      if (!first && singles++ >= thresholds_.fits_per_round) continue;
+      if (!first && singles++ >= (sought_ ? 1 : thresholds_.fits_per_round)) continue;
       proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first, {}});
-      for (const std::vector<double>& theta : promise.also)
+      for (const std::vector<double>& theta : sought_ ? std::vector<std::vector<double>>{} : promise.also)
         proposals.back().also.push_back(effect_of(promise.law, theta));
     }
     int pairs = 0;
@@ -176,6 +199,7 @@ bool Searching::take_best(std::vector<Fitted> fits) {
     if (!counts(fitted)) continue;
     const std::vector<model::ActiveEffect> before = effects();
     found_.best = std::move(fitted);
+    if (sought_) return true;
     simplify(before);
     seek_again(before);
     return true;
@@ -184,13 +208,13 @@ bool Searching::take_best(std::vector<Fitted> fits) {
 }
 
 bool Searching::add_some() {
-  const bool pairs = found_.best.names.size() + 2 <= static_cast<std::size_t>(thresholds_.most_effects);
+  const bool pairs = !sought_ && found_.best.names.size() + 2 <= static_cast<std::size_t>(thresholds_.most_effects);
   std::vector<Proposal> all = proposals(found_.best, thresholds_.score_worth, pairs), first;
   std::ranges::copy_if(all, std::back_inserter(first), &Proposal::first);
   std::erase_if(all, [](const Proposal& proposal) { return proposal.first; });
   const likelihood::Hypothesis from = found_.best.fit.hypothesis;
-  if (take_best(models_.race(starts(from, first), found_.best.score))) return true;
-  return take_best(models_.race(starts(from, all), found_.best.score));
+  if (take_best(models_.race(starts(from, first), {.from = found_.best.score}))) return true;
+  return take_best(models_.race(starts(from, all), {.from = found_.best.score}));
 }
 
 bool Searching::held(const std::vector<model::ActiveEffect>& effects, const model::ActiveEffect& active) {
@@ -242,11 +266,13 @@ void Searching::simplify(const std::vector<model::ActiveEffect>& before) {
     likelihood::Hypothesis rest = found_.best.fit.hypothesis;
     std::erase_if(rest.model.effects,
                   [&](const auto& other) { return other.effect == active.effect && other.variant == active.variant; });
-    for (const Fitted& other : models_.race(starts(rest, others), found_.base.score, found_.best.score)) {
+    for (const Fitted& other : models_.race(starts(rest, others), better())) {
       if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
     }
   }
 }
+
+Odds Searching::better() const { return {.from = found_.base.score, .to_beat = found_.best.score, .near = 0.0}; }
 
 bool Searching::quieten(const Seen& seen, likelihood::Fit& fit) const {
   bool large = false;
@@ -285,7 +311,7 @@ void Searching::seek_again(const std::vector<model::ActiveEffect>& before) {
     const Seen seen = see(problem_, fit, threads_);
     look(seen);
     if (quieten(seen, fit)) look(see(problem_, fit, threads_));
-    for (const Fitted& other : models_.race(starts(fit.hypothesis, again), found_.base.score, found_.best.score)) {
+    for (const Fitted& other : models_.race(starts(fit.hypothesis, again), better())) {
       if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
     }
   }
@@ -354,7 +380,8 @@ bool Searching::swap() {
     const double lost = found_.best.score - rest.score;
     std::vector<Proposal> proposed = proposals(rest, std::max(thresholds_.score_worth, kFarBehind * lost), false);
     std::erase_if(proposed, [&](const Proposal& proposal) { return proposal.added.front().effect == active.effect; });
-    for (const Fitted& other : models_.race(starts(rest.fit.hypothesis, proposed), rest.score, found_.best.score)) {
+    for (const Fitted& other :
+         models_.race(starts(rest.fit.hypothesis, proposed), {.from = rest.score, .to_beat = found_.best.score})) {
       if (!other.fit.finite || other.score <= found_.best.score || !counts(other)) continue;
       found_.best = other;
       exchanged = true;
@@ -367,7 +394,24 @@ bool Searching::swap() {
 
 Found search(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
              const Thresholds& thresholds, int threads, const Progress& progress, const Deadline& deadline) {
-  return Searching{problem, scene, without, thresholds, threads, progress, deadline}.run();
+  const auto searching = [&](const likelihood::Problem& of) {
+    return Searching{of, scene, without, thresholds, threads, progress, deadline};
+  };
+  const std::optional<Stretches> stretches = stretches_of(problem, thresholds);
+  if (!stretches) return searching(problem).run();
+  const likelihood::Problem few = likelihood::make_problem(*problem.vehicle, stretches->trials, problem.run_settings);
+  Searching ahead = searching(few);
+  const Found found = ahead.run();
+  if (!found.base.fit.finite) return searching(problem).run();
+  const auto start = [&](const Fitted& fitted) { return on_whole_runs(fitted.fit, *stretches, problem.runs.size()); };
+  Before before{.base = start(found.base)};
+  if (!found.best.names.empty()) before.sets.push_back(start(found.best));
+  for (const Fitted& fitted : found.near) {
+    if (!fitted.names.empty()) before.sets.push_back(start(fitted));
+  }
+  Searching whole = searching(problem);
+  whole.know(ahead);
+  return whole.run(&before);
 }
 
 }  // namespace fathom::inference

@@ -31,11 +31,13 @@ struct Found {
   std::vector<std::string> rival;   ///< per effect: the likeliest other name in its place; empty: none came near
   std::vector<Refused> refused;
   std::optional<FreeForceFound> free_force;
+  std::vector<Fitted> near;  ///< other sets of names that are hardly less probable than the best
   std::size_t fits{};
   bool cut_short{};         ///< the time was over before all was asked
   double spent{}, given{};  ///< s, of a search that was cut short
 };
 
+/// Long recordings: on stretches first, and what was found there on all of them.
 [[nodiscard]] Found search(const likelihood::Problem& problem, const model::Scene& scene,
                            const std::vector<std::string>& without, const Thresholds& thresholds, int threads,
                            const Progress& progress, const Deadline& deadline = {});

@@ -16,6 +16,12 @@ struct Proposal {
   std::vector<model::ActiveEffect> also{};  ///< in place of the one that is added, other numbers to begin from
 };
 
+/// What is known of these runs before they are searched: where fits of the base model and of sets of effects begin.
+struct Before {
+  Start base;
+  std::vector<Start> sets;
+};
+
 class Searching {
  public:
   Searching(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
@@ -28,13 +34,19 @@ class Searching {
         progress_{progress},
         deadline_{deadline},
         models_{problem, laws_, threads, progress} {}
-  Found run();
+  /// `before`: what stretches of these runs have told.
+  Found run(const Before* before = nullptr);
+  /// What a search of stretches of these runs has told of names, besides its models. Forms, times and places are not
+  /// sought again, nor what could stand in another's place: on more data its odds only grow.
+  void know(const Searching& ahead);
 
  private:
   /// The better of two after a round of each: begun from the noise's prior means, and with random forces as large as
   /// the motion's own. There the filter leans on the measurements: whatever the numbers it begins from, it does not run
   /// away, and the first steps are a fit of accelerations.
   [[nodiscard]] likelihood::Fit fit_base() const;
+  /// The best of these sets is the best model where it is worth its names.
+  void take_up(const std::vector<Start>& sets);
   void expect(const Step& step, double units) const;
   void begin(const Step& step) const;
   /// Scans and fits of so many rounds, this one included.
@@ -55,6 +67,8 @@ class Searching {
   /// Every effect that the best model does not hold yet has the smallest practical size and numbers of its own; else
   /// it is noted why not.
   [[nodiscard]] bool counts(const Fitted& fitted);
+  /// A race among forms and maxima of one name: what does not beat the best model tells nothing.
+  [[nodiscard]] Odds better() const;
   /// Other forms of the effects that were just found, begun from their shared numbers, where the score promised at
   /// least half as much: the best stays.
   void simplify(const std::vector<model::ActiveEffect>& before);
@@ -98,6 +112,7 @@ class Searching {
   const Deadline& deadline_;
   FittedModels models_;
   Found found_;
+  bool sought_{};  // on stretches already: forms, times and places, and what could stand in another's place
   std::map<std::string, Promise> noted_;
   std::map<std::size_t, Promise> promised_;  // by law, in the last look
   std::map<std::string, Refusal> failed_;    // what evidence alone would have named

@@ -15,8 +15,9 @@ struct Thresholds {
   double score_worth{8.0};       ///< nats a score must promise to be fitted: less cannot become a name
   int fits_per_round{3};         ///< best by score; the true one was among them in every simulated set
   int pairs_per_round{2};
-  int most_effects{4};     ///< the prior has next to nothing beyond
-  double group_gain{3.0};  ///< nats, after its price, for which a group of features is taken up
+  double search_blocks{6000};  ///< of recordings that are twice as long and longer, on which the search is made first
+  int most_effects{4};         ///< the prior has next to nothing beyond
+  double group_gain{3.0};      ///< nats, after its price, for which a group of features is taken up
   int most_groups{5};
   double group_price{2.5};      ///< nats of a variance of unknown order of magnitude
   double searched_price{10.0};  ///< nats more where a moment or a frequency was sought in the data

@@ -67,6 +67,7 @@ NoisePrior prior_of(const Shown& shown, double block) {
 
 Problem make_problem(const model::Vehicle& vehicle, std::span<const Trial> trials, const RunSettings& settings) {
   Problem problem{.vehicle = &vehicle};
+  problem.run_settings = settings;
   for (int i = 0; i < 6; ++i) {
     if (vehicle.dof[static_cast<std::size_t>(i)]) problem.axes.push_back(i);
   }

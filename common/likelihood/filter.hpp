@@ -26,6 +26,7 @@ struct Problem {
   std::vector<int> axes;
   int simulated{};  ///< how many of them, the first
   NumberSettings number_settings{};
+  RunSettings run_settings{};
   double input_step{}, t_low{}, t_high{};  ///< s
   std::vector<NoisePrior> noise_prior;     ///< per axis
   std::vector<double> acceleration;        ///< per axis, rms of the motion's over kAccelerationSpan

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/model/bounded.hpp"
+#include "common/model/sensors/kinematic_point.hpp"
 
 namespace fathom::model {
 namespace {
@@ -12,15 +13,15 @@ namespace {
 constexpr double kUnitLength = 0.01;  // an axis typed with three digits is still a unit vector
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kSteepest = 7.0;            // 1/rad: a wing of infinite span in potential flow has 2 pi
+constexpr double kLeastLevel = 0.1;          // of a unit axis
 constexpr double kLargestCoefficient = 2.0;  // of thrust: open propellers stay below 1, those in nozzles below 1.5
 
-Thruster placed(const Config& one, const Vehicle& vehicle) {
+Thruster named(const Config& one, const Vehicle& vehicle) {
   Thruster thruster{.name = one.text("name")};
   const bool taken = std::ranges::any_of(vehicle.thrusters, [&](const Thruster& other) {
     return other.name == thruster.name || other.name == thruster.name + " x";
   });
   if (taken) one.fail("name", "two actuators are called '" + thruster.name + "'");
-  thruster.p_BJ = bounded::vector3(one, "position", "m");
   return thruster;
 }
 
@@ -72,17 +73,71 @@ void read_fin(const Config& one, const Vehicle& vehicle, Thruster& thruster) {
   thruster.fin = fin;
 }
 
+// F = weight gained, down, at its place (Graver 2005, sec. 3.2: ballast as a point mass in the hull). Its inertia, some
+// per mille of the vehicle's, is not modelled.
+void read_gained(const Config& one, bool by_volume, const Vehicle& vehicle, Thruster& engine) {
+  engine.p_BJ = bounded::vector3(one, "position", "m");
+  engine.axis_B = Eigen::Vector3d::UnitZ();
+  engine.command = CommandKind::kWeight;
+  engine.weight =
+      Weight{.kind = Weight::Kind::kGained, .per_command = by_volume ? -vehicle.water_density * kGravity : kGravity};
+}
+
+// A mass m that is moved by d from where it stands at command zero: M = d x m g, g along the world's down. What it does
+// there belongs to the centre of mass (G_x, G_y, G_z).
+void read_slid(const Config& one, Thruster& mass) {
+  mass.axis_B = axis_of(one);
+  if (mass.axis_B.head<2>().norm() < kLeastLevel)
+    one.fail("axis", "a mass that moves straight up and down gives no moment when level: state the part that does");
+  mass.command = CommandKind::kWeight;
+  mass.weight = Weight{.kind = Weight::Kind::kSlid,
+                       .per_command = bounded::positive(one, "mass", "kg") * kGravity,
+                       .way_B = mass.axis_B};
+}
+
+// The same, hanging down at command zero and turned about an axis along the hull: d = r (sin(angle) way + (cos(angle) -
+// 1) z).
+void read_turned(const Config& one, Thruster& mass) {
+  const Eigen::Vector3d axis_B = axis_of(one);
+  if (std::abs(axis_B.z()) > kUnitLength) one.fail("axis", "'axis' of a turning mass must be level, '1 0 0' to roll");
+  mass.axis_B = axis_B;
+  mass.command = CommandKind::kWeight;
+  mass.weight =
+      Weight{.kind = Weight::Kind::kTurned,
+             .per_command = bounded::positive(one, "mass", "kg") * kGravity * bounded::positive(one, "radius", "m"),
+             .way_B = axis_B.cross(Eigen::Vector3d::UnitZ())};
+}
+
+/// Of a unit of force; of weights when level.
+Vector6d column_of(const Thruster& thruster) {
+  Vector6d column;
+  column << thruster.axis_B, thruster.p_BJ.cross(thruster.axis_B);
+  if (thruster.weight && thruster.weight->kind != Weight::Kind::kGained)
+    column << Eigen::Vector3d::Zero(), thruster.weight->way_B.cross(Eigen::Vector3d::UnitZ());
+  return column;
+}
+
 void add(Vehicle& vehicle, Thruster thruster) {
   const auto column = vehicle.allocation.cols();
   vehicle.allocation.conservativeResize(6, column + 1);
-  vehicle.allocation.col(column) << thruster.axis_B, thruster.p_BJ.cross(thruster.axis_B);
+  vehicle.allocation.col(column) = column_of(thruster);
+  vehicle.weight_moves = vehicle.weight_moves || thruster.weight.has_value();
   vehicle.flow_matters = vehicle.flow_matters || thruster.inflow > 0.0 || thruster.fin.has_value();
   vehicle.thrusters.push_back(std::move(thruster));
 }
 
 void read_one(const Config& one, Vehicle& vehicle) {
-  Thruster actuator = placed(one, vehicle);
+  Thruster actuator = named(one, vehicle);
   const std::string kind = one.text("kind");
+  if (kind == "buoyancy_engine" || kind == "ballast_tank") {
+    read_gained(one, kind == "buoyancy_engine", vehicle, actuator);
+    return add(vehicle, std::move(actuator));
+  }
+  if (kind == "moving_mass" || kind == "turning_mass") {
+    kind == "moving_mass" ? read_slid(one, actuator) : read_turned(one, actuator);
+    return add(vehicle, std::move(actuator));
+  }
+  actuator.p_BJ = bounded::vector3(one, "position", "m");
   if (kind == "azimuth") {  // its angle counts from x to y of the body
     Thruster across = actuator;
     actuator.name += " x";
@@ -106,7 +161,9 @@ void read_one(const Config& one, Vehicle& vehicle) {
       if (std::abs(actuator.pwm_sign) != 1.0) one.fail("pwm_sign", "'pwm_sign' must be 1 or -1");
     }
   } else {
-    one.fail("kind", "'" + kind + "' is no actuator: thruster, propeller, rudder, fin or azimuth");
+    one.fail("kind", "'" + kind +
+                         "' is no actuator: thruster, propeller, rudder, fin, azimuth, buoyancy_engine, ballast_tank, "
+                         "moving_mass or turning_mass");
   }
   add(vehicle, std::move(actuator));
 }
@@ -151,6 +208,11 @@ std::vector<double> forces_of_commands(const Vehicle& vehicle, std::span<const d
       case CommandKind::kAzimuthAngle:
         force.push_back(commands[i - 1] * std::sin(command));
         break;
+      case CommandKind::kWeight:
+        force.push_back(actuator.weight->per_command * (actuator.weight->kind == Weight::Kind::kTurned
+                                                            ? std::sin(std::clamp(command, -0.25 * kTurn, 0.25 * kTurn))
+                                                            : command));
+        break;
     }
   }
   return force;
@@ -170,6 +232,33 @@ double acting_force(const Vehicle& vehicle, const Motion& motion, Eigen::Index i
   double square = v_r.x() * std::abs(v_r.x());  // (m/s)^2; going astern the fin pushes the other way
   if (fin.behind >= 0) square += fin.slipstream * std::max(motion.force[fin.behind], 0.0);
   return told * square / (fin.reference_speed * fin.reference_speed);
+}
+
+Vector6d acting_wrench(const Vehicle& vehicle, const Motion& motion, Eigen::Index i) {
+  const Thruster& actuator = vehicle.thrusters[static_cast<std::size_t>(i)];
+  if (!actuator.weight) return vehicle.allocation.col(i) * acting_force(vehicle, motion, i);
+  const Weight& weight = *actuator.weight;
+  const Eigen::Vector3d down_B = motion.R_WB.row(2).transpose();
+  const double told = motion.force[i];
+  Vector6d wrench;
+  if (weight.kind == Weight::Kind::kGained) {
+    wrench << told * down_B, actuator.p_BJ.cross(told * down_B);
+    return wrench;
+  }
+  Eigen::Vector3d moved = told * weight.way_B;  // N m: weight times way
+  if (weight.kind == Weight::Kind::kTurned) {
+    const double sine = std::clamp(told / weight.per_command, -1.0, 1.0);
+    moved.z() -= weight.per_command * (1.0 - std::sqrt(1.0 - sine * sine));
+  }
+  wrench << Eigen::Vector3d::Zero(), moved.cross(down_B);
+  return wrench;
+}
+
+Vector6d acting_wrench(const Vehicle& vehicle, const Motion& motion) {
+  if (!vehicle.flow_matters && !vehicle.weight_moves) return vehicle.allocation * motion.force;
+  Vector6d sum = Vector6d::Zero();
+  for (Eigen::Index i = 0; i < motion.force.size(); ++i) sum += acting_wrench(vehicle, motion, i);
+  return sum;
 }
 
 }  // namespace fathom::model

@@ -28,9 +28,8 @@ Vector6d inertia_diagonal(const Model& model) { return model.theta.head<6>(); }
 /// By actuators and by what effects remember.
 Vector6d pushed(const Model& model, const Motion& motion) {
   Vector6d force = motion.w_memory;  // column by column: six rows at a time are quicker than a product of unknown size
-  if (model.flow_matters) {
-    for (Eigen::Index i = 0; i < motion.force.size(); ++i)
-      force += model.allocation.col(i) * acting_force(*model.vehicle, motion, i);
+  if (model.motion_matters) {
+    for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += acting_wrench(*model.vehicle, motion, i);
     return force;
   }
   for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
@@ -57,7 +56,7 @@ Model nominal_model(const Vehicle& vehicle, bool input_is_wrench) {
     model.allocation = Matrix6d::Identity();
   } else {
     model.allocation = vehicle.allocation;
-    model.flow_matters = vehicle.flow_matters;
+    model.motion_matters = vehicle.flow_matters || vehicle.weight_moves;
   }
   for (std::size_t i = 0; i < vehicle.parameters.size(); ++i) {
     if (const auto parameter = parameter_from_name(vehicle.parameters[i])) {

@@ -25,7 +25,7 @@ struct Model {
   BaseTheta theta{BaseTheta::Zero()};
   std::vector<ActiveEffect> effects{};
   double input_hold{0.0};    ///< InputTiming::hold; from -1/2 to 1/2 it belongs to the recording, not to the vehicle
-  bool flow_matters{false};  ///< forces of some actuators depend on the water's speed past them (actuators.hpp)
+  bool motion_matters{false};  ///< wrenches of some actuators depend on flow or attitude (actuators.hpp)
 
   /// Puts an effect where the registry's order wants it.
   void add(ActiveEffect effect);

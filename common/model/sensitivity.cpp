@@ -43,7 +43,7 @@ Right divided_by_inertia(const Model& model, const Load& load, Right right) {
 
 void Sensitivity::begin(const Model& model, std::size_t samples) {
   place_matters_ = false;
-  motion_felt_ = model.flow_matters;
+  motion_felt_ = model.motion_matters;
   remembered_.clear();
   for (const ActiveEffect& active : model.effects) {
     place_matters_ = place_matters_ || active.effect->feels_place();

@@ -12,11 +12,11 @@
 
 namespace fathom::model {
 
-/// Whether its file says that the water's flow along it steers the craft, or that it stands above the water: rudders,
-/// fins, propellers by shaft speed, windage. An open frame has no hull that lifts, and each further question about it
-/// would only make the answers to the others less sure.
+/// Whether its file says that the water's flow along it steers or carries the craft, or that it stands above the water:
+/// rudders, fins, propellers by shaft speed, weights that drive a glider, windage. An open frame has no hull that
+/// lifts, and each further question about it would only make the answers to the others less sure.
 [[nodiscard]] inline bool lives_by_flow(const Vehicle& vehicle) {
-  return vehicle.flow_matters || vehicle.windage > 0.0;
+  return vehicle.flow_matters || vehicle.weight_moves || vehicle.windage > 0.0;
 }
 
 class SpeedProduct final : public Form {

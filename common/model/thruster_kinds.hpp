@@ -17,12 +17,13 @@ namespace fathom::model {
   return std::abs(column[2]) > column.head<2>().norm();
 }
 
-/// A rudder or fin, which no battery, propeller or reversal concerns.
-[[nodiscard]] inline bool is_fin(const Motion& motion, Eigen::Index actuator) {
-  if (motion.vehicle == nullptr || !motion.vehicle->flow_matters) return false;
+/// A rudder, a fin or a weight, which no battery, propeller or reversal concerns.
+[[nodiscard]] inline bool is_no_propeller(const Motion& motion, Eigen::Index actuator) {
+  if (motion.vehicle == nullptr || !(motion.vehicle->flow_matters || motion.vehicle->weight_moves)) return false;
   const auto& thrusters = motion.vehicle->thrusters;
-  return static_cast<std::size_t>(motion.force.size()) == thrusters.size() &&
-         thrusters[static_cast<std::size_t>(actuator)].fin.has_value();
+  if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return false;
+  const Thruster& one = thrusters[static_cast<std::size_t>(actuator)];
+  return one.fin.has_value() || one.weight.has_value();
 }
 
 /// Whether a data set has both.

@@ -28,7 +28,7 @@ struct ThrustCurve {
 };
 
 /// What a command to an actuator means. kForce and kPulse are read as they always were: a pulse where there is a curve.
-enum class CommandKind { kForce, kShaftSpeed, kFinAngle, kAzimuthForce, kAzimuthAngle };
+enum class CommandKind { kForce, kShaftSpeed, kFinAngle, kAzimuthForce, kAzimuthAngle, kWeight };
 
 /// A rudder or fin: `force` of an actuator is what its deflection gives at the reference speed.
 struct Fin {
@@ -37,6 +37,21 @@ struct Fin {
   double reference_speed{};  ///< m/s
   int behind{-1};            ///< place of the propeller in whose slipstream it stands; -1: none
   double slipstream{};       ///< (m/s)^2 that each N of that propeller's thrust adds to the square of the speed
+};
+
+/// Weight that an actuator gains or loses, or moves through the hull: it pulls along the world's down, whatever the
+/// attitude. `force` of an actuator is the weight gained [N], or the moment of the weight moved when level [N m].
+struct Weight {
+  enum class Kind {
+    kGained,  ///< at the actuator's place: buoyancy engine, ballast tank
+    kSlid,    ///< along `way_B`
+    kTurned   ///< about a line along the hull: first along `way_B`, and up
+  };
+  Kind kind{Kind::kGained};
+  /// Force over command: gained N/m^3 (of volume displaced; negative) or N/kg (of water taken in), slid N (over m);
+  /// turned N m, the weight's moment at 90 deg.
+  double per_command{};
+  Eigen::Vector3d way_B{Eigen::Vector3d::Zero()};  ///< unit
 };
 
 struct Thruster {
@@ -49,6 +64,7 @@ struct Thruster {
   double astern{1.0};   ///< times that astern
   double inflow{};      ///< N^(1/2)/(m/s): ahead f = f_0 - inflow sqrt|f_0| u_a, u_a the water's speed past it
   std::optional<Fin> fin;
+  std::optional<Weight> weight;
 };
 
 /// Prior of one base parameter. sigma > 0 small: known constant; large: to be found.
@@ -83,6 +99,7 @@ struct Vehicle {
   std::optional<Hydrodynamics> hydrodynamics;  ///< for manoeuvres and regression
 
   bool flow_matters{false};  ///< some actuator's force depends on the water's speed past it
+  bool weight_moves{false};  ///< some actuator's wrench is that of a weight: it depends on the attitude
 
   /// False for a vehicle that is driven by a body wrench (no thrusters in its file).
   [[nodiscard]] bool has_thrusters() const { return !thrusters.empty(); }

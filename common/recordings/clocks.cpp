@@ -11,13 +11,14 @@
 namespace fathom::recordings {
 namespace {
 
-constexpr std::int64_t kSameClock = 2'000'000;    // us: a delay that may be one; clocks differ by more or by nothing
-constexpr std::int64_t kOneCluster = 1'000'000;   // us between the least delays of topics that share a clock
-constexpr std::int64_t kWrong = 10'000'000;       // us from the middle delay: that stamp was no measurement's
-constexpr double kMostAbsent = 0.1;               // of the messages may lack a measured time
-constexpr std::int64_t kLongEnough = 60'000'000;  // us: below, a drift is not told from scatter
-constexpr double kDriftTold = 5e-3;               // s over the recording: below, scatter of the delays
-constexpr double kWorstRate = 1e-3;               // beyond, it is no drift of a clock
+constexpr std::int64_t kSameClock = 2'000'000;   // us: a delay that may be one; clocks differ by more or by nothing
+constexpr std::int64_t kOneCluster = 1'000'000;  // us between the least delays of topics that share a clock
+constexpr std::int64_t kWrong = 10'000'000;      // us from the middle delay: that stamp was no measurement's
+constexpr std::size_t kMostDelays = std::size_t{1} << 19U;  // more than quantiles need
+constexpr double kMostAbsent = 0.1;                         // of the messages may lack a measured time
+constexpr std::int64_t kLongEnough = 60'000'000;            // us: below, a drift is not told from scatter
+constexpr double kDriftTold = 5e-3;                         // s over the recording: below, scatter of the delays
+constexpr double kWorstRate = 1e-3;                         // beyond, it is no drift of a clock
 
 double seconds(std::int64_t us) { return 1e-6 * static_cast<double>(us); }
 
@@ -33,13 +34,15 @@ std::int64_t quantile(std::vector<std::int64_t> values, double part) {
   return *at;
 }
 
-/// Delays of a topic whose messages carry both times.
+/// Delays of a topic whose messages carry both times; of a very long one evenly some.
 std::vector<std::int64_t> delays_of(const TopicStamps& topic) {
   std::vector<std::int64_t> delays;
-  for (const Stamp& stamp : topic.stamps) {
-    if (stamp.measured != kNoTime) delays.push_back(stamp.log - stamp.measured);
+  const std::size_t every = 1 + topic.stamps.size() / kMostDelays;
+  std::size_t with_both = 0;
+  for (const Stamp stamp : topic.stamps) {
+    if (stamp.measured != kNoTime && with_both++ % every == 0) delays.push_back(stamp.log - stamp.measured);
   }
-  const auto absent = static_cast<double>(topic.stamps.size() - delays.size());
+  const auto absent = static_cast<double>(topic.stamps.size() - with_both);
   if (absent > kMostAbsent * static_cast<double>(topic.stamps.size())) delays.clear();
   return delays;
 }
@@ -61,7 +64,7 @@ struct Clock {
 void set_rate(Clock& clock, const std::vector<TopicStamps>& topics) {
   std::int64_t begin = kLatest, end = -kLatest;
   for (const std::size_t i : clock.topics) {
-    for (const Stamp& stamp : topics[i].stamps) {
+    for (const Stamp stamp : topics[i].stamps) {
       if (stamp.measured == kNoTime || std::abs(stamp.log - stamp.measured - clock.least) > kOneCluster) continue;
       begin = std::min(begin, stamp.measured);
       end = std::max(end, stamp.measured);
@@ -72,7 +75,7 @@ void set_rate(Clock& clock, const std::vector<TopicStamps>& topics) {
   if (end - begin < kLongEnough) return;
   std::int64_t early = kLatest, late = kLatest, early_at = 0, late_at = 0;
   for (const std::size_t i : clock.topics) {
-    for (const Stamp& stamp : topics[i].stamps) {
+    for (const Stamp stamp : topics[i].stamps) {
       if (stamp.measured == kNoTime) continue;
       const std::int64_t delay = stamp.log - stamp.measured;
       if (std::abs(delay - clock.least) > kOneCluster) continue;
@@ -107,8 +110,9 @@ AlignedClocks align_clocks(const std::vector<TopicStamps>& topics) {
       continue;
     }
     std::int64_t least = median;
-    for (const std::int64_t delay : delays) {
-      if (delay > median - kOneCluster) least = std::min(least, delay);
+    for (const Stamp stamp : topics[i].stamps) {
+      const std::int64_t delay = stamp.log - stamp.measured;
+      if (stamp.measured != kNoTime && delay > median - kOneCluster) least = std::min(least, delay);
     }
     auto found = std::find_if(clocks.begin(), clocks.end(),
                               [&](const Clock& one) { return std::abs(one.least - least) < kOneCluster; });
@@ -132,11 +136,10 @@ AlignedClocks align_clocks(const std::vector<TopicStamps>& topics) {
     out.notes.push_back(note);
   }
   for (std::size_t i = 0; i < topics.size(); ++i) {
-    std::vector<std::int64_t> times;
-    times.reserve(topics[i].stamps.size());
+    Paged<std::int64_t> times;
     std::int64_t delay = 0;  // of the message before: for the few that lack a measured time
     std::size_t wrong = 0;
-    for (const Stamp& stamp : topics[i].stamps) {
+    for (const Stamp stamp : topics[i].stamps) {
       std::int64_t time = stamp.log - delay;
       if (measured[i] && stamp.measured != kNoTime) {
         const std::int64_t own = clock_of[i] ? clocks[*clock_of[i]].on_log(stamp.measured) : stamp.measured;

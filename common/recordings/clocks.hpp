@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/paged.hpp"
 #include "common/recordings/topic.hpp"
 
 namespace fathom::recordings {
@@ -14,12 +15,12 @@ namespace fathom::recordings {
 /// Stamps of one topic of one recording.
 struct TopicStamps {
   std::string topic;
-  std::vector<Stamp> stamps;
+  Paged<Stamp> stamps;
 };
 
 struct AlignedClocks {
-  std::vector<std::vector<std::int64_t>> times;  ///< us on the recording's clock, per topic as given
-  std::vector<std::string> notes;                ///< one sentence per topic or clock
+  std::vector<Paged<std::int64_t>> times;  ///< us on the recording's clock, per topic as given
+  std::vector<std::string> notes;          ///< one sentence per topic or clock
 };
 
 /// Times of measurement on the recording's clock. Where measured and log times agree to within two seconds they are the

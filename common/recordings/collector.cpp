@@ -12,7 +12,27 @@ namespace {
 
 constexpr std::size_t kMostSteps = 4096;  // enough for a median
 
+/// Where "[3]" begins at the end of a name; npos where it does not.
+std::size_t instance_at(const std::string& topic) {
+  const std::size_t open = topic.rfind('[');
+  if (open == std::string::npos || open == 0 || !topic.ends_with(']') || open + 2 == topic.size())
+    return std::string::npos;
+  const bool digits = std::all_of(topic.begin() + static_cast<std::ptrdiff_t>(open) + 1, topic.end() - 1,
+                                  [](char c) { return c >= '0' && c <= '9'; });
+  return digits && topic.size() - open < 8 ? open : std::string::npos;
+}
+
 }  // namespace
+
+std::vector<std::string> names_of_topic(const std::string& topic) {
+  const std::size_t at = instance_at(topic);
+  return {topic, at == std::string::npos ? topic + "[0]" : topic.substr(0, at)};
+}
+
+int instance_of(const std::string& topic) {
+  const std::size_t at = instance_at(topic);
+  return at == std::string::npos ? 0 : std::stoi(topic.substr(at + 1));
+}
 
 double TopicAccount::rate() const {
   std::vector<std::int64_t> sorted;
@@ -31,12 +51,15 @@ Collector::Collector(ClockRules clock, std::set<std::string> columns, Take accou
           [this](const Judged& judged) { ++topics_[judged.topic].refused; }) {}
 
 void Collector::ask(std::size_t topic, std::size_t field) {
-  const std::string name = topics_[topic].topic.name + "." + topics_[topic].topic.fields[field].name;
-  if (!wanted_.contains(name)) return;
-  TopicRows& rows = rows_[topic];
-  slots_[topic].push_back({field, rows.columns.size()});
-  rows.names.push_back(name);
-  rows.columns.emplace_back(rows.stamps.size(), std::nan(""));
+  for (const std::string& own : names_of_topic(topics_[topic].topic.name)) {
+    const std::string name = own + "." + topics_[topic].topic.fields[field].name;
+    if (!wanted_.contains(name)) continue;
+    TopicRows& rows = rows_[topic];
+    slots_[topic].push_back({field, rows.columns.size()});
+    rows.names.push_back(name);
+    rows.columns.emplace_back();
+    for (std::size_t i = 0; i < rows.stamps.size(); ++i) rows.columns.back().push_back(std::nan(""));
+  }
 }
 
 bool Collector::topic(std::size_t number, const Topic& topic) {
@@ -48,9 +71,10 @@ bool Collector::topic(std::size_t number, const Topic& topic) {
   for (std::size_t i = 0; i < topic.fields.size(); ++i) ask(number, i);
   if (take_ == Take::kEverything || !slots_[number].empty()) return true;
   // A list that has not come yet may hold what is asked for.
-  const std::string begin = topic.name + ".";
-  const auto after = wanted_.lower_bound(begin);
-  return after != wanted_.end() && after->starts_with(begin);
+  return std::ranges::any_of(names_of_topic(topic.name), [&](const std::string& own) {
+    const auto after = wanted_.lower_bound(own + ".");
+    return after != wanted_.end() && after->starts_with(own + ".");
+  });
 }
 
 void Collector::further_field(std::size_t topic, const Field& field) {
@@ -110,10 +134,8 @@ void Collector::keep(const Judged& judged, std::size_t recording) {
   TopicRows& rows = rows_[judged.topic];
   rows.stamps.push_back(judged.stamp);
   rows.recording.push_back(static_cast<std::uint32_t>(recording));
-  for (std::vector<double>& column : rows.columns) column.push_back(std::nan(""));
-  for (const Slot& slot : slots_[judged.topic]) {
-    if (slot.field < judged.values.size()) rows.columns[slot.column].back() = judged.values[slot.field];
-  }
+  for (const Slot& slot : slots_[judged.topic])  // one for each column, in their order
+    rows.columns[slot.column].push_back(slot.field < judged.values.size() ? judged.values[slot.field] : std::nan(""));
 }
 
 std::uint64_t Collector::messages() const {

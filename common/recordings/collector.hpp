@@ -6,8 +6,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/base/paged.hpp"
 #include "common/recordings/stamp_guard.hpp"
 #include "common/recordings/topic.hpp"
 
@@ -39,12 +41,18 @@ struct TopicAccount {
   [[nodiscard]] double rate() const;  ///< Hz, from the median step; 0 for fewer than two messages
 };
 
-/// Rows of one topic, in the order of the file.
+/// Names by which a map may call a topic: its own; "IMU" for "IMU[1]", and "IMU[0]" for "IMU", since the same logger
+/// numbers what it has several of, and not what it has one of.
+[[nodiscard]] std::vector<std::string> names_of_topic(const std::string& topic);
+/// The number of "IMU[1]"; 0 for "IMU".
+[[nodiscard]] int instance_of(const std::string& topic);
+
+/// Rows of one topic, in the order of the file; those of a long recording lie on disk.
 struct TopicRows {
-  std::vector<std::string> names;  ///< "topic.field", those that were asked for
-  std::vector<std::vector<double>> columns;
-  std::vector<Stamp> stamps;
-  std::vector<std::uint32_t> recording;
+  std::vector<std::string> names;  ///< "topic.field", those that were asked for, as they were asked for
+  std::vector<Paged<double>> columns;
+  Paged<Stamp> stamps;
+  Paged<std::uint32_t> recording;
 };
 
 class Collector final : public Sink {
@@ -63,8 +71,8 @@ class Collector final : public Sink {
 
   [[nodiscard]] const std::vector<TopicAccount>& topics() const { return topics_; }
   [[nodiscard]] const std::vector<TopicRows>& rows() const { return rows_; }
-  /// Forgets the rows of a topic: they have become samples.
-  void release(std::size_t topic) { rows_[topic] = {}; }
+  /// The rows of a topic, which are forgotten here.
+  [[nodiscard]] TopicRows take(std::size_t topic) { return std::exchange(rows_[topic], {}); }
   [[nodiscard]] std::uint32_t recordings() const { return recordings_; }  ///< clocks that started anew, and one
   [[nodiscard]] std::uint64_t messages() const;
   [[nodiscard]] std::uint64_t refused() const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -20,13 +21,13 @@ constexpr double kPeakWidth = 3.0;             // s around the best shift that b
 constexpr Utime kDay = 978'307'200'000'000;    // us, 2001: later times are those of a clock of the day
 constexpr double kGap = 1.0;                   // s: beyond, nothing is interpolated
 
-struct Signal {
+struct Series {
   const char* name;
   std::vector<double> t, x;  ///< s, any unit
 };
 
 template <class Sample, class Value>
-void add_all(Signal& signal, const std::vector<Sample>& samples, Value value) {
+void add_all(Series& signal, const std::vector<Sample>& samples, Value value) {
   for (const Sample& one : samples) {
     if (const std::optional<double> x = value(one)) {
       signal.t.push_back(1e-6 * static_cast<double>(one.utime));
@@ -36,8 +37,8 @@ void add_all(Signal& signal, const std::vector<Sample>& samples, Value value) {
 }
 
 /// Magnitudes, which no mounting and no choice of axes changes.
-std::vector<Signal> signals_of(const Recording& recording) {
-  Signal turn{.name = "turn rate", .t = {}, .x = {}}, depth{.name = "depth", .t = {}, .x = {}},
+std::vector<Series> signals_of(const Recording& recording) {
+  Series turn{.name = "turn rate", .t = {}, .x = {}}, depth{.name = "depth", .t = {}, .x = {}},
       speed{.name = "speed", .t = {}, .x = {}};
   add_all(turn, recording.ahrs,
           [](const Ahrs& one) { return one.has_rates ? std::optional{one.w_WB_B.norm()} : std::nullopt; });
@@ -72,7 +73,7 @@ std::vector<Signal> signals_of(const Recording& recording) {
 }
 
 /// Means over cells of a grid from `begin` on; NaN where a gap is.
-std::vector<double> gridded(const Signal& signal, double begin, double end, double step) {
+std::vector<double> gridded(const Series& signal, double begin, double end, double step) {
   std::vector<double> sum(static_cast<std::size_t>((end - begin) / step) + 1, 0.0);
   std::vector<int> count(sum.size(), 0);
   for (std::size_t i = 0; i < signal.t.size(); ++i) {
@@ -109,7 +110,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b, s
   return va > 0.0 && vb > 0.0 ? (sab - sa * sb / n) / std::sqrt(va * vb) : std::nan("");
 }
 
-std::optional<FoundShift> shift_by(const Signal& a, const Signal& b) {
+std::optional<FoundShift> shift_by(const Series& a, const Series& b) {
   if (a.t.size() < 2 || b.t.size() < 2) return std::nullopt;
   const double a0 = a.t.front(), a1 = a.t.back(), b0 = b.t.front(), b1 = b.t.back();
   const double overlap = std::min({kLeastOverlap, 0.5 * (a1 - a0), 0.5 * (b1 - b0)});
@@ -161,6 +162,7 @@ void each_stream(Recording& recording, const Use& use) {
   use("usbl", recording.usbl);
   use("ranges", recording.ranges);
   use("loads", recording.loads);
+  use("signals", recording.signals);
   use("tag_pose", recording.tag_pose);
   use("optical_flow", recording.optical_flow);
   use("laser_range", recording.laser_range);
@@ -176,6 +178,23 @@ std::pair<Utime, Utime> range_of(Recording& recording) {
   return range;
 }
 
+/// What the run has no column of that name of; the names of those that it has.
+std::string add_signals(std::vector<Signal>& run, std::vector<Signal>& part) {
+  std::set<std::string> known, left_out;
+  for (const Signal& one : run) known.insert(one.name);
+  for (Signal& one : part) {
+    if (known.contains(one.name)) {
+      left_out.insert(one.name);
+    } else {
+      run.push_back(std::move(one));
+    }
+  }
+  std::ranges::stable_sort(run, {}, &Signal::utime);
+  std::string text;
+  for (const std::string& name : left_out) text += (text.empty() ? "column '" : ", column '") + name + "'";
+  return text;
+}
+
 }  // namespace
 
 void shift(Recording& recording, double seconds) {
@@ -185,7 +204,7 @@ void shift(Recording& recording, double seconds) {
 }
 
 std::optional<FoundShift> find_shift(const Recording& first, const Recording& second) {
-  const std::vector<Signal> a = signals_of(first), b = signals_of(second);
+  const std::vector<Series> a = signals_of(first), b = signals_of(second);
   std::optional<FoundShift> best;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const std::optional<FoundShift> found = shift_by(a[i], b[i]);
@@ -228,9 +247,11 @@ Recording merge(std::vector<Recording> parts, const std::vector<std::optional<do
           if (std::string_view{own} != name || stream.empty()) return;
           if (into.empty()) {
             into = std::move(stream);
-          } else {
-            left_out += (left_out.empty() ? "" : ", ") + std::string{name};
+            return;
           }
+          std::string again = name;
+          if constexpr (std::is_same_v<Stream, std::vector<Signal>>) again = add_signals(into, stream);
+          if (!again.empty()) left_out += (left_out.empty() ? "" : ", ") + again;
         }
       });
     });

@@ -25,6 +25,7 @@ using Choices = std::vector<const char*>;
 
 struct Column {
   const std::string* name{};
+  std::string bare;  ///< lower case, without a unit at its end
   std::string unit;
   double least{}, greatest{};
   std::size_t count{};
@@ -34,6 +35,24 @@ std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
+
+/// "surge_cm_s": a name that ends with its unit. Longer ones first.
+constexpr std::array<std::pair<std::string_view, const char*>, 16> kEndings{{{"_deg_s", "deg/s"},
+                                                                             {"_rad_s", "rad/s"},
+                                                                             {"_m_s2", "m/s^2"},
+                                                                             {"_mm_s", "mm/s"},
+                                                                             {"_cm_s", "cm/s"},
+                                                                             {"_deg", "deg"},
+                                                                             {"_rad", "rad"},
+                                                                             {"_m_s", "m/s"},
+                                                                             {"_nm", "N m"},
+                                                                             {"_mm", "mm"},
+                                                                             {"_cm", "cm"},
+                                                                             {"_kn", "kn"},
+                                                                             {"_mv", "mV"},
+                                                                             {"_n", "N"},
+                                                                             {"_m", "m"},
+                                                                             {"_v", "V"}}};
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -46,6 +65,7 @@ class Columns {
   explicit Columns(const CsvTable& table) : table_{table} {
     for (std::size_t i = 0; i < table.names.size(); ++i) {
       Column column{.name = &table.names[i],
+                    .bare = lower(table.names[i]),
                     .unit = table.units[i],
                     .least = std::numeric_limits<double>::infinity(),
                     .greatest = -std::numeric_limits<double>::infinity()};
@@ -54,6 +74,12 @@ class Columns {
         ++column.count;
         column.least = std::min(column.least, value);
         column.greatest = std::max(column.greatest, value);
+      }
+      for (const auto& [ending, unit] : kEndings) {
+        if (!column.bare.ends_with(ending) || column.bare.size() == ending.size()) continue;
+        column.bare.resize(column.bare.size() - ending.size());
+        if (column.unit.empty()) column.unit = unit;
+        break;
       }
       all_.push_back(column);
     }
@@ -65,7 +91,8 @@ class Columns {
     for (const std::string_view choice : choices) {
       for (std::size_t i = 0; i < all_.size(); ++i) {
         const std::string name = lower(*all_[i].name);
-        const bool fits = choice.front() == '.' ? name.ends_with(choice) || name == choice.substr(1) : name == choice;
+        const bool fits = choice.front() == '.' ? name.ends_with(choice) || name == choice.substr(1)
+                                                : name == choice || all_[i].bare == choice;
         if (fits && all_[i].count > 0 && table_.faults[i].empty() && table_.cells_of(i) == tables::Cells::kNumbers)
           return &all_[i];
       }
@@ -134,7 +161,8 @@ std::string attitude_of(const Columns& all) {
   if (ros.whole()) return "  quaternion: {columns: " + ros.list() + ", order: xyzw, world: ENU, body: FLU}\n";
   const Group wxyz{all, {{"qw", "q_w"}, {"qx", "q_x"}, {"qy", "q_y"}, {"qz", "q_z"}}};
   if (wxyz.whole()) return "  quaternion: {columns: " + wxyz.list() + ", order: wxyz, world: NED, body: FRD}\n";
-  const Group euler{all, {{"phi", "roll"}, {"theta", "pitch"}, {"psi", "yaw", "heading", "hdg"}}};
+  const Group euler{
+      all, {{"phi", "roll", "m_roll"}, {"theta", "pitch", "m_pitch"}, {"psi", "yaw", "heading", "hdg", "m_heading"}}};
   if (euler.there() == 0) return "";
   return "  euler: {columns: " + euler.list() + ", unit: " + angle_unit(euler) + ", world: NED, body: FRD}\n";
 }
@@ -155,9 +183,9 @@ std::string inertial_of(const Columns& all) {
                    {".angular_velocity.y", ".angular.y"},
                    {".angular_velocity.z", ".angular.z"}}};
   const Group rates{all,
-                    {{"p", "roll_rate", "rollspeed", "wx", "gyrx", "gyr_x", "gyro_x"},
-                     {"q", "pitch_rate", "pitchspeed", "wy", "gyry", "gyr_y", "gyro_y"},
-                     {"r", "yaw_rate", "yawspeed", "wz", "gyrz", "gyr_z", "gyro_z"}}};
+                    {{"p", "roll_rate", "rollrate", "rollspeed", "wx", "gyrx", "gyr_x", "gyro_x"},
+                     {"q", "pitch_rate", "pitchrate", "pitchspeed", "wy", "gyry", "gyr_y", "gyro_y"},
+                     {"r", "yaw_rate", "yawrate", "yawspeed", "rot", "wz", "gyrz", "gyr_z", "gyro_z"}}};
   if (ros.there() > 0) {
     text += vector_line("rates", ros, rate_unit(ros), "FLU");
   } else if (rates.there() > 0) {
@@ -182,6 +210,40 @@ std::string velocity_of(const Columns& all) {
          ", unit: " + speed.unit("m/s", "m/s") + "}\n";
 }
 
+/// A wrench by its components; or what a Slocum drives itself by.
+std::string forces_of(const Columns& all) {
+  const Group wrench{all,
+                     {{"fx", "force_x", "tau_x"},
+                      {"fy", "force_y", "tau_y"},
+                      {"fz", "force_z", "tau_z"},
+                      {"mx", "torque_x", "moment_x", "tau_k"},
+                      {"my", "torque_y", "moment_y", "tau_m"},
+                      {"mz", "torque_z", "moment_z", "tau_n"}}};
+  if (wrench.there() > 1)
+    return "  wrench: {columns: " + wrench.list() + ", force_unit: N, moment_unit: N m, frame: FRD}\n";
+  const Group glider{all, {{"m_ballast_pumped", "m_de_oil_vol"}, {"m_battpos"}}};
+  if (!glider.whole()) return "";
+  return "  # engine and battery, as 'fathom vehicle slocum' has them\n  inputs: {columns: " + glider.list() +
+         ", units: [cc, in]}\n";
+}
+
+/// Wind in knots or m/s as its header says; directions are those from which it blows.
+std::string wind_of(const Columns& all) {
+  for (const bool apparent : {true, false}) {
+    const Group speed{all, {{apparent ? "aws" : "tws"}}}, from{all, {{apparent ? "awa" : "twd"}}};
+    if (speed.there() + from.there() == 0) continue;
+    std::string text = std::string{"  reference: "} + (apparent ? "apparent" : "true") + "\n";
+    if (speed.whole())
+      text += "  speed: {column: " + tables::written_name(*speed.columns[0]->name) +
+              ", unit: " + speed.unit("m/s", "m/s") + "}\n";
+    if (from.whole())
+      text +=
+          "  from: {column: " + tables::written_name(*from.columns[0]->name) + ", unit: " + angle_unit(from) + "}\n";
+    return text;
+  }
+  return "";
+}
+
 /// Columns whose name says pulses and whose numbers are such, in the order of the table.
 std::string thrust_of(const Columns& all) {
   constexpr double kLeast = 800.0, kMost = 2200.0;  // us
@@ -193,7 +255,7 @@ std::string thrust_of(const Columns& all) {
     if (named && one.count > 0 && one.least >= kLeast && one.greatest <= kMost && one.greatest > one.least)
       pulses.push_back(tables::written_name(*one.name));
   }
-  if (pulses.empty()) return "";
+  if (pulses.empty()) return forces_of(all);
   std::string list;
   for (const std::string& one : pulses) list += (list.empty() ? "" : ", ") + one;
   return "  # they must be the thrusters of the vehicle file, in its order\n  pwm: {columns: [" + list +
@@ -236,9 +298,10 @@ std::string describe_table(const CsvTable& table) {
   (pose.empty() ? inertial : pose) += attitude;
   const std::string streams = section("pose_capture", pose) + section("ahrs", inertial) +
                               section("dvl", velocity_of(columns)) +
-                              section("depth", scalar_of(columns, {"depth"}, "m", "  direction: down\n")) +
+                              section("depth", scalar_of(columns, {"depth", "m_depth"}, "m", "  direction: down\n")) +
                               section("thrusters", thrust_of(columns)) +
-                              section("battery", scalar_of(columns, {"voltage", "volt", "volts", "battery"}, "V", ""));
+                              section("battery", scalar_of(columns, {"voltage", "volt", "volts", "battery"}, "V", "")) +
+                              section("wind", wind_of(columns));
   if (time.empty() || streams.empty())
     return text + "# " + (time.empty() ? "No column looks like the time" : "No column has a usual name") +
            ": a map must be written by hand (docs/configuration.md).\n";

@@ -28,6 +28,7 @@ struct Recording {
   std::vector<Usbl> usbl;
   std::vector<Ranges> ranges;
   std::vector<Loads> loads;
+  std::vector<Signal> signals;  ///< all columns, in the order of time
   std::vector<TagPose> tag_pose;
   std::vector<OpticalFlow> optical_flow;
   std::vector<LaserRange> laser_range;

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -81,6 +82,15 @@ struct Ranges {
 struct Loads {
   Utime utime{};
   std::vector<double> load;  ///< N, tension along each cell's axis
+};
+
+/// One value of a measured column that is none of the above: wind, temperature, a winch's speed.
+struct Signal {
+  Utime utime{};
+  std::string name;      ///< the column's, as in the map
+  std::string quantity;  ///< wind_speed_true and the like (lcmtypes/signal_t.lcm); empty where the map does not say
+  std::string unit;      ///< SI, rad; else as the map has it
+  double value{};        ///< unit
 };
 
 }  // namespace fathom

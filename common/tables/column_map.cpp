@@ -125,8 +125,8 @@ HeldRule held_of(const Config& config) {
   return rule;
 }
 
-constexpr std::array kStreams{"pose_capture", "ahrs",   "dvl",   "depth",    "thrusters",    "battery",
-                              "usbl",         "ranges", "loads", "tag_pose", "optical_flow", "laser_range"};
+constexpr std::array kStreams{"pose_capture", "ahrs",  "dvl",      "depth",        "thrusters",   "battery", "usbl",
+                              "ranges",       "loads", "tag_pose", "optical_flow", "laser_range", "wind",    "signals"};
 
 PoseColumns pose_of(const Config& section) {
   PoseColumns pose;
@@ -215,6 +215,8 @@ void read_stream(ColumnMap& map, const std::string& name, const Config& section)
   if (name == "tag_pose") map.tag_pose = tags_of(section);
   if (name == "optical_flow") map.optical_flow = flow_of(section);
   if (name == "laser_range") map.laser_range = laser_of(section);
+  if (name == "wind") map.wind = wind_of(section);
+  if (name == "signals") map.signals = signals_of(section);
 }
 
 ColumnMap read(const Config& config) {
@@ -279,6 +281,18 @@ std::vector<MappedStream> read_streams(const Config& config) {
 ColumnMap ColumnMap::load(const std::string& path) { return read(Config::load(path)); }
 
 ColumnMap ColumnMap::parse(const std::string& text, const std::string& name) { return read(Config::parse(text, name)); }
+
+std::vector<InputColumns> inputs_of_map(const std::string& path) {
+  const Config config = Config::load(path);
+  std::vector<InputColumns> all;
+  if (!config.has("thrusters")) return all;
+  for (const Config& section :
+       config.is_section("thrusters") ? std::vector<Config>{config.section("thrusters")} : config.list("thrusters")) {
+    const ThrusterColumns thrusters = thrusters_of(section);
+    if (thrusters.inputs) all.push_back(*thrusters.inputs);
+  }
+  return all;
+}
 
 std::vector<MappedStream> load_streams(const std::string& path) { return read_streams(Config::load(path)); }
 

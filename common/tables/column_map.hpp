@@ -93,7 +93,7 @@ struct StickColumns {
 struct InputColumns {
   ColumnGroup group;               ///< order of the vehicle file
   std::vector<std::string> units;  ///< as the map states them
-  std::vector<double> factors;     ///< to us, rad/s, rad or N
+  std::vector<double> factors;     ///< to us, rad/s, rad, N, m^3, kg or m
 };
 
 struct ThrusterColumns {
@@ -162,6 +162,19 @@ struct LaserColumns {
   std::vector<Column> invalid_where;
 };
 
+/// A column that is carried as it is, to stand in a model later.
+struct SignalColumn {
+  ColumnGroup group;     ///< one column; factor to `unit`
+  std::string written;   ///< unit as the map states it
+  std::string unit;      ///< SI, rad; else as written
+  std::string quantity;  ///< of lcmtypes/signal_t.lcm; empty where the map does not say
+};
+
+struct SignalColumns {
+  std::vector<SignalColumn> columns;
+  std::vector<Column> invalid_where;
+};
+
 struct ColumnMap {
   std::string source;   ///< where the data come from
   std::string licence;  ///< under which terms
@@ -179,6 +192,8 @@ struct ColumnMap {
   std::optional<TagColumns> tag_pose;
   std::optional<FlowColumns> optical_flow;
   std::optional<LaserColumns> laser_range;
+  std::optional<SignalColumns> wind;  ///< speed and from where it blows
+  std::optional<SignalColumns> signals;
 
   /// Reads a map; InputError "file:line: what" for an unknown key, unit or frame.
   [[nodiscard]] static ColumnMap load(const std::string& path);

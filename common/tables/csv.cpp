@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/units.hpp"
@@ -181,12 +182,12 @@ bool has_two_dates(std::string_view cell) {
 
 /// A unit as people write it, in the words of unit_factor; empty when it is none.
 std::string known_unit(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kOtherwise{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 25> kOtherwise{
       {{"sec", "s"},      {"secs", "s"},        {"seconds", "s"},     {"µs", "us"},       {"degrees", "deg"},
        {"degree", "deg"}, {"°", "deg"},         {"°/s", "deg/s"},     {"radians", "rad"}, {"meters", "m"},
        {"metres", "m"},   {"m/s2", "m/s^2"},    {"m/s²", "m/s^2"},    {"m s-1", "m/s"},   {"m.s-1", "m/s"},
        {"m/sec", "m/s"},  {"rad/sec", "rad/s"}, {"deg/sec", "deg/s"}, {"knots", "kn"},    {"kts", "kn"},
-       {"volts", "V"},    {"N·m", "N m"}}};
+       {"volts", "V"},    {"N·m", "N m"},       {"degC", "C"},        {"deg_C", "C"},     {"rad s-1", "rad/s"}}};
   for (const auto& [theirs, ours] : kOtherwise) {
     if (text == theirs) return std::string(ours);
   }
@@ -249,7 +250,26 @@ class Parser {
     table_.lines.reserve(expected_rows_);
     return !headless;
   }
+  /// "s,m,rad": below the header of what archives and loggers write, no number in it and some unit. True where it was
+  /// one.
+  bool read_units(std::string_view line) {
+    std::vector<std::string> units;
+    bool any = false;
+    for (bool more = true; more;) {
+      const std::string_view cell = take_cell(line, separator_, more);
+      double value{};
+      if (!cell.empty() && !is_none(cell) && (read_number(cell, separator_, value) || read_date(cell))) return false;
+      units.push_back(known_unit(cell));
+      any = any || !units.back().empty();
+    }
+    if (!any || units.size() != table_.units.size()) return false;
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      if (table_.units[i].empty()) table_.units[i] = units[i];
+    }
+    return true;
+  }
   void read_row(std::string_view line, bool last) {
+    if (table_.rows() == 0 && !std::exchange(below_header_, true) && read_units(line)) return;
     std::size_t cells = 0;
     for (bool more = true; more; ++cells) {
       const std::string_view cell = take_cell(line, separator_, more);
@@ -283,6 +303,7 @@ class Parser {
   std::size_t number_{}, comment_number_{};
   std::string comment_;  ///< the last one: "% t, u, v" is a header where the next line holds numbers
   char separator_{','};
+  bool below_header_{};  ///< the line below the header was looked at
 };
 
 }  // namespace

@@ -28,6 +28,7 @@ struct TableImport::Streams {
   std::optional<TagImport> tags;
   std::optional<FlowImport> flow;
   std::optional<LaserImport> laser;
+  std::optional<SignalImport> wind, signals;
 
   template <typename Use>
   void each(const Use& use) {
@@ -43,6 +44,8 @@ struct TableImport::Streams {
     if (tags) use(*tags);
     if (flow) use(*flow);
     if (laser) use(*laser);
+    if (wind) use(*wind);
+    if (signals) use(*signals);
   }
 };
 
@@ -65,15 +68,31 @@ TableImport::TableImport(const CsvTable& table, ColumnMap map, const std::option
   if (map_.tag_pose) streams_->tags.emplace(resolve_, *map_.tag_pose);
   if (map_.optical_flow) streams_->flow.emplace(resolve_, *map_.optical_flow);
   if (map_.laser_range) streams_->laser.emplace(resolve_, *map_.laser_range);
+  if (map_.wind) streams_->wind.emplace(resolve_, *map_.wind);
+  if (map_.signals) streams_->signals.emplace(resolve_, *map_.signals);
 }
 
 TableImport::~TableImport() = default;
 
-bool TableImport::next(std::size_t rows, Recording& out) {
-  const std::size_t left = rows_.index.size() - taken_;
+bool TableImport::all_at_once() const {
   // What is turned by an attitude needs those around it.
-  const bool all = (streams_->ahrs && streams_->ahrs->turns()) || (streams_->dvl && streams_->dvl->turns());
-  const std::size_t count = all ? left : std::min(rows, left);
+  return (streams_->ahrs && streams_->ahrs->turns()) || (streams_->dvl && streams_->dvl->turns());
+}
+
+std::optional<Utime> TableImport::end_of_next(std::size_t rows) const {
+  if (rows_left() == 0) return std::nullopt;
+  return rows_.utime[taken_ + std::min(rows, rows_left()) - 1];
+}
+
+bool TableImport::next_until(Utime end, Recording& out) {
+  std::size_t rows = 0;
+  while (rows < rows_left() && rows_.utime[taken_ + rows] <= end) ++rows;
+  return rows > 0 && next(rows, out);
+}
+
+bool TableImport::next(std::size_t rows, Recording& out) {
+  const std::size_t left = rows_left();
+  const std::size_t count = all_at_once() ? left : std::min(rows, left);
   if (count == 0) return false;
   Slice slice;
   for (std::size_t k = taken_; k < taken_ + count; ++k) {
@@ -93,6 +112,11 @@ bool TableImport::next(std::size_t rows, Recording& out) {
   if (streams_->tags) streams_->tags->take(slice, out);
   if (streams_->flow) streams_->flow->take(slice, out);
   if (streams_->laser) streams_->laser->take(slice, out);
+  const std::size_t before = out.signals.size();
+  if (streams_->wind) streams_->wind->take(slice, out);
+  if (streams_->signals) streams_->signals->take(slice, out);
+  std::stable_sort(out.signals.begin() + static_cast<std::ptrdiff_t>(before), out.signals.end(),
+                   [](const Signal& a, const Signal& b) { return a.utime < b.utime; });
   return true;
 }
 

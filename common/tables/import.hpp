@@ -47,6 +47,14 @@ class TableImport {
   /// The samples of the next `rows` rows at most, into empty streams; all of them where an attitude turns others, which
   /// lie between. False when no row is left.
   bool next(std::size_t rows, Recording& out);
+  /// The same of all rows until `end`, with it.
+  bool next_until(Utime end, Recording& out);
+  /// When the last of the next `rows` rows was, or the last of all; nothing when no row is left.
+  [[nodiscard]] std::optional<Utime> end_of_next(std::size_t rows) const;
+  /// Whether an attitude turns others: then the first slice is all of it.
+  [[nodiscard]] bool all_at_once() const;
+  [[nodiscard]] std::size_t rows() const { return rows_.index.size(); }
+  [[nodiscard]] std::size_t rows_left() const { return rows_.index.size() - taken_; }
   /// What was refused, held or left out.
   [[nodiscard]] std::vector<std::string> finish();
 

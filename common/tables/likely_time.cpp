@@ -31,12 +31,34 @@ bool is_named_so(const std::string& name) {
   std::string small = name;
   std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return small == "t" || small == "date" || small == "utc" || small.find("time") != std::string::npos ||
-         small.find("stamp") != std::string::npos;
+         small.find("stamp") != std::string::npos || small.starts_with("elapsed");
+}
+
+/// A date that is the same all day: its time of day stands in another column.
+bool whole_days(const Paged<double>& column) {
+  constexpr double kDay = 86400.0;  // s
+  const auto end = column.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(column.size(), 1000));
+  return std::all_of(column.begin(), end, [](double t) { return !std::isfinite(t) || std::fmod(t, kDay) == 0.0; });
+}
+
+/// A date and a time of day, each in a column of its own.
+std::optional<LikelyTime> in_two(const CsvTable& table) {
+  std::optional<std::size_t> date, time;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    if (!table.faults[i].empty()) continue;
+    if (!date && table.cells_of(i) == Cells::kDates && whole_days(table.columns[i])) date = i;
+    if (!time && table.cells_of(i) == Cells::kTimesOfDay) time = i;
+  }
+  if (!date || !time) return std::nullopt;
+  return LikelyTime{{table.names[*date], table.names[*time]},
+                    "time: {columns: [" + written_name(table.names[*date]) + ", " + written_name(table.names[*time]) +
+                        "], units: [date, date]}"};
 }
 
 }  // namespace
 
 std::optional<LikelyTime> likely_time(const CsvTable& table) {
+  if (auto both = in_two(table)) return both;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const std::string& name = table.names[i];
     if (!is_named_so(name)) continue;

@@ -11,5 +11,9 @@ namespace fathom::tables::map_sections {
 [[nodiscard]] TagColumns tags_of(const Config& section);
 [[nodiscard]] FlowColumns flow_of(const Config& section);
 [[nodiscard]] LaserColumns laser_of(const Config& section);
+/// `speed`, `from` and whether they are of the true or the apparent wind.
+[[nodiscard]] SignalColumns wind_of(const Config& section);
+/// `columns` and a unit for each, whatever they measure.
+[[nodiscard]] SignalColumns signals_of(const Config& section);
 
 }  // namespace fathom::tables::map_sections

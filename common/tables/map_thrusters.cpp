@@ -39,13 +39,15 @@ StickColumns sticks_of(const Config& config) {
 
 /// To the unit in which a vehicle file's actuators take their commands.
 double command_factor(const Config& config, const std::string& unit) {
-  for (const char* wanted : {"us", "rad/s", "rad", "N"}) {
+  for (const char* wanted : {"us", "rad/s", "rad", "N", "m^3", "kg", "m"}) {
     try {
       return unit_factor(unit, wanted);
     } catch (const InputError&) {  // of another kind
     }
   }
-  config.fail("units", "'" + unit + "' is no unit of a command: us (a pulse), rpm (a shaft), deg (a rudder) or N");
+  config.fail("units", "'" + unit +
+                           "' is no unit of a command: us (a pulse), rpm (a shaft), deg (a rudder), N, cc (volume of a "
+                           "buoyancy engine), kg (ballast) or mm (a moving mass)");
 }
 
 InputColumns inputs_of(const Config& config) {

@@ -230,6 +230,27 @@ std::string thrusters(const ThrusterColumns& columns) {
   return text + flags(columns.invalid_where, "  ");
 }
 
+std::string signals(const SignalColumns& signals) {
+  std::vector<Column> columns;
+  std::string units;
+  for (const SignalColumn& one : signals.columns) {
+    columns.push_back(one.group.columns.front());
+    units += (units.empty() ? "" : ", ") + written_name(one.written);
+  }
+  return "signals:\n  columns: " + listed(columns) + "\n  units: [" + units + "]\n" +
+         flags(signals.invalid_where, "  ");
+}
+
+std::string wind(const SignalColumns& wind) {
+  const bool apparent = wind.columns.front().quantity.ends_with("_apparent");
+  std::string text = std::string{"wind:\n  reference: "} + (apparent ? "apparent" : "true") + "\n";
+  for (const SignalColumn& one : wind.columns)
+    text += std::string{one.unit == "rad" ? "  from" : "  speed"} +
+            ": {column: " + written_name(one.group.columns.front().name) + ", unit: " + written_name(one.written) +
+            "}\n";
+  return text + flags(wind.invalid_where, "  ");
+}
+
 }  // namespace
 
 std::string written_name(const std::string& name) {
@@ -302,7 +323,10 @@ std::string to_yaml(const ColumnMap& map) {
   if (map.usbl) text += usbl(*map.usbl);
   if (map.ranges) text += list("ranges", *map.ranges, "m", kLengths);
   if (map.loads) text += list("loads", *map.loads, "N", kForces);
-  return text + cameras(map);
+  text += cameras(map);
+  if (map.wind) text += wind(*map.wind);
+  if (map.signals) text += signals(*map.signals);
+  return text;
 }
 
 }  // namespace fathom::tables

@@ -21,4 +21,7 @@ struct MappedStream {
 [[nodiscard]] std::vector<MappedStream> load_streams(const std::string& path);
 [[nodiscard]] std::vector<MappedStream> parse_streams(const std::string& text, const std::string& name);
 
+/// What a map, of either kind, says of commands that have a unit each; empty where it says nothing of such.
+[[nodiscard]] std::vector<InputColumns> inputs_of_map(const std::string& path);
+
 }  // namespace fathom::tables

@@ -11,6 +11,7 @@ inline constexpr char kUsbl[] = "USBL";
 inline constexpr char kDepth[] = "DEPTH";
 inline constexpr char kRanges[] = "RANGES";
 inline constexpr char kLoads[] = "LOADS";
+inline constexpr char kSignal[] = "SIGNAL";
 inline constexpr char kPoseCapture[] = "POSE_CAPTURE";
 inline constexpr char kBattery[] = "BATTERY";
 inline constexpr char kVehicle[] = "VEHICLE";

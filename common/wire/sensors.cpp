@@ -8,6 +8,7 @@
 #include <fathom_lcm/loads_t.hpp>
 #include <fathom_lcm/pose_capture_t.hpp>
 #include <fathom_lcm/ranges_t.hpp>
+#include <fathom_lcm/signal_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
 #include <fathom_lcm/usbl_t.hpp>
 
@@ -117,6 +118,25 @@ fathom_lcm::loads_t encode(const Loads& sample) {
   message.utime = sample.utime;
   message.n_load = count(sample.load);
   message.load = sample.load;
+  return message;
+}
+
+std::optional<Signal> decode(const fathom_lcm::signal_t& message) {
+  if (!finite(message.value)) return {};
+  return Signal{.utime = message.utime,
+                .name = message.name,
+                .quantity = message.quantity,
+                .unit = message.unit,
+                .value = message.value};
+}
+
+fathom_lcm::signal_t encode(const Signal& sample) {
+  fathom_lcm::signal_t message{};
+  message.utime = sample.utime;
+  message.name = sample.name;
+  message.quantity = sample.quantity;
+  message.unit = sample.unit;
+  message.value = sample.value;
   return message;
 }
 

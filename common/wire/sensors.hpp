@@ -16,6 +16,7 @@ class ranges_t;
 class loads_t;
 class pose_capture_t;
 class battery_t;
+class signal_t;
 class thrusters_t;
 class tag_pose_t;
 class optical_flow_t;
@@ -32,6 +33,7 @@ namespace fathom::wire {
 [[nodiscard]] std::optional<Depth> decode(const fathom_lcm::depth_t& message);
 [[nodiscard]] std::optional<Ranges> decode(const fathom_lcm::ranges_t& message);
 [[nodiscard]] std::optional<Loads> decode(const fathom_lcm::loads_t& message);
+[[nodiscard]] std::optional<Signal> decode(const fathom_lcm::signal_t& message);
 [[nodiscard]] std::optional<PoseCapture> decode(const fathom_lcm::pose_capture_t& message);
 [[nodiscard]] std::optional<Battery> decode(const fathom_lcm::battery_t& message);
 [[nodiscard]] std::optional<Thrusters> decode(const fathom_lcm::thrusters_t& message);
@@ -46,6 +48,7 @@ namespace fathom::wire {
 [[nodiscard]] fathom_lcm::depth_t encode(const Depth& sample);
 [[nodiscard]] fathom_lcm::ranges_t encode(const Ranges& sample);
 [[nodiscard]] fathom_lcm::loads_t encode(const Loads& sample);
+[[nodiscard]] fathom_lcm::signal_t encode(const Signal& sample);
 [[nodiscard]] fathom_lcm::pose_capture_t encode(const PoseCapture& sample);
 [[nodiscard]] fathom_lcm::battery_t encode(const Battery& sample);
 [[nodiscard]] fathom_lcm::thrusters_t encode(const Thrusters& sample);

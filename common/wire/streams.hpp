@@ -18,6 +18,7 @@
 #include <fathom_lcm/process_info_t.hpp>
 #include <fathom_lcm/ranges_t.hpp>
 #include <fathom_lcm/residual_t.hpp>
+#include <fathom_lcm/signal_t.hpp>
 #include <fathom_lcm/smoothed_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
@@ -49,6 +50,7 @@ void visit_streams(AnyRecording& recording, Visit&& visit) {
   visit(kThrusters, recording.thrusters);
   visit(kBattery, recording.battery);
   visit(kLoads, recording.loads);
+  visit(kSignal, recording.signals);
   visit(kAhrs, recording.ahrs);
   visit(kDvl, recording.dvl);
   visit(kDepth, recording.depth);

@@ -22,6 +22,7 @@
 #include "common/report/json.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
+#include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/mended_map.hpp"
@@ -104,6 +105,7 @@ class Checking {
 
 void run_check(const CheckOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  check_command_units(options.map, vehicle);
   std::vector<std::string> notes;
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   const std::vector<std::string> runs = paths_of(options.runs);

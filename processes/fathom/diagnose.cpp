@@ -36,6 +36,7 @@
 #include "common/result/causes.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/verdict/by_likelihood.hpp"
+#include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/origin.hpp"
@@ -225,6 +226,7 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
 DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
                          VerdictGiven& given, ResultOrigin& origin) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  check_command_units(options.map, vehicle);
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::optional<planning::RehearsalSettings> room;  // read before the long work
   if (!options.site.empty()) room = rehearsal_settings(options.site, options.config, vehicle);

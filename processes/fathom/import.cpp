@@ -17,6 +17,7 @@
 #include "common/recordings/worth.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/wire/log_writer.hpp"
+#include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -122,6 +123,22 @@ void write_table(const Source& source, const std::string& map, const std::option
   say(worth, log, path);
 }
 
+/// Of a recording with topics that is one run, some seconds after the others.
+void write_topics(recordings::PartedImport& import, const std::string& name, std::optional<double> shift,
+                  const std::string& path, const std::vector<Source>& sources) {
+  constexpr std::size_t kRows = 50'000;
+  refuse_source(path, sources);
+  recordings::Worth worth;
+  wire::LogWriter log{path};
+  for (Recording part{.name = name}; import.next(kRows, part); part = {.name = name}) {
+    if (shift) recordings::shift(part, *shift);
+    worth.take(part);
+    log.append(part);
+  }
+  for (const std::string& note : import.finish()) std::printf("%s\n", note.c_str());
+  say(worth, log, path);
+}
+
 /// The tables of a log's channels to the log: whatever they are of, message by message.
 void write_channels(const Source& source, const std::string& path, const std::vector<Source>& sources) {
   refuse_source(path, sources);
@@ -177,6 +194,7 @@ void run_import(const ImportOptions& options) {
   if (!options.vehicle.empty()) {
     const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
     simulated = vehicle.dof;
+    for (const std::string& map : options.maps) check_command_units(map, vehicle);
     if (const std::string note = model::undriven_note(vehicle); !note.empty()) std::printf("%s\n", note.c_str());
   }
   const std::vector<Source> sources = sources_of(options.data, options.types);
@@ -215,7 +233,20 @@ void run_import(const ImportOptions& options) {
                      sources);
       continue;
     }
-    FromSource read = read_source(sources[i], map, simulated);
+    FromSource read;
+    if (sources[i].has_topics() && (folder || sources.size() == 1)) {
+      const auto import = parted_import(sources[i], map, simulated, read.notes);
+      if (import->recordings() == 1) {
+        for (const std::string& note : read.notes) std::printf("%s\n", note.c_str());
+        write_topics(*import, sources[i].name, shift_of(sources[i], shifts),
+                     folder ? (std::filesystem::path(options.out) / (names[i] + ".lcmlog")).string() : options.out,
+                     sources);
+        continue;
+      }
+      add_runs(import->all(), sources[i], read);
+    } else {
+      read = read_source(sources[i], map, simulated);
+    }
     for (const std::string& note : read.notes) std::printf("%s\n", note.c_str());
     if (folder) {
       write_each(read.runs, (std::filesystem::path(options.out) / (names[i] + ".lcmlog")).string(), sources);

@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kRowsAtOnce = 50'000;
+
 bool is_lcm(const std::string& path) {
   constexpr std::uint32_t kSync = 0xEDA1DA01;
   recordings::FileWindow file{path};
@@ -263,6 +265,30 @@ RestoredLog::~RestoredLog() {
   fs::remove_all(folder_, ignored);
 }
 
+std::unique_ptr<recordings::PartedImport> parted_import(const Source& source, const std::string& map,
+                                                        const std::optional<tables::SimulatedAxes>& simulated,
+                                                        std::vector<std::string>& notes) {
+  const std::string& path = source.files.front();
+  if (!map.empty())
+    return std::make_unique<recordings::PartedImport>(source.topics(), tables::load_streams(map), simulated, true);
+  const std::string draft = recordings::draft_map(look_at(source));
+  if (draft.empty())
+    throw InputError(path +
+                     ": holds no usual topic; 'fathom import --describe' lists what it holds, for a map (--map)");
+  notes.push_back(path + ": read with the draft of a map, as 'fathom import --describe' prints it");
+  return std::make_unique<recordings::PartedImport>(source.topics(), tables::parse_streams(draft, "draft map"),
+                                                    simulated, false);
+}
+
+void add_runs(recordings::ImportedFiles imported, const Source& source, FromSource& out) {
+  out.notes.insert(out.notes.end(), imported.notes.begin(), imported.notes.end());
+  for (recordings::ImportedRun& run : imported.runs) {
+    for (const std::string& note : run.notes) out.notes.push_back(source.files.front() + ": " + note);
+    if (imported.runs.size() == 1) run.recording.name = source.name;
+    out.runs.push_back(std::move(run.recording));
+  }
+}
+
 FromSource read_source(const Source& source, const std::string& map,
                        const std::optional<tables::SimulatedAxes>& simulated) {
   FromSource out;
@@ -289,24 +315,7 @@ FromSource read_source(const Source& source, const std::string& map,
     out.runs.push_back(std::move(imported.recording));
     return out;
   }
-  std::vector<tables::MappedStream> streams;
-  if (map.empty()) {
-    const std::string draft = recordings::draft_map(look_at(source));
-    if (draft.empty())
-      throw InputError(path +
-                       ": holds no usual topic; 'fathom import --describe' lists what it holds, for a map (--map)");
-    streams = tables::parse_streams(draft, "draft map");
-    out.notes.push_back(path + ": read with the draft of a map, as 'fathom import --describe' prints it");
-  } else {
-    streams = tables::load_streams(map);
-  }
-  recordings::ImportedFiles imported = recordings::import_files(source.topics(), streams, simulated, !map.empty());
-  out.notes.insert(out.notes.end(), imported.notes.begin(), imported.notes.end());
-  for (recordings::ImportedRun& run : imported.runs) {
-    for (const std::string& note : run.notes) out.notes.push_back(path + ": " + note);
-    if (imported.runs.size() == 1) run.recording.name = source.name;
-    out.runs.push_back(std::move(run.recording));
-  }
+  add_runs(parted_import(source, map, simulated, out.notes)->all(), source, out);
   return out;
 }
 
@@ -322,12 +331,20 @@ std::string describe_source(const Source& source, const std::optional<tables::Si
   const std::string draft = recordings::draft_map(content);
   if (draft.empty())
     return text + "# None of the topics is a usual one: a map must be written by hand (docs/configuration.md).\n";
-  const recordings::ImportedFiles imported =
-      recordings::import_files(source.topics(), tables::parse_streams(draft, "draft map"), simulated, false);
-  for (const recordings::ImportedRun& run : imported.runs) {
-    const std::string name = imported.runs.size() > 1 ? run.recording.name + ": " : "";
-    for (const std::string& reason : recordings::against_fitting(run.recording)) text += "# ! " + name + reason + "\n";
-    for (const std::string& note : run.notes) text += "# " + name + note + "\n";
+  recordings::PartedImport import{source.topics(), tables::parse_streams(draft, "draft map"), simulated, false};
+  if (import.recordings() == 1) {
+    recordings::Worth worth;
+    for (Recording part; import.next(kRowsAtOnce, part); part = {}) worth.take(part);
+    const std::vector<std::string> notes = import.finish();
+    for (const std::string& reason : worth.against_fitting()) text += "# ! " + reason + "\n";
+    for (const std::string& note : notes) text += "# " + note + "\n";
+  } else {
+    for (const recordings::ImportedRun& run : import.all().runs) {
+      const std::string name = run.recording.name + ": ";
+      for (const std::string& reason : recordings::against_fitting(run.recording))
+        text += "# ! " + name + reason + "\n";
+      for (const std::string& note : run.notes) text += "# " + name + note + "\n";
+    }
   }
   return text + "#\n# A draft of a map, which runs as it is. Remarks say what must be checked.\n" + draft;
 }

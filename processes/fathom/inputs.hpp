@@ -9,6 +9,7 @@
 #include "common/exports/channel_tables.hpp"
 #include "common/exports/foreign_lcm.hpp"
 #include "common/recordings/formats.hpp"
+#include "common/recordings/import.hpp"
 #include "common/samples/recording.hpp"
 #include "common/tables/absent.hpp"
 
@@ -25,6 +26,7 @@ struct Source {
   std::shared_ptr<const exports::ForeignLcm> types;  ///< of an LCM log of another project
 
   [[nodiscard]] bool is_table() const { return format == nullptr && !lcm && !types && channels.empty(); }
+  [[nodiscard]] bool has_topics() const { return format != nullptr || types; }
   [[nodiscard]] recordings::Files topics() const;
 };
 
@@ -59,6 +61,14 @@ class RestoredLog {
  private:
   std::string folder_, path_, note_;
 };
+
+/// A source with topics on its way to samples, through a map or its draft; what is to be said of that goes to `notes`.
+[[nodiscard]] std::unique_ptr<recordings::PartedImport> parted_import(
+    const Source& source, const std::string& map, const std::optional<tables::SimulatedAxes>& simulated,
+    std::vector<std::string>& notes);
+
+/// Runs and notes of an import, under the source's name where it is one.
+void add_runs(recordings::ImportedFiles imported, const Source& source, FromSource& out);
 
 /// Reads a source through a map, or its draft (tables: the canonical columns) when `map` is empty.
 [[nodiscard]] FromSource read_source(const Source& source, const std::string& map,

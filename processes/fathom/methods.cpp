@@ -21,6 +21,7 @@
 #include "common/identification/base_regression.hpp"
 #include "common/identification/identifier.hpp"
 #include "common/runtime/command_line.hpp"
+#include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
@@ -232,6 +233,7 @@ void print_parameters(const std::vector<Method>& methods, const identification::
 
 void run_methods(const MethodsOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  check_command_units(options.map, vehicle);
   std::vector<std::string> notes;
   std::vector<std::string> paths = paths_of(options.train);
   const std::size_t fitted_runs = paths.size();

@@ -41,6 +41,9 @@ class Parts {
     } else if (source.is_table()) {
       mapped_ = std::make_unique<tables::MappedTable>(tables::read_mapped(path, options.map));
       table_ = std::make_unique<tables::TableImport>(mapped_->table, std::move(mapped_->map), options.simulated);
+    } else if (source.has_topics()) {
+      topics_ = parted_import(source, options.map, options.simulated, said_);
+      if (topics_->recordings() != 1) refuse_several(topics_->recordings());
     }
   }
 
@@ -49,18 +52,16 @@ class Parts {
     const double before = share();
     if (before > 0.0 && before < 1.0) even(before);
     if (log_) return log_->next(most_, part);
-    if (table_) return next_rows(part);
+    if (table_ || topics_) return next_rows(part);
     if (std::exchange(read_, true)) return false;
     FromSource all = read_source(source_, options_.map, options_.simulated);
     said_ = std::move(all.notes);
-    if (all.runs.size() != 1)
-      throw InputError(source_.files.front() + ": holds " + std::to_string(all.runs.size()) +
-                       " recordings, one behind the other; 'fathom import' writes each to a log of its own");
+    if (all.runs.size() != 1) refuse_several(all.runs.size());
     part = std::move(all.runs.front());
     return true;
   }
 
-  [[nodiscard]] bool ended() const { return log_ || table_ ? share() >= 1.0 : read_; }
+  [[nodiscard]] bool ended() const { return log_ || table_ || topics_ ? share() >= 1.0 : read_; }
 
   /// After the last part.
   [[nodiscard]] std::vector<std::string> notes() {
@@ -72,14 +73,21 @@ class Parts {
       for (const auto& some : {mapped_->notes, table_->finish()}) {
         for (const std::string& note : some) said_.push_back(path + ": " + note);
       }
+    } else if (topics_) {
+      for (std::string& note : topics_->finish()) said_.push_back(std::move(note));
     }
     return std::move(said_);
   }
 
  private:
+  [[noreturn]] void refuse_several(std::size_t count) const {
+    throw InputError(source_.files.front() + ": holds " + std::to_string(count) +
+                     " recordings, one behind the other; 'fathom import' writes each to a log of its own");
+  }
   /// Of the source that has been read, 0 to 1.
   [[nodiscard]] double share() const {
     if (log_) return log_->share();
+    if (topics_) return read_ ? 1.0 : topics_->share();
     if (!table_) return 0.0;
     const auto rows = static_cast<double>(mapped_->table.rows());
     return read_ || rows == 0.0 ? 1.0 : std::min(static_cast<double>(rows_) / rows, 1.0);
@@ -96,7 +104,7 @@ class Parts {
     Recording some;
     while (!read_ && wire::bytes_of(part) < most_) {
       some = {};
-      read_ = !table_->next(kRows, some);
+      read_ = !(table_ ? table_->next(kRows, some) : topics_->next(kRows, some));
       if (read_) break;
       any = true;
       rows_ += kRows;
@@ -113,6 +121,7 @@ class Parts {
   std::unique_ptr<wire::LogParts> log_;
   std::unique_ptr<tables::MappedTable> mapped_;
   std::unique_ptr<tables::TableImport> table_;
+  std::unique_ptr<recordings::PartedImport> topics_;
   std::size_t most_{options_.most}, rows_{};
   bool read_{}, evened_{};
   std::vector<std::string> said_;

@@ -40,6 +40,9 @@ std::string ulog() {
   return log.bytes;
 }
 
+constexpr const char* kTypes =
+    "package a;\n// what\nstruct one_t { const int32_t kTwo = 2; int64_t utime; // [us]\n int32_t n; double x[n][3]; "
+    "two_t two[2]; }\nstruct two_t { string name; byte b; }\n";
 constexpr const char* kDefinition = "float64 value\nint16[] list\nstring word";
 
 std::string mcap() {
@@ -123,6 +126,8 @@ int main(int argc, char** argv) {
                                       {"rosbag1", bag()},
                                       {"npy", npy()},
                                       {"drawing", kDrawing},
+                                      {"lcm_types", kTypes},
+                                      {"channel_table", "t,utime,z\n0,1000000,1.5\n0.1,1100000,1.6\n"},
                                       {"ros_definition", std::string{"\0\4\0", 3} + kDefinition}})
     seed(folder / format, "seed", bytes);
   return 0;

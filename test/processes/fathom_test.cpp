@@ -113,6 +113,26 @@ TEST_CASE("fathom: vehicle files to begin with are listed, printed as they are, 
   one_line(shell(kTool + " vehicle remus_100"), 1, "did you mean remus100?");
 }
 
+TEST_CASE(
+    "fathom: a map's commands are of the kinds that the vehicle's actuators take, or refused with what they are") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), test::read_bytes(FATHOM_SOURCE_DIR "/config/vehicles/slocum.yaml"));
+  test::write_bytes(scratch.path("a.csv"), "t,a,b\n0,100,0.5\n1,110,0.6\n");
+  const auto import = [&](const std::string& units) {
+    test::write_bytes(scratch.path("map.yaml"),
+                      "source: s\nlicence: l\ntime: {column: t, unit: s}\nthrusters: {inputs: "
+                      "{columns: [a, b], units: [" +
+                          units + "]}}\n");
+    return shell(kTool + " import --vehicle " + scratch.path("v.yaml") + " --map " + scratch.path("map.yaml") +
+                 " --out " + scratch.path("a.lcmlog") + " " + scratch.path("a.csv"));
+  };
+  CHECK(import("cc, in").code == 0);
+  const Ran swapped = import("in, cc");
+  CHECK(swapped.code == 1);
+  CHECK(swapped.says("map.yaml:4: 'inputs' names 2 commands whose units are not those of the vehicle's actuators"));
+  CHECK(swapped.says("engine in m^3, battery in m (or another"));
+}
+
 TEST_CASE("fathom: folds need recordings to hold out, and hold them out themselves") {
   const Scratch scratch;
   test::write_bytes(scratch.path("v.yaml"), kVehicle);

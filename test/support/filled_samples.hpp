@@ -48,6 +48,7 @@ inline void fill(Fill& f, Usbl& s) { s = {f.utime(), f.matrix<Vector3>(), f.matr
 inline void fill(Fill& f, Depth& s) { s = {f.utime(), f.number()}; }
 inline void fill(Fill& f, Ranges& s) { s = {f.utime(), f.list(), {1, 0, 1}}; }
 inline void fill(Fill& f, Loads& s) { s = {f.utime(), f.list()}; }
+inline void fill(Fill& f, Signal& s) { s = {f.utime(), f.word(), f.word(), f.word(), f.number()}; }
 inline void fill(Fill& f, PoseCapture& s) { s = {f.utime(), f.matrix<Vector3>(), f.quaternion(), false, true, false}; }
 inline void fill(Fill& f, Battery& s) { s = {f.utime(), f.number()}; }
 inline void fill(Fill& f, Thrusters& s) {

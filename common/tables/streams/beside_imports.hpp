@@ -1,4 +1,5 @@
-// Columns of instruments beside the usual ones to samples: acoustic fixes, ranges, loads.
+// Columns of instruments beside the usual ones to samples: acoustic fixes, ranges, loads, and whatever is carried as it
+// is.
 #pragma once
 
 #include <algorithm>
@@ -95,6 +96,51 @@ class LoadsImport {
   Group group_;
   Flags invalid_;
   Count count_{.stream = "loads"};
+};
+
+/// Each column by itself: an empty cell is no value of this one alone.
+class SignalImport {
+ public:
+  SignalImport(Resolver& resolve, const SignalColumns& columns) : invalid_{resolve, columns.invalid_where} {
+    for (const SignalColumn& one : columns.columns)
+      columns_.push_back({&one, Group{resolve, one.group}, {.stream = "column '" + name_of(one) + "'"}});
+  }
+
+  void take(const Slice& rows, Recording& out) {
+    for (std::size_t k = 0; k < rows.index.size(); ++k) {
+      const std::size_t row = rows.index[k];
+      const bool flagged = invalid_.set(row);
+      for (One& one : columns_) {
+        if (!one.group.complete(row)) {
+          ++one.count.empty;
+        } else if (flagged) {
+          ++one.count.flagged;
+        } else {
+          ++one.count.kept;
+          out.signals.push_back({.utime = rows.utime[k],
+                                 .name = name_of(*one.column),
+                                 .quantity = one.column->quantity,
+                                 .unit = one.column->unit,
+                                 .value = one.group.scalar(row)});
+        }
+      }
+    }
+  }
+
+  void report(const CsvTable& table, std::vector<std::string>& notes) const {
+    for (const One& one : columns_) one.count.report(table, notes);
+  }
+
+ private:
+  struct One {
+    const SignalColumn* column;
+    Group group;
+    Count count;
+  };
+  static const std::string& name_of(const SignalColumn& one) { return one.group.columns.front().name; }
+
+  std::vector<One> columns_;
+  Flags invalid_;
 };
 
 }  // namespace fathom::tables

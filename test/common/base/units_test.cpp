@@ -25,6 +25,9 @@ TEST_CASE("units: products, quotients, powers and parentheses come out as comput
   CHECK(unit_factor("us", "s") == 1e-6);
   CHECK(unit_factor("s", "us") == doctest::Approx(1e6).epsilon(kRounding));
   CHECK(unit_factor("V A", "W") == 1.0);
+  CHECK(unit_factor("cc", "m^3") == 1e-6);
+  CHECK(unit_factor("L/min", "m^3/s") == doctest::Approx(1e-3 / 60.0).epsilon(kRounding));
+  CHECK(unit_factor("in", "mm") == doctest::Approx(25.4).epsilon(kRounding));
   CHECK(unit_factor("N*m", "J") == 1.0);
   CHECK(unit_factor("m s^-2", "m/s^2") == 1.0);
   CHECK(unit_factor("", "") == 1.0);

@@ -261,6 +261,23 @@ TEST_CASE("info: channels with their rates and pauses, and the configuration tha
   CHECK(words.find("2024-05-27T12:00:00.000Z") != std::string::npos);
   CHECK(words.find("0.42 s at 0.8 s; 1 gaps") != std::string::npos);
   CHECK(words.find("estimator        version 1.2, 2 lines") != std::string::npos);
+  CHECK(words.find("SIGNAL") == std::string::npos);
+}
+
+TEST_CASE("info: columns that a log carries, by their names") {
+  const test::Scratch scratch;
+  Recording run;
+  for (int k = 0; k < 50; ++k) {
+    run.signals.push_back({100'000 * k, "ws", "wind_speed_true", "m/s", 2.0 + 0.1 * k});
+    run.signals.push_back({100'000 * k, "salinity", "", "psu", 35.0});
+  }
+  const std::string path = scratch.path("run.lcmlog");
+  CHECK(wire::write_log(run, path) == 100);
+  const exports::LogSummary summary = exports::summary_of(path);
+  REQUIRE(summary.signals.size() == 2);
+  const std::string words = exports::words_of(path, summary);
+  CHECK(words.find("ws (wind_speed_true): 50 values from 2 to 6.9 m/s\n") != std::string::npos);
+  CHECK(words.find("salinity: 50 values from 35 to 35 psu\n") != std::string::npos);
 }
 
 }  // namespace fathom

@@ -65,4 +65,43 @@ TEST_CASE(
   CHECK(described("time,b\n0,1\n1,2\n").find("No column has a usual name") != std::string::npos);
 }
 
+TEST_CASE("table draft: date and time of day in two columns, wind, units at the ends of names, a wrench") {
+  std::string boat = "Date;Time;Latitude;Longitude;HDG [deg];ROT [deg/min];SOG [kn];COG [deg];AWS [kn];AWA [deg]\n";
+  std::string pool = "elapsed_ms\teast_m\tnorth_m\tdepth_m\tsurge_cm_s\tsway_cm_s\tyawrate_deg_s\tFx_N\tFy_N\tMz_Nm\n";
+  for (int k = 0; k < 10; ++k) {
+    boat += "03.05.2026;09:00:0" + std::to_string(k) + ",5;54,3;10,1;90;6;2;90;10;" + std::to_string(90 + k) + "\n";
+    pool += std::to_string(50 * k) + "\t1\t2\t3\t40\t20\t57.29578\t1\t2\t3\n";
+  }
+  std::string draft;
+  const Recording sailed = drafted(boat, draft, kBoat).recording;
+  CAPTURE(draft);
+  CHECK(draft.find("time: {columns: [Date, Time], units: [date, date]}") != std::string::npos);
+  REQUIRE(sailed.pose_capture.size() == 10);
+  CHECK(seconds_between(sailed.pose_capture[0].utime, sailed.pose_capture[9].utime) == doctest::Approx(9.0));
+  CHECK(sailed.ahrs.at(0).w_WB_B.z() == doctest::Approx(6.0 / 60.0 * 0.01745329).epsilon(1e-6));
+  REQUIRE(sailed.signals.size() == 20);
+  CHECK(sailed.signals[0].quantity == "wind_speed_apparent");
+  CHECK(sailed.signals[0].value == doctest::Approx(5.14444).epsilon(1e-5));
+  CHECK(sailed.signals[1].value == doctest::Approx(1.5707963).epsilon(1e-6));
+
+  const Recording swum = drafted(pool, draft, {true, true, false, false, false, true}).recording;
+  CHECK(swum.pose_capture.at(9).p_WB.head<2>() == Eigen::Vector2d(2, 1));
+  CHECK(swum.dvl.at(0).v_WB_B.x() == doctest::Approx(0.4));
+  CHECK(swum.ahrs.at(0).w_WB_B.z() == doctest::Approx(1.0).epsilon(1e-6));
+  CHECK(swum.thrusters.at(0).tau[5] == 3.0);
+  CHECK(seconds_between(swum.dvl[0].utime, swum.dvl[9].utime) == doctest::Approx(0.45));
+}
+
+TEST_CASE("table draft: a Slocum's own names") {
+  std::string text = "m_present_time,m_depth,m_pitch,m_roll,m_heading,m_ballast_pumped,m_battpos\n";
+  for (int k = 0; k < 10; ++k) text += std::to_string(1700000000 + k) + ",10,0.4,0,1,-230,0.5\n";
+  std::string draft;
+  const Recording run = drafted(text, draft, kAll).recording;
+  CAPTURE(draft);
+  CHECK(run.depth.at(0).z == 10.0);
+  CHECK(run.ahrs.at(0).has_attitude);
+  CHECK(run.thrusters.at(0).pwm_us.at(0) == doctest::Approx(-230e-6));
+  CHECK(run.thrusters[0].pwm_us.at(1) == doctest::Approx(0.0127));
+}
+
 }  // namespace fathom

@@ -88,15 +88,18 @@ TEST_CASE("stamps: a clock that starts anew begins another recording; a block th
 }
 
 TEST_CASE("clocks: header stamps of the same clock are taken as they are, whatever the delay of receipt") {
-  recordings::TopicStamps imu{"/imu", {}}, dvl{"/dvl", {}};
+  std::vector<recordings::TopicStamps> both(2);
+  recordings::TopicStamps &imu = both[0], &dvl = both[1];
+  imu.topic = "/imu", dvl.topic = "/dvl";
   for (int i = 0; i < 100; ++i) {
     imu.stamps.push_back({1'600'000'000 * kSecond + i * 20'000 + 3000, 1'600'000'000 * kSecond + i * 20'000});
-    dvl.stamps.push_back(
-        {1'600'000'000 * kSecond + i * 100'000 + 60'000 + (i % 9) * 10'000, 1'600'000'000 * kSecond + i * 100'000});
+    std::int64_t measured = 1'600'000'000 * kSecond + i * 100'000;
+    const std::int64_t log = measured + 60'000 + (i % 9) * 10'000;
+    if (i == 50) measured = 5;  // nonsense: receipt, less the delay of the one before
+    if (i == 51) measured = kNoTime;
+    dvl.stamps.push_back({log, measured});
   }
-  dvl.stamps[50].measured = 5;  // nonsense: receipt, less the delay of the one before
-  dvl.stamps[51].measured = kNoTime;
-  const auto out = recordings::align_clocks({imu, dvl});
+  const auto out = recordings::align_clocks(both);
   for (std::size_t i = 0; i < 100; ++i) CHECK(out.times[0][i] == imu.stamps[i].measured);
   CHECK(out.times[1][10] == dvl.stamps[10].measured);
   CHECK(std::abs(out.times[1][50] - (1'600'000'000 * kSecond + 50 * 100'000)) < 100'000);
@@ -109,7 +112,9 @@ TEST_CASE(
   constexpr double kDrift = 50e-6;
   std::mt19937 random{3};
   std::exponential_distribution<double> late{1.0 / 0.03};
-  recordings::TopicStamps fast{"ATTITUDE", {}}, slow{"RAW_IMU", {}};
+  std::vector<recordings::TopicStamps> both(2);
+  recordings::TopicStamps &fast = both[0], &slow = both[1];
+  fast.topic = "ATTITUDE", slow.topic = "RAW_IMU";
   const auto received = [&](double boot) {
     return static_cast<std::int64_t>(1e6 * (1.6e9 + boot * (1.0 + kDrift) + late(random)));
   };
@@ -118,7 +123,7 @@ TEST_CASE(
     fast.stamps.push_back({received(boot), static_cast<std::int64_t>(1e6 * boot)});
     if (i % 2 == 0) slow.stamps.push_back({received(boot + 0.01), static_cast<std::int64_t>(1e6 * (boot + 0.01))});
   }
-  const auto out = recordings::align_clocks({fast, slow});
+  const auto out = recordings::align_clocks(both);
   for (const std::size_t i : {std::size_t{0}, std::size_t{15'000}, std::size_t{29'999}}) {
     const double boot = 1e-6 * static_cast<double>(fast.stamps[i].measured);
     CHECK(1e-6 * static_cast<double>(out.times[0][i]) ==
@@ -171,6 +176,22 @@ TEST_CASE("merging: the shift between two clocks is found by the motion that bot
   notes.clear();
   CHECK(recordings::merge({pilot, both}, {std::nullopt, 0.0}, notes).ahrs.size() == pilot.ahrs.size());
   CHECK(notes.back().find("ahrs left out") != std::string::npos);
+}
+
+TEST_CASE("merging: columns that are carried come together by their names") {
+  Recording pilot, shore;
+  pilot.name = "pilot", shore.name = "shore";
+  pilot.signals = {{1'000'000, "wind", "", "m/s", 5.0}, {3'000'000, "wind", "", "m/s", 6.0}};
+  shore.signals = {
+      {1'000'000, "tide", "", "m", 1.0}, {2'000'000, "wind", "", "m/s", 9.0}, {4'000'000, "tide", "", "m", 2.0}};
+  std::vector<std::string> notes;
+  const Recording run = recordings::merge({pilot, shore}, {std::nullopt, 0.5}, notes);
+  REQUIRE(run.signals.size() == 4);
+  CHECK(std::ranges::is_sorted(run.signals, {}, &Signal::utime));
+  CHECK(run.signals[1].name == "tide");
+  CHECK(run.signals[1].utime == 1'500'000);
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("column 'wind' left out: pilot has them") != std::string::npos);
 }
 
 }  // namespace fathom

@@ -28,6 +28,17 @@ std::string fault(const CsvTable& table, const std::string& name) {
 
 }  // namespace
 
+TEST_CASE("csv: a row of units below the header, as archives write it, is no row of numbers") {
+  const CsvTable table = parse_csv("time,depth,pitch,status\nUTC,m,degrees,\n0,1,2,\n1,1,2,\n", "run.csv");
+  CHECK(table.rows() == 2);
+  CHECK(table.units == std::vector<std::string>{"", "m", "deg", ""});
+  CHECK(table.where(0) == "run.csv:3");
+  CHECK(table.faults == std::vector<std::string>(4));
+  // Words that are no units are words of a row; a unit behind numbers is a fault there.
+  CHECK(parse_csv("t,mode\nnone,idle\n1,run\n", "run.csv").rows() == 2);
+  CHECK(parse_csv("t,depth\n0,1\ns,m\n1,2\n", "run.csv").faults[1].find("'m' is not a number") != std::string::npos);
+}
+
 TEST_CASE("csv: semicolons, with points or commas in the numbers, and tabs part columns as well") {
   const CsvTable semicolons = parse_csv("t;\"u\"; v\r\n0,5;-1.5e-3;\r\n1;-2,5E+1;nan\r\n", "run.csv");
   CHECK(semicolons.names == std::vector<std::string>{"t", "u", "v"});

@@ -279,6 +279,45 @@ TEST_CASE("columns: acoustic fixes, ranges and loads come in from tables; an emp
   CHECK(own.recording.usbl.at(0).sigma == Vector3d(0.2, 0.1, 0.3));
 }
 
+TEST_CASE("columns: wind and whatever else was measured are carried under their names, in SI where the unit is known") {
+  const std::string csv = "t,ws,wd,winch,salinity,bad\n0,10,90,60,35.1,0\n1,,180,,35.2,0\n2,20,270,30,35.3,1\n";
+  const std::string map =
+      "wind:\n  reference: apparent\n  speed: {column: ws, unit: kn}\n  from: {column: wd, unit: deg}\n"
+      "signals:\n  columns: [winch, salinity]\n  units: [rpm, 'g/kg of salt']\n  invalid_where: [bad]\n";
+  const ColumnMap first = ColumnMap::parse(kAbout + map, "map.yaml");
+  for (const std::string& text : {kAbout + map, to_yaml(first)}) {
+    CAPTURE(text);
+    const Imported in = import_table(parse_csv(csv, "run.csv"), ColumnMap::parse(text, "map.yaml"));
+    const std::vector<Signal>& all = in.recording.signals;
+    REQUIRE(all.size() == 2 + 3 + 1 + 2);
+    CHECK(std::ranges::is_sorted(all, {}, &Signal::utime));
+    const auto of = [&](const std::string& name) {
+      std::vector<Signal> some;
+      std::ranges::copy_if(all, std::back_inserter(some), [&](const Signal& one) { return one.name == name; });
+      return some;
+    };
+    CHECK(of("ws")[1].value == doctest::Approx(20.0 * 1852.0 / 3600.0));
+    CHECK(of("ws")[1].utime == 2'000'000);
+    CHECK(of("ws")[0].quantity == "wind_speed_apparent");
+    CHECK(of("ws")[0].unit == "m/s");
+    CHECK(of("wd")[0].value == doctest::Approx(0.5 * std::numbers::pi));
+    CHECK(of("wd")[0].quantity == "wind_from_apparent");
+    CHECK(of("winch")[0].value == doctest::Approx(2.0 * std::numbers::pi));
+    CHECK(of("winch")[0].unit == "rad/s");
+    CHECK(of("winch").size() == 1);
+    CHECK(of("salinity")[1].value == 35.2);
+    CHECK(of("salinity")[0].unit == "g/kg of salt");
+    CHECK(of("salinity")[0].quantity.empty());
+    CHECK(noted(in, "column 'salinity': 1 samples marked or left out as invalid by their flags"));
+  }
+  CHECK_THROWS_WITH_AS(import_text(csv, "wind: {speed: {column: ws, unit: kn}, reference: ground}\n"),
+                       doctest::Contains("must be true (over ground"), InputError);
+  CHECK_THROWS_WITH_AS(import_text(csv, "wind: {speed: {column: ws, unit: deg}, reference: true}\n"),
+                       doctest::Contains("does not fit"), InputError);
+  CHECK_THROWS_WITH_AS(import_text(csv, "signals: {columns: [ws, wd], units: [kn]}\n"),
+                       doctest::Contains("one unit for each"), InputError);
+}
+
 TEST_CASE("columns: ranges and loads by their names need no map") {
   const CsvTable table = parse_csv("t,range_A,range_B,load_x\n0,1,2,3\n1,1,,3\n", "run.csv");
   const Imported imported = import_table(table, canonical_map(table));

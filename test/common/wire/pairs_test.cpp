@@ -153,6 +153,7 @@ TEST_CASE("wire: every sensor sample comes back whole, and no non-finite number 
   check_pair<Depth, 2>();
   check_pair<Ranges, 3>();
   check_pair<Loads, 2>();
+  check_pair<Signal, 5>();
   check_pair<PoseCapture, 6>();
   check_pair<Battery, 2>();
   check_pair<Thrusters, 5>();
@@ -253,8 +254,8 @@ TEST_CASE("wire: no two message types share a fingerprint, so lcm-spy names each
     ++types;
   });
   CHECK(fingerprints.size() == types);
-  CHECK(types == 32);  // as many as there are files in lcmtypes/, the two of lockstep apart
-  CHECK(channels.size() == 25);
+  CHECK(types == 33);  // as many as there are files in lcmtypes/, the two of lockstep apart
+  CHECK(channels.size() == 26);
 }
 
 }  // namespace fathom

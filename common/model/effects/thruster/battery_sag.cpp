@@ -21,7 +21,7 @@ constexpr double kSmallestShare = 0.05;   // of the thrust, which cannot turn ro
 
 void scale_propellers(Motion& motion, double factor) {
   for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
-    if (!is_fin(motion, i)) motion.force[i] *= factor;
+    if (!is_no_propeller(motion, i)) motion.force[i] *= factor;
   }
 }
 

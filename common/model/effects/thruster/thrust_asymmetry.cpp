@@ -15,7 +15,7 @@ class WeakerAstern final : public Form {
  public:
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
-      if (motion.force[i] < 0.0 && !is_fin(motion, i)) motion.force[i] *= 1.0 + theta[0];
+      if (motion.force[i] < 0.0 && !is_no_propeller(motion, i)) motion.force[i] *= 1.0 + theta[0];
     }
   }
 };

@@ -45,7 +45,7 @@ class LossByAdvance : public Form {
     const Eigen::Index speeds = of_hull_ ? 3 : 6;
     const Eigen::Index count = wrench ? std::min(kForces, motion.force.size()) : motion.force.size();
     for (Eigen::Index i = 0; i < count; ++i) {
-      if (is_fin(motion, i)) continue;
+      if (is_no_propeller(motion, i)) continue;
       // axis . (v_r + w x p)
       const double advance = wrench ? nu_r[i] : allocation.col(i).head(speeds).dot(nu_r.head(speeds));
       motion.force[i] -= theta[0] * loses(std::abs(motion.force[i])) * advance;

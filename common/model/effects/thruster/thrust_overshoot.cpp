@@ -36,7 +36,8 @@ class FadingThrust : public Form {
   void feel(Motion& motion, EffectTheta theta, std::span<const double> z) const final {
     for (std::size_t i = 0; i < z.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      if (fades(*motion.vehicle, k, motion.force.size()) && !is_fin(motion, k)) motion.force[k] -= theta[0] * z[i];
+      if (fades(*motion.vehicle, k, motion.force.size()) && !is_no_propeller(motion, k))
+        motion.force[k] -= theta[0] * z[i];
     }
   }
 

@@ -40,7 +40,7 @@ class Offset final : public Form {
     if (theta[0] <= 0.0) return;
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
       double& force = motion.force[i];
-      if (!is_fin(motion, i)) force = std::copysign(std::max(std::abs(force) - theta[0], 0.0), force);
+      if (!is_no_propeller(motion, i)) force = std::copysign(std::max(std::abs(force) - theta[0], 0.0), force);
     }
   }
 };
@@ -65,7 +65,7 @@ class Step final : public Form {
       motion.input->change(motion.t, across);
     }
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
-      if (is_fin(motion, i)) continue;
+      if (is_no_propeller(motion, i)) continue;
       double& force = motion.force[i];
       // A command that passes the step's edge between two samples is on either side for its share of the time. One
       // that was delayed has been on its way at another time.
@@ -82,7 +82,7 @@ class Rounded final : public Form {
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
     if (theta[0] <= 0.0) return;
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
-      if (is_fin(motion, i)) continue;
+      if (is_no_propeller(motion, i)) continue;
       double& force = motion.force[i];
       const double share = std::min(std::abs(force) / theta[0], 1.0);
       force *= share * share * (3.0 - 2.0 * share);

@@ -70,7 +70,10 @@ TEST_CASE("speed_drag: is asked of an axis only where others move too") {
   CHECK(model::find_effect("speed_drag")->variants(scene).back() == "N_|V|r");
   scene.nu_rms[1] = 0.1;
   CHECK(model::find_effect("speed_drag")->variants(scene)[0] == "X_|V|u");
-  vehicle.flow_matters = false;  // an open frame: the file states neither fins nor propellers nor windage
+  vehicle.flow_matters = false;
+  vehicle.weight_moves = true;  // a glider
+  CHECK_FALSE(model::find_effect("speed_drag")->variants(scene).empty());
+  vehicle.weight_moves = false;  // an open frame: the file states neither fins nor propellers nor windage
   for (const char* name : {"speed_drag", "body_lift", "turning_resistance", "steady_force", "wind"}) {
     CAPTURE(name);
     CHECK(model::find_effect(name)->variants(scene).empty());

@@ -1,0 +1,24 @@
+// Any text as an .lcm file: types with fingerprints, or one complaint that names file and line.
+#include <array>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "common/base/error.hpp"
+#include "common/exports/definitions.hpp"
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
+  const std::array<std::string_view, 1> texts{std::string_view{reinterpret_cast<const char*>(data), size}};
+  const std::array<std::string, 1> paths{"fuzz.lcm"};
+  try {
+    const fathom::exports::Definitions definitions{texts, paths};
+    for (const auto& [name, type] : definitions.all()) {
+      if (&definitions.type(type.package, type.name) != &type) std::abort();
+      (void)definitions.fingerprint(type);
+    }
+  } catch (const fathom::InputError& error) {
+    if (std::string_view{error.what()}.find("fuzz.lcm") == std::string_view::npos) std::abort();
+  }
+  return 0;
+}
