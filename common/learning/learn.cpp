@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
 #include "common/learning/seek_force.hpp"
 #include "common/learning/wording.hpp"
@@ -193,7 +194,8 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   const Fit& base = conclusion.found.best.fit;
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
   std::optional<inference::FreeForceFound> free = conclusion.found.free_force;
-  if (!conclusion.found.cut_short) {
+  // A screen of all products of an hour costs minutes: long recordings are learned by the search's broad groups alone.
+  if (!conclusion.found.cut_short && !inference::stretches_of(problem, {})) {
     inference::FreeForceFound sought = seek_force(problem, base, scene, limits, threads);
     if (sought.fit.finite && !(free && free->fit.finite && free->log_odds > sought.log_odds)) free = std::move(sought);
   }
