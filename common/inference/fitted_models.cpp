@@ -135,6 +135,15 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
              all[i].score + kToCome * gained[i] < best() - of.near;
     });
   }
+  // What the last step of the noise has left open, where it tells.
+  std::vector<std::size_t> told;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].fit.finite && all[i].score >= best() - of.near) told.push_back(i);
+  }
+  for_each_index(told.size(), threads_, [&](std::size_t k) {
+    fits[told[k]]->settle();
+    all[told[k]] = judged(fits[told[k]]->fit());
+  });
   fitted_.insert(fitted_.end(), all.begin(), all.end());
   progress_.done(kCandidateFit.phase, count);
   to_come_ = std::max(0.0, to_come_ - count);
