@@ -394,24 +394,34 @@ bool Searching::swap() {
 
 Found search(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
              const Thresholds& thresholds, int threads, const Progress& progress, const Deadline& deadline) {
-  const auto searching = [&](const likelihood::Problem& of) {
-    return Searching{of, scene, without, thresholds, threads, progress, deadline};
+  const auto searching = [&](const likelihood::Problem& of, const Progress& told) {
+    return Searching{of, scene, without, thresholds, threads, told, deadline};
   };
   const std::optional<Stretches> stretches = stretches_of(problem, thresholds);
-  if (!stretches) return searching(problem).run();
+  if (!stretches) return searching(problem, progress).run();
+  progress.expect(kWholeRuns.phase, 1, kWholeRuns.weight * stretches->of_whole);
   const likelihood::Problem few = likelihood::make_problem(*problem.vehicle, stretches->trials, problem.run_settings);
-  Searching ahead = searching(few);
+  Searching ahead = searching(few, progress);
   const Found found = ahead.run();
-  if (!found.base.fit.finite) return searching(problem).run();
-  const auto start = [&](const Fitted& fitted) { return on_whole_runs(fitted.fit, *stretches, problem.runs.size()); };
-  Before before{.base = start(found.base)};
-  if (!found.best.names.empty()) before.sets.push_back(start(found.best));
-  for (const Fitted& fitted : found.near) {
-    if (!fitted.names.empty()) before.sets.push_back(start(fitted));
+  // One step of the whole work, whatever it consists of: a fit takes another time here.
+  const Progress one_step{[&](const Progress::Event& event) {
+    if (event.kind == Progress::Event::Kind::kBegin) progress.begin(kWholeRuns.phase, event.what);
+  }};
+  progress.begin(kWholeRuns.phase, kWholeRuns.what);
+  Searching whole = searching(problem, one_step);
+  Before before;
+  if (found.base.fit.finite) {
+    const auto start = [&](const Fitted& fitted) { return on_whole_runs(fitted.fit, *stretches, problem.runs.size()); };
+    before.base = start(found.base);
+    if (!found.best.names.empty()) before.sets.push_back(start(found.best));
+    for (const Fitted& fitted : found.near) {
+      if (!fitted.names.empty()) before.sets.push_back(start(fitted));
+    }
+    whole.know(ahead);
   }
-  Searching whole = searching(problem);
-  whole.know(ahead);
-  return whole.run(&before);
+  Found of_all = whole.run(found.base.fit.finite ? &before : nullptr);
+  progress.done(kWholeRuns.phase);
+  return of_all;
 }
 
 }  // namespace fathom::inference

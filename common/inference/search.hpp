@@ -14,6 +14,8 @@ namespace fathom::inference {
 constexpr Step kBaseFit{"base fit", "fitting the base model", 3.0};
 constexpr Step kScan{"scans", "asking every effect", 2.0};
 constexpr Step kFreeForceFit{"free force", "looking for a force that no list holds", 5.0};
+constexpr Step kWholeRuns{"whole runs", "fitting what was found to all of the recordings",
+                          3.0};  ///< per length of the stretches
 constexpr Step kHorizonFit{"horizon", "numbers that predict ten seconds", 4.0};
 
 /// Why a candidate was not taken, at its best.

@@ -23,7 +23,7 @@ std::optional<Stretches> stretches_of(const likelihood::Problem& whole, const Th
   const auto all = static_cast<double>(blocks_of(whole));
   if (all <= kLongEnough * thresholds.search_blocks) return std::nullopt;
   const double share = thresholds.search_blocks / all;
-  Stretches stretches;
+  Stretches stretches{.of_whole = 1.0 / share};
   for (std::size_t r = 0; r < whole.runs.size(); ++r) {
     const likelihood::RunData& run = whole.runs[r];
     const Trial& trial = run.trial();

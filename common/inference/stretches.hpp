@@ -14,6 +14,7 @@ namespace fathom::inference {
 struct Stretches {
   std::vector<Trial> trials;
   std::vector<std::size_t> run;  ///< of Problem::runs, of each of them
+  double of_whole{1.0};          ///< length of all runs over theirs
 };
 
 /// Stretches of together about `Thresholds::search_blocks` blocks, spread evenly, at least one of every run; nothing:

@@ -167,10 +167,15 @@ std::string attitude_of(const Columns& all) {
   return "  euler: {columns: " + euler.list() + ", unit: " + angle_unit(euler) + ", world: NED, body: FRD}\n";
 }
 
-std::string position_of(const Columns& all) {
+/// Where north and east stand without a third, a depth in their unit is it; `with_depth` says so.
+std::string position_of(const Columns& all, bool& with_depth) {
   const Group ros{all, {{".position.x"}, {".position.y"}, {".position.z"}}};
   if (ros.there() > 1) return vector_line("position", ros, ros.unit("m", "m"), "ENU");
-  const Group ned{all, {{"x", "north", "x_ned"}, {"y", "east", "y_ned"}, {"z", "down", "z_ned"}}};
+  Group ned{all, {{"x", "north", "x_ned"}, {"y", "east", "y_ned"}, {"z", "down", "z_ned"}}};
+  const Column* depth = all.find({"depth"});
+  with_depth = ned.columns[0] != nullptr && ned.columns[1] != nullptr && ned.columns[2] == nullptr &&
+               depth != nullptr && depth->unit == ned.columns[0]->unit;
+  if (with_depth) ned.columns[2] = depth;
   if (ned.there() > 1) return vector_line("position", ned, ned.unit("m", "m"), "NED");
   const Group globe{all, {{"lat", "latitude"}, {"lon", "lng", "longitude"}}};
   return globe.whole() ? "  geodetic: {columns: " + globe.list() + ", unit: deg}\n" : "";
@@ -294,14 +299,15 @@ std::string describe_table(const CsvTable& table) {
   text += "#\n";
   const auto likely = tables::likely_time(table);
   const std::string time = likely ? likely->key + "\n" : "";
-  std::string pose = position_of(columns), attitude = attitude_of(columns), inertial = inertial_of(columns);
+  bool with_depth = false;
+  std::string pose = position_of(columns, with_depth), attitude = attitude_of(columns), inertial = inertial_of(columns);
   (pose.empty() ? inertial : pose) += attitude;
-  const std::string streams = section("pose_capture", pose) + section("ahrs", inertial) +
-                              section("dvl", velocity_of(columns)) +
-                              section("depth", scalar_of(columns, {"depth", "m_depth"}, "m", "  direction: down\n")) +
-                              section("thrusters", thrust_of(columns)) +
-                              section("battery", scalar_of(columns, {"voltage", "volt", "volts", "battery"}, "V", "")) +
-                              section("wind", wind_of(columns));
+  const std::string streams =
+      section("pose_capture", pose) + section("ahrs", inertial) + section("dvl", velocity_of(columns)) +
+      section("depth", with_depth ? "" : scalar_of(columns, {"depth", "m_depth"}, "m", "  direction: down\n")) +
+      section("thrusters", thrust_of(columns)) +
+      section("battery", scalar_of(columns, {"voltage", "volt", "volts", "battery"}, "V", "")) +
+      section("wind", wind_of(columns));
   if (time.empty() || streams.empty())
     return text + "# " + (time.empty() ? "No column looks like the time" : "No column has a usual name") +
            ": a map must be written by hand (docs/configuration.md).\n";

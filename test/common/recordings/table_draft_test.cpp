@@ -67,10 +67,12 @@ TEST_CASE(
 
 TEST_CASE("table draft: date and time of day in two columns, wind, units at the ends of names, a wrench") {
   std::string boat = "Date;Time;Latitude;Longitude;HDG [deg];ROT [deg/min];SOG [kn];COG [deg];AWS [kn];AWA [deg]\n";
-  std::string pool = "elapsed_ms\teast_m\tnorth_m\tdepth_m\tsurge_cm_s\tsway_cm_s\tyawrate_deg_s\tFx_N\tFy_N\tMz_Nm\n";
+  std::string pool =
+      "elapsed_ms\teast_m\tnorth_m\tdepth_m\tsurge_cm_s\tsway_cm_s\theave_cm_s\tyawrate_deg_s\tFx_N\tFy_N\tFz_N\tMz_"
+      "Nm\n";
   for (int k = 0; k < 10; ++k) {
     boat += "03.05.2026;09:00:0" + std::to_string(k) + ",5;54,3;10,1;90;6;2;90;10;" + std::to_string(90 + k) + "\n";
-    pool += std::to_string(50 * k) + "\t1\t2\t3\t40\t20\t57.29578\t1\t2\t3\n";
+    pool += std::to_string(50 * k) + "\t1\t2\t3\t40\t20\t0\t57.29578\t1\t2\t0\t3\n";
   }
   std::string draft;
   const Recording sailed = drafted(boat, draft, kBoat).recording;
@@ -84,8 +86,9 @@ TEST_CASE("table draft: date and time of day in two columns, wind, units at the 
   CHECK(sailed.signals[0].value == doctest::Approx(5.14444).epsilon(1e-5));
   CHECK(sailed.signals[1].value == doctest::Approx(1.5707963).epsilon(1e-6));
 
-  const Recording swum = drafted(pool, draft, {true, true, false, false, false, true}).recording;
-  CHECK(swum.pose_capture.at(9).p_WB.head<2>() == Eigen::Vector2d(2, 1));
+  const Recording swum = drafted(pool, draft, {true, true, true, false, false, true}).recording;
+  CHECK(swum.pose_capture.at(9).p_WB == Eigen::Vector3d(2, 1, 3));
+  CHECK(swum.depth.empty());  // the same number twice would prove nothing
   CHECK(swum.dvl.at(0).v_WB_B.x() == doctest::Approx(0.4));
   CHECK(swum.ahrs.at(0).w_WB_B.z() == doctest::Approx(1.0).epsilon(1e-6));
   CHECK(swum.thrusters.at(0).tau[5] == 3.0);
