@@ -37,7 +37,7 @@ class Searching {
   /// `before`: what stretches of these runs have told.
   Found run(const Before* before = nullptr);
   /// What a search of stretches of these runs has told of names, besides its models. Forms, times and places are not
-  /// sought again, nor what could stand in another's place: on more data its odds only grow.
+  /// sought again, nor what could stand in another's place: on more data its odds can be expected to grow.
   void know(const Searching& ahead);
 
  private:
