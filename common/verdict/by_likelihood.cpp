@@ -9,6 +9,7 @@
 #include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/traces.hpp"
+#include "common/diagnosis/unseen_event.hpp"
 #include "common/diagnosis/whiteness.hpp"
 #include "common/diagnosis/wiring.hpp"
 #include "common/identification/sparse.hpp"
@@ -113,6 +114,39 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
   }
 }
 
+/// The first named effect that another may stand in the place of, and that other as it was fitted there.
+std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_in(const Conclusion& conclusion,
+                                                                             const likelihood::Fit& named) {
+  const inference::Found& found = conclusion.found;
+  const auto& effects = named.hypothesis.model.effects;
+  for (std::size_t e = 0; e < effects.size() && e < found.rival.size(); ++e) {
+    if (found.rival[e].empty() || found.probability[e] >= inference::Thresholds{}.name_probability) continue;
+    for (const inference::Fitted& near : found.near) {
+      for (const model::ActiveEffect& other : near.fit.hypothesis.model.effects) {
+        if (other.effect->name() == found.rival[e]) return std::pair{effects[e], other};
+      }
+    }
+  }
+  return {};
+}
+
+/// Correlations of the likelihood's information, deviations as they are told.
+void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, VerdictGiven& given) {
+  const Eigen::Index size = fit.information.rows();
+  if (!fit.finite || sigma.size() != size || size != static_cast<Eigen::Index>(fit.numbers.size())) return;
+  const Eigen::MatrixXd inverse = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::VectorXd scale = sigma.array() / inverse.diagonal().array().max(1e-300).sqrt();
+  std::vector<Eigen::Index> told;
+  for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
+    if (fit.numbers[j].kind == NumberKind::kWeight) continue;
+    told.push_back(static_cast<Eigen::Index>(j));
+    given.covariance_of.push_back(fit.numbers[j].name);
+  }
+  for (const Eigen::Index i : told) {
+    for (const Eigen::Index j : told) given.covariance.push_back(inverse(i, j) * scale[i] * scale[j]);
+  }
+}
+
 void list_refused(const inference::Found& found, DiagnosisResult& result, VerdictGiven& given) {
   for (const inference::Refused& refused : found.refused) {
     CandidateTried candidate{
@@ -136,6 +170,14 @@ Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen,
   return diagnosis::improvement(diagnosis::predict(before, windows), diagnosis::predict(after, windows), vehicle);
 }
 
+/// Something that no fit can have seen, in runs that judge. The fitted ones are seen by the same steps of time.
+std::optional<UnseenEvent> something_begins(const model::Model& model, std::span<const Trial> train,
+                                            std::span<const Trial> unseen) {
+  std::vector<Trial> fitted;
+  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  return diagnosis::unseen_event(model, fitted, unseen);
+}
+
 /// Predictions on runs that no fit has seen, beside the simplest ones. An axis that is foretold worse than by saying
 /// that nothing changes has no model.
 void judge_predictions(const model::Vehicle& vehicle, const model::Model& before, const model::Model& after,
@@ -153,6 +195,7 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
   for (std::size_t i = 0; free && i < free->explainable.size() && i < conclusion.random.size(); ++i)
     given.explainable.push_back(
         {model::kAxisNames[static_cast<std::size_t>(conclusion.random[i].axis)], free->explainable[i]});
+  report.unseen_event = something_begins(after, train, unseen);
   const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
   if (windows.empty()) return;
   const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
@@ -170,6 +213,14 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
     conclusion.reasons.push_back({inference::Cause::kNoSkill, row.over_unchanged, 0.0, row.axis});
     conclusion.verdict = Verdict::no_model;
   }
+}
+
+/// What begins where no fit could see it is something that nothing here explains.
+void begins_later(const DiagnosisReport& report, Conclusion& conclusion) {
+  if (!report.unseen_event || conclusion.verdict == Verdict::no_model) return;
+  conclusion.reasons.push_back(
+      {inference::Cause::kBeginsUnseen, report.unseen_event->t, 0.0, report.unseen_event->run});
+  if (conclusion.verdict == Verdict::adequate) conclusion.verdict = Verdict::unexplained;
 }
 
 /// The likeliest reason for a model that does not follow its thrust, measured.
@@ -247,6 +298,8 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
           "on runs that no fit has seen the model with it predicts worse than that nothing changes";
     }
   }
+  begins_later(report, conclusion);
+  answer.verdict = conclusion.verdict;
   result.verdict = word(conclusion.verdict);
   result.paragraph = paragraph(conclusion);
   for (const inference::Reason& reason : conclusion.reasons)
@@ -270,9 +323,13 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
   result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
+  answer.best = best;
+  answer.best_sigma = with_names ? of_named : of_base;
+  answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;
   if (told) {
+    put_covariance(best, answer.best_sigma, answer.given);
     result.parameters_before = numbers_of(conclusion.reported_base, of_base);
-    result.parameters_after = numbers_of(best, with_names ? of_named : of_base);
+    result.parameters_after = numbers_of(best, answer.best_sigma);
   }
   return answer;
 }
