@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/model/onset.hpp"
+#include "common/residual/force_residual.hpp"
 
 namespace fathom::diagnosis {
 namespace {

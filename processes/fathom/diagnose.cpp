@@ -19,9 +19,6 @@
 #include "common/consistency/flow_check.hpp"
 #include "common/consistency/thruster_clock.hpp"
 #include "common/diagnosis/diagnoser.hpp"
-#include "common/diagnosis/force_unit.hpp"
-#include "common/diagnosis/implausible.hpp"
-#include "common/diagnosis/sensor_faults.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
@@ -29,6 +26,9 @@
 #include "common/estimation/wording.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
+#include "common/preflight/force_unit.hpp"
+#include "common/preflight/implausible.hpp"
+#include "common/preflight/sensor_faults.hpp"
 #include "common/recordings/worth.hpp"
 #include "common/report/folds.hpp"
 #include "common/report/report.hpp"
@@ -328,7 +328,7 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
   }
   Explained explained;
   explain(trials_of_recordings(), explained, estimation::Kept::kLast);
-  if (diagnosis::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
+  if (preflight::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
     consistency::put_thrusters_on_pose_clock(consistency);
     explain(trials_of_recordings(), explained, estimation::Kept::kLast);
   }
@@ -355,10 +355,10 @@ DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string
     separate(vehicle, *room, fitting.trials(), explained.fitted, report.result);
   report.result.consistency = std::move(consistency.findings);
   report.result.consistency.insert(report.result.consistency.end(), explained.gaps.begin(), explained.gaps.end());
-  diagnosis::adopt_sensor_faults(report.result);
-  if (auto finding = diagnosis::compare_inertia(vehicle, report.result.parameters_after))
+  preflight::adopt_sensor_faults(report.result);
+  if (auto finding = preflight::compare_inertia(vehicle, report.result.parameters_after))
     report.result.consistency.push_back(*std::move(finding));
-  std::ranges::move(diagnosis::implausible_numbers(vehicle, report.result.parameters_after),
+  std::ranges::move(preflight::implausible_numbers(vehicle, report.result.parameters_after),
                     std::back_inserter(report.result.consistency));
   const double left_out = (fitting.left_out() + judging.left_out()) / (fitting.whole() + judging.whole());
   if (left_out > kNotable) {
