@@ -9,13 +9,13 @@
 #include "common/consistency/dead_axes.hpp"
 #include "common/consistency/flow_check.hpp"
 #include "common/consistency/thruster_clock.hpp"
-#include "common/diagnosis/force_unit.hpp"
-#include "common/diagnosis/implausible.hpp"
-#include "common/diagnosis/sensor_faults.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/shared_clock.hpp"
 #include "common/estimation/split.hpp"
 #include "common/estimation/wording.hpp"
+#include "common/preflight/force_unit.hpp"
+#include "common/preflight/implausible.hpp"
+#include "common/preflight/sensor_faults.hpp"
 #include "common/verdict/stretches.hpp"
 
 namespace fathom::verdict {
@@ -74,7 +74,7 @@ class Work {
     if (divided_)
       notes_.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
     Look look = explain(estimation::Kept::kLast);
-    if (diagnosis::thrust_as_late_as_gyro(look.answer.report.result, consistency_.findings)) {
+    if (preflight::thrust_as_late_as_gyro(look.answer.report.result, consistency_.findings)) {
       consistency::put_thrusters_on_pose_clock(consistency_);
       look = explain(estimation::Kept::kLast);
     }
@@ -170,9 +170,9 @@ class Work {
     result.consistency = std::move(consistency_.findings);
     std::ranges::move(look.gaps, std::back_inserter(result.consistency));
     adopt_sensor_faults(look.answer);
-    if (auto finding = diagnosis::compare_inertia(vehicle_, result.parameters_after))
+    if (auto finding = preflight::compare_inertia(vehicle_, result.parameters_after))
       result.consistency.push_back(*std::move(finding));
-    std::ranges::move(diagnosis::implausible_numbers(vehicle_, result.parameters_after),
+    std::ranges::move(preflight::implausible_numbers(vehicle_, result.parameters_after),
                       std::back_inserter(result.consistency));
     const double left_out =
         (look.fitting->left_out() + look.judging->left_out()) / (look.fitting->whole() + look.judging->whole());
@@ -203,7 +203,7 @@ std::string listed(const std::vector<EffectFound>& effects) {
 
 void adopt_sensor_faults(Answer& answer) {
   DiagnosisResult& result = answer.report.result;
-  const std::vector<EffectFound> found = diagnosis::sensor_faults(result.consistency);
+  const std::vector<EffectFound> found = preflight::sensor_faults(result.consistency);
   if (found.empty()) return;
   result.paragraph = "The sensors contradict each other (" + listed(found) +
                      "); that is corrected in everything that follows. " + result.paragraph;
