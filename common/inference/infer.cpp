@@ -121,9 +121,11 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
 
   const likelihood::Fit& fit = found.best.fit;
   for (std::size_t axis = 0; axis < conclusion.followed.size(); ++axis) {
-    if (conclusion.followed[axis] < thresholds.following)
+    const int of = problem.axes[axis];
+    const bool skilled = std::ranges::find(conclusion.skilled, of) != conclusion.skilled.end();
+    if (conclusion.followed[axis] < thresholds.following && !skilled)
       reasons.push_back({Cause::kNotFollowing, conclusion.followed[axis], thresholds.following,
-                         model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});
+                         model::kAxisNames[static_cast<std::size_t>(of)]});
   }
   for (const likelihood::Number& number : fit.numbers) {
     if (number.kind != NumberKind::kBase) continue;

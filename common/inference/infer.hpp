@@ -30,6 +30,9 @@ struct Conclusion {
   Found found;
   std::vector<RandomForce> random;
   std::vector<double> followed;  ///< per simulated axis: share of the acceleration that the model foretells
+  /// Axes that runs which no fit has seen show to be foretold better than by saying that nothing changes: what the
+  /// model lacks within a second, as of a thrust that comes late, is no reason to withhold its numbers there.
+  std::vector<int> skilled;
   /// Numbers for reports and exports, all of one fit, of the base model and of the best: those of the likelihood, or
   /// of the multi-horizon score where the two differ by more than Thresholds::disagreement.
   likelihood::Fit reported_base, reported;

@@ -154,6 +154,24 @@ Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen,
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle);
 }
 
+/// Axes of which the model, with its names or without, foretells more than that nothing changes.
+std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step, const Conclusion& conclusion) {
+  std::vector<int> axes;
+  const model::Model base = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+  const model::Model named = learning::as_model(conclusion.reported.hypothesis, input_step);
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
+  if (windows.empty()) return axes;
+  const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
+                              by_named = residual::predict(named, windows);
+  for (int axis = 0; axis < 6; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double p =
+        std::min(p_no_worse(unchanged, by_base, kFiveSeconds, a), p_no_worse(unchanged, by_named, kFiveSeconds, a));
+    if (p < inference::Thresholds{}.no_skill) axes.push_back(axis);
+  }
+  return axes;
+}
+
 /// Something that no fit can have seen, in runs that judge. The fitted ones are seen by the same steps of time.
 std::optional<UnseenEvent> something_begins(const model::Model& model, std::span<const Trial> train,
                                             std::span<const Trial> unseen) {
@@ -253,13 +271,18 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.improvement = {kNotAsked, kNotAsked, kNotAsked};
   progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
-  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   std::vector<Trial> unseen;
   double input_step = 0.0;
   for (const Trial& trial : validate) {
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
+  if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
+    conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
+    conclusion.reasons.clear();
+    conclude(likelihood::make_problem(vehicle, train, settings.runs), settings.thresholds, conclusion);
+  }
+  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
   if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
     gain = held_back(vehicle, unseen, input_step, conclusion);
