@@ -33,22 +33,6 @@ View::View(const model::Vehicle& vehicle, std::vector<Trial> trials, const model
     weight_.push_back(each.weight);
   }
   without_ = residual(at_.model);
-  for (const auto& each : fit_.windows()) {
-    for (Eigen::Index i = 0; i < each.rows(); ++i) {
-      axis_.push_back(each.axis(i));
-      motion_square_[axis_.back()] += std::pow(each.measured(i) / at_.sigma[axis_.back()], 2);
-    }
-  }
-}
-
-double View::share_of_motion(const Eigen::VectorXd& change) const {
-  Vector6d square = Vector6d::Zero();
-  for (Eigen::Index i = 0; i < change.size(); ++i) square[axis_[static_cast<std::size_t>(i)]] += change[i] * change[i];
-  double share = 0.0;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (motion_square_[axis] > 0.0) share = std::max(share, std::sqrt(square[axis] / motion_square_[axis]));
-  }
-  return share;
 }
 
 Eigen::VectorXd View::residual(const model::Model& model) const {
