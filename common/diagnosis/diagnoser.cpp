@@ -16,7 +16,7 @@
 #include "common/diagnosis/own_run.hpp"
 #include "common/diagnosis/random_rest.hpp"
 #include "common/diagnosis/search.hpp"
-#include "common/diagnosis/unseen_event.hpp"
+#include "common/residual/unseen_event.hpp"
 #include "common/diagnosis/verdict.hpp"
 #include "common/identification/sparse.hpp"
 #include "common/preflight/wiring.hpp"
@@ -216,8 +216,6 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   Predictions after = predict(found.after.model, windows);
   model::Model learnt = found.after.model;
   report.unseen_event = unseen_event(learnt, fitted_as_judged(train), unseen);
-  if (!report.unseen_event && begins_too_late(found, settings))
-    report.unseen_event = {unseen.front().name, unseen.front().t.front()};
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
   if (!found.accepted.empty() && judged &&
       !carries_over(found, improvement(before, after, vehicle),

@@ -76,12 +76,6 @@ void charge_the_late(std::vector<Fault>& faults) {
        earliest->freedom});
 }
 
-std::string listed(const std::vector<EffectFound>& effects) {
-  std::string text;
-  for (std::size_t i = 0; i < effects.size(); ++i) text += (i > 0 ? ", " : "") + effects[i].name;
-  return text;
-}
-
 }  // namespace
 
 std::vector<EffectFound> sensor_faults(std::span<const ConsistencyFinding> findings) {
@@ -126,21 +120,6 @@ bool thrust_as_late_as_gyro(const DiagnosisResult& result, std::span<const Consi
                     std::abs(number.value - gyro->size) < kSame * std::hypot(number.std, gyro->std);
            });
   });
-}
-
-void adopt_sensor_faults(DiagnosisResult& result) {
-  const std::vector<EffectFound> found = sensor_faults(result.consistency);
-  if (found.empty()) return;
-  result.paragraph = "The sensors contradict each other (" + listed(found) +
-                     "); that is corrected in everything that follows. " + result.paragraph;
-  if (result.verdict == "adequate" || result.verdict == "unjudged") result.verdict = "effect";
-  for (auto effect = found.rbegin(); effect != found.rend(); ++effect) {
-    std::erase_if(result.candidates, [&](const CandidateTried& c) { return c.name == effect->name; });
-    result.candidates.insert(
-        result.candidates.begin(),
-        {effect->name, effect->variant, effect->log_odds, 0.0, {}, "accepted: found by comparing the sensors"});
-  }
-  result.effects.insert(result.effects.begin(), found.begin(), found.end());
 }
 
 }  // namespace fathom::preflight

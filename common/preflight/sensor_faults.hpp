@@ -8,15 +8,11 @@
 
 namespace fathom::preflight {
 
-/// The effects that findings about all recordings amount to, each with its numbers.
+/// sensor_latency, sensor_scale and lever_arm where a finding was corrected in all recordings, each with its numbers.
 [[nodiscard]] std::vector<EffectFound> sensor_faults(std::span<const ConsistencyFinding> findings);
 
 /// Whether an accepted delay of all thrusters is what the gyro lags the pose by, within three standard deviations of
 /// both, where thrusters were taken to be on the gyro's clock.
 [[nodiscard]] bool thrust_as_late_as_gyro(const DiagnosisResult& result, std::span<const ConsistencyFinding> findings);
-
-/// Reads `result.consistency`; puts sensor_latency, sensor_scale and lever_arm, where a finding was corrected in all
-/// recordings, before the effects that forces have shown, and says so in verdict and paragraph.
-void adopt_sensor_faults(DiagnosisResult& result);
 
 }  // namespace fathom::preflight

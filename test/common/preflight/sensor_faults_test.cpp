@@ -25,24 +25,19 @@ ConsistencyFinding finding(const char* signal, const char* what, double size, do
 }  // namespace
 
 TEST_CASE("sensor faults: delay, scale and lever arm become effects, in the terms of the effect") {
-  DiagnosisResult result{.verdict = "adequate", .paragraph = "Nothing else."};
-  result.candidates.push_back({.name = "sensor_scale", .reason = "not applicable"});
-  result.effects.push_back({.name = "current"});
-  result.consistency = {finding("dvl", "delay", 0.2, 0.002), finding("dvl.u", "scale", 0.8, 0.01),
-                        finding("dvl.v", "scale", 0.9, 0.01), finding("dvl", "lever_arm_x", 0.1, 0.01)};
-  preflight::adopt_sensor_faults(result);
-  REQUIRE(result.effects.size() == 4);
-  CHECK(result.effects[0].name == "sensor_latency");
-  CHECK(result.effects[1].name == "sensor_scale");
-  CHECK(result.effects[1].variant == "dvl.u, dvl.v");
-  REQUIRE(result.effects[1].parameters.size() == 2);
-  CHECK(result.effects[1].parameters[0].value == doctest::Approx(0.25));
-  CHECK(result.effects[1].parameters[0].std == doctest::Approx(0.01 / 0.64));
-  CHECK(result.effects[2].name == "lever_arm");
-  CHECK(result.effects[3].name == "current");
-  CHECK(result.verdict == "effect");
-  CHECK(result.candidates.size() == 3);
-  CHECK(result.effects[0].log_odds > 3.0);
+  const std::vector<ConsistencyFinding> findings{
+      finding("dvl", "delay", 0.2, 0.002), finding("dvl.u", "scale", 0.8, 0.01), finding("dvl.v", "scale", 0.9, 0.01),
+      finding("dvl", "lever_arm_x", 0.1, 0.01)};
+  const std::vector<EffectFound> effects = preflight::sensor_faults(findings);
+  REQUIRE(effects.size() == 3);
+  CHECK(effects[0].name == "sensor_latency");
+  CHECK(effects[1].name == "sensor_scale");
+  CHECK(effects[1].variant == "dvl.u, dvl.v");
+  REQUIRE(effects[1].parameters.size() == 2);
+  CHECK(effects[1].parameters[0].value == doctest::Approx(0.25));
+  CHECK(effects[1].parameters[0].std == doctest::Approx(0.01 / 0.64));
+  CHECK(effects[2].name == "lever_arm");
+  CHECK(effects[0].log_odds > 3.0);
 }
 
 TEST_CASE("sensor faults: thrust that is as late as the gyro is on another clock, not late") {
@@ -66,11 +61,9 @@ TEST_CASE("sensor faults: thrust that is as late as the gyro is on another clock
 
 TEST_CASE("sensor faults: eight standard deviations are worth less where few blocks of data tell of them") {
   const auto odds = [](double freedom) {
-    DiagnosisResult result{.verdict = "adequate"};
-    result.consistency = {finding("dvl", "lever_arm_x", 0.08, 0.01)};
-    result.consistency[0].freedom = freedom;
-    preflight::adopt_sensor_faults(result);
-    return result.effects.at(0).log_odds;
+    std::vector<ConsistencyFinding> findings{finding("dvl", "lever_arm_x", 0.08, 0.01)};
+    findings[0].freedom = freedom;
+    return preflight::sensor_faults(findings).at(0).log_odds;
   };
   CHECK(odds(1e6) == doctest::Approx(32.0 - std::log(40.0)).epsilon(1e-3));
   // (7 + 1) / 2 ln(1 + 64 / 7), the likelihood ratio of Student's distribution.
@@ -79,13 +72,13 @@ TEST_CASE("sensor faults: eight standard deviations are worth less where few blo
 
 TEST_CASE("sensor faults: nothing is measured before it happens: what seems early has a late reference") {
   const auto delays = [](double gyro, double dvl) {
-    DiagnosisResult result{.verdict = "adequate"};
-    result.consistency = {finding("gyro", "delay", gyro, 0.001), finding("dvl", "delay", dvl, 0.002)};
-    for (ConsistencyFinding& each : result.consistency) each.reference = "pose_capture";
-    preflight::adopt_sensor_faults(result);
-    REQUIRE(result.effects.size() == 1);
+    std::vector<ConsistencyFinding> findings{finding("gyro", "delay", gyro, 0.001),
+                                             finding("dvl", "delay", dvl, 0.002)};
+    for (ConsistencyFinding& each : findings) each.reference = "pose_capture";
+    const std::vector<EffectFound> effects = preflight::sensor_faults(findings);
+    REQUIRE(effects.size() == 1);
     std::map<std::string, double> numbers;
-    for (const NamedValue& number : result.effects[0].parameters) numbers[number.name] = number.value;
+    for (const NamedValue& number : effects[0].parameters) numbers[number.name] = number.value;
     return numbers;
   };
   using Numbers = std::map<std::string, double>;
@@ -95,12 +88,9 @@ TEST_CASE("sensor faults: nothing is measured before it happens: what seems earl
 }
 
 TEST_CASE("sensor faults: what was only reported, held in one run only, or is a count is no effect") {
-  DiagnosisResult result{.verdict = "adequate"};
-  result.consistency = {finding("dvl", "delay", 0.2, 0.002), finding("dvl", "delay", 0.2, 0.002),
-                        finding("pose_capture", "gap", 3.0, 0.0)};
-  result.consistency[0].action = "reported only";
-  result.consistency[1].run = "surge-1";
-  preflight::adopt_sensor_faults(result);
-  CHECK(result.effects.empty());
-  CHECK(result.verdict == "adequate");
+  std::vector<ConsistencyFinding> findings{finding("dvl", "delay", 0.2, 0.002), finding("dvl", "delay", 0.2, 0.002),
+                                           finding("pose_capture", "gap", 3.0, 0.0)};
+  findings[0].action = "reported only";
+  findings[1].run = "surge-1";
+  CHECK(preflight::sensor_faults(findings).empty());
 }

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "common/diagnosis/search.hpp"
+#include "common/model/dynamics.hpp"
 #include "common/samples/diagnosis_result.hpp"
 #include "common/samples/trial.hpp"
 
-namespace fathom::diagnosis {
+namespace fathom::residual {
 
 /// `fitted`, `unseen`: wrench residuals (force_residual.hpp) of one model. None unless what is left along some axis of
 /// the unseen runs is far more than the fitted ones have left, which is noise there.
@@ -21,8 +21,4 @@ namespace fathom::diagnosis {
 [[nodiscard]] std::optional<UnseenEvent> unseen_event(const model::Model& model, std::span<const Trial> fitted,
                                                       std::span<const Trial> unseen);
 
-/// Whether something was refused that explains much from some moment on, and acts in too short a part of the fitted
-/// runs to be told from it by another.
-[[nodiscard]] bool begins_too_late(const SearchResult& found, const Settings& settings);
-
-}  // namespace fathom::diagnosis
+}  // namespace fathom::residual

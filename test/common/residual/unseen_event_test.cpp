@@ -1,12 +1,12 @@
 // What begins in the runs that judge is seen, and noise is none of it, with or without a memory.
-#include "common/diagnosis/unseen_event.hpp"
+#include "common/residual/unseen_event.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <random>
 
-namespace fathom::diagnosis {
+namespace fathom::residual {
 namespace {
 
 constexpr double kDt = 0.05;  // s
@@ -58,22 +58,6 @@ TEST_CASE("unseen event: none where more than noise is left in what was fitted, 
   CHECK(alarms == 0);  // one more look is all that an alarm would cost
 }
 
-TEST_CASE("unseen event: what was refused for acting in too short a part of the fitted runs begins too late") {
-  SearchResult found;
-  const auto refused = [&](const char* name, double blocks, double log_odds, double saves) {
-    found.refused = {{.effect = model::find_effect(name),
-                      .log_odds = log_odds,
-                      .error_reduction = saves,
-                      .held_out_blocks = blocks}};
-    return begins_too_late(found, {});
-  };
-  CHECK(refused("thruster_failure", -0.3, 10.0, 0.5));
-  CHECK_FALSE(refused("thruster_failure", 0.4, 10.0, 0.5));    // refused for another reason
-  CHECK_FALSE(refused("thruster_failure", -0.3, 4.0, 0.5));    // not evident
-  CHECK_FALSE(refused("thruster_failure", -0.3, 10.0, 0.05));  // little
-  CHECK_FALSE(refused("thruster_gain", -0.3, 10.0, 0.5));      // no event
-}
-
 TEST_CASE("unseen event: nothing is told by a run that is too short, nor where nothing was measured") {
   CHECK_FALSE(asked(run(1, 0.0, 231.0, 0.0, 1e9, 0.0), run(2, 231.0, 15.0, 0.0, 235.0, 50.0)).has_value());
   Run blind = run(2, 231.0, 99.0, 0.0, 235.0, 50.0);
@@ -81,4 +65,4 @@ TEST_CASE("unseen event: nothing is told by a run that is too short, nor where n
   CHECK_FALSE(asked(run(1, 0.0, 231.0, 0.0, 1e9, 0.0), blind).has_value());
 }
 
-}  // namespace fathom::diagnosis
+}  // namespace fathom::residual

@@ -1,13 +1,11 @@
-#include "common/diagnosis/unseen_event.hpp"
+#include "common/residual/unseen_event.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "common/diagnosis/moved.hpp"
-#include "common/model/onset.hpp"
 #include "common/residual/force_residual.hpp"
 
-namespace fathom::diagnosis {
+namespace fathom::residual {
 namespace {
 
 constexpr double kFarMore = 2.0;      // times what is left in the fitted runs (RMS), from the event on
@@ -100,13 +98,4 @@ std::optional<UnseenEvent> unseen_event(const model::Model& model, std::span<con
   return unseen_event(fitted, of_fitted, unseen, of_unseen);
 }
 
-bool begins_too_late(const SearchResult& found, const Settings& settings) {
-  return std::ranges::any_of(found.refused, [&](const Judged& judged) {
-    const auto numbers = judged.effect->parameters();
-    return std::ranges::find(numbers, model::kOnset, &model::EffectParameter::name) != numbers.end() &&
-           judged.held_out_blocks < 0.0 && judged.log_odds >= settings.accept_log_odds &&
-           judged.error_reduction >= settings.convincing;
-  });
-}
-
-}  // namespace fathom::diagnosis
+}  // namespace fathom::residual
