@@ -15,10 +15,10 @@ namespace fathom::planning {
 namespace {
 
 constexpr std::size_t kMostStarts = 5;  // of a form: places, moments, time constants
-constexpr int kRounds = 10;             // of finding a size; most effects are nearly proportional
-constexpr double kLargestStep = 30.0;   // factor between rounds
+constexpr int kRounds = 16;             // of finding a size; most effects are nearly proportional
+constexpr double kLargestStep = 3.4;    // between rounds, natural logarithm: a factor of thirty
 constexpr double kClose = 0.1;          // of the size
-constexpr double kNoSmaller = 0.95;     // of the change before
+constexpr double kNoSmaller = 0.95;     // of the change that twice the size makes
 constexpr double kWave = 1.5;           // rad/s: a wave that nobody has seen yet
 
 /// Of the effect's numbers over what is ordinary for them, the largest.
@@ -56,7 +56,7 @@ class Judge {
     const Eigen::VectorXd own = suspect.change - view_.jacobian() * suspect.imitated;
     const double gain = 0.5 * own.squaredNorm();  // nats of likelihood, at factor 1
     const double size = inference::size_beside(problem_, seen_, suspect.active);
-    if (!(gain > kNoEnergy) || !(size > 0.0)) return kNever;
+    if (!(gain > kNoEnergy)) return kNever;
     const double ordinary = over_ordinary(suspect.active, vehicle_);
     const auto named = [&](double factor) {
       return odds(suspect.active, gain, ordinary, factor) >= thresholds_.name_odds;
@@ -67,7 +67,7 @@ class Judge {
       const double middle = 0.5 * (low + high);
       (named(std::exp(middle)) ? high : low) = middle;
     }
-    return std::max(std::exp(high), thresholds_.smallest_size / size);
+    return std::max(std::exp(high), thresholds_.smallest_size / std::max(size, 1e-12));
   }
 
  private:
@@ -91,32 +91,58 @@ class Judge {
   inference::Seen seen_;
 };
 
-/// The smallest size of this form from this start.
+/// Moves what the effect is proportional to by `step`, natural logarithm, or by as much of it as physical limits leave;
+/// 0 where they leave nothing. Returns what was moved.
+double move(model::ActiveEffect& active, double step) {
+  for (; std::abs(step) > 0.2 * kClose; step *= 0.5) {
+    model::ActiveEffect moved = active;
+    if (!grow(moved, std::exp(step))) continue;
+    active = std::move(moved);
+    return step;
+  }
+  return 0.0;
+}
+
+/// Half of it does as much: a lag shorter than the steps of time acts as if it were as long.
+bool blurred(const View& view, const Suspect& suspect) {
+  model::ActiveEffect half = suspect.active;
+  return grow(half, 0.5) && view.change(half).norm() > kNoSmaller * suspect.change.norm();
+}
+
+/// The smallest size of this form from this start: by proportion, and where an effect is not proportional (a delay
+/// that the clocks of the commands leave open is none) by halves between what is named and what is not.
 Suspect smallest(const View& view, const Base& base, const Judge& judge, const inference::Law& law,
                  const std::vector<double>& start) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Suspect suspect{.active = law.seed};
   suspect.active.theta = start;
-  model::ActiveEffect larger;
-  double change = std::numeric_limits<double>::infinity();  // that the larger one makes
+  model::ActiveEffect named;                                         // the smallest one
+  double at = 0.0, not_named_at = -kInfinity, named_at = kInfinity;  // natural logarithm, over the start
   for (int round = 0; round < kRounds; ++round) {
     suspect.change = view.change(suspect.active);
     suspect.imitated = base.solve(view.jacobian().transpose() * suspect.change);
-    const double factor = judge.factor(suspect);
+    double factor = judge.factor(suspect);
     if (!std::isfinite(factor) || !suspect.change.allFinite()) return suspect;
+    if (factor < 1.0 + kClose && blurred(view, suspect)) factor = 2.0;  // nothing is promised of such sizes
     suspect.found = std::abs(factor - 1.0) < kClose;
-    if (suspect.found) break;
-    if (factor < 1.0 && suspect.change.norm() > kNoSmaller * change) {
-      // A lag shorter than the steps of time acts as if it were as long: nothing is promised below that.
-      suspect.active = larger;
-      suspect.found = true;
-      break;
+    if (factor < 1.0) {
+      named_at = at;
+      named = suspect.active;
+    } else {
+      not_named_at = at;
     }
-    larger = suspect.active;
-    change = factor < 1.0 ? suspect.change.norm() : std::numeric_limits<double>::infinity();
-    if (!grow(suspect.active, std::clamp(factor, 1.0 / kLargestStep, kLargestStep))) return suspect;
+    if (!suspect.found && named_at - not_named_at < kClose) {
+      suspect.active = named;
+      suspect.found = true;
+    }
+    if (suspect.found) break;
+    const bool between = std::isfinite(not_named_at) && std::isfinite(named_at);
+    const double moved = move(suspect.active, between ? 0.5 * (not_named_at + named_at) - at
+                                                      : std::clamp(std::log(factor), -kLargestStep, kLargestStep));
+    if (moved == 0.0) return suspect;
+    at += moved;
   }
-  if (!suspect.found) return suspect;
-  suspect.ordinary = over_ordinary(suspect.active, *view.model().vehicle);
+  if (suspect.found) suspect.ordinary = over_ordinary(suspect.active, *view.model().vehicle);
   return suspect;
 }
 

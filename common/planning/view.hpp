@@ -20,7 +20,8 @@ class View {
 
   /// Change of all weighted residuals, initial velocities free, that the effect would make.
   [[nodiscard]] Eigen::VectorXd change(const model::ActiveEffect& effect) const;
-  /// Derivatives by the scaled base parameters, rows as in change().
+  /// Derivatives by the scaled base parameters, and last by the clock of the commands, in standard deviations of what
+  /// a diagnosis knows of it beforehand. Rows as in change().
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   [[nodiscard]] std::span<const Trial> trials() const { return trials_; }
   [[nodiscard]] const model::Model& model() const { return at_.model; }
@@ -29,6 +30,7 @@ class View {
 
  private:
   [[nodiscard]] Eigen::VectorXd residual(const model::Model& model) const;
+  [[nodiscard]] Eigen::VectorXd by_clock() const;
 
   std::vector<Trial> trials_;
   identification::TrajectoryFit fit_;
