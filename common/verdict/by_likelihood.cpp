@@ -144,11 +144,16 @@ void list_refused(const inference::Found& found, DiagnosisResult& result, Verdic
   }
 }
 
+constexpr double kEvident = 0.1;  // of the error: what falls by so much needs no interval, where none can be given
+
+/// Surely, or where too few windows tell how sure that is, by much.
+bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low) && gain.value > kEvident); }
+
 /// By how much the error falls with the names on runs that no fit has seen.
 Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
                    const Conclusion& conclusion) {
-  const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = learning::as_model(conclusion.reported.hypothesis, input_step);
+  const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model after = likelihood::model_of(conclusion.reported.hypothesis, input_step);
   const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle);
@@ -157,17 +162,17 @@ Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen,
 /// Axes of which the model, with its names or without, foretells more than that nothing changes.
 std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step, const Conclusion& conclusion) {
   std::vector<int> axes;
-  const model::Model base = learning::as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model named = learning::as_model(conclusion.reported.hypothesis, input_step);
+  const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
   const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
   if (windows.empty()) return axes;
   const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
                               by_named = residual::predict(named, windows);
   for (int axis = 0; axis < 6; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double p =
-        std::min(p_no_worse(unchanged, by_base, kFiveSeconds, a), p_no_worse(unchanged, by_named, kFiveSeconds, a));
-    if (p < inference::Thresholds{}.no_skill) axes.push_back(axis);
+    const double sure = std::max(surely_better(by_base, unchanged, kFiveSeconds, a),
+                                 surely_better(by_named, unchanged, kFiveSeconds, a));
+    if (sure > inference::Thresholds{}.skilled) axes.push_back(axis);
   }
   return axes;
 }
@@ -297,10 +302,10 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const model::LearnedForce* force = force_for(learned, train, validate);
   const likelihood::Fit& named = force != nullptr ? learned.fit : conclusion.reported;
   // Stand-ins stay where they help.
-  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || gain.low > 0.0;
+  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || helps(gain);
   const likelihood::Fit& best = with_names ? named : conclusion.reported_base;
   if (conclusion.reported.finite) {
-    const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+    const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
   }

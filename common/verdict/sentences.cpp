@@ -158,9 +158,9 @@ std::string paragraph(const Conclusion& conclusion) {
     words += "The time was over before every effect had been asked: allow more, or give less data. ";
   if (const Reason* off = reason(conclusion, Cause::kScoresDisagree)) {
     words += text(
-        "Numbers that predict one step best and those that predict ten seconds best differ by %.0f standard "
-        "deviations (median): the model errs in a way that no noise explains. ",
-        off->value);
+        "The numbers are those that predict ten seconds: they err %.0f %% less there than those that predict one step "
+        "best, so the model errs in a way that no noise explains. ",
+        100.0 * off->value);
   }
   if (!conclusion.random.empty()) words += random_forces(conclusion) + " ";
   if (conclusion.verdict == Verdict::effect || conclusion.verdict == Verdict::adequate)
