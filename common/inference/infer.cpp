@@ -104,7 +104,8 @@ double fall_of_error(const likelihood::Problem& problem, std::span<const Trial> 
                     windows, {}, compared);
   const residual::Ratio ratio = ratio_of(compared);
   const bool sure = ratio.windows > 2 && std::log(ratio.value) + kSure * ratio.log_error < 0.0;
-  return sure ? 1.0 - ratio.value : 0.0;
+  const double chance = static_cast<double>(other.numbers.size()) / (4.0 * std::max(ratio.windows, 1));
+  return sure ? std::max(0.0, 1.0 - ratio.value - chance) : 0.0;
 }
 
 double length_of(const likelihood::Problem& problem) {

@@ -81,7 +81,7 @@ std::string unexplained(const Conclusion& conclusion) {
                      slow->of.c_str(), slow->value);
   }
   if (const Reason* event = reason(conclusion, Cause::kBeginsUnseen)) {
-    sentence += text("Something begins near %.0f s of %s, which judges: no fit has seen it, and it is not explained. ",
+    sentence += text("Something begins near %.3g s of %s, which judges: no fit has seen it, and it is not explained. ",
                      event->value, event->of.c_str());
   }
   return sentence;

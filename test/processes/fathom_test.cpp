@@ -230,7 +230,7 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const std::string name = "run" + std::to_string(seed);
-    const auto dive = test::make_dive(vehicle, {.duration = 40.0, .seed = seed, .wrench = true});
+    const auto dive = test::make_dive(vehicle, {.duration = 40.0, .seed = seed, .spread = 0.0, .wrench = true});
     tables::write_file(scratch.path(name + ".csv"), tables::to_csv(dive.trial));
     const Ran ran =
         shell(kTool + " import " + scratch.path(name + ".csv") + " --out " + scratch.path(name + ".lcmlog"));
