@@ -149,6 +149,19 @@ constexpr double kEvident = 0.1;  // of the error: what falls by so much needs n
 /// Surely, or where too few windows tell how sure that is, by much.
 bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low) && gain.value > kEvident); }
 
+/// Effects that have no form in these runs, with the reason.
+void list_not_asked(const model::Scene& scene, DiagnosisResult& result) {
+  const std::vector<inference::Law> laws = inference::catalogue(scene, {});
+  for (const model::Effect* effect : model::all_effects()) {
+    const std::string name{effect->name()};
+    if (std::ranges::find(laws, name, &inference::Law::name) != laws.end()) continue;
+    result.candidates.push_back({.name = name,
+                                 .log_odds = kNotAsked,
+                                 .error_reduction = kNotAsked,
+                                 .reason = preflight::why_not_asked(*effect, scene)});
+  }
+}
+
 /// By how much the error falls with the names on runs that no fit has seen.
 Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
                    const Conclusion& conclusion) {
@@ -342,7 +355,9 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   for (const std::string& name : settings.without)
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
-  result.not_measured = preflight::not_measured(model::scene_of(vehicle, train));
+  const model::Scene scene = model::scene_of(vehicle, train);
+  list_not_asked(scene, result);
+  result.not_measured = preflight::not_measured(scene);
   answer.best = best;
   answer.best_sigma = with_names ? of_named : of_base;
   answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;
