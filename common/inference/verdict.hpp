@@ -13,7 +13,7 @@ enum class Verdict {
   effect,       ///< named effects, each above its odds and its rivals
   ambiguous,    ///< something is there, and more than one name fits it
   unexplained,  ///< something is there that no listed effect explains
-  no_model,     ///< the model does not follow its thrust: its numbers mean nothing
+  no_model,     ///< the model does not follow its thrust along some axis, whose numbers mean nothing
   not_judged    ///< too short, or the filter did not run
 };
 

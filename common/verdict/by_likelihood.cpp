@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "common/base/statistics.hpp"
 #include "common/identification/sparse.hpp"
@@ -37,12 +38,32 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
   return names;
 }
 
+/// Axes whose numbers mean nothing: the model does not follow its thrust there. Empty: none.
+std::set<int> withheld_axes(const Conclusion& conclusion) {
+  using inference::Cause;
+  std::set<int> axes;
+  const auto all = [&] { axes = {0, 1, 2, 3, 4, 5}; };
+  if (conclusion.verdict != Verdict::no_model) return axes;
+  for (const inference::Reason& reason : conclusion.reasons) {
+    if (reason.cause == Cause::kNotFollowing || reason.cause == Cause::kNoSkill)
+      axes.insert(static_cast<int>(std::ranges::find(model::kAxisNames, reason.of) - model::kAxisNames.begin()));
+    if (reason.cause == Cause::kWiring || reason.cause == Cause::kForceUnit) all();
+    const auto absurd = model::parameter_from_name(reason.of);
+    if (reason.cause == Cause::kAbsurdNumber && absurd) axes.insert(model::axis(*absurd));
+  }
+  if (axes.empty()) all();
+  return axes;
+}
+
 /// `sigma`: of the numbers.
-std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::VectorXd& sigma) {
+std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::VectorXd& sigma,
+                                   const std::set<int>& withheld) {
   std::vector<NamedValue> values;
   if (!fit.finite || sigma.size() != static_cast<Eigen::Index>(fit.numbers.size())) return values;
   for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
     if (fit.numbers[j].kind == NumberKind::kWeight) continue;
+    const auto base = model::parameter_from_name(fit.numbers[j].name);
+    if (base && withheld.contains(model::axis(*base))) continue;
     values.push_back({fit.numbers[j].name, value(fit.hypothesis, fit.numbers[j]), sigma[static_cast<Eigen::Index>(j)],
                       fit.numbers[j].unit});
   }
@@ -348,7 +369,11 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
                         of_named = force != nullptr ? named.sigma()
                                                     : with_difference(conclusion.found.best.fit, named,
                                                                       deviations(conclusion.found.best.fit));
-  const bool told = conclusion.reported.finite && conclusion.verdict != Verdict::no_model;
+  const std::set<int> withheld = withheld_axes(conclusion);
+  bool told = false;
+  for (int axis = 0; axis < 6; ++axis)
+    told =
+        told || (conclusion.reported.finite && vehicle.dof[static_cast<std::size_t>(axis)] && !withheld.contains(axis));
   list_effects(conclusion, named, of_named, with_names && told, result);
   list_refused(conclusion.found, result, answer.given);
   if (!conclusion.found.best.names.empty()) result.explained = kNotAsked;
@@ -362,9 +387,9 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   answer.best_sigma = with_names ? of_named : of_base;
   answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;
   if (told) {
-    put_covariance(best, answer.best_sigma, answer.given);
-    result.parameters_before = numbers_of(conclusion.reported_base, of_base);
-    result.parameters_after = numbers_of(best, answer.best_sigma);
+    put_covariance(best, answer.best_sigma, answer.given, withheld);
+    result.parameters_before = numbers_of(conclusion.reported_base, of_base, withheld);
+    result.parameters_after = numbers_of(best, answer.best_sigma, withheld);
   }
   return answer;
 }

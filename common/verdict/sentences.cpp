@@ -134,7 +134,7 @@ std::string paragraph(const Conclusion& conclusion) {
             ". ";
       break;
     case Verdict::no_model:
-      words = "The model does not follow its thrust, so its numbers are withheld: ";
+      words = "The model does not follow its thrust everywhere, and the numbers of such axes are withheld: ";
       for (const Reason& one : conclusion.reasons) {
         if (one.cause == Cause::kNotFollowing)
           words += text("along %s it explains %.0f %% of the acceleration; ", one.of.c_str(), 100.0 * one.value);
