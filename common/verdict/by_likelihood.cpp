@@ -144,6 +144,11 @@ void list_refused(const inference::Found& found, DiagnosisResult& result, Verdic
   }
 }
 
+constexpr double kEvident = 0.1;  // of the error: what falls by so much needs no interval, where none can be given
+
+/// Surely, or where too few windows tell how sure that is, by much.
+bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low) && gain.value > kEvident); }
+
 /// Effects that have no form in these runs, with the reason.
 void list_not_asked(const model::Scene& scene, DiagnosisResult& result) {
   const std::vector<inference::Law> laws = inference::catalogue(scene, {});
@@ -160,11 +165,29 @@ void list_not_asked(const model::Scene& scene, DiagnosisResult& result) {
 /// By how much the error falls with the names on runs that no fit has seen.
 Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
                    const Conclusion& conclusion) {
-  const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = learning::as_model(conclusion.reported.hypothesis, input_step);
+  const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model after = likelihood::model_of(conclusion.reported.hypothesis, input_step);
   const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle);
+}
+
+/// Axes of which the model, with its names or without, foretells more than that nothing changes.
+std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step, const Conclusion& conclusion) {
+  std::vector<int> axes;
+  const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
+  if (windows.empty()) return axes;
+  const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
+                              by_named = residual::predict(named, windows);
+  for (int axis = 0; axis < 6; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double sure = std::max(surely_better(by_base, unchanged, kFiveSeconds, a),
+                                 surely_better(by_named, unchanged, kFiveSeconds, a));
+    if (sure > inference::Thresholds{}.skilled) axes.push_back(axis);
+  }
+  return axes;
 }
 
 /// Something that no fit can have seen, in runs that judge. The fitted ones are seen by the same steps of time.
@@ -266,13 +289,18 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.improvement = {kNotAsked, kNotAsked, kNotAsked};
   progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
-  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   std::vector<Trial> unseen;
   double input_step = 0.0;
   for (const Trial& trial : validate) {
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
+  if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
+    conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
+    conclusion.reasons.clear();
+    conclude(likelihood::make_problem(vehicle, train, settings.runs), settings.thresholds, conclusion);
+  }
+  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
   if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
     gain = held_back(vehicle, unseen, input_step, conclusion);
@@ -287,10 +315,10 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const model::LearnedForce* force = force_for(learned, train, validate);
   const likelihood::Fit& named = force != nullptr ? learned.fit : conclusion.reported;
   // Stand-ins stay where they help.
-  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || gain.low > 0.0;
+  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || helps(gain);
   const likelihood::Fit& best = with_names ? named : conclusion.reported_base;
   if (conclusion.reported.finite) {
-    const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+    const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
   }

@@ -81,7 +81,7 @@ std::string unexplained(const Conclusion& conclusion) {
                      slow->of.c_str(), slow->value);
   }
   if (const Reason* event = reason(conclusion, Cause::kBeginsUnseen)) {
-    sentence += text("Something begins near %.0f s of %s, which judges: no fit has seen it, and it is not explained. ",
+    sentence += text("Something begins near %.3g s of %s, which judges: no fit has seen it, and it is not explained. ",
                      event->value, event->of.c_str());
   }
   return sentence;
@@ -175,9 +175,9 @@ std::string paragraph(const Conclusion& conclusion) {
     words += "The time was over before every effect had been asked: allow more, or give less data. ";
   if (const Reason* off = reason(conclusion, Cause::kScoresDisagree)) {
     words += text(
-        "Numbers that predict one step best and those that predict ten seconds best differ by %.0f standard "
-        "deviations (median): the model errs in a way that no noise explains. ",
-        off->value);
+        "The numbers are those that predict ten seconds: they err %.0f %% less there than those that predict one step "
+        "best, so the model errs in a way that no noise explains. ",
+        100.0 * off->value);
   }
   if (!conclusion.random.empty()) words += random_forces(conclusion) + " ";
   if (conclusion.verdict == Verdict::effect || conclusion.verdict == Verdict::adequate)

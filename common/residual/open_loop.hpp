@@ -4,11 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "common/learning/limits.hpp"
-#include "common/likelihood/hypothesis.hpp"
 #include "common/model/rollout.hpp"
 
-namespace fathom::learning {
+namespace fathom::residual {
+
+struct OpenLoop {
+  double horizon{10.0};       ///< s
+  double shortest{1.0};       ///< s of a horizon that is cut
+  double growth{5.0};         ///< of a small change of the start, beyond which a motion counts as chaotic
+  double start_change{1e-3};  ///< of the velocities' rms
+};
 
 struct Compared {
   std::vector<double> log_ratio;  ///< per window: of the other model's error to the base model's
@@ -16,13 +21,13 @@ struct Compared {
 };
 
 /// Errors are root mean squares over the axes, each over its velocity's rms. A window is cut where a change of its
-/// start grows by `leaving.growth` in either model, and left out where that happens within `leaving.shortest`.
+/// start grows by `how.growth` in either model, and left out where that happens within `how.shortest`.
 void compare(const model::Model& base, const model::Model& other, std::span<const model::Window> windows,
-             const Leaving& leaving, Compared& compared);
+             const OpenLoop& how, Compared& compared);
 
-/// Windows of `leaving.horizon` side by side within [from, to) s of a trial, each begun where all is measured.
+/// Windows of `how.horizon` side by side within [from, to) s of a trial, each begun where all is measured.
 [[nodiscard]] std::vector<model::Window> windows_within(const Trial& trial, double from, double to,
-                                                        const Leaving& leaving);
+                                                        const OpenLoop& how);
 
 /// Mean over windows with its standard error, as a ratio of errors.
 struct Ratio {
@@ -33,6 +38,6 @@ struct Ratio {
 [[nodiscard]] Ratio ratio_of(const Compared& compared);
 /// Of the other model's errors to the base model's, over whole trials.
 [[nodiscard]] Ratio error_over(const model::Model& base, const model::Model& other, std::span<const Trial> trials,
-                               const Leaving& leaving);
+                               const OpenLoop& how);
 
-}  // namespace fathom::learning
+}  // namespace fathom::residual

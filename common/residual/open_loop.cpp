@@ -1,9 +1,9 @@
-#include "common/learning/open_loop.hpp"
+#include "common/residual/open_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fathom::learning {
+namespace fathom::residual {
 namespace {
 
 bool measured(const Trial& trial, std::size_t k, std::size_t axis) {
@@ -33,11 +33,11 @@ double scaled_square(const Vector6d& x, const Vector6d& sizes) {
 
 /// Samples over which a small change of the start stays small.
 std::size_t foreseeable(const model::Model& model, const model::Window& window, const Vector6d& nu0,
-                        const model::VelocityTrace& trace, const Vector6d& sizes, const Leaving& leaving) {
+                        const model::VelocityTrace& trace, const Vector6d& sizes, const OpenLoop& how) {
   model::VelocityTrace moved;
-  const Vector6d change = leaving.start_change * sizes;
+  const Vector6d change = how.start_change * sizes;
   model::rollout(model, window, nu0 + change, moved);
-  const double limit = leaving.growth * leaving.growth * scaled_square(change, sizes);
+  const double limit = how.growth * how.growth * scaled_square(change, sizes);
   for (Eigen::Index k = 0; k < trace.cols(); ++k) {
     const double apart = scaled_square(moved.col(k) - trace.col(k), sizes);
     if (!(apart <= limit)) return static_cast<std::size_t>(k);
@@ -61,7 +61,7 @@ double error_of(const model::VelocityTrace& trace, const model::Window& window, 
 }  // namespace
 
 void compare(const model::Model& base, const model::Model& other, std::span<const model::Window> windows,
-             const Leaving& leaving, Compared& compared) {
+             const OpenLoop& how, Compared& compared) {
   const Trial* of = nullptr;
   Vector6d sizes = Vector6d::Zero();
   model::VelocityTrace by_base, by_other;
@@ -73,9 +73,9 @@ void compare(const model::Model& base, const model::Model& other, std::span<cons
                    other_start = model::true_velocity(other, trial, window.start);
     model::rollout(base, window, base_start, by_base);
     const bool finished = model::rollout(other, window, other_start, by_other);
-    std::size_t samples = foreseeable(base, window, base_start, by_base, sizes, leaving);
-    if (finished) samples = std::min(samples, foreseeable(other, window, other_start, by_other, sizes, leaving));
-    if (static_cast<double>(samples) * trial.dt < leaving.shortest) continue;
+    std::size_t samples = foreseeable(base, window, base_start, by_base, sizes, how);
+    if (finished) samples = std::min(samples, foreseeable(other, window, other_start, by_other, sizes, how));
+    if (static_cast<double>(samples) * trial.dt < how.shortest) continue;
     if (samples < window.count) ++compared.shortened;
     const double one = error_of(by_base, window, samples, sizes), two = error_of(by_other, window, samples, sizes);
     if (!(one > 0.0) || !std::isfinite(one)) continue;
@@ -83,9 +83,9 @@ void compare(const model::Model& base, const model::Model& other, std::span<cons
   }
 }
 
-std::vector<model::Window> windows_within(const Trial& trial, double from, double to, const Leaving& leaving) {
+std::vector<model::Window> windows_within(const Trial& trial, double from, double to, const OpenLoop& how) {
   std::vector<model::Window> windows;
-  const auto count = static_cast<std::size_t>(std::lround(leaving.horizon / trial.dt)) + 1;
+  const auto count = static_cast<std::size_t>(std::lround(how.horizon / trial.dt)) + 1;
   const auto all = [&](std::size_t k) {
     return (!trial.observed.velocity || trial.velocity_valid[k] != 0) &&
            (!trial.observed.rates || trial.rates_valid[k] != 0);
@@ -95,7 +95,7 @@ std::vector<model::Window> windows_within(const Trial& trial, double from, doubl
     if (!all(k)) continue;
     const auto left = static_cast<std::size_t>(std::ranges::lower_bound(trial.t, to) - trial.t.begin()) - k;
     const std::size_t here = std::min(count, left);
-    if (static_cast<double>(here) * trial.dt < 0.5 * leaving.horizon) break;
+    if (static_cast<double>(here) * trial.dt < 0.5 * how.horizon) break;
     windows.push_back({&trial, k, here});
     k += here - 1;
   }
@@ -115,11 +115,11 @@ Ratio ratio_of(const Compared& compared) {
 }
 
 Ratio error_over(const model::Model& base, const model::Model& other, std::span<const Trial> trials,
-                 const Leaving& leaving) {
+                 const OpenLoop& how) {
   Compared compared;
   for (const Trial& trial : trials)
-    compare(base, other, windows_within(trial, trial.t.front(), trial.t.back(), leaving), leaving, compared);
+    compare(base, other, windows_within(trial, trial.t.front(), trial.t.back(), how), how, compared);
   return ratio_of(compared);
 }
 
-}  // namespace fathom::learning
+}  // namespace fathom::residual
