@@ -159,7 +159,7 @@ void list_refused(const inference::Found& found, DiagnosisResult& result, Verdic
     for (const inference::Refusal& refusal : refused.refusals) {
       given.refusals[refused.name].push_back({std::string(word(refusal.rule)), refusal.value, refusal.needed});
       if (refusal.rule == inference::Rule::kOdds) candidate.log_odds = refusal.value;
-      candidate.reason = std::string(word(refusal.rule));
+      candidate.reason += (candidate.reason.empty() ? "" : "; ") + sentence(refusal);
     }
     result.candidates.push_back(std::move(candidate));
   }

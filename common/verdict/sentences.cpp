@@ -110,6 +110,23 @@ std::string reasons_of_no_model(const Conclusion& conclusion) {
 
 }  // namespace
 
+std::string sentence(const inference::Refusal& refusal) {
+  using inference::Rule;
+  switch (refusal.rule) {
+    case Rule::kOdds:
+      return text("log odds %.1f, %.0f needed", refusal.value, refusal.needed);
+    case Rule::kSize:
+      return text("%.2g %% of the applied force, %.0f %% needed", 100.0 * refusal.value, 100.0 * refusal.needed);
+    case Rule::kProbability:
+      return text("probability %.2g beside other names, %.2g needed", refusal.value, refusal.needed);
+    case Rule::kBound:
+      return "fits only with a number at its limit";
+    case Rule::kScore:
+      return text("promises %.1f nats, %.0f needed to be fitted", refusal.value, refusal.needed);
+  }
+  return {};
+}
+
 std::string paragraph(const Conclusion& conclusion) {
   std::string words;
   switch (conclusion.verdict) {
