@@ -5,10 +5,11 @@
 #include <limits>
 
 #include "common/diagnosis/bursts.hpp"
-#include "common/diagnosis/force_residual.hpp"
-#include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/diagnosis/product_sums.hpp"
 #include "common/identification/lag_sums.hpp"
+#include "common/residual/force_residual.hpp"
+#include "common/residual/prediction.hpp"
 
 namespace fathom::diagnosis {
 namespace {

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/diagnosis/force_residual.hpp"
-#include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/identification/parameter_map.hpp"
+#include "common/residual/force_residual.hpp"
+#include "common/residual/prediction.hpp"
 
 namespace fathom::diagnosis {
 namespace {

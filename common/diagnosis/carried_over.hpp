@@ -4,8 +4,9 @@
 #include <array>
 #include <span>
 
-#include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/diagnosis/search.hpp"
+#include "common/residual/prediction.hpp"
 
 namespace fathom::diagnosis {
 

@@ -10,19 +10,20 @@
 #include "common/diagnosis/associations.hpp"
 #include "common/diagnosis/bent_base.hpp"
 #include "common/diagnosis/carried_over.hpp"
-#include "common/diagnosis/force_residual.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/diagnosis/own_run.hpp"
-#include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/random_rest.hpp"
 #include "common/diagnosis/search.hpp"
-#include "common/diagnosis/traces.hpp"
-#include "common/diagnosis/unseen_event.hpp"
+#include "common/residual/unseen_event.hpp"
 #include "common/diagnosis/verdict.hpp"
-#include "common/diagnosis/whiteness.hpp"
-#include "common/diagnosis/wiring.hpp"
 #include "common/identification/sparse.hpp"
+#include "common/preflight/wiring.hpp"
+#include "common/residual/force_residual.hpp"
+#include "common/residual/prediction.hpp"
+#include "common/residual/traces.hpp"
+#include "common/residual/whiteness.hpp"
 
 namespace fathom::diagnosis {
 namespace {
@@ -215,8 +216,6 @@ DiagnosisReport diagnose(const model::Vehicle& vehicle, std::span<const Trial> t
   Predictions after = predict(found.after.model, windows);
   model::Model learnt = found.after.model;
   report.unseen_event = unseen_event(learnt, fitted_as_judged(train), unseen);
-  if (!report.unseen_event && begins_too_late(found, settings))
-    report.unseen_event = {unseen.front().name, unseen.front().t.front()};
   const bool judged = !before.windows.empty();  // else validation is too short for a single prediction
   if (!found.accepted.empty() && judged &&
       !carries_over(found, improvement(before, after, vehicle),

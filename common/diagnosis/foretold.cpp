@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/diagnosis/whiteness.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/diagnosis/words.hpp"
 #include "common/model/dynamics.hpp"
+#include "common/residual/whiteness.hpp"
 
 namespace fathom::diagnosis {
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "common/diagnosis/acting_order.hpp"
-#include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/diagnosis/rivals.hpp"
+#include "common/preflight/applicability.hpp"
 
 namespace fathom::diagnosis {
 namespace {

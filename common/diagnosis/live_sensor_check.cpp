@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "common/base/spatial.hpp"
-#include "common/diagnosis/sensor_faults.hpp"
+#include "common/diagnosis/moved.hpp"
+#include "common/preflight/sensor_faults.hpp"
 
 namespace fathom::diagnosis {
 namespace {

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/identification/parameter_map.hpp"
+#include "common/residual/force_residual.hpp"
 
 namespace fathom::diagnosis {
 namespace {

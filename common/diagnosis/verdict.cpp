@@ -4,14 +4,15 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/diagnosis/applicability.hpp"
 #include "common/diagnosis/foretold.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
 #include "common/diagnosis/listing.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/diagnosis/rivals.hpp"
-#include "common/diagnosis/whiteness.hpp"
 #include "common/diagnosis/words.hpp"
+#include "common/preflight/applicability.hpp"
+#include "common/residual/whiteness.hpp"
 
 namespace fathom::diagnosis {
 namespace {

@@ -50,6 +50,10 @@ std::string_view word(Cause cause) {
       return "not_finite";
     case Cause::kOutOfTime:
       return "out_of_time";
+    case Cause::kSensorsDisagree:
+      return "sensors_disagree";
+    case Cause::kBeginsUnseen:
+      return "begins_unseen";
     case Cause::kScoresDisagree:
       return "scores_disagree";
   }

@@ -25,14 +25,16 @@ enum class Cause {
   kSlowRandomForce,  ///< memory [s] of a random force of practical size: no noise
   kNotFollowing,     ///< share of an axis' acceleration that the model explains
   kNoSkill,          ///< 1 - (error / error where nothing changes)^2 of an axis at 5 s, on runs that no fit has seen
-  kWiring,         ///< share of the error that thrusters exchanged or reversed take away: likeliest reason of no_model
-  kForceUnit,      ///< fitted inertias over those that the vehicle's file expects, median: another one
-  kInputIdle,      ///< Student's t of an axis' thrust in an equation of its own: another one
-  kAbsurdNumber,   ///< a base number on its bound, over its prior's size
-  kTooShort,       ///< s of data
-  kNotFinite,      ///< the filter diverged
-  kOutOfTime,      ///< the search was cut short: what it did not ask may be there too
-  kScoresDisagree  ///< standard deviations between the numbers of the one-step and of the multi-horizon score
+  kWiring,        ///< share of the error that thrusters exchanged or reversed take away: likeliest reason of no_model
+  kForceUnit,     ///< fitted inertias over those that the vehicle's file expects, median: another one
+  kInputIdle,     ///< Student's t of an axis' thrust in an equation of its own: another one
+  kAbsurdNumber,  ///< a base number on its bound, over its prior's size
+  kTooShort,      ///< s of data
+  kNotFinite,     ///< the filter diverged
+  kOutOfTime,     ///< the search was cut short: what it did not ask may be there too
+  kSensorsDisagree,  ///< log odds that a sensor's number is wrong, by comparing the sensors
+  kBeginsUnseen,     ///< s into a run that judges, from which on far more is left than in the fitted ones
+  kScoresDisagree    ///< standard deviations between the numbers of the one-step and of the multi-horizon score
 };
 
 enum class Rule {

@@ -9,17 +9,17 @@
 #include "common/diagnosis/foretold.hpp"
 #include "common/diagnosis/judgement.hpp"
 #include "common/diagnosis/left_over.hpp"
-#include "common/diagnosis/prediction.hpp"
 #include "common/diagnosis/rivals.hpp"
 #include "common/diagnosis/verdict.hpp"
 #include "common/identification/parameter_map.hpp"
+#include "common/residual/prediction.hpp"
 
 namespace fathom::result {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHalf =
-    0.5;  // of an axis' applied wrench (diagnosis/whiteness.hpp), of the error (diagnosis/wiring.hpp)
+    0.5;  // of an axis' applied wrench (residual/whiteness.hpp), of the error (preflight/wiring.hpp)
 
 double probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
@@ -72,7 +72,7 @@ std::vector<CauseGiven> causes_of(const DiagnosisResult& result) {
     return causes;
   }
   if (result.verdict == "unjudged") {
-    causes.push_back({"too_short", kNone, diagnosis::kHorizons.back(), ""});
+    causes.push_back({"too_short", kNone, residual::kHorizons.back(), ""});
     return causes;
   }
   const bool unexplained = result.verdict == "unexplained";

@@ -5,14 +5,16 @@
 #include <limits>
 
 #include "common/base/statistics.hpp"
-#include "common/diagnosis/applicability.hpp"
-#include "common/diagnosis/force_residual.hpp"
-#include "common/diagnosis/prediction.hpp"
-#include "common/diagnosis/traces.hpp"
-#include "common/diagnosis/whiteness.hpp"
-#include "common/diagnosis/wiring.hpp"
 #include "common/identification/sparse.hpp"
 #include "common/likelihood/between_runs.hpp"
+#include "common/preflight/applicability.hpp"
+#include "common/preflight/wiring.hpp"
+#include "common/residual/force_residual.hpp"
+#include "common/residual/prediction.hpp"
+#include "common/residual/traces.hpp"
+#include "common/residual/unseen_event.hpp"
+#include "common/residual/whiteness.hpp"
+#include "common/verdict/covariance.hpp"
 #include "common/verdict/skill.hpp"
 
 namespace fathom::verdict {
@@ -23,7 +25,7 @@ using inference::Verdict;
 using likelihood::NumberKind;
 
 constexpr inference::Step kLearning{"learning", "learning what no list holds", 10.0};
-constexpr std::size_t kFiveSeconds = 1;                                 // of diagnosis::kHorizons
+constexpr std::size_t kFiveSeconds = 1;                                 // of residual::kHorizons
 constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();  // null in result.json
 constexpr double kStep = 0.04;  // s between the velocities that are predicted: short of it there is only noise
 
@@ -113,6 +115,22 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
   }
 }
 
+/// The first named effect that another may stand in the place of, and that other as it was fitted there.
+std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_in(const Conclusion& conclusion,
+                                                                             const likelihood::Fit& named) {
+  const inference::Found& found = conclusion.found;
+  const auto& effects = named.hypothesis.model.effects;
+  for (std::size_t e = 0; e < effects.size() && e < found.rival.size(); ++e) {
+    if (found.rival[e].empty() || found.probability[e] >= inference::Thresholds{}.name_probability) continue;
+    for (const inference::Fitted& near : found.near) {
+      for (const model::ActiveEffect& other : near.fit.hypothesis.model.effects) {
+        if (other.effect->name() == found.rival[e]) return std::pair{effects[e], other};
+      }
+    }
+  }
+  return {};
+}
+
 void list_refused(const inference::Found& found, DiagnosisResult& result, VerdictGiven& given) {
   for (const inference::Refused& refused : found.refused) {
     CandidateTried candidate{
@@ -131,9 +149,17 @@ Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen,
                    const Conclusion& conclusion) {
   const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
   const model::Model after = learning::as_model(conclusion.reported.hypothesis, input_step);
-  const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
-  return diagnosis::improvement(diagnosis::predict(before, windows), diagnosis::predict(after, windows), vehicle);
+  return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle);
+}
+
+/// Something that no fit can have seen, in runs that judge. The fitted ones are seen by the same steps of time.
+std::optional<UnseenEvent> something_begins(const model::Model& model, std::span<const Trial> train,
+                                            std::span<const Trial> unseen) {
+  std::vector<Trial> fitted;
+  for (const Trial& trial : train) fitted.push_back(identification::sparse(trial, kStep));
+  return residual::unseen_event(model, fitted, unseen);
 }
 
 /// Predictions on runs that no fit has seen, beside the simplest ones. An axis that is foretold worse than by saying
@@ -142,44 +168,59 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
                        std::span<const Trial> unseen, std::span<const Trial> train, DiagnosisReport& report,
                        VerdictGiven& given, Conclusion& conclusion) {
   DiagnosisResult& result = report.result;
-  const auto residual_before = diagnosis::wrench_residuals(before, unseen),
-             residual_after = diagnosis::wrench_residuals(after, unseen);
-  result.error_before.force_rmse = diagnosis::force_rmse(vehicle, residual_before);
-  result.error_after.force_rmse = diagnosis::force_rmse(vehicle, residual_after);
-  result.residual_before = diagnosis::whiteness(before, unseen, residual_before);
-  result.residual_after = diagnosis::whiteness(after, unseen, residual_after);
-  report.traces = diagnosis::traces_of(unseen, before, after, residual_before, residual_after);
+  const auto residual_before = residual::wrench_residuals(before, unseen),
+             residual_after = residual::wrench_residuals(after, unseen);
+  result.error_before.force_rmse = residual::force_rmse(vehicle, residual_before);
+  result.error_after.force_rmse = residual::force_rmse(vehicle, residual_after);
+  result.residual_before = residual::whiteness(before, unseen, residual_before);
+  result.residual_after = residual::whiteness(after, unseen, residual_after);
+  report.traces = residual::traces_of(unseen, before, after, residual_before, residual_after);
   const auto& free = conclusion.found.free_force;
   for (std::size_t i = 0; free && i < free->explainable.size() && i < conclusion.random.size(); ++i)
     given.explainable.push_back(
         {model::kAxisNames[static_cast<std::size_t>(conclusion.random[i].axis)], free->explainable[i]});
-  const std::vector<model::Window> windows = diagnosis::prediction_windows(unseen, diagnosis::lead_of(after));
+  report.unseen_event = something_begins(after, train, unseen);
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
   if (windows.empty()) return;
-  const diagnosis::Predictions by_before = diagnosis::predict(before, windows),
-                               by_after = diagnosis::predict(after, windows);
+  const residual::Predictions by_before = residual::predict(before, windows),
+                              by_after = residual::predict(after, windows);
   result.error_before.prediction = by_before.summary(vehicle);
   result.error_after.prediction = by_after.summary(vehicle);
-  result.improvement = diagnosis::improvement(by_before, by_after, vehicle);
-  const diagnosis::Predictions unchanged = predict_unchanged(windows);
+  result.improvement = residual::improvement(by_before, by_after, vehicle);
+  const residual::Predictions unchanged = predict_unchanged(windows);
   given.skill = skill_of(vehicle, by_after, unchanged, predict_plainly(vehicle, plain_fit(vehicle, train), windows));
   for (const SkillGiven& row : given.skill) {
     const auto axis =
         static_cast<std::size_t>(std::ranges::find(model::kAxisNames, row.axis) - model::kAxisNames.begin());
     const double p = p_no_worse(by_after, unchanged, kFiveSeconds, axis);
-    if (row.horizon_s != diagnosis::kHorizons[kFiveSeconds] || p >= inference::Thresholds{}.no_skill) continue;
+    if (row.horizon_s != residual::kHorizons[kFiveSeconds] || p >= inference::Thresholds{}.no_skill) continue;
     conclusion.reasons.push_back({inference::Cause::kNoSkill, row.over_unchanged, 0.0, row.axis});
     conclusion.verdict = Verdict::no_model;
   }
 }
 
-/// The likeliest reason for a model that does not follow its thrust, measured.
+/// What begins where no fit could see it is something that nothing here explains.
+void begins_later(const DiagnosisReport& report, Conclusion& conclusion) {
+  if (!report.unseen_event || conclusion.verdict == Verdict::no_model) return;
+  conclusion.reasons.push_back(
+      {inference::Cause::kBeginsUnseen, report.unseen_event->t, 0.0, report.unseen_event->run});
+  if (conclusion.verdict == Verdict::adequate) conclusion.verdict = Verdict::unexplained;
+}
+
+/// Thrusters that are others than the file says leave much that no list explains: the file is asked first.
+void seek_wiring(const model::Vehicle& vehicle, std::span<const Trial> train, DiagnosisResult& result,
+                 Conclusion& conclusion) {
+  result.wiring = preflight::wiring_fault(vehicle, train, {});
+  if (!result.wiring || result.wiring->readings.empty()) return;
+  conclusion.verdict = Verdict::no_model;
+  conclusion.reasons.push_back(
+      {inference::Cause::kWiring, result.wiring->error_reduction, 0.5, result.wiring->readings.front()});
+}
+
+/// The likeliest reason beside the wiring for a model that does not follow its thrust, measured.
 void seek_reason(const model::Vehicle& vehicle, std::span<const Trial> train, const inference::Thresholds& thresholds,
-                 DiagnosisResult& result, Conclusion& conclusion) {
+                 Conclusion& conclusion) {
   using inference::Cause;
-  result.wiring = diagnosis::wiring_fault(vehicle, train, {});
-  if (result.wiring && !result.wiring->readings.empty())
-    conclusion.reasons.push_back(
-        {Cause::kWiring, result.wiring->error_reduction, 0.5, result.wiring->readings.front()});
   const std::array<PlainAxis, 6> plain = plain_fit(vehicle, train);
   std::vector<double> ratios;
   for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -212,6 +253,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.improvement = {kNotAsked, kNotAsked, kNotAsked};
   progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
+  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   std::vector<Trial> unseen;
   double input_step = 0.0;
   for (const Trial& trial : validate) {
@@ -240,13 +282,16 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
   }
   if (conclusion.verdict == Verdict::no_model) {
-    seek_reason(vehicle, train, settings.thresholds, result, conclusion);
+    if (!result.wiring) seek_wiring(vehicle, train, result, conclusion);
+    seek_reason(vehicle, train, settings.thresholds, conclusion);
     if (result.correction && result.correction->adopted) {
       result.correction->adopted = result.correction->carried = false;
       result.correction->refused =
           "on runs that no fit has seen the model with it predicts worse than that nothing changes";
     }
   }
+  begins_later(report, conclusion);
+  answer.verdict = conclusion.verdict;
   result.verdict = word(conclusion.verdict);
   result.paragraph = paragraph(conclusion);
   for (const inference::Reason& reason : conclusion.reasons)
@@ -269,10 +314,14 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   for (const std::string& name : settings.without)
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
-  result.not_measured = diagnosis::not_measured(model::scene_of(vehicle, train));
+  result.not_measured = preflight::not_measured(model::scene_of(vehicle, train));
+  answer.best = best;
+  answer.best_sigma = with_names ? of_named : of_base;
+  answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;
   if (told) {
+    put_covariance(best, answer.best_sigma, answer.given);
     result.parameters_before = numbers_of(conclusion.reported_base, of_base);
-    result.parameters_after = numbers_of(best, with_names ? of_named : of_base);
+    result.parameters_after = numbers_of(best, answer.best_sigma);
   }
   return answer;
 }

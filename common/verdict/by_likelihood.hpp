@@ -2,8 +2,10 @@
 // runs that no fit has seen, and all sentences.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/inference/infer.hpp"
@@ -16,6 +18,11 @@ namespace fathom::verdict {
 struct Answer {
   DiagnosisReport report;
   VerdictGiven given;
+  inference::Verdict verdict{inference::Verdict::not_judged};
+  likelihood::Fit best;        ///< the model after, with the named effects
+  Eigen::VectorXd best_sigma;  ///< of its numbers; empty where nothing was fitted
+  /// A named effect, and the likeliest other in its place where that one cannot be ruled out.
+  std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals;
 };
 
 /// Diagnosis of `train`, predictions on `validate`. Consistency findings are the caller's to add.

@@ -80,6 +80,10 @@ std::string unexplained(const Conclusion& conclusion) {
     sentence += text("A force in %s remembers itself for %.0f s: that is no noise, and nothing recorded goes with it. ",
                      slow->of.c_str(), slow->value);
   }
+  if (const Reason* event = reason(conclusion, Cause::kBeginsUnseen)) {
+    sentence += text("Something begins near %.0f s of %s, which judges: no fit has seen it, and it is not explained. ",
+                     event->value, event->of.c_str());
+  }
   return sentence;
 }
 

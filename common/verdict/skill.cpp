@@ -9,9 +9,9 @@
 namespace fathom::verdict {
 namespace {
 
-using diagnosis::kHorizons;
-using diagnosis::Predictions;
-using diagnosis::WindowErrors;
+using residual::kHorizons;
+using residual::Predictions;
+using residual::WindowErrors;
 
 constexpr double kSpan = 0.25;       // s over which an acceleration is taken: sensor noise is then small beside it
 constexpr double kMostSpeed = 50.0;  // m/s, rad/s: what a plain equation makes beyond is nonsense, and its error enough
@@ -31,7 +31,7 @@ Predictions predict_by(std::span<const model::Window> windows, const Step& step)
     for (std::size_t k = 1; k < window.count; ++k) {
       step(trial, window.start + k - 1, nu);
       for (std::size_t axis = 0; axis < 6; ++axis) {
-        if (!diagnosis::is_measured(trial, window.start + k, axis)) continue;
+        if (!residual::is_measured(trial, window.start + k, axis)) continue;
         const auto a = static_cast<Eigen::Index>(axis);
         const double error = nu[a] - trial.nu[window.start + k][a];
         for (std::size_t h = 0; h < kHorizons.size(); ++h) {
@@ -70,7 +70,7 @@ std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<cons
       const model::Allocation allocation = model::nominal_model(vehicle, trial.input_is_wrench).allocation;
       const auto span = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kSpan / trial.dt)));
       for (std::size_t k = 0; k + span < trial.size(); k += span) {
-        if (!diagnosis::is_measured(trial, k, axis) || !diagnosis::is_measured(trial, k + span, axis)) continue;
+        if (!residual::is_measured(trial, k, axis) || !residual::is_measured(trial, k + span, axis)) continue;
         Eigen::Vector4d row = Eigen::Vector4d::Zero();
         for (std::size_t j = k; j < k + span; ++j) {
           const double nu = 0.5 * (trial.nu[j][a] + trial.nu[j + 1][a]);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/diagnosis/prediction.hpp"
+#include "common/residual/prediction.hpp"
 #include "common/samples/verdict_given.hpp"
 
 namespace fathom::verdict {
@@ -22,18 +22,18 @@ struct PlainAxis {
 [[nodiscard]] std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<const Trial> trials);
 
 /// Errors over prediction windows where nothing changes, and by the plain fit.
-[[nodiscard]] diagnosis::Predictions predict_unchanged(std::span<const model::Window> windows);
-[[nodiscard]] diagnosis::Predictions predict_plainly(const model::Vehicle& vehicle,
-                                                     const std::array<PlainAxis, 6>& plain,
-                                                     std::span<const model::Window> windows);
+[[nodiscard]] residual::Predictions predict_unchanged(std::span<const model::Window> windows);
+[[nodiscard]] residual::Predictions predict_plainly(const model::Vehicle& vehicle,
+                                                    const std::array<PlainAxis, 6>& plain,
+                                                    std::span<const model::Window> windows);
 
 /// 1 - (error / error of the simpler prediction)^2 per horizon and axis: above 0, the model is better.
-[[nodiscard]] std::vector<SkillGiven> skill_of(const model::Vehicle& vehicle, const diagnosis::Predictions& model,
-                                               const diagnosis::Predictions& unchanged,
-                                               const diagnosis::Predictions& plain);
+[[nodiscard]] std::vector<SkillGiven> skill_of(const model::Vehicle& vehicle, const residual::Predictions& model,
+                                               const residual::Predictions& unchanged,
+                                               const residual::Predictions& plain);
 
 /// P-value, one-sided over windows, of a model that is no worse than `simpler` showing errors as much larger.
-[[nodiscard]] double p_no_worse(const diagnosis::Predictions& model, const diagnosis::Predictions& simpler,
+[[nodiscard]] double p_no_worse(const residual::Predictions& model, const residual::Predictions& simpler,
                                 std::size_t horizon, std::size_t axis);
 
 }  // namespace fathom::verdict

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -15,27 +14,15 @@
 
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
-#include "common/consistency/dead_axes.hpp"
-#include "common/consistency/flow_check.hpp"
-#include "common/consistency/thruster_clock.hpp"
-#include "common/diagnosis/diagnoser.hpp"
-#include "common/diagnosis/force_unit.hpp"
-#include "common/diagnosis/implausible.hpp"
-#include "common/diagnosis/sensor_faults.hpp"
-#include "common/estimation/reconstruct.hpp"
-#include "common/estimation/shared_clock.hpp"
-#include "common/estimation/split.hpp"
 #include "common/estimation/state_as_measured.hpp"
-#include "common/estimation/wording.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/recordings/worth.hpp"
 #include "common/report/folds.hpp"
 #include "common/report/report.hpp"
 #include "common/report/table.hpp"
-#include "common/result/causes.hpp"
 #include "common/runtime/command_line.hpp"
-#include "common/verdict/by_likelihood.hpp"
+#include "common/verdict/of_recordings.hpp"
 #include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
@@ -43,31 +30,22 @@
 #include "processes/fathom/parts.hpp"
 #include "processes/fathom/recordings.hpp"
 #include "processes/fathom/rehearsals.hpp"
-#include "processes/fathom/search_progress.hpp"
 #include "processes/fathom/separations.hpp"
 
 namespace fathom::tool {
 namespace {
 
-constexpr const char* kTrajectories = "trajectories";
 constexpr const char* kLikelihood = "likelihood";
-constexpr double kHeldOut = 0.3;   // of every run, when no validation run is given
-constexpr double kShortest = 2.0;  // s between two gaps: the search looks at windows of that length
-constexpr double kNotable = 0.05;  // of the recordings left out: the reader should know
-// Of what judges: what begins later is seen for too short a time if half of it is fitted.
-constexpr double kTooLate = 0.3;
 
 /// Phases of the work beside those of the diagnosis.
-constexpr std::string_view kReading = "reading", kSensors = "sensors", kReconstruction = "reconstruction",
-                           kReport = "report", kDiagnosis = "diagnosis";
-constexpr double kLight = 0.03;             // of a fit: reading or reconstructing a run, until it has been timed
-constexpr double kGuessedDiagnosis = 40.0;  // fits, until it says more itself
+constexpr std::string_view kReading = "reading", kReport = "report";
+constexpr double kLight = 0.03;  // of a fit: reading a run, until it has been timed
 
 struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
   std::vector<std::string> without;
-  std::string core{kTrajectories};
+  std::string core{kLikelihood};
   bool no_learning{false};
   int threads{2};
   double time_budget{std::numeric_limits<double>::infinity()};
@@ -89,73 +67,6 @@ void make_folder(const std::string& path) {  // before the long work, so that a 
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error) throw InputError(path + ": cannot make this folder: " + error.message() + "; give another --out");
-}
-
-/// Complaints about a recording begin with its name; people look for the file.
-Trial reconstruct(const std::string& path, const Recording& recording, const estimation::Corrections& corrections,
-                  const model::Vehicle& vehicle) {
-  try {
-    return estimation::reconstruct(recording, corrections, vehicle);
-  } catch (const InputError& error) {
-    const std::string what = error.what(), name = recording.name + ": ";
-    throw InputError(path + ": " + (what.starts_with(name) ? what.substr(name.size()) : what));
-  }
-}
-
-/// Stretches of all runs over which it is known what drove the vehicle. InputError where no gap leaves `needed` s.
-class Stretches {
- public:
-  /// The runs are taken apart: what they held is not held twice.
-  Stretches(std::vector<Trial> runs, std::span<const std::string> paths, double needed) {
-    double longest = 0.0, lost = 0.0;
-    std::size_t gaps = 0;
-    const bool several = runs.size() > 1;
-    for (Trial& run : runs) {
-      whole_ += duration(run);
-      gaps += estimation::input_gaps(run).count;
-      lost += estimation::input_gaps(run).total;
-      for (Trial& stretch : estimation::known_stretches(std::exchange(run, {}), kShortest)) {
-        longest = std::max(longest, duration(stretch));
-        kept_ += duration(stretch);
-        trials_.push_back(std::move(stretch));
-      }
-    }
-    if (gaps == 0 || longest > needed) return;
-    throw InputError(paths.front() + (several ? " and its fellows" : "") +
-                     estimation::text(": what drove the vehicle is missing for %.3g s of %.4g s", lost, whole_) +
-                     estimation::text(", and no stretch of %.3g s is left between the %.0f gaps", needed,
-                                      static_cast<double>(gaps)) +
-                     "; record motion and thrusters together without pauses, or log at a steady rate");
-  }
-  [[nodiscard]] const std::vector<Trial>& trials() const { return trials_; }
-  [[nodiscard]] double whole() const { return whole_; }
-  [[nodiscard]] double left_out() const { return whole_ - kept_; }
-
- private:
-  static double duration(const Trial& trial) { return static_cast<double>(trial.size()) * trial.dt; }
-
-  std::vector<Trial> trials_;
-  double whole_{}, kept_{};  // s
-};
-
-/// One reading of the recordings and what it came to.
-struct Explained {
-  std::optional<Stretches> fitting, judging;
-  std::vector<ConsistencyFinding> gaps;
-  identification::FitResult fitted;
-  DiagnosisReport report;
-  VerdictGiven given;
-};
-
-/// True when the event begins within the first `share` of the run that it begins in.
-bool begins_before(const UnseenEvent& event, std::span<const Trial> runs, double share) {
-  double first = 0.0, last = 0.0;
-  for (const Trial& run : runs) {
-    if (run.name != event.run) continue;
-    if (last == 0.0) first = run.t.front();
-    last = run.t.back();
-  }
-  return event.t < first + share * (last - first);
 }
 
 /// Recordings as they are looked at: sorted by time, a long one in stretches.
@@ -208,7 +119,6 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   add_words(origin, "--map", options.map);
   add_words(origin, "--site", options.site);
   add_words(origin, "--config", options.config);
-  if (options.core != kTrajectories) add_words(origin, "--core", options.core);
   add_words(origin, "--without", options.without);
   const auto add_number = [&](const char* option, double value) {
     std::array<char, 32> text{};
@@ -223,175 +133,68 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   return origin;
 }
 
-DiagnosisReport diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
-                         VerdictGiven& given, ResultOrigin& origin) {
+verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
+                         ResultOrigin& origin) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   check_command_units(options.map, vehicle);
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
-  std::optional<planning::RehearsalSettings> room;  // read before the long work
-  if (!options.site.empty()) room = rehearsal_settings(options.site, options.config, vehicle);
+  std::optional<model::Site> site;  // both are read before the long work
+  std::optional<planning::RehearsalSettings> room;
+  if (!options.site.empty()) {
+    site = model::Site::load(options.site);
+    room = rehearsal_settings(options.site, options.config, vehicle);
+  }
   check_names(options.without);
-  if (!options.without.empty() && options.core != kLikelihood)
-    throw InputError("--without takes effects out of the list of --core likelihood alone; give that too");
-  if (options.no_learning && options.core != kLikelihood)
-    throw InputError("--no-learning is about --core likelihood alone; give that too");
   make_folder(options.out);
   const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
   progress.expect(kReading, files, kLight);
-  progress.expect(kSensors, 1, kLight * files);
-  progress.expect(kReconstruction, files, kLight);
   progress.expect(kReport, 1, 1.0);
-  progress.expect(kDiagnosis, 1, kGuessedDiagnosis);
   progress.begin(kReading, "reading recordings");
   Looked looked = look_at(options, vehicle, notes);
   origin = origin_of(options, looked);
-  std::vector<Recording> recordings = std::move(looked.recordings);
-  const std::vector<std::string>& paths = looked.paths;
-  const std::size_t fitted_runs = looked.fitted;
-  const auto runs = static_cast<double>(paths.size());
-  for (const Recording& recording : recordings) {
+  for (const Recording& recording : looked.recordings) {
     for (const std::string& reason : recordings::against_fitting(recording))
       notes.push_back(recording.name + ": ! " + reason);
   }
-
   progress.done(kReading, files);
-  progress.begin(kSensors, "comparing the sensors with each other");
-  const std::vector<ConsistencyFinding> dead = consistency::set_aside_dead_axes(recordings, vehicle.dof);
-  consistency::ConsistencyResult consistency = consistency::check_consistency(recordings);
-  consistency.findings.insert(consistency.findings.begin(), dead.begin(), dead.end());
-  consistency::check_thrusters(recordings, vehicle, consistency);
-  if (!options.site.empty()) {
-    consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), consistency);
+  verdict::Asked asked{.recordings = std::move(looked.recordings),
+                       .fitted = looked.fitted,
+                       .called = std::move(looked.paths),
+                       .again = [&options, &vehicle] {
+                         std::vector<std::string> told_already;
+                         return look_at(options, vehicle, told_already).recordings;
+                       }};
+  verdict::Explained explained = verdict::of_recordings(
+      vehicle, std::move(asked),
+      {.inference = {.without = options.without, .threads = options.threads, .time_budget = options.time_budget},
+       .learning = {.learn = !options.no_learning},
+       .site = site ? &*site : nullptr},
+      progress, notes);
+  if (room && explained.answer.rivals) {
+    const model::Model best = learning::as_model(explained.answer.best.hypothesis, explained.fitted.front().input_step);
+    separate(vehicle, *room, explained.fitted, best, explained.answer.report.result);
   }
-
-  progress.done(kSensors);
-  // Samples are let go while their trials are searched, and read again in the rare case that they are needed again.
-  const auto trials_of_recordings = [&] {
-    if (recordings.empty()) {
-      std::vector<std::string> told_already;
-      recordings = look_at(options, vehicle, told_already).recordings;
-      static_cast<void>(consistency::set_aside_dead_axes(recordings, vehicle.dof));
-      if (!options.site.empty()) {
-        consistency::ConsistencyResult found_already = consistency;
-        consistency::check_flow(recordings, vehicle.mounts, model::Site::load(options.site), found_already);
-      }
-    }
-    std::vector<Trial> trials;
-    progress.expect(kReconstruction, runs, kLight);
-    for (std::size_t i = 0; i < recordings.size(); ++i) {
-      progress.begin(kReconstruction, "reconstructing " + recordings[i].name);
-      trials.push_back(reconstruct(paths[i], recordings[i], consistency.corrections[i], vehicle));
-      progress.done(kReconstruction);
-    }
-    return trials;
-  };
-  diagnosis::Settings settings;
-  settings.threads = options.threads;
-  if (options.validate.empty()) settings.held_out = kHeldOut;
-  bool told = false;
-  const auto explain = [&](std::vector<Trial> trials, Explained& out, estimation::Kept kept) {
-    const bool one_clock = estimation::share_clock(recordings, trials);
-    if (one_clock && !std::exchange(told, true))
-      notes.emplace_back("the recordings follow one another on one clock: what begins in one goes on in the next");
-    recordings = {};
-    out.gaps = estimation::gap_findings(trials);
-    std::vector<Trial> train, validate;
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (options.validate.empty()) {
-        estimation::Parts parts = estimation::split(std::exchange(trials[i], {}), kHeldOut, kept);
-        train.push_back(std::move(parts.fitted));
-        std::ranges::move(parts.judged, std::back_inserter(validate));
-      } else {
-        (i < fitted_runs ? train : validate).push_back(std::move(trials[i]));
-      }
-    }
-    out.fitting.emplace(std::move(train), paths, settings.fit.window);
-    out.judging.emplace(std::move(validate), std::span{paths}.subspan(options.validate.empty() ? 0 : fitted_runs),
-                        kShortest);
-    progress.expect(kDiagnosis, 0);
-    if (options.core == kLikelihood) {
-      verdict::Answer answer = verdict::diagnose(
-          vehicle, out.fitting->trials(), out.judging->trials(),
-          {.without = options.without, .threads = options.threads, .time_budget = options.time_budget}, progress,
-          {.learn = !options.no_learning});
-      out.report = std::move(answer.report);
-      out.given = std::move(answer.given);
-      return;
-    }
-    SearchProgress search{progress};
-    out.report = diagnosis::diagnose(vehicle, out.fitting->trials(), out.judging->trials(), settings, std::ref(search),
-                                     &out.fitted);
-    search.end();
-  };
-  if (options.validate.empty()) {
-    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
-  }
-  Explained explained;
-  explain(trials_of_recordings(), explained, estimation::Kept::kLast);
-  if (diagnosis::thrust_as_late_as_gyro(explained.report.result, consistency.findings)) {
-    consistency::put_thrusters_on_pose_clock(consistency);
-    explain(trials_of_recordings(), explained, estimation::Kept::kLast);
-  }
-  if (options.validate.empty() && explained.report.unseen_event) {
-    const UnseenEvent event = *explained.report.unseen_event;
-    const bool early = begins_before(event, explained.judging->trials(), kTooLate);
-    Explained again;
-    try {
-      explain(trials_of_recordings(), again, early ? estimation::Kept::kEnds : estimation::Kept::kFirst);
-    } catch (const InputError& error) {  // of these parts alone: what the first look has found stands
-      notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted; ", event.t) +
-                      "other parts cannot judge: " + error.what());
-    }
-    if (!again.report.result.effects.empty() && !again.report.unseen_event) {
-      notes.push_back(estimation::text("something begins near %.0f s, too late for what is fitted: ", event.t) +
-                      (early ? "the first and the last 15 % of every run judge" : "the first 30 % of every run judge") +
-                      " in place of the last 30 %");
-      explained = std::move(again);
-    }
-  }
-  DiagnosisReport& report = explained.report;
-  const Stretches &fitting = *explained.fitting, &judging = *explained.judging;
-  if (room && options.core == kTrajectories)
-    separate(vehicle, *room, fitting.trials(), explained.fitted, report.result);
-  report.result.consistency = std::move(consistency.findings);
-  report.result.consistency.insert(report.result.consistency.end(), explained.gaps.begin(), explained.gaps.end());
-  diagnosis::adopt_sensor_faults(report.result);
-  if (auto finding = diagnosis::compare_inertia(vehicle, report.result.parameters_after))
-    report.result.consistency.push_back(*std::move(finding));
-  std::ranges::move(diagnosis::implausible_numbers(vehicle, report.result.parameters_after),
-                    std::back_inserter(report.result.consistency));
-  const double left_out = (fitting.left_out() + judging.left_out()) / (fitting.whole() + judging.whole());
-  if (left_out > kNotable) {
-    report.result.paragraph += estimation::text(
-        " %.0f %% of the recordings was left out: what drove the vehicle was not recorded there.", 100.0 * left_out);
-  }
-  given = std::move(explained.given);
-  if (options.core == kTrajectories) {
-    given.causes = result::causes_of(report.result);
-    result::put_covariance(explained.fitted, given);
-  }
-  return std::move(explained.report);
+  return std::move(explained.answer);
 }
 
 DiagnosisResult run_once(const DiagnoseOptions& options) {
   std::vector<std::string> notes;
-  DiagnosisReport report;
-  VerdictGiven given;
+  verdict::Answer answer;
   ResultOrigin origin;
   report::Written written;
   double elapsed = 0.0;
   {
     ProgressLine line;
     const Progress progress = line.progress();
-    report = diagnose(options, notes, progress, given, origin);
+    answer = diagnose(options, notes, progress, origin);
     progress.begin(kReport, "drawing the report");
-    written = report::write(report, options.out, given, origin);
+    written = report::write(answer.report, options.out, answer.given, origin);
     elapsed = line.elapsed();
   }
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-  std::printf("%s\nresult %s\nreport %s\ntook   %.1f s\n", report::to_table(report.result).c_str(),
+  std::printf("%s\nresult %s\nreport %s\ntook   %.1f s\n", report::to_table(answer.report.result).c_str(),
               written.json.c_str(), written.html.c_str(), elapsed);
-  return std::move(report.result);
+  return std::move(answer.report.result);
 }
 
 void run_diagnose(const DiagnoseOptions& options) {
@@ -436,16 +239,15 @@ void add_diagnose(runtime::CommandLine& app) {
   command->add_option("--config", options->config, "with --site: pipeline file (its namesake in ../pipelines/)");
   command
       ->add_option("--core", options->core,
-                   "trajectories: windows of open-loop rollouts; likelihood: an innovations filter over whole runs")
-      ->one_of({kTrajectories, kLikelihood});
-  command->add_option("--without", options->without,
-                      "with --core likelihood: effects to take out of the list, by name");
+                   "likelihood, an innovations filter over whole runs, is the only one; for scripts that say so")
+      ->one_of({kLikelihood});
+  command->add_option("--without", options->without, "effects to take out of the list, by name");
   command
       ->add_option("--time-budget", options->time_budget,
-                   "with --core likelihood: s for the search; what is not asked by then is said to be open")
+                   "s for the search; what is not asked by then is said to be open")
       ->within(1.0, 1e6);
   command->add_flag("--no-learning", options->no_learning,
-                    "with --core likelihood: what no listed effect explains is told, and no force is learned from it");
+                    "what no listed effect explains is told, and no force is learned from it");
   command
       ->add_option("--memory", options->held,
                    "MB of samples of a recording that are looked at; of one that takes more, stretches spread evenly "

@@ -10,7 +10,6 @@
 
 #include "common/base/error.hpp"
 #include "common/consistency/consistency.hpp"
-#include "common/diagnosis/prediction.hpp"
 #include "common/estimation/corrected_recording.hpp"
 #include "common/estimation/estimator.hpp"
 #include "common/estimation/reconstruct.hpp"
@@ -20,6 +19,7 @@
 #include "common/estimation/wording.hpp"
 #include "common/identification/base_regression.hpp"
 #include "common/identification/identifier.hpp"
+#include "common/residual/prediction.hpp"
 #include "common/runtime/command_line.hpp"
 #include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
@@ -131,8 +131,8 @@ void validate(const char* name, const model::Vehicle& vehicle, const std::vector
   for (const NamedValue& one : parameters) {
     if (const auto parameter = model::parameter_from_name(one.name)) model.theta[model::index(*parameter)] = one.value;
   }
-  const auto windows = diagnosis::prediction_windows(trials);
-  const auto summary = diagnosis::predict(model, windows).summary(vehicle);
+  const auto windows = residual::prediction_windows(trials);
+  const auto summary = residual::predict(model, windows).summary(vehicle);
   for (const PredictionError& one : summary) {
     std::printf("  %-34s %4.0f s ahead:", name, one.horizon_s);
     for (std::size_t i = 0; i < 6; ++i) {
@@ -301,14 +301,14 @@ void run_methods(const MethodsOptions& options) {
   std::vector<Trial> trials;
   for (std::size_t i = fitted_runs; i < recordings.size(); ++i) {
     const Trial run = estimation::reconstruct(recordings[i], checked.corrections[i], vehicle);
-    for (Trial& stretch : estimation::known_stretches(run, diagnosis::kHorizons.back()))
+    for (Trial& stretch : estimation::known_stretches(run, residual::kHorizons.back()))
       trials.push_back(std::move(stretch));
   }
   if (trials.empty()) {
     throw InputError(options.validate.front() + (options.validate.size() > 1 ? " and its fellows" : "") +
                      estimation::text(": no stretch of %.0f s over which it is known what drove the vehicle; record "
                                       "motion and thrusters together without pauses",
-                                      diagnosis::kHorizons.back()));
+                                      residual::kHorizons.back()));
   }
   std::printf("validation error, m/s and rad/s:\n");
   for (const Method& one : methods)

@@ -1,6 +1,7 @@
 #include "processes/fathom/separations.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "common/model/rollout.hpp"
 #include "common/planning/flights.hpp"
 #include "common/planning/separation.hpp"
+#include "common/residual/prediction.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -18,6 +20,19 @@ constexpr double kWindow = 10.0;  // s, as in a diagnosis
 model::Model bare(model::Model model) {
   model.effects.clear();
   return model;
+}
+
+/// What the model leaves, m/s and rad/s: by its open-loop errors over such windows, or what the sensors scatter by.
+Vector6d left_by(const model::Model& model, std::span<const Trial> trials) {
+  Vector6d sigma = trials.front().nu_sigma;
+  const auto windows = residual::prediction_windows(trials);
+  if (windows.empty()) return sigma;
+  const PredictionError last = residual::predict(model, windows).summary(*model.vehicle).back();
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    double& of = sigma[static_cast<Eigen::Index>(axis)];
+    if (std::isfinite(last.rmse[axis])) of = std::max(of, last.rmse[axis]);
+  }
+  return sigma;
 }
 
 std::string sentence(const EffectFound& effect) {
@@ -34,17 +49,17 @@ std::string sentence(const EffectFound& effect) {
 }  // namespace
 
 void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& settings, std::span<const Trial> train,
-              const identification::FitResult& fit, DiagnosisResult& result) {
+              const model::Model& best, DiagnosisResult& result) {
   const bool open = std::ranges::any_of(result.effects, [](const EffectFound& e) { return !e.alternatives.empty(); });
   if (!open || train.empty()) return;
-  const planning::View data{vehicle, {train.begin(), train.end()}, bare(fit.model), fit.sigma, kWindow};
+  const planning::View data{vehicle, {train.begin(), train.end()}, bare(best), left_by(best, train), kWindow};
   const model::Scene scene = model::scene_of(vehicle, train);
   const planning::Flights flights{vehicle, data, settings};
   std::string proposal;
   for (EffectFound& effect : result.effects) {
     const auto active = std::ranges::find_if(
-        fit.model.effects, [&](const model::ActiveEffect& a) { return a.effect->name() == effect.name; });
-    if (active == fit.model.effects.end()) continue;
+        best.effects, [&](const model::ActiveEffect& a) { return a.effect->name() == effect.name; });
+    if (active == best.effects.end()) continue;
     for (const auto& [other, log_odds, corrupts, corruption] : effect.alternatives) {
       const auto answer = planning::segment_between(*active, *model::find_effect(other), scene, data, flights.extras());
       if (answer) effect.told_apart.push_back({other, answer->segment, answer->seconds});

@@ -4,15 +4,14 @@
 #include <span>
 #include <string>
 
-#include "common/identification/trajectory_fit.hpp"
 #include "common/planning/rehearsal.hpp"
 #include "common/samples/diagnosis_result.hpp"
 
 namespace fathom::tool {
 
-/// Fills `told_apart` of every effect with alternatives, and the manoeuvre that the report proposes. `train` and `fit`:
-/// what the effects were found in.
+/// Fills `told_apart` of every effect with alternatives, and the manoeuvre that the report proposes. `train`, `best`:
+/// the runs that the effects were found in, and the model with them.
 void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& settings, std::span<const Trial> train,
-              const identification::FitResult& fit, DiagnosisResult& result);
+              const model::Model& best, DiagnosisResult& result);
 
 }  // namespace fathom::tool

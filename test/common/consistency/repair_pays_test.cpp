@@ -7,10 +7,10 @@
 
 #include "common/base/units.hpp"
 #include "common/consistency/consistency.hpp"
-#include "common/diagnosis/prediction.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
 #include "common/identification/fit_from_priors.hpp"
+#include "common/residual/prediction.hpp"
 #include "test/support/beluga_csv.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -31,12 +31,12 @@ std::array<double, 6> errors_of(std::span<const Recording> runs, bool mended) {
     estimation::Corrections corrections;
     corrections.thrusters = result.corrections[i].thrusters;
     if (mended) corrections = result.corrections[i];
-    parts[i] = estimation::known_stretches(estimation::reconstruct(runs[i], corrections, vehicle),
-                                           diagnosis::kHorizons.back());
+    parts[i] =
+        estimation::known_stretches(estimation::reconstruct(runs[i], corrections, vehicle), residual::kHorizons.back());
   }
   const auto fit = identification::fit_from_priors(vehicle, parts[0], {.threads = 1, .most_windows = kWindows});
-  const auto windows = diagnosis::prediction_windows(parts[1]);
-  return diagnosis::predict(fit.model, windows).summary(vehicle)[kHorizon].rmse;
+  const auto windows = residual::prediction_windows(parts[1]);
+  return residual::predict(fit.model, windows).summary(vehicle)[kHorizon].rmse;
 }
 
 }  // namespace

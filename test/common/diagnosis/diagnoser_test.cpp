@@ -8,8 +8,9 @@
 #include <string>
 
 #include "common/base/error.hpp"
-#include "common/diagnosis/prediction.hpp"
+#include "common/diagnosis/moved.hpp"
 #include "common/estimation/split.hpp"
+#include "common/residual/prediction.hpp"
 #include "test/support/cut_trial.hpp"
 #include "test/support/virtual_dive.hpp"
 

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "common/diagnosis/associations.hpp"
-#include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/moved.hpp"
+#include "common/residual/force_residual.hpp"
 
 namespace fathom::diagnosis {
 

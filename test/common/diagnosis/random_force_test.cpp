@@ -7,7 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "common/diagnosis/force_residual.hpp"
+#include "common/diagnosis/moved.hpp"
+#include "common/residual/force_residual.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;

@@ -47,7 +47,7 @@ TEST_CASE("skill: the plain fit finds an equation of one axis, and predicts by i
   CHECK(plain[0].input == doctest::Approx(0.5).epsilon(0.03));
   CHECK(plain[0].linear == doctest::Approx(-1.5).epsilon(0.1));
   CHECK(plain[0].t_of_input > 50.0);
-  const auto windows = diagnosis::prediction_windows({&trial, 1});
+  const auto windows = residual::prediction_windows({&trial, 1});
   REQUIRE(windows.size() > 10);
   const auto unchanged = predict_unchanged(windows), by_axis = predict_plainly(vehicle, plain, windows);
   // As if the plain fit were the model.

@@ -1,0 +1,28 @@
+// Is a residual white, and how long is its memory?
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/spatial.hpp"
+#include "common/model/dynamics.hpp"
+#include "common/samples/diagnosis_result.hpp"
+#include "common/samples/trial.hpp"
+
+namespace fathom::residual {
+
+/// Autocorrelation of a series at lags 0..most; NaN samples are skipped, gaps respected.
+[[nodiscard]] std::vector<double> autocorrelation(std::span<const double> series, std::size_t most);
+/// P-value of Ljung and Box's portmanteau test over `rho[1..]` of a series with `count` samples (1978, eq. 2.5).
+[[nodiscard]] double ljung_box_p(std::span<const double> rho, double count);
+
+/// Whiteness, memory and explained share of the wrench residual, per simulated axis on which there is one.
+[[nodiscard]] std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,
+                                                   std::span<const std::vector<Vector6d>> residuals);
+
+/// Names of the axes along which less than half of the applied wrench is accounted for, what is left being no noise of
+/// the sensors. Only where much is applied, next to other forces or moments: where little is, any random force is more.
+[[nodiscard]] std::vector<std::string> astray(std::span<const AxisWhiteness> axes);
+
+}  // namespace fathom::residual

@@ -1,0 +1,26 @@
+#include "common/verdict/covariance.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+namespace fathom::verdict {
+
+void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, VerdictGiven& given) {
+  const auto p = static_cast<Eigen::Index>(fit.numbers.size());
+  if (!fit.finite || p == 0 || sigma.size() != p || fit.information.rows() != p) return;
+  const Eigen::MatrixXd inverse = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  std::vector<Eigen::Index> told;
+  for (Eigen::Index j = 0; j < p; ++j) {
+    const likelihood::Number& number = fit.numbers[static_cast<std::size_t>(j)];
+    if (number.kind == likelihood::NumberKind::kWeight || !(inverse(j, j) > 0.0)) continue;
+    told.push_back(j);
+    given.covariance_of.push_back(number.name);
+  }
+  for (const Eigen::Index i : told) {
+    for (const Eigen::Index j : told)
+      given.covariance.push_back(sigma[i] * sigma[j] * inverse(i, j) / std::sqrt(inverse(i, i) * inverse(j, j)));
+  }
+}
+
+}  // namespace fathom::verdict

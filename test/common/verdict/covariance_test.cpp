@@ -1,0 +1,31 @@
+// Deviations as reported, correlations of the information, by hand.
+#include "common/verdict/covariance.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace fathom;
+
+TEST_CASE("covariance: deviations are those that are reported, correlations those of the information") {
+  likelihood::Fit fit;
+  fit.finite = true;
+  fit.numbers = {{.kind = likelihood::NumberKind::kBase, .name = "m_X"},
+                 {.kind = likelihood::NumberKind::kWeight, .name = "w"},
+                 {.kind = likelihood::NumberKind::kEffect, .name = "current.north"}};
+  // Inverse of [[2, 0, 1], [0, 1, 0], [1, 0, 1]]: 1, -1; -1, 2: correlation -1 / sqrt(2).
+  fit.information = Eigen::Matrix3d{{2.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 1.0}};
+  VerdictGiven given;
+  verdict::put_covariance(fit, Eigen::Vector3d{3.0, 1.0, 0.5}, given);
+  CHECK(given.covariance_of == std::vector<std::string>{"m_X", "current.north"});
+  REQUIRE(given.covariance.size() == 4);
+  CHECK(given.covariance[0] == doctest::Approx(9.0));
+  CHECK(given.covariance[1] == doctest::Approx(-1.5 / std::sqrt(2.0)));
+  CHECK(given.covariance[2] == doctest::Approx(given.covariance[1]));
+  CHECK(given.covariance[3] == doctest::Approx(0.25));
+
+  VerdictGiven none;
+  fit.finite = false;
+  verdict::put_covariance(fit, Eigen::Vector3d::Ones(), none);
+  CHECK(none.covariance_of.empty());
+}
