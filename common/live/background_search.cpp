@@ -12,8 +12,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int kBelow = 10;               // of nice: the estimator's and the supervisor's deadlines come first
-constexpr milliseconds kAskAgain{50};    // whether to go on
+constexpr int kBelow = 10;             // of nice: the estimator's and the supervisor's deadlines come first
+constexpr milliseconds kAskAgain{50};  // whether to go on
 
 struct Abandoned {};
 

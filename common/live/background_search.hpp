@@ -41,7 +41,8 @@ class BackgroundSearch {
   /// Its answer is no longer wanted.
   void abandon() { thread_.request_stop(); }
   [[nodiscard]] bool ready() const;
-  /// The answer, waited for as long as `go_on` says so; nothing: it says no more. Throws what the work has thrown. Once.
+  /// The answer, waited for as long as `go_on` says so; nothing: it says no more. Throws what the work has thrown.
+  /// Once.
   [[nodiscard]] std::optional<Found> wait(const std::function<bool()>& go_on);
 
  private:

@@ -13,7 +13,8 @@
 
 namespace fathom::live {
 
-/// Holds `most` seconds at most. Of a longer trial every second minute is kept, then every fourth: spread evenly over it.
+/// Holds `most` seconds at most. Of a longer trial every second minute is kept, then every fourth: spread evenly over
+/// it.
 class HeardTrial {
  public:
   explicit HeardTrial(double most) : most_{most} {}
@@ -37,7 +38,7 @@ class HeardTrial {
   [[nodiscard]] Recording* part_of(Utime utime);
   [[nodiscard]] bool keeps(std::int64_t part) const;
 
-  double most_;  ///< s
+  double most_;                              ///< s
   std::map<std::int64_t, Recording> parts_;  ///< by minutes of the clock
   std::int64_t first_{}, every_{1};          ///< part that is kept, and every so many after it
 };

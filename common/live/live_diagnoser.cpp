@@ -14,8 +14,8 @@
 namespace fathom::live {
 namespace {
 
-constexpr double kTwice = 2.0;      // as long, and there is another look: all looks together cost as much as two
-constexpr double kTimeFor = 0.5;    // of what it sees: a search takes a tenth of that on two idle cores
+constexpr double kTwice = 2.0;    // as long, and there is another look: all looks together cost as much as two
+constexpr double kTimeFor = 0.5;  // of what it sees: a search takes a tenth of that on two idle cores
 
 const EffectRanking kCollecting{.verdict = "collecting"};
 
@@ -49,8 +49,8 @@ std::optional<EffectRanking> LiveDiagnoser::step(const StateEstimate& state) {
 void LiveDiagnoser::look() {
   if (look_ || seconds_between(*first_, newest_) < next_look_ + settings_.max_skew) return;
   const double told_after = std::max((1.0 + kTimeFor) * next_look_, next_look_ + settings_.max_skew);
-  const auto priority = late_ == Late::kIsToldLate ? BackgroundSearch::Priority::kBelow
-                                                   : BackgroundSearch::Priority::kAsCaller;
+  const auto priority =
+      late_ == Late::kIsToldLate ? BackgroundSearch::Priority::kBelow : BackgroundSearch::Priority::kAsCaller;
   look_.emplace(next_look_, utime_after(*first_, told_after),
                 search(utime_after(*first_, next_look_), Learning::kOff, priority));
   next_look_ *= kTwice;

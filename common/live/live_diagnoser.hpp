@@ -23,8 +23,9 @@ class LiveDiagnoser {
   /// late, each as it would have been.
   enum class Late { kIsWaitedFor, kIsToldLate };
   /// `go_on` is asked while something is waited for: false ends the waiting, and nothing is said any more.
-  LiveDiagnoser(const LiveSettings& settings, const model::Vehicle& vehicle, std::optional<model::Site> site = {},
-                Late late = Late::kIsWaitedFor, std::function<bool()> go_on = [] { return true; });
+  LiveDiagnoser(
+      const LiveSettings& settings, const model::Vehicle& vehicle, std::optional<model::Site> site = {},
+      Late late = Late::kIsWaitedFor, std::function<bool()> go_on = [] { return true; });
   LiveDiagnoser(const LiveDiagnoser&) = delete;  // its searches point into it
   LiveDiagnoser& operator=(const LiveDiagnoser&) = delete;
 

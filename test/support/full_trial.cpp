@@ -118,8 +118,8 @@ FullTrial run_trial(const FullTrialOptions& options) {
   excitation::Supervisor supervisor{ready(s.supervisor, s.vehicle)};
   std::unique_ptr<live::LiveDiagnoser> diagnoser;
   if (diagnose)
-    diagnoser = std::make_unique<live::LiveDiagnoser>(live::LiveSettings::from(pipeline.section("diagnoser")),
-                                                      s.vehicle, site);
+    diagnoser =
+        std::make_unique<live::LiveDiagnoser>(live::LiveSettings::from(pipeline.section("diagnoser")), s.vehicle, site);
   FullTrial trial;
   const auto rank = [&](const std::optional<EffectRanking>& ranking) {
     if (!ranking) return;
