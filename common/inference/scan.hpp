@@ -55,6 +55,9 @@ struct Scan {
 /// taken out, on its worst axis. An effect on the sensors: of the velocity.
 [[nodiscard]] double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect,
                                     int threads = 1);
+/// The same of an effect that the seen model does not hold, if it had it.
+[[nodiscard]] double size_beside(const likelihood::Problem& problem, const Seen& seen,
+                                 const model::ActiveEffect& active);
 
 /// Accelerations that an effect adds to a hypothesis at the seen model's filtered velocities: axes x blocks, `shown`
 /// likewise.

@@ -120,12 +120,17 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
   return worst;
 }
 
-double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect, int threads) {
-  // The model without it, with what it adds as a column.
-  likelihood::Hypothesis without = seen.fit.hypothesis;
-  const model::ActiveEffect active = without.model.effects[effect];
-  without.model.effects.erase(without.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-  std::vector<Eigen::MatrixXd> accelerations;
+namespace {
+
+/// What an effect adds to a hypothesis without it, at the seen velocities.
+struct Added {
+  std::vector<Eigen::MatrixXd> accelerations;  ///< per run, axes x blocks
+  double shown{};  ///< rms of the change of what the sensors show, over that of the velocity
+};
+
+Added added_by(const likelihood::Problem& problem, const Seen& seen, const likelihood::Hypothesis& without,
+               const model::ActiveEffect& active) {
+  Added added;
   double shown_square = 0.0, moved_square = 0.0;
   for (std::size_t r = 0; r < problem.runs.size(); ++r) {
     EffectColumns columns{problem, seen, without, r};
@@ -141,18 +146,36 @@ double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std:
       shown_square += shown.squaredNorm();
       moved_square += seen.reference[r].nu_end.col(static_cast<Eigen::Index>(b)).squaredNorm();
     }
-    accelerations.push_back(std::move(all));
+    added.accelerations.push_back(std::move(all));
   }
-  if (likelihood::stage_of(active) == likelihood::Stage::kSensor)
-    return moved_square > 0.0 ? std::sqrt(shown_square / moved_square) : 0.0;
-  if (likelihood::stage_of(active) != likelihood::Stage::kHull) return size_of(problem, seen, accelerations).share;
+  if (moved_square > 0.0) added.shown = std::sqrt(shown_square / moved_square);
+  return added;
+}
+
+}  // namespace
+
+double size_beside(const likelihood::Problem& problem, const Seen& seen, const model::ActiveEffect& active) {
+  const Added added = added_by(problem, seen, seen.fit.hypothesis, active);
+  return likelihood::stage_of(active) == likelihood::Stage::kSensor ? added.shown
+                                                                    : size_of(problem, seen, added.accelerations).share;
+}
+
+double size_of_effect(const likelihood::Problem& problem, const Seen& seen, std::size_t effect, int threads) {
+  // The model without it, with what it adds as a column.
+  likelihood::Hypothesis without = seen.fit.hypothesis;
+  const model::ActiveEffect active = without.model.effects[effect];
+  without.model.effects.erase(without.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  const Added added = added_by(problem, seen, without, active);
+  if (likelihood::stage_of(active) == likelihood::Stage::kSensor) return added.shown;
+  if (likelihood::stage_of(active) != likelihood::Stage::kHull)
+    return size_of(problem, seen, added.accelerations).share;
   // What base numbers alone can do. Beside an effect that couples axes they move axes that are not theirs, through the
   // very inertia that is asked about.
   Seen rest{.fit = seen.fit, .applied = seen.applied};
   rest.fit.hypothesis = without;
   rest.fit.numbers = problem.numbers(without);
   likelihood::refer(problem, rest.fit, rest.reference, threads);
-  return size_of(problem, rest, accelerations).share;
+  return size_of(problem, rest, added.accelerations).share;
 }
 
 }  // namespace fathom::inference

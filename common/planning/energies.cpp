@@ -40,7 +40,8 @@ std::optional<Answer> at_least(std::optional<Answer> answer) {
 Base::Base(const model::Model& model, std::span<const View* const> views) {
   const identification::ParameterMap map{model};
   const auto n = static_cast<Eigen::Index>(map.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  information(n, n) = 1.0;  // the clock of the commands
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& free = map[static_cast<std::size_t>(i)];
     information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);

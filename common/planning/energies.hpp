@@ -32,7 +32,7 @@ constexpr double kNoEnergy = 1e-9;
 /// deviations.
 constexpr double kToldApart = 2.0 * 3.0;
 
-/// Base parameters as the prior and some stretches know them.
+/// Base parameters, and the clock of the commands, as the prior and some stretches know them.
 class Base {
  public:
   Base(const model::Model& model, std::span<const View* const> views);
@@ -49,7 +49,7 @@ struct Suspect {
   double ordinary{std::numeric_limits<double>::infinity()};  ///< its sizes over what is ordinary for them, the largest
   bool found{false};
   Eigen::VectorXd change;    ///< during the excitation
-  Eigen::VectorXd imitated;  ///< the step of the base parameters that follows it
+  Eigen::VectorXd imitated;  ///< the step of the base parameters and the clock that follows it
 };
 
 /// Multiplies what the effect is proportional to; false when that leaves the physical limits.

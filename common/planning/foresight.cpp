@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/base/parallel.hpp"
-#include "common/diagnosis/evidence.hpp"
-#include "common/diagnosis/judgement.hpp"
-#include "common/diagnosis/questions.hpp"
 #include "common/identification/parameter_map.hpp"
+#include "common/inference/fitted_models.hpp"
 #include "common/model/effect_size.hpp"
 #include "common/planning/energies.hpp"
 
@@ -16,99 +15,143 @@ namespace fathom::planning {
 namespace {
 
 constexpr std::size_t kMostStarts = 5;  // of a form: places, moments, time constants
-constexpr int kRounds = 10;             // of finding a size; most effects are nearly proportional
-constexpr double kLargestStep = 30.0;   // factor between rounds
+constexpr int kRounds = 16;             // of finding a size; most effects are nearly proportional
+constexpr double kLargestStep = 3.4;    // between rounds, natural logarithm: a factor of thirty
 constexpr double kClose = 0.1;          // of the size
-constexpr double kNoSmaller = 0.95;     // of the change before
+constexpr double kNoSmaller = 0.95;     // of the change that twice the size makes
 constexpr double kWave = 1.5;           // rad/s: a wave that nobody has seen yet
 
+/// Of the effect's numbers over what is ordinary for them, the largest.
+double over_ordinary(const model::ActiveEffect& active, const model::Vehicle& vehicle) {
+  double largest = 0.0;
+  const auto sizes = static_cast<std::size_t>(std::max(active.effect->amplitudes(), 1));
+  for (std::size_t i = 0; i < sizes; ++i) {
+    if (!active.effect->takes_part(active.variant, i)) continue;
+    largest = std::max(
+        largest, std::abs(active.theta[i]) / model::parameter_of(*active.effect, active.variant, i, vehicle).sigma);
+  }
+  return largest;
+}
+
+/// Asks as a diagnosis will: the evidence of a model with the effect beside that of the base model, and the effect's
+/// size.
 class Judge {
  public:
-  Judge(const View& view, const diagnosis::Settings& settings, int tried)
-      : view_{view}, settings_{settings}, tried_{tried} {}
+  Judge(const model::Vehicle& vehicle, const View& view, const std::vector<inference::Law>& laws,
+        const inference::Settings& settings)
+      : vehicle_{vehicle},
+        view_{view},
+        laws_{laws},
+        thresholds_{settings.thresholds},
+        problem_{likelihood::make_problem(vehicle, view.trials(), settings.runs)} {
+    likelihood::Fit base{.hypothesis = likelihood::nominal_hypothesis(problem_),
+                         .noise = likelihood::prior_noise(problem_)};
+    base.numbers = problem_.numbers(base.hypothesis);
+    seen_ = inference::see(problem_, std::move(base), settings.threads);
+  }
 
-  /// The factor on `suspect.change` at which it would be accepted.
+  /// The factor on `suspect.change` at which it would be named.
   [[nodiscard]] double factor(const Suspect& suspect) const {
-    std::vector<double> fall;
+    constexpr double kNever = std::numeric_limits<double>::infinity();
     const Eigen::VectorXd own = suspect.change - view_.jacobian() * suspect.imitated;
-    Eigen::Index row = 0;
-    for (const Eigen::Index rows : view_.rows()) {
-      fall.push_back(0.5 * own.segment(row, rows).squaredNorm());
-      row += rows;
-    }
-    if (diagnosis::total(fall) < kNoEnergy) return std::numeric_limits<double>::infinity();
+    const double gain = 0.5 * own.squaredNorm();  // nats of likelihood, at factor 1
+    const double size = inference::size_beside(problem_, seen_, suspect.active);
+    if (!(gain > kNoEnergy)) return kNever;
+    const double ordinary = over_ordinary(suspect.active, vehicle_);
+    const auto named = [&](double factor) {
+      return odds(suspect.active, gain, ordinary, factor) >= thresholds_.name_odds;
+    };
     double low = -12.0, high = 12.0;  // natural logarithm
-    if (!accepted(suspect, fall, std::exp(high))) return std::numeric_limits<double>::infinity();
+    if (!named(std::exp(high))) return kNever;
     while (high - low > 0.01) {
       const double middle = 0.5 * (low + high);
-      (accepted(suspect, fall, std::exp(middle)) ? high : low) = middle;
+      (named(std::exp(middle)) ? high : low) = middle;
     }
-    return std::max(std::exp(high), settings_.smallest_change / view_.share_of_motion(own));
+    return std::max(std::exp(high), thresholds_.smallest_size / std::max(size, 1e-12));
   }
 
  private:
-  [[nodiscard]] bool accepted(const Suspect& suspect, const std::vector<double>& fall, double factor) const {
-    std::vector<double> with, without;
-    for (std::size_t w = 0; w < fall.size(); ++w) {
-      with.push_back(0.5 * static_cast<double>(view_.rows()[w]));  // noise
-      without.push_back(with.back() + factor * factor * fall[w]);
-    }
-    diagnosis::Judged judged{.effect = suspect.active.effect};
-    judged.error_reduction = diagnosis::reduction(diagnosis::total(without), diagnosis::total(with));
-    judged.log_odds =
-        diagnosis::log_odds(without, with, suspect.active.effect->numbers(suspect.active.variant), tried_);
-    return judged.error_reduction >= settings_.smallest_reduction &&
-           judged.log_odds >= diagnosis::needed_log_odds(judged, settings_);
+  /// Nats over the base model: Laplace's evidence, a change in proportion to the effect, and the prior of the set.
+  /// Each number is taken to be known as well as the effect's size is: `ordinary`, at factor 1, in units of its prior.
+  [[nodiscard]] double odds(const model::ActiveEffect& active, double gain, double ordinary, double factor) const {
+    const likelihood::Number plain{.freedom = likelihood::kEffectFreedom};
+    const double information = 2.0 * gain / std::max(ordinary * ordinary, 1e-300),
+                 x = factor * ordinary;  // both in units of the prior
+    const double price = 0.5 * std::log(information + likelihood::prior_weight(plain, x)) -
+                         likelihood::log_prior(plain, x) - 0.5 * std::log(2.0 * std::numbers::pi);
+    return factor * factor * gain - active.effect->numbers(active.variant) * price +
+           inference::log_prior_of_set({active}, laws_) - inference::log_prior_of_set({}, laws_);
   }
 
+  const model::Vehicle& vehicle_;
   const View& view_;
-  const diagnosis::Settings& settings_;
-  int tried_;
+  const std::vector<inference::Law>& laws_;
+  inference::Thresholds thresholds_;
+  likelihood::Problem problem_;
+  inference::Seen seen_;
 };
 
-/// The smallest size of this form from this start.
-Suspect smallest(const View& view, const Base& base, const Judge& judge, const diagnosis::Candidate& candidate,
+/// Moves what the effect is proportional to by `step`, natural logarithm, or by as much of it as physical limits leave;
+/// 0 where they leave nothing. Returns what was moved.
+double move(model::ActiveEffect& active, double step) {
+  for (; std::abs(step) > 0.2 * kClose; step *= 0.5) {
+    model::ActiveEffect moved = active;
+    if (!grow(moved, std::exp(step))) continue;
+    active = std::move(moved);
+    return step;
+  }
+  return 0.0;
+}
+
+/// Half of it does as much: a lag shorter than the steps of time acts as if it were as long.
+bool blurred(const View& view, const Suspect& suspect) {
+  model::ActiveEffect half = suspect.active;
+  return grow(half, 0.5) && view.change(half).norm() > kNoSmaller * suspect.change.norm();
+}
+
+/// The smallest size of this form from this start: by proportion, and where an effect is not proportional (a delay
+/// that the clocks of the commands leave open is none) by halves between what is named and what is not.
+Suspect smallest(const View& view, const Base& base, const Judge& judge, const inference::Law& law,
                  const std::vector<double>& start) {
-  Suspect suspect{.active = {candidate.effect, candidate.variant, candidate.name, start}};
-  model::ActiveEffect larger;
-  double change = std::numeric_limits<double>::infinity();  // that the larger one makes
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Suspect suspect{.active = law.seed};
+  suspect.active.theta = start;
+  model::ActiveEffect named;                                         // the smallest one
+  double at = 0.0, not_named_at = -kInfinity, named_at = kInfinity;  // natural logarithm, over the start
   for (int round = 0; round < kRounds; ++round) {
     suspect.change = view.change(suspect.active);
     suspect.imitated = base.solve(view.jacobian().transpose() * suspect.change);
-    const double factor = judge.factor(suspect);
+    double factor = judge.factor(suspect);
     if (!std::isfinite(factor) || !suspect.change.allFinite()) return suspect;
+    if (factor < 1.0 + kClose && blurred(view, suspect)) factor = 2.0;  // nothing is promised of such sizes
     suspect.found = std::abs(factor - 1.0) < kClose;
-    if (suspect.found) break;
-    if (factor < 1.0 && suspect.change.norm() > kNoSmaller * change) {
-      // A lag shorter than the steps of time acts as if it were as long: nothing is promised below that.
-      suspect.active = larger;
-      suspect.found = true;
-      break;
+    if (factor < 1.0) {
+      named_at = at;
+      named = suspect.active;
+    } else {
+      not_named_at = at;
     }
-    larger = suspect.active;
-    change = factor < 1.0 ? suspect.change.norm() : std::numeric_limits<double>::infinity();
-    if (!grow(suspect.active, std::clamp(factor, 1.0 / kLargestStep, kLargestStep))) return suspect;
+    if (!suspect.found && named_at - not_named_at < kClose) {
+      suspect.active = named;
+      suspect.found = true;
+    }
+    if (suspect.found) break;
+    const bool between = std::isfinite(not_named_at) && std::isfinite(named_at);
+    const double moved = move(suspect.active, between ? 0.5 * (not_named_at + named_at) - at
+                                                      : std::clamp(std::log(factor), -kLargestStep, kLargestStep));
+    if (moved == 0.0) return suspect;
+    at += moved;
   }
-  if (!suspect.found) return suspect;
-  suspect.ordinary = 0.0;
-  const auto sizes = static_cast<std::size_t>(std::max(candidate.effect->amplitudes(), 1));
-  for (std::size_t i = 0; i < sizes; ++i) {
-    const double size = std::abs(suspect.active.theta[i]) /
-                        model::parameter_of(*candidate.effect, candidate.variant, i, *view.model().vehicle).sigma;
-    if (candidate.effect->takes_part(candidate.variant, i)) suspect.ordinary = std::max(suspect.ordinary, size);
-  }
+  if (suspect.found) suspect.ordinary = over_ordinary(suspect.active, *view.model().vehicle);
   return suspect;
 }
 
 /// The middle one of the starts: where, when and how fast are not known beforehand.
-Suspect typical(const View& view, const Base& base, const Judge& judge, const diagnosis::Candidate& candidate,
-                const model::Scene& scene) {
-  const auto starts = candidate.effect->starts(scene, candidate.variant);
-  const std::size_t stride = (starts.size() + kMostStarts - 1) / kMostStarts;
+Suspect typical(const View& view, const Base& base, const Judge& judge, const inference::Law& law) {
+  const std::size_t stride = (law.grid.size() + kMostStarts - 1) / kMostStarts;
   std::vector<Suspect> all;
-  for (std::size_t i = 0; i < starts.size(); i += std::max<std::size_t>(stride, 1))
-    all.push_back(smallest(view, base, judge, candidate, starts[i]));
-  if (all.empty()) return {.active = {candidate.effect, candidate.variant, candidate.name, {}}};
+  for (std::size_t i = 0; i < law.grid.size(); i += stride)
+    all.push_back(smallest(view, base, judge, law, law.grid[i]));
   std::ranges::stable_sort(all, {}, &Suspect::ordinary);
   return std::move(all[all.size() / 2]);
 }
@@ -137,18 +180,17 @@ void say_corruption(const View& view, const Suspect& suspect, Foreseen& out) {
 }  // namespace
 
 std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitation, std::span<const Extra> extras,
-                              const diagnosis::Settings& settings, const Progress& progress) {
-  const model::Scene scene = scene_for(vehicle, excitation);
-  const std::vector<diagnosis::Candidate> candidates = diagnosis::all_candidates(scene);
+                              const inference::Settings& settings, const Progress& progress) {
+  const std::vector<inference::Law> laws = inference::catalogue(scene_for(vehicle, excitation), settings.without);
   const View* alone = &excitation;
   const Base base{excitation.model(), std::span{&alone, 1}};
-  const Judge judge{excitation, settings, static_cast<int>(candidates.size())};
-  std::vector<Suspect> forms(candidates.size());
+  const Judge judge{vehicle, excitation, laws, settings};
+  std::vector<Suspect> forms(laws.size());
   constexpr const char* kEffects = "effects";
-  progress.expect(kEffects, static_cast<double>(candidates.size()));
+  progress.expect(kEffects, static_cast<double>(laws.size()));
   progress.begin(kEffects, "asking every effect");
-  for_each_index(candidates.size(), settings.threads, [&](std::size_t i) {
-    forms[i] = typical(excitation, base, judge, candidates[i], scene);
+  for_each_index(laws.size(), settings.threads, [&](std::size_t i) {
+    forms[i] = typical(excitation, base, judge, laws[i]);
     progress.done(kEffects);
   });
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/progress.hpp"
-#include "common/diagnosis/diagnoser.hpp"
+#include "common/inference/infer.hpp"
 #include "common/planning/energies.hpp"
 
 namespace fathom::planning {
@@ -29,8 +29,10 @@ struct Foreseen {
   std::vector<LookAlike> like;    ///< effects that explain the same as well, whose odds would stay open
 };
 
+/// An effect is found where a diagnosis by `settings` would name it: it has the odds of a name, all tries paid for, and
+/// the smallest practical size. Nothing is known beforehand of the water's own random force, and none is assumed.
 [[nodiscard]] std::vector<Foreseen> foresee(const model::Vehicle& vehicle, const View& excitation,
-                                            std::span<const Extra> extras, const diagnosis::Settings& settings,
+                                            std::span<const Extra> extras, const inference::Settings& settings,
                                             const Progress& progress);
 
 }  // namespace fathom::planning

@@ -5,8 +5,12 @@
 #include <numeric>
 #include <utility>
 
+#include "common/likelihood/hypothesis.hpp"
+
 namespace fathom::planning {
 namespace {
+
+constexpr double kProbe = 0.25;  // of the time between inputs, to both sides, for the derivative
 
 std::vector<Trial> one(const Trial& trial) { return {trial}; }
 
@@ -24,31 +28,27 @@ View::View(const model::Vehicle& vehicle, std::vector<Trial> trials, const model
   const std::vector<identification::ProjectedWindow> windows = fit_.linearise(at_, false);
   for (const auto& each : windows) rows_.push_back(each.jacobian.rows());
   const Eigen::Index all = std::accumulate(rows_.begin(), rows_.end(), Eigen::Index{0});
-  jacobian_.resize(all, windows.front().jacobian.cols());
+  jacobian_.resize(all, windows.front().jacobian.cols() + 1);
   Eigen::Index row = 0;
   for (const auto& each : windows) {
-    jacobian_.middleRows(row, each.jacobian.rows()) = each.jacobian;
+    jacobian_.block(row, 0, each.jacobian.rows(), each.jacobian.cols()) = each.jacobian;
     row += each.jacobian.rows();
     free_.push_back(each.initial_basis);
     weight_.push_back(each.weight);
   }
   without_ = residual(at_.model);
-  for (const auto& each : fit_.windows()) {
-    for (Eigen::Index i = 0; i < each.rows(); ++i) {
-      axis_.push_back(each.axis(i));
-      motion_square_[axis_.back()] += std::pow(each.measured(i) / at_.sigma[axis_.back()], 2);
-    }
-  }
+  jacobian_.rightCols<1>() = by_clock();
 }
 
-double View::share_of_motion(const Eigen::VectorXd& change) const {
-  Vector6d square = Vector6d::Zero();
-  for (Eigen::Index i = 0; i < change.size(); ++i) square[axis_[static_cast<std::size_t>(i)]] += change[i] * change[i];
-  double share = 0.0;
-  for (int axis = 0; axis < 6; ++axis) {
-    if (motion_square_[axis] > 0.0) share = std::max(share, std::sqrt(square[axis] / motion_square_[axis]));
-  }
-  return share;
+Eigen::VectorXd View::by_clock() const {
+  const double step = trials_.front().input_step;
+  if (!(step > 0.0)) return Eigen::VectorXd::Zero(jacobian_.rows());
+  const likelihood::NumberSettings clock;
+  const double sigma = (clock.offset_sigma + clock.offset_of_step * step) / step;  // of the time between inputs
+  model::Model early = at_.model, late = at_.model;
+  early.input_hold -= kProbe;
+  late.input_hold += kProbe;
+  return sigma / (2.0 * kProbe) * (residual(late) - residual(early));
 }
 
 Eigen::VectorXd View::residual(const model::Model& model) const {

@@ -20,12 +20,9 @@ class View {
 
   /// Change of all weighted residuals, initial velocities free, that the effect would make.
   [[nodiscard]] Eigen::VectorXd change(const model::ActiveEffect& effect) const;
-  /// How far such a change moves the predicted velocity: share of the velocity itself, on the axis where it is most.
-  [[nodiscard]] double share_of_motion(const Eigen::VectorXd& change) const;
-  /// Derivatives by the scaled base parameters, rows as in change().
+  /// Derivatives by the scaled base parameters, and last by the clock of the commands, in standard deviations of what
+  /// a diagnosis knows of it beforehand. Rows as in change().
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
-  /// Rows of each window, one after the other.
-  [[nodiscard]] const std::vector<Eigen::Index>& rows() const { return rows_; }
   [[nodiscard]] std::span<const Trial> trials() const { return trials_; }
   [[nodiscard]] const model::Model& model() const { return at_.model; }
   [[nodiscard]] const Vector6d& sigma() const { return at_.sigma; }
@@ -33,17 +30,16 @@ class View {
 
  private:
   [[nodiscard]] Eigen::VectorXd residual(const model::Model& model) const;
+  [[nodiscard]] Eigen::VectorXd by_clock() const;
 
   std::vector<Trial> trials_;
   identification::TrajectoryFit fit_;
   identification::FitResult at_;
   std::vector<Eigen::VectorXd> weight_;  ///< per window and row: less than 1 where it is an outlier
   std::vector<Eigen::MatrixXd> free_;    ///< per window, basis of what the initial velocity can change
-  std::vector<Eigen::Index> rows_;
+  std::vector<Eigen::Index> rows_;       ///< of each window, one after the other
   Eigen::MatrixXd jacobian_;
   Eigen::VectorXd without_;
-  std::vector<int> axis_;                     ///< of each row
-  Vector6d motion_square_{Vector6d::Zero()};  ///< sum over an axis' rows of (velocity / sigma)^2
 };
 
 }  // namespace fathom::planning

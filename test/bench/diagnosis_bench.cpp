@@ -1,17 +1,13 @@
-// What a diagnosis costs: each candidate's first look and its full fit on 330 s of a vehicle with four axes at 100 Hz,
-// and the whole of it by the trial's length.
+// What a diagnosis costs: the score test of each effect beside a fitted base model and the full fit of what it promises
+// most, on 330 s of a vehicle with four axes at 100 Hz, and the whole of it by the trial's length.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 #include <vector>
 
-#include "common/diagnosis/diagnoser.hpp"
-#include "common/diagnosis/questions.hpp"
-#include "common/identification/fit_from_priors.hpp"
-#include "common/identification/sparse.hpp"
+#include "common/verdict/by_likelihood.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;
@@ -19,7 +15,6 @@ using namespace fathom;
 namespace {
 
 constexpr double kTrial = 330.0;       // s
-constexpr double kSearchStep = 0.04;   // s between the samples that a search looks at
 constexpr double kValidation = 100.0;  // s
 
 /// 100 Hz, velocity 5 mm/s, rates 0.2 deg/s.
@@ -32,17 +27,12 @@ Trial dive(double duration, unsigned seed) {
 /// A clean trial with its base model fitted, as a search has it when it asks its first question.
 struct Asked {
   model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
-  diagnosis::Settings settings;
-  std::vector<Trial> trials{identification::sparse(dive(kTrial, 1), kSearchStep)};
+  std::vector<Trial> trials{dive(kTrial, 1)};
   model::Scene scene = model::scene_of(vehicle, trials);
-  identification::FitResult base = identification::fit_from_priors(vehicle, trials, settings.fit);
-  identification::TrajectoryFit problem{vehicle, trials, settings.fit};
-  diagnosis::NearView near{vehicle, trials, settings};
-
-  Asked() {
-    settings.threads = 1;
-    near.fit(base.model);
-  }
+  likelihood::Problem problem = likelihood::make_problem(vehicle, trials);
+  inference::Seen base = inference::see(
+      problem, likelihood::fit(problem, likelihood::nominal_hypothesis(problem), likelihood::prior_noise(problem), {}),
+      1);
 };
 
 const Asked& asked() {
@@ -50,40 +40,43 @@ const Asked& asked() {
   return kAsked;
 }
 
-std::vector<diagnosis::Candidate> forms_of(const Asked& trial, const model::Effect& effect) {
-  std::vector<diagnosis::Candidate> forms = diagnosis::all_candidates(trial.scene);
-  std::erase_if(forms, [&](const diagnosis::Candidate& form) { return form.effect != &effect; });
-  return forms;
+std::vector<inference::Law> forms_of(const Asked& trial, const model::Effect& effect) {
+  std::vector<inference::Law> laws = inference::catalogue(trial.scene, {});
+  std::erase_if(laws, [&](const inference::Law& law) { return law.seed.effect != &effect; });
+  return laws;
 }
 
-/// All forms of one effect, by short windows.
+/// All forms of one effect.
 void look(benchmark::State& state, const model::Effect* effect) {
   const Asked& trial = asked();
   const auto forms = forms_of(trial, *effect);
   if (forms.empty()) return state.SkipWithError("has no form that this trial could show");
   for (auto _ : state)
-    benchmark::DoNotOptimize(diagnosis::ask_near(forms, trial.near, trial.scene, trial.settings).share.data());
+    benchmark::DoNotOptimize(inference::scan(trial.problem, trial.base, forms, {}, 1).promises.data());
   state.counters["forms"] = static_cast<double>(forms.size());
 }
 
-/// The form that promises most, by trajectories, together with the base numbers.
+/// The form that promises most, together with the base numbers and the noise.
 void fit(benchmark::State& state, const model::Effect* effect) {
   const Asked& trial = asked();
   const auto forms = forms_of(trial, *effect);
   if (forms.empty()) return state.SkipWithError("has no form that this trial could show");
-  const diagnosis::Answers answers = diagnosis::ask_near(forms, trial.near, trial.scene, trial.settings);
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(answers.share) - answers.share.begin());
-  const model::Model start = diagnosis::start_of(trial.problem, trial.base, answers, best);
-  for (auto _ : state) benchmark::DoNotOptimize(trial.problem.fit(start, &trial.base).cost);
+  const auto promises = inference::scan(trial.problem, trial.base, forms, {}, 1).promises;
+  if (promises.empty()) return state.SkipWithError("promises nothing");
+  model::ActiveEffect active = forms[promises.front().law].seed;
+  active.theta = promises.front().theta;
+  likelihood::Hypothesis start = trial.base.fit.hypothesis;
+  start.model.add(active);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(likelihood::fit(trial.problem, start, trial.base.fit.noise, {}).log_evidence);
 }
 
 void diagnose(benchmark::State& state) {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   const std::array<Trial, 1> train{dive(static_cast<double>(state.range(0)), 1)}, validate{dive(kValidation, 2)};
-  const diagnosis::Settings settings;
   for (auto _ : state) {
-    const auto report = diagnosis::diagnose(vehicle, train, validate, settings, [](const std::string&, double) {});
-    state.SetLabel(report.result.verdict);
+    const verdict::Answer answer = verdict::diagnose(vehicle, train, validate, {}, {});
+    state.SetLabel(answer.report.result.verdict);
   }
   state.SetComplexityN(state.range(0));
 }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <atomic>
 
-#include "common/diagnosis/search.hpp"
 #include "test/support/timing.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -41,9 +40,8 @@ bool found_at(const model::Vehicle& vehicle, const Foreseen& promise, double fac
   test::DiveSettings dive = settings(0.005);
   dive.effects = {test::active(promise.name, theta)};
   const std::vector<Trial> trials{test::make_dive(vehicle, dive).trial};
-  const auto result = diagnosis::search(vehicle, trials, {}, [](const std::string&, double) {});
-  return std::ranges::any_of(result.accepted,
-                             [&](const auto& judged) { return judged.effect->name() == promise.name; });
+  const inference::Conclusion answer = inference::infer(vehicle, trials, {}, {});
+  return std::ranges::find(answer.found.best.names, promise.name) != answer.found.best.names.end();
 }
 
 }  // namespace
@@ -71,7 +69,13 @@ TEST_CASE("foresight: promises about sizes are kept, and look-alikes are named")
   REQUIRE(current.soonest);
   CHECK(current.soonest->seconds == doctest::Approx(kDuration).epsilon(0.05));
 
-  const Foreseen& delay = named(all, "thruster_delay");
+  // Noisier sensors, and commands at 50 Hz: what shows at all is more than what matters, and evidence decides.
+  test::DiveSettings often = settings(0.0);
+  often.dt = often.step = 0.02;
+  Trial noisy = test::make_dive(vehicle, often).trial;
+  noisy.nu_sigma.setConstant(0.03);
+  const std::vector<Foreseen> by_evidence = foresee(vehicle, View{vehicle, noisy, kWindow}, {}, {}, {});
+  const Foreseen& delay = named(by_evidence, "thruster_delay");
   CHECK(std::ranges::any_of(delay.like, [](const LookAlike& other) { return other.name == "thruster_lag"; }));
   for (const Foreseen& one : all) {
     CAPTURE(one.name);
@@ -105,7 +109,9 @@ TEST_CASE("foresight: quiet data show a lag shorter than steps of time, and it i
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   Trial trial = clean(vehicle);
   trial.nu_sigma.setConstant(1e-3);
-  const std::vector<Foreseen> all = foresee(vehicle, View{vehicle, trial, kWindow}, {}, {}, {});
+  // However small it is: a diagnosis asks for a size that matters besides.
+  const inference::Settings settings{.thresholds = {.smallest_size = 1e-3}};
+  const std::vector<Foreseen> all = foresee(vehicle, View{vehicle, trial, kWindow}, {}, settings, {});
   const Foreseen& lag = named(all, "thruster_lag");
   REQUIRE(lag.found);
   CHECK(lag.size[0].value > 1e-3);  // s: a twentieth of the longest step
@@ -119,6 +125,5 @@ TEST_CASE("view: an effect's change has what the initial velocity can do taken o
   const Eigen::VectorXd twice = view.change(test::active("current", {0.002, 0.0}));
   CHECK((twice - 2.0 * once).norm() < 0.02 * twice.norm());  // small changes are proportional
   CHECK(view.change(test::active("current", {0.0, 0.0})).norm() < 1e-9);
-  CHECK(view.share_of_motion(twice) > view.share_of_motion(once));
   CHECK(view.jacobian().rows() == once.size());
 }
