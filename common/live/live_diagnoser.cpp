@@ -51,8 +51,7 @@ void LiveDiagnoser::look() {
   const double told_after = std::max((1.0 + kTimeFor) * next_look_, next_look_ + settings_.max_skew);
   const auto priority =
       late_ == Late::kIsToldLate ? BackgroundSearch::Priority::kBelow : BackgroundSearch::Priority::kAsCaller;
-  look_.emplace(next_look_, utime_after(*first_, told_after),
-                search(utime_after(*first_, next_look_), Learning::kOff, priority));
+  look_.emplace(next_look_, utime_after(*first_, told_after), search(utime_after(*first_, next_look_), priority));
   next_look_ *= kTwice;
 }
 
@@ -81,10 +80,10 @@ void LiveDiagnoser::tell(Found found, double seconds) {
   told_ = std::move(found);
 }
 
-BackgroundSearch LiveDiagnoser::search(Utime end, Learning learning, BackgroundSearch::Priority priority) const {
+BackgroundSearch LiveDiagnoser::search(Utime end, BackgroundSearch::Priority priority) const {
   verdict::RecordingsSettings settings;
   settings.inference.threads = settings_.threads;
-  settings.learning.learn = learning == Learning::kOn;
+  settings.learning.learn = false;
   settings.site = site_.get();
   return {[settings, heard = trial_.until(end), vehicle = vehicle_.get()](const Progress& progress) mutable {
             Found found;
@@ -108,8 +107,7 @@ BackgroundSearch LiveDiagnoser::search(Utime end, Learning learning, BackgroundS
 std::optional<EffectRanking> LiveDiagnoser::finish() {
   if (!first_ || !go_on_()) return {};
   if (look_) look_->search.abandon();
-  BackgroundSearch whole =
-      search(std::numeric_limits<Utime>::max(), Learning::kOn, BackgroundSearch::Priority::kAsCaller);
+  BackgroundSearch whole = search(std::numeric_limits<Utime>::max(), BackgroundSearch::Priority::kAsCaller);
   std::optional<Found> found = whole.wait(go_on_);
   if (!found) return {};
   tell(*std::move(found), seconds_between(*first_, newest_));

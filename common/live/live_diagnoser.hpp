@@ -37,7 +37,8 @@ class LiveDiagnoser {
   /// The trial's clock. A ranking follows every LiveSettings::interval: what the last search has found, "collecting"
   /// before.
   std::optional<EffectRanking> step(const StateEstimate& state);
-  /// The streams have ended: what `fathom diagnose` says of all that was heard, with a force that no list holds.
+  /// The streams have ended: what `fathom diagnose` says of all that was heard. Of a force that it learns EFFECTS
+  /// cannot tell, so none is learned.
   std::optional<EffectRanking> finish();
   void reset();
 
@@ -52,11 +53,10 @@ class LiveDiagnoser {
     Utime due{};       ///< time stamp from which on it is told
     BackgroundSearch search;
   };
-  enum class Learning { kOff, kOn };
   void look();
   [[nodiscard]] bool take_what_is_due(Utime utime);
   void tell(Found found, double seconds);
-  [[nodiscard]] BackgroundSearch search(Utime end, Learning learning, BackgroundSearch::Priority priority) const;
+  [[nodiscard]] BackgroundSearch search(Utime end, BackgroundSearch::Priority priority) const;
 
   LiveSettings settings_;
   std::unique_ptr<const model::Vehicle> vehicle_;

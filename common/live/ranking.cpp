@@ -23,7 +23,8 @@ std::vector<double> numbers_of(const EffectFound& effect, const likelihood::Fit&
 EffectRanking ranking_of(const verdict::Answer& answer) {
   const DiagnosisResult& result = answer.report.result;
   EffectRanking ranking{.verdict = result.verdict};
-  const double falls = result.improvement.value;
+  const bool named = result.verdict == "effect" || result.verdict == "ambiguous";
+  const double falls = named ? result.improvement.value : 0.0;
   for (const EffectFound& effect : result.effects) {
     ranking.candidates.push_back({.name = effect.name,
                                   .log_odds = effect.log_odds,
