@@ -219,15 +219,6 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   return fit;
 }
 
-FitResult TrajectoryFit::reweighted(FitResult fit) const {
-  fit.sigma = residual_scale(fit);
-  solve(fit, 0.0);
-  score(fit);
-  fit.sigma = residual_scale(fit);
-  score(fit);
-  return fit;
-}
-
 std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool hold_bounds,
                                                       std::span<const ProjectedWindow> like) const {
   const ParameterMap map{fit.model};

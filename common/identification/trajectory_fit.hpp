@@ -37,9 +37,6 @@ class TrajectoryFit {
   /// Fits from `start`. With `like`, its sigma and initial velocities are the starting point and sigma is kept (costs
   /// can be compared); without, sigma is found by iteration. `tolerance` replaces that of the settings unless zero.
   [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr, double tolerance = 0.0) const;
-  /// The fit once more from where it ended, by weights of its own residual: those of a worse model let priors pull, and
-  /// hide what is small beside that model's error.
-  [[nodiscard]] FitResult reweighted(FitResult fit) const;
   /// Cost of a model with the weights and the initial velocities of a fit.
   [[nodiscard]] double cost(const model::Model& model, const FitResult& like) const;
   /// Residuals and derivatives at a fit, per window. With `hold_bounds`, numbers on a physical bound have no

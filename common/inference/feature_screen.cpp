@@ -152,7 +152,7 @@ Size size_of_force(const likelihood::Problem& problem, const Seen& seen, const l
     }
     accelerations.push_back(std::move(sum));
   }
-  return size_of(problem, seen, accelerations);
+  return size_of_missing(problem, seen, accelerations);
 }
 
 }  // namespace fathom::inference

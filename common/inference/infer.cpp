@@ -3,9 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "common/base/statistics.hpp"
 #include "common/model/rollout.hpp"
+#include "common/residual/open_loop.hpp"
 
 namespace fathom::inference {
 namespace {
@@ -73,18 +75,6 @@ std::vector<double> followed(const likelihood::Problem& problem, const Seen& see
   return shares;
 }
 
-/// In standard deviations, the median over base numbers by which both scores differ.
-double disagreement(const likelihood::Fit& one, const likelihood::Fit& other) {
-  const Eigen::VectorXd sigma = one.sigma();
-  std::vector<double> off;
-  for (std::size_t j = 0; j < one.numbers.size() && j < other.numbers.size(); ++j) {
-    if (one.numbers[j].kind != NumberKind::kBase) continue;
-    const double difference = value(one.hypothesis, one.numbers[j]) - value(other.hypothesis, other.numbers[j]);
-    off.push_back(std::abs(difference) / std::max(sigma[static_cast<Eigen::Index>(j)], 1e-12));
-  }
-  return median(std::move(off));
-}
-
 likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood::Fit& fit, int threads) {
   likelihood::Fit reported = likelihood::fit(problem, fit.hypothesis, fit.noise,
                                              {.noise_rounds = 1,
@@ -94,6 +84,28 @@ likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood:
                                               .horizon = likelihood::Horizon{},
                                               .threads = threads});
   return reported.finite ? reported : fit;
+}
+
+/// Share by which the open-loop error on the fitted runs surely falls from `one` to `other`; 0 where chance may have
+/// it.
+double fall_of_error(const likelihood::Problem& problem, std::span<const Trial> trials, const likelihood::Fit& one,
+                     const likelihood::Fit& other) {
+  constexpr std::size_t kMostWindows = 100;  // evenly chosen
+  constexpr double kSure = 2.0;              // standard errors over windows
+  std::vector<model::Window> windows;
+  for (const Trial& trial : trials)
+    std::ranges::move(residual::windows_within(trial, trial.t.front(), trial.t.back(), {}),
+                      std::back_inserter(windows));
+  const std::size_t every = windows.size() / kMostWindows + 1;
+  for (std::size_t w = 0; w * every < windows.size(); ++w) windows[w] = windows[w * every];
+  windows.resize((windows.size() + every - 1) / every);
+  residual::Compared compared;
+  residual::compare(model_of(one.hypothesis, problem.input_step), model_of(other.hypothesis, problem.input_step),
+                    windows, {}, compared);
+  const residual::Ratio ratio = ratio_of(compared);
+  const bool sure = ratio.windows > 2 && std::log(ratio.value) + kSure * ratio.log_error < 0.0;
+  const double chance = static_cast<double>(other.numbers.size()) / (4.0 * std::max(ratio.windows, 1));
+  return sure ? std::max(0.0, 1.0 - ratio.value - chance) : 0.0;
 }
 
 double length_of(const likelihood::Problem& problem) {
@@ -121,9 +133,11 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
 
   const likelihood::Fit& fit = found.best.fit;
   for (std::size_t axis = 0; axis < conclusion.followed.size(); ++axis) {
-    if (conclusion.followed[axis] < thresholds.following)
+    const int of = problem.axes[axis];
+    const bool skilled = std::ranges::find(conclusion.skilled, of) != conclusion.skilled.end();
+    if (conclusion.followed[axis] < thresholds.following && !skilled)
       reasons.push_back({Cause::kNotFollowing, conclusion.followed[axis], thresholds.following,
-                         model::kAxisNames[static_cast<std::size_t>(problem.axes[axis])]});
+                         model::kAxisNames[static_cast<std::size_t>(of)]});
   }
   for (const likelihood::Number& number : fit.numbers) {
     if (number.kind != NumberKind::kBase) continue;
@@ -137,10 +151,8 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     return;
   }
 
-  if (conclusion.reported.finite) {
-    const double off = disagreement(fit, conclusion.reported);
-    if (off > thresholds.disagreement) reasons.push_back({Cause::kScoresDisagree, off, thresholds.disagreement, ""});
-  }
+  if (conclusion.disagreement > thresholds.disagreement)
+    reasons.push_back({Cause::kScoresDisagree, conclusion.disagreement, thresholds.disagreement, ""});
   bool unexplained = false;
   if (found.free_force && found.free_force->log_odds >= thresholds.free_force_odds &&
       found.free_force->size.share >= thresholds.smallest_size) {
@@ -196,17 +208,17 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
                                    noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
     }
-    // One fit gives all numbers: the likelihood's, which wastes nothing where the model is right, unless numbers that
-    // predict far differ from it by more than chance: then those.
-    const auto reported = [&](const likelihood::Fit& fit) {
+    const auto reported = [&](const likelihood::Fit& fit, double& gain) {
       progress.begin(kHorizonFit.phase, kHorizonFit.what);
       likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
+      gain = deadline.over() ? 0.0 : fall_of_error(problem, trials, fit, by);
       progress.done(kHorizonFit.phase);
-      return disagreement(fit, by) > settings.thresholds.disagreement ? by : fit;
+      return gain > settings.thresholds.disagreement ? by : fit;
     };
+    double of_base = 0.0;
     if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
-    conclusion.reported = reported(found.best.fit);
-    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit);
+    conclusion.reported = reported(found.best.fit, conclusion.disagreement);
+    conclusion.reported_base = found.best.names.empty() ? conclusion.reported : reported(found.base.fit, of_base);
   }
   conclude(problem, settings.thresholds, conclusion);
   return conclusion;

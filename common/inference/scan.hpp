@@ -96,6 +96,10 @@ struct Size {
 };
 [[nodiscard]] Size size_of(const likelihood::Problem& problem, const Seen& seen,
                            const std::vector<Eigen::MatrixXd>& accelerations);
+/// The same of what is missing in the seen model, whose random force has taken its place: on no axis is it larger than
+/// that, whatever its parts come to that undo each other.
+[[nodiscard]] Size size_of_missing(const likelihood::Problem& problem, const Seen& seen,
+                                   const std::vector<Eigen::MatrixXd>& accelerations);
 
 /// What columns gain in the likelihood at the amplitudes that their priors (Student's t of width `sigma`) and the
 /// gradient agree on, and the score with its Occam factor.

@@ -2,6 +2,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/inference/scan.hpp"
 
@@ -75,7 +76,11 @@ double taken_away(const Eigen::MatrixXd& lower, const Eigen::VectorXd& b, const 
 
 }  // namespace
 
-Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::vector<Eigen::MatrixXd>& accelerations) {
+namespace {
+
+/// `most`: per axis of the filter [m/s^2, rad/s^2].
+Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::vector<Eigen::MatrixXd>& accelerations,
+             const Vector6d& most) {
   // Base numbers first, then what the clocks of the commands leave open.
   std::vector<Eigen::Index> base;
   for (const NumberKind kind : {NumberKind::kBase, NumberKind::kCommandOffset}) {
@@ -114,10 +119,23 @@ Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::ve
                                         return p - offsets;
                                       }));
     const int axis = problem.axes[static_cast<std::size_t>(i)];
-    const double share = std::sqrt(left / count) / std::max(seen.applied[axis], 1e-9);
+    const double share = std::min(std::sqrt(left / count), most[i]) / std::max(seen.applied[axis], 1e-9);
     if (share > worst.share) worst = {share, axis};
   }
   return worst;
+}
+
+}  // namespace
+
+Size size_of(const likelihood::Problem& problem, const Seen& seen, const std::vector<Eigen::MatrixXd>& accelerations) {
+  return size_of(problem, seen, accelerations, Vector6d::Constant(std::numeric_limits<double>::infinity()));
+}
+
+Size size_of_missing(const likelihood::Problem& problem, const Seen& seen,
+                     const std::vector<Eigen::MatrixXd>& accelerations) {
+  Vector6d most = Vector6d::Zero();
+  for (int i = 0; i < problem.simulated; ++i) most[i] = seen.fit.noise[static_cast<std::size_t>(i)][likelihood::kForce];
+  return size_of(problem, seen, accelerations, most);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/inference/searching.hpp"
 #include "common/samples/trial_part.hpp"
 
 namespace fathom::inference {
@@ -55,6 +56,55 @@ Start on_whole_runs(const likelihood::Fit& of_stretches, const Stretches& stretc
     mean.velocity_bias += of.velocity_bias / count[run];
   }
   return start;
+}
+
+void Searching::know(const Searching& ahead) {
+  sought_ = true;
+  noted_ = ahead.noted_;
+  failed_ = ahead.failed_;
+  gave_way_ = ahead.gave_way_;
+  in_place_ = ahead.in_place_;
+}
+
+void Searching::take_up(const std::vector<Start>& sets) {
+  const std::vector<Fitted> fits = models_.race(sets, {.from = found_.base.score});
+  const auto best = std::ranges::max_element(fits, {}, &Fitted::score);
+  if (best == fits.end() || !best->fit.finite || best->score < found_.base.score + thresholds_.name_odds) return;
+  if (best->names.size() < 2 && !counts(*best)) return;
+  found_.best = *best;
+  drop();
+}
+
+Found search(const likelihood::Problem& problem, const model::Scene& scene, const std::vector<std::string>& without,
+             const Thresholds& thresholds, int threads, const Progress& progress, const Deadline& deadline) {
+  const auto searching = [&](const likelihood::Problem& of, const Progress& told) {
+    return Searching{of, scene, without, thresholds, threads, told, deadline};
+  };
+  const std::optional<Stretches> stretches = stretches_of(problem, thresholds);
+  if (!stretches) return searching(problem, progress).run();
+  progress.expect(kWholeRuns.phase, 1, kWholeRuns.weight * stretches->of_whole);
+  const likelihood::Problem few = likelihood::make_problem(*problem.vehicle, stretches->trials, problem.run_settings);
+  Searching ahead = searching(few, progress);
+  const Found found = ahead.run();
+  // One step of the whole work, whatever it consists of: a fit takes another time here.
+  const Progress one_step{[&](const Progress::Event& event) {
+    if (event.kind == Progress::Event::Kind::kBegin) progress.begin(kWholeRuns.phase, event.what);
+  }};
+  progress.begin(kWholeRuns.phase, kWholeRuns.what);
+  Searching whole = searching(problem, one_step);
+  Before before;
+  if (found.base.fit.finite) {
+    const auto start = [&](const Fitted& fitted) { return on_whole_runs(fitted.fit, *stretches, problem.runs.size()); };
+    before.base = start(found.base);
+    if (!found.best.names.empty()) before.sets.push_back(start(found.best));
+    for (const Fitted& fitted : found.near) {
+      if (!fitted.names.empty()) before.sets.push_back(start(fitted));
+    }
+    whole.know(ahead);
+  }
+  Found of_all = whole.run(found.base.fit.finite ? &before : nullptr);
+  progress.done(kWholeRuns.phase);
+  return of_all;
 }
 
 }  // namespace fathom::inference

@@ -13,7 +13,7 @@ enum class Verdict {
   effect,       ///< named effects, each above its odds and its rivals
   ambiguous,    ///< something is there, and more than one name fits it
   unexplained,  ///< something is there that no listed effect explains
-  no_model,     ///< the model does not follow its thrust: its numbers mean nothing
+  no_model,     ///< the model does not follow its thrust along some axis, whose numbers mean nothing
   not_judged    ///< too short, or the filter did not run
 };
 
@@ -34,7 +34,7 @@ enum class Cause {
   kOutOfTime,     ///< the search was cut short: what it did not ask may be there too
   kSensorsDisagree,  ///< log odds that a sensor's number is wrong, by comparing the sensors
   kBeginsUnseen,     ///< s into a run that judges, from which on far more is left than in the fitted ones
-  kScoresDisagree    ///< standard deviations between the numbers of the one-step and of the multi-horizon score
+  kScoresDisagree    ///< share by which the open-loop error falls with the numbers of the multi-horizon score
 };
 
 enum class Rule {

@@ -45,7 +45,7 @@ std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving
 }
 
 struct Judged {
-  Compared whole, carried;
+  residual::Compared whole, carried;
 };
 
 std::shared_ptr<const model::LearnedForce> made(const Fit& fit, const model::FreeForce& force,
@@ -65,7 +65,7 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
     for (const Stretch& stretch : stretches) {
       if (stretch.fold != fold) continue;
       rest.runs[stretch.run].leave_out(stretch.from, stretch.to);
-      const auto within = windows_within(trials[stretch.run], stretch.from, stretch.to, leaving);
+      const auto within = windows_within(trials[stretch.run], stretch.from, stretch.to, leaving.predicted);
       windows.insert(windows.end(), within.begin(), within.end());
     }
     if (windows.empty()) continue;
@@ -73,9 +73,10 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
         likelihood::fit(rest, with.hypothesis, with.noise,
                         {.noise_rounds = 1, .steps = 2, .enough = 0.3, .fit_noise = false, .threads = threads});
     if (!fitted.finite) continue;
-    const auto compare_with = [&](const model::FreeForce& force, Compared& compared) {
+    const auto compare_with = [&](const model::FreeForce& force, residual::Compared& compared) {
       const auto learned = made(fitted, force, visited);
-      compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), windows, leaving, compared);
+      compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), windows, leaving.predicted,
+              compared);
     };
     compare_with(fitted.hypothesis.force, judged.whole);
     compare_with(model::lasting_of(fitted.hypothesis.force), judged.carried);
@@ -83,7 +84,7 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
   return judged;
 }
 
-bool passes(const Ratio& ratio, double most, const Limits& limits) {
+bool passes(const residual::Ratio& ratio, double most, const Limits& limits) {
   return ratio.windows >= limits.fewest_windows && ratio.value <= most &&
          std::log(ratio.value) + limits.sure * ratio.log_error < 0.0;
 }
@@ -101,8 +102,9 @@ Fit reported(const Problem& problem, std::span<const Trial> trials, const Fit& f
   if (!far.finite) return fit;
   const auto near_force = made(fit, fit.hypothesis.force, visited),
              far_force = made(far, far.hypothesis.force, visited);
-  const Ratio ratio = error_over(as_model(fit.hypothesis, problem.input_step, near_force.get()),
-                                 as_model(far.hypothesis, problem.input_step, far_force.get()), trials, leaving);
+  const residual::Ratio ratio =
+      error_over(as_model(fit.hypothesis, problem.input_step, near_force.get()),
+                 as_model(far.hypothesis, problem.input_step, far_force.get()), trials, leaving.predicted);
   return ratio.value <= 1.0 ? far : fit;
 }
 
@@ -147,11 +149,7 @@ void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& gi
 }  // namespace
 
 model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step, const model::LearnedForce* force) {
-  model::Model model = hypothesis.model;
-  double offset = 0.0;
-  for (const likelihood::RunNumbers& run : hypothesis.runs)
-    offset += run.command_offset / static_cast<double>(hypothesis.runs.size());
-  if (input_step > 0.0) model.input_hold = std::clamp(offset / input_step, -0.5, 0.5);
+  model::Model model = likelihood::model_of(hypothesis, input_step);
   if (force != nullptr && !force->force().empty()) model.add({.effect = force});
   return model;
 }
@@ -214,7 +212,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   const auto adopt = [&](const Fit& with) {
     given.refused.clear();
     const Judged judged = leave_out_in_turn(problem, of, base, with, visited, settings.leaving, threads);
-    const Ratio whole = ratio_of(judged.whole), carried = ratio_of(judged.carried);
+    const residual::Ratio whole = ratio_of(judged.whole), carried = ratio_of(judged.carried);
     given.held_out = whole.value;
     given.held_out_carried = carried.value;
     given.windows = whole.windows;
@@ -230,8 +228,9 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     Fit chosen = reported(problem, of, with, visited, settings.leaving, threads);
     const auto here = made(chosen, chosen.hypothesis.force, visited);
     const Fit& plain = conclusion.reported.finite ? conclusion.reported : base;
-    const Ratio at_home = error_over(as_model(plain.hypothesis, problem.input_step),
-                                     as_model(chosen.hypothesis, problem.input_step, here.get()), of, settings.leaving);
+    const residual::Ratio at_home =
+        error_over(as_model(plain.hypothesis, problem.input_step),
+                   as_model(chosen.hypothesis, problem.input_step, here.get()), of, settings.leaving.predicted);
     if (at_home.value > limits.error) {
       given.refused = too_little("error over the best numbers' without it", at_home.value, "at most", limits.error);
       return false;

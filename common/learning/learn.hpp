@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/inference/infer.hpp"
-#include "common/learning/open_loop.hpp"
+#include "common/learning/limits.hpp"
 #include "common/model/learned/learned_force.hpp"
 #include "common/samples/correction.hpp"
 
@@ -30,8 +30,7 @@ struct Learned {
 [[nodiscard]] Learned learn(const likelihood::Problem& problem, std::span<const Trial> of,
                             const inference::Conclusion& conclusion, const Settings& settings, int threads);
 
-/// The model of a hypothesis, the thrust's offset as a delay that straight lines between inputs can carry; with `force`
-/// where there is one, which must outlive it.
+/// likelihood::model_of(), with `force` where there is one, which must outlive it.
 [[nodiscard]] model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step,
                                     const model::LearnedForce* force = nullptr);
 

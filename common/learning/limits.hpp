@@ -1,6 +1,8 @@
 // Every number at which learning decides, with its reason.
 #pragma once
 
+#include "common/residual/open_loop.hpp"
+
 namespace fathom::learning {
 
 struct Limits {
@@ -18,11 +20,8 @@ struct Limits {
 /// How the recording is left out in turn, and predicted where it was.
 struct Leaving {
   int folds{4};
-  double stretch{20.0};       ///< s left out at a time: two predictions of ten seconds
-  double horizon{10.0};       ///< s
-  double shortest{1.0};       ///< s of a horizon that is cut
-  double growth{5.0};         ///< of a small change of the start, beyond which a motion counts as chaotic
-  double start_change{1e-3};  ///< of the velocities' rms
+  double stretch{20.0};  ///< s left out at a time: two predictions of ten seconds
+  residual::OpenLoop predicted{};
 };
 
 }  // namespace fathom::learning

@@ -83,6 +83,15 @@ std::vector<Number> numbers_of(const Hypothesis& hypothesis, const NumberSetting
   return numbers;
 }
 
+model::Model model_of(const Hypothesis& hypothesis, double input_step) {
+  model::Model model = hypothesis.model;
+  double offset = 0.0;
+  for (const RunNumbers& run : hypothesis.runs)
+    offset += run.command_offset / static_cast<double>(hypothesis.runs.size());
+  if (input_step > 0.0) model.input_hold = std::clamp(offset / input_step, -0.5, 0.5);
+  return model;
+}
+
 double& at(Hypothesis& hypothesis, const Number& number) {
   const auto index = static_cast<std::size_t>(number.index);
   switch (number.kind) {

@@ -54,6 +54,10 @@ struct NumberSettings {
 [[nodiscard]] std::vector<Number> numbers_of(const Hypothesis& hypothesis, const NumberSettings& settings,
                                              double input_step, double t_low, double t_high);
 
+/// The model of a hypothesis, without its free force; the thrust's offset (mean over runs) as a delay that straight
+/// lines between inputs, `input_step` s apart, can carry.
+[[nodiscard]] model::Model model_of(const Hypothesis& hypothesis, double input_step);
+
 [[nodiscard]] double& at(Hypothesis& hypothesis, const Number& number);
 [[nodiscard]] double value(const Hypothesis& hypothesis, const Number& number);
 [[nodiscard]] Eigen::VectorXd values(const Hypothesis& hypothesis, const std::vector<Number>& numbers);

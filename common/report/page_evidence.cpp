@@ -126,13 +126,15 @@ std::string sensor_section(const DiagnosisReport& report) {
 std::string candidate_section(const DiagnosisResult& result) {
   std::string html = "<section><h2>Which causes were suspected</h2>\n";
   if (result.candidates.empty()) return html + "<p>No cause was tried.</p></section>\n";
-  html +=
-      "<p>Each known effect was asked two questions. <b>It helps</b>: the share of the error that goes when it joins "
-      "the "
-      "model, which a stand-in does too. <b>It is this cause</b>: how likely the name is right, beside nothing and "
-      "beside "
-      "every other name; asked of what was kept alone.</p>\n<table>" +
-      heading_cells({"Suspected cause", "it helps: error removed", "it is this cause", "why"}, {});
+  const bool tells = tells_error_removed(result);
+  html += tells
+              ? "<p>Each known effect was asked two questions. <b>It helps</b>: the share of the error that goes when "
+                "it joins the model, which a stand-in does too. <b>It is this cause</b>: how likely the name is right, "
+                "beside nothing and beside every other name; asked of what was kept alone.</p>\n<table>" +
+                    heading_cells({"Suspected cause", "it helps: error removed", "it is this cause", "why"}, {})
+              : "<p>Each known effect was asked. <b>It is this cause</b>: how likely the name is right, beside nothing "
+                "and beside every other name; asked of what was kept alone.</p>\n<table>" +
+                    heading_cells({"Suspected cause", "it is this cause", "why"}, {});
   std::vector<const CandidateTried*> ranked;
   for (const auto& candidate : result.candidates) ranked.push_back(&candidate);
   // Kept rows first. Not a number ranks last, so that the order stays strict.
@@ -155,8 +157,8 @@ std::string candidate_section(const DiagnosisResult& result) {
     const double probability = found ? probability_of(*found) : std::nan("");
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
             cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
-            (!std::isfinite(c->error_reduction) ||
-                     (found && c->error_reduction == 0.0)  // the likelihood's core does not ask this of what it keeps
+            (!tells ? ""
+             : !std::isfinite(c->error_reduction) || (found && c->error_reduction == 0.0)  // found among the sensors
                  ? cell("<span class=\"soft\">not asked</span>", "bars")
                  : cell(bar(kWhole, c->error_reduction) + "<div>" + escape(percent(c->error_reduction)) + "</div>",
                         "bars")) +

@@ -35,7 +35,7 @@ Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
   if (verdict == "unexplained" && partly)
     return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
-  if (verdict == "no_model") return {"unexplained", "The model does not follow its thrust: its numbers are withheld"};
+  if (verdict == "no_model") return {"unexplained", "The model does not follow its thrust: numbers of such axes are withheld"};
   if (verdict == "unjudged" || verdict == "not_judged") return {"ambiguous", "These runs show too little to judge by"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
 }

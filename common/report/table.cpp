@@ -97,24 +97,32 @@ void errors(Text& out, const DiagnosisResult& result) {
   }
 }
 
-constexpr const char* kScoreTitles = "log odds  removes  ";
+/// Log odds, and the share of the error that goes with the effect where that was asked.
+class Scores {
+ public:
+  explicit Scores(const DiagnosisResult& result) : removes_{tells_error_removed(result)} {}
+  [[nodiscard]] std::string head(const char* last) const {
+    return "  " + pad_right("", kNameWidth) + " log odds  " + (removes_ ? "removes  " : "") + last;
+  }
+  [[nodiscard]] std::string row(const std::string& title, double log_odds, double error_reduction) const {
+    return "  " + pad_right(title, kNameWidth) + " " + pad_left(log_odds_text(log_odds), 8) + "  " +
+           (removes_ ? pad_left(percent(error_reduction), 7) + "  " : "");
+  }
 
-// "removes": share of the error that goes with the effect.
-std::string scores(double log_odds, double error_reduction) {
-  return pad_left(log_odds_text(log_odds), 8) + "  " + pad_left(percent(error_reduction), 7) + "  ";
-}
-
-std::string score_head(const char* last) { return "  " + pad_right("", kNameWidth) + " " + kScoreTitles + last; }
+ private:
+  bool removes_;
+};
 
 void accepted(Text& out, const DiagnosisResult& result) {
   out.title(result.verdict == "unexplained" && !result.effects.empty() ? "Effects kept" : "Effects accepted");
-  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(score_head("odds"));
+  const Scores scores{result};
+  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(scores.head("odds"));
   bool any = false;
   for (const auto& effect : result.effects) {
     if (!effect.accepted) continue;
     any = true;
-    out.line("  " + pad_right(effect_title(effect.name, effect.variant), kNameWidth) + " " +
-             scores(effect.log_odds, effect.error_reduction) + odds(effect.log_odds));
+    out.line(scores.row(effect_title(effect.name, effect.variant), effect.log_odds, effect.error_reduction) +
+             odds(effect.log_odds));
     for (const auto& value : effect.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");
     for (const Alternative& other : effect.alternatives)
       out.paragraph("cannot be told apart from " + other.name + " (" + odds(other.log_odds) + " against it)", "      ");
@@ -139,13 +147,14 @@ void stand_ins(Text& out, const DiagnosisResult& result) {
 
 void refused(Text& out, const DiagnosisResult& result) {
   out.title("Effects refused");
+  const Scores scores{result};
   bool any = false;
   for (const auto& candidate : result.candidates) {
     if (accepted_form(result, candidate) != nullptr) continue;
-    if (!any) out.line(score_head("why"));
+    if (!any) out.line(scores.head("why"));
     any = true;
-    const std::string start = "  " + pad_right(effect_title(candidate.name, candidate.variant), kNameWidth) + " " +
-                              scores(candidate.log_odds, candidate.error_reduction);
+    const std::string start =
+        scores.row(effect_title(candidate.name, candidate.variant), candidate.log_odds, candidate.error_reduction);
     out.line(start + pad_right(candidate.reason, kTableColumns - columns(start)));
   }
   if (!any) out.line("  none");

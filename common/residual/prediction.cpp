@@ -228,27 +228,4 @@ Interval improvement(const Predictions& before, const Predictions& after, const 
   return interval;
 }
 
-double fall_if_right(const model::Model& before, const model::Model& after, std::span<const model::Window> windows,
-                     const Predictions& of_after) {
-  Predictions of_before = of_after;
-  model::VelocityTrace one, other;
-  for (std::size_t w = 0; w < windows.size(); ++w) {
-    const Trial& trial = *windows[w].trial;
-    const std::size_t start = windows[w].start;
-    model::rollout(before, windows[w], model::true_velocity(before, trial, start), one);
-    model::rollout(after, windows[w], model::true_velocity(after, trial, start), other);
-    for (std::size_t k = 1; k < windows[w].count; ++k) {
-      if (static_cast<double>(k) * trial.dt > kHorizons[kScoredHorizon] + 1e-9) break;
-      for (std::size_t axis = 0; axis < 6; ++axis) {
-        if (!is_measured(trial, start + k, axis)) continue;
-        const auto a = static_cast<Eigen::Index>(axis), at = static_cast<Eigen::Index>(k);
-        const double differs = one(a, at) - other(a, at);
-        of_before.windows[w].square[kScoredHorizon][axis] += differs * differs;
-      }
-    }
-  }
-  const double foreseen = fall(of_before, of_after, all_windows(of_after), *before.vehicle);
-  return std::isfinite(foreseen) ? foreseen : 1.0;  // what diverges differs by all there is
-}
-
 }  // namespace fathom::residual

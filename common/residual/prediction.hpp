@@ -51,9 +51,5 @@ struct Predictions {
 /// Fall of the normalised 5 s error (mean over axes of RMSE over the measured standard deviation) from `before` to
 /// `after`, relative to before, with a 95 % interval by bootstrap over blocks of windows (seeded: repeatable).
 [[nodiscard]] Interval improvement(const Predictions& before, const Predictions& after, const model::Vehicle& vehicle);
-/// The fall that improvement() would find on `windows` were `after` right: `before` then errs by what the two foretell
-/// differently besides. Small where these runs have too little of what the models differ in to judge between them.
-[[nodiscard]] double fall_if_right(const model::Model& before, const model::Model& after,
-                                   std::span<const model::Window> windows, const Predictions& of_after);
 
 }  // namespace fathom::residual

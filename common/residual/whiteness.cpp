@@ -118,22 +118,4 @@ std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const 
   return rows;
 }
 
-std::vector<std::string> astray(std::span<const AxisWhiteness> axes) {
-  constexpr double kFollowed = 0.5, kMuch = 0.5;
-  const auto turns = [](const AxisWhiteness& axis) { return axis.axis == "K" || axis.axis == "M" || axis.axis == "N"; };
-  std::vector<std::string> names;
-  for (const AxisWhiteness& axis : axes) {
-    double square = 0.0, count = 0.0;
-    for (const AxisWhiteness& other : axes) {
-      if (turns(other) != turns(axis)) continue;
-      square += other.applied_rms * other.applied_rms;
-      count += 1.0;
-    }
-    const bool driven = axis.applied_rms * axis.applied_rms >= kMuch * square / count && square > 0.0;
-    const double followed = axis.explained + axis.noise;  // a large ship's forces drown in the noise of accelerations
-    if (driven && followed < kFollowed && axis.p_value < kNotRandom) names.push_back(axis.axis);
-  }
-  return names;
-}
-
 }  // namespace fathom::residual

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "common/base/spatial.hpp"
@@ -20,9 +19,5 @@ namespace fathom::residual {
 /// Whiteness, memory and explained share of the wrench residual, per simulated axis on which there is one.
 [[nodiscard]] std::vector<AxisWhiteness> whiteness(const model::Model& model, std::span<const Trial> trials,
                                                    std::span<const std::vector<Vector6d>> residuals);
-
-/// Names of the axes along which less than half of the applied wrench is accounted for, what is left being no noise of
-/// the sensors. Only where much is applied, next to other forces or moments: where little is, any random force is more.
-[[nodiscard]] std::vector<std::string> astray(std::span<const AxisWhiteness> axes);
 
 }  // namespace fathom::residual

@@ -16,7 +16,7 @@ constexpr std::array kWords{
     CauseWords{"absurd_number", "size over its prior's", "A number lies where none can be"},
     CauseWords{"too_short", "s of data", "The runs are too short to judge by", false},
     CauseWords{"not_finite", "", "The filter diverged"},
-    CauseWords{"scores_disagree", "standard deviations", "Numbers fitted one step ahead and many ahead disagree"},
+    CauseWords{"scores_disagree", "fraction of the open-loop error", "Numbers fitted one step ahead and many ahead disagree"},
     CauseWords{"sensors_disagree", "log odds", "A sensor's number is wrong, by comparing the sensors"},
     CauseWords{"begins_unseen", "s", "Something begins in a run that judges, where no fit has seen it"},
     CauseWords{"wiring", "fraction of the error", "The thrusters seem to be others than the vehicle's file says"},

@@ -111,14 +111,9 @@ void evidence(Lines& out, const Stored& stored) {
     }
     ++told;
     std::string words = report::effect_title(candidate.name, candidate.variant) + ": " + candidate.reason;
-    const auto refusals = stored.given.refusals.find(candidate.name);
-    if (refusals != stored.given.refusals.end()) {
-      for (const RefusalGiven& r : refusals->second)
-        words += "; " + r.rule + " " + number(r.value) + ", needed " + number(r.needed);
-    } else if (std::isfinite(candidate.log_odds)) {
+    if (!stored.given.refusals.contains(candidate.name) && std::isfinite(candidate.log_odds))
       words += "; log odds " + report::log_odds_text(candidate.log_odds) + ", would remove " +
                percent(candidate.error_reduction);
-    }
     out.line(words, "  - ");
   }
   if (more > 0) out.line("and " + std::to_string(more) + " more refused: 'candidates' in the file");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "common/base/statistics.hpp"
 #include "common/identification/sparse.hpp"
@@ -37,12 +38,32 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
   return names;
 }
 
+/// Axes whose numbers mean nothing: the model does not follow its thrust there. Empty: none.
+std::set<int> withheld_axes(const Conclusion& conclusion) {
+  using inference::Cause;
+  std::set<int> axes;
+  const auto all = [&] { axes = {0, 1, 2, 3, 4, 5}; };
+  if (conclusion.verdict != Verdict::no_model) return axes;
+  for (const inference::Reason& reason : conclusion.reasons) {
+    if (reason.cause == Cause::kNotFollowing || reason.cause == Cause::kNoSkill)
+      axes.insert(static_cast<int>(std::ranges::find(model::kAxisNames, reason.of) - model::kAxisNames.begin()));
+    if (reason.cause == Cause::kWiring || reason.cause == Cause::kForceUnit) all();
+    const auto absurd = model::parameter_from_name(reason.of);
+    if (reason.cause == Cause::kAbsurdNumber && absurd) axes.insert(model::axis(*absurd));
+  }
+  if (axes.empty()) all();
+  return axes;
+}
+
 /// `sigma`: of the numbers.
-std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::VectorXd& sigma) {
+std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::VectorXd& sigma,
+                                   const std::set<int>& withheld) {
   std::vector<NamedValue> values;
   if (!fit.finite || sigma.size() != static_cast<Eigen::Index>(fit.numbers.size())) return values;
   for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
     if (fit.numbers[j].kind == NumberKind::kWeight) continue;
+    const auto base = model::parameter_from_name(fit.numbers[j].name);
+    if (base && withheld.contains(model::axis(*base))) continue;
     values.push_back({fit.numbers[j].name, value(fit.hypothesis, fit.numbers[j]), sigma[static_cast<Eigen::Index>(j)],
                       fit.numbers[j].unit});
   }
@@ -138,20 +159,56 @@ void list_refused(const inference::Found& found, DiagnosisResult& result, Verdic
     for (const inference::Refusal& refusal : refused.refusals) {
       given.refusals[refused.name].push_back({std::string(word(refusal.rule)), refusal.value, refusal.needed});
       if (refusal.rule == inference::Rule::kOdds) candidate.log_odds = refusal.value;
-      candidate.reason = std::string(word(refusal.rule));
+      candidate.reason += (candidate.reason.empty() ? "" : "; ") + sentence(refusal);
     }
     result.candidates.push_back(std::move(candidate));
+  }
+}
+
+constexpr double kEvident = 0.1;  // of the error: what falls by so much needs no interval, where none can be given
+
+/// Surely, or where too few windows tell how sure that is, by much.
+bool helps(const Interval& gain) { return gain.low > 0.0 || (std::isinf(gain.low) && gain.value > kEvident); }
+
+/// Effects that have no form in these runs, with the reason.
+void list_not_asked(const model::Scene& scene, DiagnosisResult& result) {
+  const std::vector<inference::Law> laws = inference::catalogue(scene, {});
+  for (const model::Effect* effect : model::all_effects()) {
+    const std::string name{effect->name()};
+    if (std::ranges::find(laws, name, &inference::Law::name) != laws.end()) continue;
+    result.candidates.push_back({.name = name,
+                                 .log_odds = kNotAsked,
+                                 .error_reduction = kNotAsked,
+                                 .reason = preflight::why_not_asked(*effect, scene)});
   }
 }
 
 /// By how much the error falls with the names on runs that no fit has seen.
 Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen, double input_step,
                    const Conclusion& conclusion) {
-  const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
-  const model::Model after = learning::as_model(conclusion.reported.hypothesis, input_step);
+  const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model after = likelihood::model_of(conclusion.reported.hypothesis, input_step);
   const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(after));
   if (windows.empty()) return {kNotAsked, kNotAsked, kNotAsked};
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle);
+}
+
+/// Axes of which the model, with its names or without, foretells more than that nothing changes.
+std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step, const Conclusion& conclusion) {
+  std::vector<int> axes;
+  const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
+  if (windows.empty()) return axes;
+  const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
+                              by_named = residual::predict(named, windows);
+  for (int axis = 0; axis < 6; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double sure = std::max(surely_better(by_base, unchanged, kFiveSeconds, a),
+                                 surely_better(by_named, unchanged, kFiveSeconds, a));
+    if (sure > inference::Thresholds{}.skilled) axes.push_back(axis);
+  }
+  return axes;
 }
 
 /// Something that no fit can have seen, in runs that judge. The fitted ones are seen by the same steps of time.
@@ -253,13 +310,18 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.improvement = {kNotAsked, kNotAsked, kNotAsked};
   progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
-  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   std::vector<Trial> unseen;
   double input_step = 0.0;
   for (const Trial& trial : validate) {
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
+  if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
+    conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
+    conclusion.reasons.clear();
+    conclude(likelihood::make_problem(vehicle, train, settings.runs), settings.thresholds, conclusion);
+  }
+  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
   if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
     gain = held_back(vehicle, unseen, input_step, conclusion);
@@ -274,10 +336,10 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const model::LearnedForce* force = force_for(learned, train, validate);
   const likelihood::Fit& named = force != nullptr ? learned.fit : conclusion.reported;
   // Stand-ins stay where they help.
-  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || gain.low > 0.0;
+  const bool with_names = force != nullptr || names_claim(conclusion.verdict) || helps(gain);
   const likelihood::Fit& best = with_names ? named : conclusion.reported_base;
   if (conclusion.reported.finite) {
-    const model::Model before = learning::as_model(conclusion.reported_base.hypothesis, input_step);
+    const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
   }
@@ -307,21 +369,27 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
                         of_named = force != nullptr ? named.sigma()
                                                     : with_difference(conclusion.found.best.fit, named,
                                                                       deviations(conclusion.found.best.fit));
-  const bool told = conclusion.reported.finite && conclusion.verdict != Verdict::no_model;
+  const std::set<int> withheld = withheld_axes(conclusion);
+  bool told = false;
+  for (int axis = 0; axis < 6; ++axis)
+    told =
+        told || (conclusion.reported.finite && vehicle.dof[static_cast<std::size_t>(axis)] && !withheld.contains(axis));
   list_effects(conclusion, named, of_named, with_names && told, result);
   list_refused(conclusion.found, result, answer.given);
   if (!conclusion.found.best.names.empty()) result.explained = kNotAsked;
   for (const std::string& name : settings.without)
     result.candidates.push_back(
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
-  result.not_measured = preflight::not_measured(model::scene_of(vehicle, train));
+  const model::Scene scene = model::scene_of(vehicle, train);
+  list_not_asked(scene, result);
+  result.not_measured = preflight::not_measured(scene);
   answer.best = best;
   answer.best_sigma = with_names ? of_named : of_base;
   answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;
   if (told) {
-    put_covariance(best, answer.best_sigma, answer.given);
-    result.parameters_before = numbers_of(conclusion.reported_base, of_base);
-    result.parameters_after = numbers_of(best, answer.best_sigma);
+    put_covariance(best, answer.best_sigma, answer.given, withheld);
+    result.parameters_before = numbers_of(conclusion.reported_base, of_base, withheld);
+    result.parameters_after = numbers_of(best, answer.best_sigma, withheld);
   }
   return answer;
 }

@@ -30,6 +30,9 @@ struct Answer {
                               std::span<const Trial> validate, const inference::Settings& settings,
                               const Progress& progress, const learning::Settings& learning = {});
 
+/// Why a candidate was not taken: "log odds 3.2, 10 needed".
+[[nodiscard]] std::string sentence(const inference::Refusal& refusal);
+
 /// The verdict in plain words.
 [[nodiscard]] std::string paragraph(const inference::Conclusion& conclusion);
 

@@ -6,7 +6,8 @@
 
 namespace fathom::verdict {
 
-void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, VerdictGiven& given) {
+void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, VerdictGiven& given,
+                    const std::set<int>& withheld) {
   const auto p = static_cast<Eigen::Index>(fit.numbers.size());
   if (!fit.finite || p == 0 || sigma.size() != p || fit.information.rows() != p) return;
   const Eigen::MatrixXd inverse = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
@@ -14,6 +15,8 @@ void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, Ve
   for (Eigen::Index j = 0; j < p; ++j) {
     const likelihood::Number& number = fit.numbers[static_cast<std::size_t>(j)];
     if (number.kind == likelihood::NumberKind::kWeight || !(inverse(j, j) > 0.0)) continue;
+    const auto base = model::parameter_from_name(number.name);
+    if (base && withheld.contains(model::axis(*base))) continue;
     told.push_back(j);
     given.covariance_of.push_back(number.name);
   }

@@ -81,7 +81,7 @@ std::string unexplained(const Conclusion& conclusion) {
                      slow->of.c_str(), slow->value);
   }
   if (const Reason* event = reason(conclusion, Cause::kBeginsUnseen)) {
-    sentence += text("Something begins near %.0f s of %s, which judges: no fit has seen it, and it is not explained. ",
+    sentence += text("Something begins near %.3g s of %s, which judges: no fit has seen it, and it is not explained. ",
                      event->value, event->of.c_str());
   }
   return sentence;
@@ -110,6 +110,23 @@ std::string reasons_of_no_model(const Conclusion& conclusion) {
 
 }  // namespace
 
+std::string sentence(const inference::Refusal& refusal) {
+  using inference::Rule;
+  switch (refusal.rule) {
+    case Rule::kOdds:
+      return text("log odds %.1f, %.0f needed", refusal.value, refusal.needed);
+    case Rule::kSize:
+      return text("%.2g %% of the applied force, %.0f %% needed", 100.0 * refusal.value, 100.0 * refusal.needed);
+    case Rule::kProbability:
+      return text("probability %.2g beside other names, %.2g needed", refusal.value, refusal.needed);
+    case Rule::kBound:
+      return "fits only with a number at its limit";
+    case Rule::kScore:
+      return text("promises %.1f nats, %.0f needed to be fitted", refusal.value, refusal.needed);
+  }
+  return {};
+}
+
 std::string paragraph(const Conclusion& conclusion) {
   std::string words;
   switch (conclusion.verdict) {
@@ -134,7 +151,7 @@ std::string paragraph(const Conclusion& conclusion) {
             ". ";
       break;
     case Verdict::no_model:
-      words = "The model does not follow its thrust, so its numbers are withheld: ";
+      words = "The model does not follow its thrust everywhere, and the numbers of such axes are withheld: ";
       for (const Reason& one : conclusion.reasons) {
         if (one.cause == Cause::kNotFollowing)
           words += text("along %s it explains %.0f %% of the acceleration; ", one.of.c_str(), 100.0 * one.value);
@@ -158,9 +175,9 @@ std::string paragraph(const Conclusion& conclusion) {
     words += "The time was over before every effect had been asked: allow more, or give less data. ";
   if (const Reason* off = reason(conclusion, Cause::kScoresDisagree)) {
     words += text(
-        "Numbers that predict one step best and those that predict ten seconds best differ by %.0f standard "
-        "deviations (median): the model errs in a way that no noise explains. ",
-        off->value);
+        "The numbers are those that predict ten seconds: they err %.0f %% less there than those that predict one step "
+        "best, so the model errs in a way that no noise explains. ",
+        100.0 * off->value);
   }
   if (!conclusion.random.empty()) words += random_forces(conclusion) + " ";
   if (conclusion.verdict == Verdict::effect || conclusion.verdict == Verdict::adequate)

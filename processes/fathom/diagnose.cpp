@@ -173,7 +173,7 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
        .site = site ? &*site : nullptr},
       progress, notes);
   if (room && explained.answer.rivals) {
-    const model::Model best = learning::as_model(explained.answer.best.hypothesis, explained.fitted.front().input_step);
+    const model::Model best = likelihood::model_of(explained.answer.best.hypothesis, explained.fitted.front().input_step);
     separate(vehicle, *room, explained.fitted, best, explained.answer.report.result);
   }
   return std::move(explained.answer);

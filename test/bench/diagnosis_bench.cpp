@@ -17,10 +17,11 @@ namespace {
 constexpr double kTrial = 330.0;       // s
 constexpr double kValidation = 100.0;  // s
 
-/// 100 Hz, velocity 5 mm/s, rates 0.2 deg/s.
+/// 100 Hz, velocity 5 mm/s, rates 0.2 deg/s; the same vehicle in every dive.
 Trial dive(double duration, unsigned seed) {
-  return test::make_dive(test::vehicle_from_repository("seabotix_lbv150"),
-                         {.duration = duration, .dt = 0.01, .step = 0.005, .seed = seed, .rate_noise = 0.0035})
+  return test::make_dive(
+             test::vehicle_from_repository("seabotix_lbv150"),
+             {.duration = duration, .dt = 0.01, .step = 0.005, .seed = seed, .rate_noise = 0.0035, .spread = 0.0})
       .trial;
 }
 

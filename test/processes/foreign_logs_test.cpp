@@ -31,7 +31,7 @@ const char kVehicle[] =
     "name: Sled\ndof: [surge, yaw]\nwater_density: 1000 kg/m^3\nmass: 20 kg\ninertia: 0.5 0.8 1 kg m^2\n"
     "nominal_voltage: 16 V\nthrusters:\n  - {name: starboard, position: 0 0.2 0 m, axis: 1 0 0}\n"
     "  - {name: port, position: 0 -0.2 0 m, axis: 1 0 0}\n"
-    "thrust_curve:\n  neutral: 1500 us\n  voltage: 16 V\n  pwm: 1100 1500 1900 us\n  force: -40 0 40 N\n";
+    "thrust_curve:\n  neutral: 1500 us\n  voltage: 16 V\n  pwm: 900 1500 2100 us\n  force: -60 0 60 N\n";
 
 /// What instruments say of a dive at one time.
 struct Moment {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "test/sealed/comparison.hpp"
+#include "test/sealed/rate.hpp"
 
 namespace fathom::sealed {
 namespace {
@@ -98,7 +98,7 @@ TEST_CASE("judge: numbers") {
   CHECK(score.claims.front().probability == doctest::Approx(0.99331).epsilon(1e-4));
 }
 
-TEST_CASE("comparison: Wilson's interval") {
+TEST_CASE("rate: Wilson's interval") {
   // By hand, z = 1.96: 8 of 10 is (.8 + .1921) / 1.3841 -+ 1.96 / 1.3841 sqrt(.016 + .0096).
   const Rate most = wilson(8, 10), all = wilson(10, 10), none = wilson(0, 0);
   CHECK(most.share == doctest::Approx(0.8));
@@ -108,19 +108,6 @@ TEST_CASE("comparison: Wilson's interval") {
   CHECK(all.high == doctest::Approx(1.0));
   CHECK(none.low == 0.0);
   CHECK(none.high == 1.0);
-}
-
-TEST_CASE("comparison: only sets that every core has answered") {
-  const Score named = judged(truth_of("single", {"thruster_lag"}), {effect("thruster_lag")});
-  Score missed = judged(truth_of("single", {"thruster_lag"}), {});
-  Score other = named;
-  other.seed = 2;
-  const std::vector<CoreScores> cores{{"one", {named, other}}, {"two", {missed}}};
-  const std::string page = to_comparison(cores, "how");
-  CHECK(page.find("`how`: 1 sets") != std::string::npos);
-  CHECK(page.find("| single effect, all sizes | 100 % (1 of 1; 21 to 100 %) | 0 % (0 of 1; 0 to 79 %) |") !=
-        std::string::npos);
-  CHECK(page.find("| 1 | thruster_lag | medium | two | missed | - | effect |") != std::string::npos);
 }
 
 }  // namespace fathom::sealed

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "test/sealed/comparison.hpp"
+#include "test/sealed/rate.hpp"
 
 namespace fathom::sealed {
 namespace {

@@ -10,8 +10,8 @@
 namespace fathom::sealed {
 
 /// How answers are kept apart: with the whole list, and without what is in the set.
-constexpr const char* kTold = "likelihood";
-constexpr const char* kLeftOut = "likelihood-left-out";
+constexpr const char* kTold = "told";
+constexpr const char* kLeftOut = "left-out";
 
 /// Markdown: medians with quartiles and Wilson's intervals, then every set.
 [[nodiscard]] std::string to_learning_page(std::span<const Score> told, std::span<const Score> left_out,

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "common/base/progress_line.hpp"
-#include "test/sealed/comparison.hpp"
 #include "test/sealed/learning.hpp"
 #include "test/sealed/page.hpp"
 #include "test/sealed/tool.hpp"
@@ -24,7 +23,6 @@ using Json = nlohmann::json;
 
 struct Options {
   std::string seeds{"0..122"}, only, size, out, tool, page;
-  std::vector<std::string> cores;  ///< of the tool; none: the one that it takes by itself
   int jobs{1};
   bool draw_only{}, score_only{}, learning{};
   std::uint64_t first{}, last{};
@@ -55,21 +53,21 @@ Wish wish_of(const Options& options) {
   return wish;
 }
 
-/// The cores that are asked, at least one.
-std::vector<std::string> cores_of(const Options& options) {
-  return options.cores.empty() ? std::vector<std::string>{""} : options.cores;
+/// The ways in which every set is asked; without learning the one that has no name.
+std::vector<std::string> ways_of(const Options& options) {
+  return options.learning ? std::vector<std::string>{kTold, kLeftOut} : std::vector<std::string>{""};
 }
 
 void draw(std::uint64_t seed, const Options& options, const Places& where) {
   const Json truth = read_json(where.truth);
   if (valid(truth) && truth.value("generator", 0) == kGenerator) return;
-  for (const std::string& core : cores_of(options)) fs::remove_all(places(options.out, seed, core).found);
+  for (const std::string& way : ways_of(options)) fs::remove_all(places(options.out, seed, way).found);
   fs::remove_all(where.data);
   write_set(make_set(make_plan(seed, wish_of(options))), where);
 }
 
 /// The tool's command line. Only the data's folder is named in it.
-std::vector<std::string> command(const Options& options, const std::string& core, const Places& where) {
+std::vector<std::string> command(const Options& options, const std::string& way, const Places& where) {
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::string> words{options.tool, "diagnose", "--vehicle", where.data + "/vehicle.yaml", "--train"};
   for (int i = 1; fs::exists(where.data + "/train-" + std::to_string(i) + ".csv"); ++i) {
@@ -78,12 +76,11 @@ std::vector<std::string> command(const Options& options, const std::string& core
   if (fs::exists(where.data + "/validate.csv")) words.insert(words.end(), {"--validate", where.data + "/validate.csv"});
   words.insert(words.end(), {"--out", where.found, "--threads",
                              std::to_string(std::max(1U, cores / static_cast<unsigned>(options.jobs)))});
-  if (core == kLeftOut) {
+  if (way == kLeftOut) {
     const Json truth = read_json(where.truth);
     for (const Json& effect : truth.at("effects"))
       words.insert(words.end(), {"--without", effect.at("name").get<std::string>()});
   }
-  if (!core.empty()) words.insert(words.end(), {"--core", core == kLeftOut ? kTold : core});
   return words;
 }
 
@@ -93,12 +90,12 @@ bool answered(const Options& options, const Places& where) {
   return fs::exists(note) && fs::last_write_time(note) > fs::last_write_time(options.tool);
 }
 
-void diagnose(const Options& options, const std::string& core, const Places& where) {
+void diagnose(const Options& options, const std::string& way, const Places& where) {
   if (answered(options, where)) return;
   const std::string note = where.found + "/run.json";
   fs::create_directories(where.found);
   fs::remove(where.found + "/result.json");
-  const Measured measured = run_tool(command(options, core, where), where.found + "/log.txt");
+  const Measured measured = run_tool(command(options, way, where), where.found + "/log.txt");
   std::ofstream(note) << Json{{"code", measured.code},
                               {"seconds", measured.seconds},
                               {"processor", measured.processor},
@@ -130,10 +127,10 @@ void work(const Options& options) {
   std::string trouble;
   constexpr const char* kSets = "sets";
   double to_come = 0.0;  // sets that have no answer yet
-  const std::vector<std::string> cores = cores_of(options);
+  const std::vector<std::string> ways = ways_of(options);
   const auto all_answered = [&](std::uint64_t seed) {
-    return std::ranges::all_of(cores,
-                               [&](const auto& core) { return answered(options, places(options.out, seed, core)); });
+    return std::ranges::all_of(ways,
+                               [&](const auto& way) { return answered(options, places(options.out, seed, way)); });
   };
   for (std::uint64_t seed = options.first; seed <= options.last; ++seed) to_come += all_answered(seed) ? 0.0 : 1.0;
   ProgressLine progress_line;
@@ -145,13 +142,13 @@ void work(const Options& options) {
       try {
         const bool there = all_answered(seed);
         std::string said;
-        for (const std::string& core : cores) {
-          const Places where = places(options.out, seed, core);
+        for (const std::string& way : ways) {
+          const Places where = places(options.out, seed, way);
           draw(seed, options, where);
-          if (core == kLeftOut && read_json(where.truth).value("kind", "") != kKindNames[0]) continue;
-          if (!options.draw_only) diagnose(options, core, where);
+          if (way == kLeftOut && read_json(where.truth).value("kind", "") != kKindNames[0]) continue;
+          if (!options.draw_only) diagnose(options, way, where);
           said += (said.empty() ? "" : "\n") + (options.draw_only ? where.data : line(score_of(where)));
-          if (!core.empty()) said += "  " + core;
+          if (!way.empty()) said += "  " + way;
         }
         if (!there) progress.done(kSets);
         const std::lock_guard lock(printing);
@@ -175,10 +172,10 @@ void work(const Options& options) {
   if (!trouble.empty()) throw std::runtime_error(trouble);
 }
 
-std::vector<Score> scores_of(const Options& options, const std::string& core) {
+std::vector<Score> scores_of(const Options& options, const std::string& way) {
   std::vector<Score> scores;
   for (std::uint64_t seed = options.first; seed <= options.last; ++seed) {
-    const Places where = places(options.out, seed, core);
+    const Places where = places(options.out, seed, way);
     if (fs::exists(where.truth) && fs::exists(where.found + "/run.json")) scores.push_back(score_of(where));
   }
   return scores;
@@ -188,9 +185,7 @@ std::string how_of(const Options& options) {
   std::string how = "./check --sealed --seeds " + options.seeds;
   if (!options.only.empty()) how += " --only " + options.only;
   if (!options.size.empty()) how += " --size " + options.size;
-  if (options.learning) return how + " --learning";
-  for (const std::string& core : options.cores) how += " --core " + core;
-  return how;
+  return how + (options.learning ? " --learning" : "");
 }
 
 void write_scores(const std::vector<Score>& scores, const std::string& path) {
@@ -208,18 +203,7 @@ void conclude(const Options& options) {
     std::printf("%s\n", page.c_str());
     return;
   }
-  if (options.cores.size() > 1) {
-    std::vector<CoreScores> cores;
-    for (const std::string& core : options.cores) {
-      cores.push_back({core, scores_of(options, core)});
-      write_scores(cores.back().scores, options.out + "/scores-" + core + ".json");
-    }
-    const std::string page = options.page.empty() ? options.out + "/cores.md" : options.page;
-    std::ofstream(page) << to_comparison(cores, how_of(options));
-    std::printf("%s\n", page.c_str());
-    return;
-  }
-  const std::vector<Score> scores = scores_of(options, cores_of(options).front());
+  const std::vector<Score> scores = scores_of(options, "");
   write_scores(scores, options.out + "/scores.json");
   const std::string page = options.page.empty() ? options.out + "/benchmark.md" : options.page;
   const std::string picture = fs::path(page).replace_extension(".svg").string();
@@ -241,19 +225,15 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "folder of data, truth and answers")->required();
   app.add_option("--tool", options.tool, "the program fathom")->required();
   app.add_option("--page", options.page, "write the page here instead of into --out; its picture beside it");
-  app.add_option("--core", options.cores, "of the tool; several: every set by each, and one table of all")
-      ->take_all()
-      ->check(CLI::IsMember({"trajectories", "likelihood"}));
   app.add_option("-j", options.jobs, "sets at a time")->check(CLI::Range(1, 64));
   app.add_flag("--learning", options.learning,
-               "what is learned: every set by the likelihood's core, single effects once more with theirs taken out of "
-               "the list; errors on a new recording");
+               "what is learned: single effects are asked once more with theirs taken out of the list; errors on a new "
+               "recording");
   app.add_flag("--draw-only", options.draw_only, "only draw the sets");
   app.add_flag("--score-only", options.score_only, "only score the answers that are there");
   try {
     app.parse(argc, argv);
     parse_seeds(options);
-    if (options.learning) options.cores = {kTold, kLeftOut};
     if (!options.score_only) work(options);
     if (!options.draw_only) conclude(options);
     return 0;

@@ -7,7 +7,7 @@
 #include <functional>
 #include <map>
 
-#include "test/sealed/comparison.hpp"
+#include "test/sealed/rate.hpp"
 
 namespace fathom::sealed {
 namespace {

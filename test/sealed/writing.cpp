@@ -37,11 +37,11 @@ Json numbers(const Vector6& values) { return Json(std::vector<double>(values.beg
 
 }  // namespace
 
-Places places(const std::string& out, std::uint64_t seed, const std::string& core) {
+Places places(const std::string& out, std::uint64_t seed, const std::string& way) {
   std::string number = std::to_string(seed);
   number.insert(0, number.size() < 5 ? 5 - number.size() : 0, '0');
   return {out + "/data/" + number, out + "/truth/" + number + ".json",
-          out + "/found" + (core.empty() ? "" : "-" + core) + "/" + number};
+          out + "/found" + (way.empty() ? "" : "-" + way) + "/" + number};
 }
 
 std::string to_csv(const SealedSet& set, const Dive& run) {

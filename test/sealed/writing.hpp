@@ -16,8 +16,8 @@ struct Places {
   std::string truth;  ///< file
   std::string found;  ///< folder of the diagnosis
 };
-/// `core`: of the tool, whose answers lie apart; empty: the one that it takes by itself.
-[[nodiscard]] Places places(const std::string& out, std::uint64_t seed, const std::string& core = {});
+/// `way`: in which it is asked, where there are several: answers lie apart.
+[[nodiscard]] Places places(const std::string& out, std::uint64_t seed, const std::string& way = {});
 
 /// Canonical columns of one file.
 [[nodiscard]] std::string to_csv(const SealedSet& set, const Dive& run);

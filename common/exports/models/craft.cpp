@@ -68,6 +68,8 @@ Craft craft_of(const result::Stored& stored, const model::Vehicle& vehicle) {
   if (result.verdict == "unexplained" || result.verdict == "ambiguous")
     craft.notes.push_back("the diagnosis was '" + result.verdict +
                           "': something acts on the vehicle that this model lacks");
+  if (result.verdict == "no_model")
+    craft.notes.emplace_back("the diagnosis was 'no_model': along some axes the model does not follow its thrust");
   const Vector6d inertia = lumped(stored, vehicle, craft.notes);
   const double least = inertia.head<3>().minCoeff();
   craft.mass = vehicle.mass > 0.0 ? std::min(vehicle.mass, least) : least;

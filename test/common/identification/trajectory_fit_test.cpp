@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "common/base/error.hpp"
 #include "test/support/virtual_dive.hpp"
@@ -153,29 +152,4 @@ TEST_CASE("trajectory fit: a quick look lets a number go that starts at its boun
   constexpr double kQuick = 1e-3;  // of the cost, as where candidates are compared
   const FitResult found = problem.fit(start, &base, kQuick);
   CHECK(found.parameters().back().value == doctest::Approx(kExponent).epsilon(0.1));
-}
-
-TEST_CASE("trajectory fit: weights of a model's own residual, once what made it large has a name") {
-  const model::Vehicle vehicle = four_axes();
-  constexpr double kNoise = 0.005;  // m/s, rad/s
-  const test::VirtualDive dive =
-      test::make_dive(vehicle, {.duration = 160.0, .seed = 8, .effects = {test::active("current", {0.3, -0.2})}});
-  const TrajectoryFit problem{vehicle, {&dive.trial, 1}, quick()};
-  const FitResult without = problem.fit(model::nominal_model(vehicle, false));
-  model::Model with = without.model;
-  with.add(test::active("current", {0.1, 0.0}));
-  const FitResult compared = problem.fit(with, &without);
-  const FitResult fit = problem.reweighted(compared);
-  CHECK(compared.sigma[0] > 3.0 * kNoise);
-  for (const Eigen::Index axis : {0, 1}) CHECK(fit.sigma[axis] == doctest::Approx(kNoise).epsilon(0.1));
-  double rows = 0.0;
-  for (const auto& window : fit.window_count) rows = std::accumulate(window.begin(), window.end(), rows);
-  CHECK(fit.cost == doctest::Approx(0.5 * rows).epsilon(0.1));  // so that what is small can be evident
-  CHECK(compared.cost < 0.8 * fit.cost);
-  // With the noise's own weights the numbers are at least as good.
-  const auto error = [&](const FitResult& one) {
-    return std::hypot(one.model.effects[0].theta[0] - 0.3, one.model.effects[0].theta[1] + 0.2);
-  };
-  CHECK(error(fit) < error(compared) + 1e-3);
-  CHECK(error(fit) < 0.01);
 }

@@ -83,8 +83,7 @@ TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves
 
 TEST_CASE("conclusion: both scores' numbers apart are told, and change no verdict") {
   Nothing nothing;
-  for (const likelihood::Number& number : nothing.conclusion.found.best.fit.numbers)
-    at(nothing.conclusion.reported.hypothesis, number) += 0.1;  // ten of its deviations
+  nothing.conclusion.disagreement = 0.1;
   const Conclusion conclusion = nothing.concluded();
   CHECK(conclusion.verdict == Verdict::adequate);
   CHECK(caused(conclusion, Cause::kScoresDisagree, ""));

@@ -139,7 +139,7 @@ TEST_CASE("learned gallery: five forces that nothing lists are learned, said and
       << "# Forces that no list holds, as they are learned\n\n"
          "Five causes that the model and the list of effects lack, each in a simulated recording of " +
              report::plain(kDuration) +
-             " s of a BlueROV2 with noisy\nsensors. What `fathom diagnose --core likelihood` learns of them is a "
+             " s of a BlueROV2 with noisy\nsensors. What `fathom diagnose` learns of them is a "
              "correction with arguments, not a cause (decisions 170, 189):\na law where one fits, with its numbers and "
              "95 % intervals, in Fossen's notation. Blue: the learned force over one of its arguments, with its\nband; "
              "dashed: the truth, as far as the model's own numbers do not hold it. The last column is the open-loop "

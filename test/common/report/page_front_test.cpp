@@ -1,10 +1,12 @@
 // The first screen of the report says what it comes to; all else is folded, and does not contradict itself.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "common/report/page.hpp"
 #include "common/report/page_parts.hpp"
+#include "common/report/table.hpp"
 #include "test/support/diagnosis_fixture.hpp"
 
 using fathom::EffectFound;
@@ -117,6 +119,17 @@ TEST_CASE("Whether a cause helps and whether it is the cause are two columns, wh
   CHECK(section.find("accepted</span>") < section.find("refused</span>"));
   CHECK(section.rfind("accepted</span>") < section.find("refused</span>"));
   CHECK(section.find("not asked") > section.find("refused</span>"));
+}
+
+TEST_CASE("Where no cause was asked for the error that it removes, no column says so") {
+  auto report = fathom::test::made_up_report({.samples = 0});
+  for (auto& candidate : report.result.candidates) candidate.error_reduction = std::nan("");
+  const std::string section = fathom::report::candidate_section(report.result);
+  CHECK_FALSE(has(section, "it helps"));
+  CHECK_FALSE(has(section, "two questions"));
+  CHECK(has(section, "it is this cause"));
+  CHECK_FALSE(has(fathom::report::to_table(report.result), "removes"));
+  CHECK(has(fathom::report::to_table(fathom::test::made_up_report({.samples = 0}).result), "removes"));
 }
 
 TEST_CASE("Where nothing is named, the first screen says what the residual goes with") {

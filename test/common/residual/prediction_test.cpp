@@ -79,25 +79,6 @@ TEST_CASE("prediction: the truth beats a model without the hidden lag, and says 
   CHECK(after.summary(vehicle)[0].r2[0] > 0.95);
 }
 
-TEST_CASE("prediction: the fall that a right model brings is foreseen from what the two foretell") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
-  for (const double time_constant : {0.5, 0.1, 0.01}) {
-    CAPTURE(time_constant);
-    const test::VirtualDive dive = test::make_dive(
-        vehicle, {.duration = 200.0, .seed = 3, .effects = {test::active("thruster_lag", {time_constant})}});
-    model::Model ignorant = dive.truth;
-    ignorant.effects.clear();
-    const auto windows = prediction_windows({&dive.trial, 1});
-    const Predictions before = predict(ignorant, windows), after = predict(dive.truth, windows);
-    const double foreseen = fall_if_right(ignorant, dive.truth, windows, after);
-    // Noise and difference do not go together: over 200 s their product averages to a few per cent.
-    CHECK(foreseen == doctest::Approx(improvement(before, after, vehicle).value).epsilon(0.05).scale(1.0));
-    CHECK(fall_if_right(ignorant, ignorant, windows, before) == 0.0);
-    // Were the ignorant model right, it would bring as much: runs are asked what they feel, not who is right.
-    CHECK(fall_if_right(dive.truth, ignorant, windows, before) > 0.0);
-  }
-}
-
 TEST_CASE("prediction: no prediction starts from a velocity that was guessed across a gap") {
   const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
   test::VirtualDive dive = test::make_dive(vehicle, {.duration = 45.0});

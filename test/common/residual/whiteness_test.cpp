@@ -43,14 +43,6 @@ Trial quiet_trial(std::size_t count) {
 
 }  // namespace
 
-TEST_CASE(
-    "whiteness: an axis whose forces drown in the noise of accelerations is not astray, one that lacks force is") {
-  AxisWhiteness axis{.axis = "Y", .p_value = 0.005, .explained = -2.4, .applied_rms = 500.0, .noise = 3.3};
-  CHECK(astray(std::vector{axis}).empty());
-  axis.noise = 0.1;
-  CHECK(astray(std::vector{axis}) == std::vector<std::string>{"Y"});
-}
-
 TEST_CASE("whiteness: noise of the velocities makes the share of the residual that theory gives") {
   static const model::Vehicle kVehicle = test::vehicle_from_repository("bluerov2");
   Trial trial = quiet_trial(4000);

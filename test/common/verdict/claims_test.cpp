@@ -47,6 +47,13 @@ TEST_CASE("claims: a listed effect is a cause, and no stand-in") {
   REQUIRE(result.effects.size() == 1);
   CHECK(result.effects[0].name == "current");
   CHECK(result.stand_ins.empty());
+  // Every listed effect has an answer: found, refused, or why it was not asked.
+  for (const model::Effect* effect : model::all_effects()) {
+    CAPTURE(effect->name());
+    const auto answered = std::ranges::find(result.candidates, effect->name(), &CandidateTried::name);
+    REQUIRE(answered != result.candidates.end());
+    CHECK_FALSE(answered->reason.empty());
+  }
   REQUIRE(!result.effects[0].parameters.empty());
   CHECK(result.effects[0].parameters[0].value == doctest::Approx(0.1).epsilon(0.1));  // m/s toward north
 }
