@@ -105,7 +105,7 @@ TEST_CASE("floors: no file includes a neighbour, a higher floor, or a library of
 TEST_CASE("floors: the test itself sees what is forbidden and lets pass what is not") {
   CHECK(objection("common/model/a.cpp", "common/samples/b.hpp", true).empty());
   CHECK(objection("common/model/effects/a.cpp", "common/model/b.hpp", true).empty());
-  CHECK(objection("common/inference/a.cpp", "common/identification/b.hpp", true).empty());
+  CHECK(objection("common/preflight/a.cpp", "common/identification/b.hpp", true).empty());
   CHECK(objection("processes/estimator/main.cpp", "common/wire/b.hpp", true).empty());
   CHECK(objection("processes/estimator/main.cpp", "fathom_lcm/state_t.hpp", false).empty());
   CHECK(objection("common/wire/a.cpp", "lcm/lcm-cpp.hpp", false).empty());
