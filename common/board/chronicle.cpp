@@ -37,8 +37,9 @@ void Chronicle::hear(const Excitation& said, double now) {
 }
 
 void Chronicle::hear(const EffectRanking& said, double now) {
+  const bool named = said.verdict == "effect" || said.verdict == "ambiguous";  // elsewhere no name is a claim
   const std::string best =
-      said.candidates.empty() || said.verdict == "adequate" || said.verdict == "collecting"
+      !named || said.candidates.empty()
           ? ""
           : ", first " + said.candidates.front().name +
                 (said.candidates.front().variant.empty() ? "" : " " + said.candidates.front().variant);

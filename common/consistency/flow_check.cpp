@@ -51,12 +51,18 @@ double least_arm(std::span<const Recording> seen, const model::Site& site) {
   return std::max(kOwnArm, count > 0.0 ? kTurned * height / count : 0.0);
 }
 
-/// How much of the flow's fault is in STATE is the filter's affair: its velocity is measured against the tags, too.
+/// What the filter made of the flow is late and smooth where the motion is quick, which looks like a lag of the thrust:
+/// the flow's own velocity takes the place of STATE's.
+void take_flow_as_measured(std::span<Recording> recordings, std::span<const Recording> seen) {
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    if (recordings[r].one_estimate && !seen[r].dvl.empty()) recordings[r].dvl = seen[r].dvl;
+  }
+}
+
 void correct_what_rests_on_flow(std::span<Recording> recordings, std::vector<Recording>& seen, const model::Site& site,
                                 std::vector<Corrections>& corrections) {
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     if (!recordings[r].one_estimate || seen[r].dvl.empty()) continue;
-    seen[r].dvl = recordings[r].dvl;
     const ConsistencyResult checked = check_consistency(std::span(&seen[r], 1));
     const SensorFault& fault = checked.corrections.front().dvl;
     corrections[r].dvl.scale.head<2>() = fault.scale.head<2>();
@@ -166,6 +172,7 @@ void check_flow(std::span<Recording> recordings, const model::Mounts& mounts, co
   std::vector<Recording> seen;
   for (const Recording& one : recordings) seen.push_back(flow_and_tags(one, mounts, site));
   if (std::ranges::all_of(seen, [](const Recording& one) { return one.dvl.empty(); })) return;
+  take_flow_as_measured(recordings, seen);
   PairResult flow = compare_flow(seen, site);
   if (!flow.findings.empty()) correct_what_rests_on_flow(recordings, seen, site, result.corrections);
   std::ranges::move(flow.findings, std::back_inserter(result.findings));

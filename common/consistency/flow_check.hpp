@@ -69,8 +69,9 @@ class FlowWitnesses {
 /// in the flow as by a lever arm; of the rest the flow says nothing.
 [[nodiscard]] PairResult compare_flow(std::span<const Recording> seen, const model::Site& site);
 
-/// Compares flow and tags of logs with STATE; adds to `result`, and where STATE stands for the velocity log
-/// (take_state_as_measured) and the flow is wrong, corrects the velocity and takes the tags' own position.
+/// Compares flow and tags of logs with STATE; adds to `result`. Where STATE stands for the velocity log
+/// (take_state_as_measured) the flow's own velocity does from now on; where it is wrong, it is corrected, and the tags'
+/// own position is taken.
 void check_flow(std::span<Recording> recordings, const model::Mounts& mounts, const model::Site& site,
                 ConsistencyResult& result);
 

@@ -177,6 +177,9 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
     dvl.series.x[i] = dvl_matrix * dvl.series.x[i] + corrections.dvl.bias + from_rates * omega;
   }
   measure_noise(dvl);
+  // An estimate that follows its instruments late changes late, and smoothly: its noise would tell nothing of that.
+  if (recording.pose_estimated && gyro.exists()) derived.rates = {};
+  if (recording.pose_estimated && dvl.exists()) derived.velocity = {};
 
   // The main stream gives the grid; blocks are centred, so a fast stream's means fall on the grid.
   const std::vector<double>* main = nullptr;

@@ -6,6 +6,7 @@ bool take_state_as_measured(Recording& recording) {
   if (!recording.pose_capture.empty() || recording.state.empty()) return false;
   const bool velocity = recording.dvl.empty();
   recording.one_estimate = velocity;
+  recording.pose_estimated = true;
   for (const StateEstimate& state : recording.state) {
     recording.pose_capture.push_back(
         {.utime = state.utime, .p_WB = state.p_WB, .q_WB = state.q_WB, .valid = state.valid});

@@ -114,6 +114,12 @@ bool Process::has_config(const std::string& key) const {
                              [&](const std::string& path) { return Config::load(path).has(key); });
 }
 
+bool Process::go_on() {
+  if (state_->out && state_->out->live() && Clock::now() - state_->last_health >= std::chrono::seconds{1})
+    report_health("running", "");
+  return !state_->stop->raised();
+}
+
 bool Process::reads_logs() const { return !state_->arguments.lockstep && !state_->arguments.in.front().live(); }
 bool Process::is_live() const { return !state_->arguments.lockstep && state_->arguments.in.front().live(); }
 

@@ -94,6 +94,9 @@ class Process {
     std::string detail;
   };
   void on_health(std::function<Condition()> ask);
+  /// For a handler that waits for its own long work, asked now and then: says HEALTH when a second has passed; false
+  /// once SIGINT or SIGTERM has come.
+  [[nodiscard]] bool go_on();
   /// HEALTH says this name instead of the process's: of one that may run more than once on a bus, each its own.
   void goes_by(const std::string& name);
   /// Says HEALTH now, not at the next full second: the condition has changed.

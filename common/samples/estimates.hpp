@@ -93,7 +93,7 @@ struct Residual {
 struct EffectEvidence {
   std::string name;
   double log_odds{};              ///< natural logarithm, against the model without it
-  double error_reduction{};       ///< share of the residual's energy that it explains, 0..1
+  double error_reduction{};       ///< by which the error on unseen motion falls with all accepted, 0..1; 0: not known
   std::string variant{};          ///< its form, "thruster 3"; empty when it has one only
   std::vector<double> numbers{};  ///< best values found, in the order and units of the effect's parameters
 };
@@ -101,7 +101,7 @@ struct EffectEvidence {
 /// The diagnoser's ranking, best first.
 struct EffectRanking {
   Utime utime{};
-  std::string verdict;  ///< "adequate", "effect", "ambiguous", "unexplained", "collecting"
+  std::string verdict;  ///< as in DiagnosisResult, "collecting" before the first
   std::vector<EffectEvidence> candidates;
   std::string against;  ///< candidate, or in words what no list holds, that the first cannot be told from; empty: none
   std::string segment;  ///< what tells them apart when flown; empty: not known

@@ -17,6 +17,7 @@ namespace fathom {
 struct Recording {
   std::string name;          ///< file name without folder and extension
   bool one_estimate{false};  ///< velocities in `dvl` come from the same estimate as `pose_capture`: they prove nothing
+  bool pose_estimated{false};  ///< `pose_capture` is an estimate: its change is no measurement where one was made
   std::vector<PoseCapture> pose_capture;
   std::vector<Ahrs> ahrs;
   std::vector<Dvl> dvl;

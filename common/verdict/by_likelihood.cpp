@@ -16,6 +16,7 @@
 #include "common/residual/unseen_event.hpp"
 #include "common/residual/whiteness.hpp"
 #include "common/verdict/covariance.hpp"
+#include "common/verdict/next_motion.hpp"
 #include "common/verdict/skill.hpp"
 
 namespace fathom::verdict {
@@ -383,6 +384,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const model::Scene scene = model::scene_of(vehicle, train);
   list_not_asked(scene, result);
   result.not_measured = preflight::not_measured(scene);
+  result.manoeuvre = next_motion(result);
   answer.best = best;
   answer.best_sigma = with_names ? of_named : of_base;
   answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;

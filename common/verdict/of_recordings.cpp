@@ -71,8 +71,6 @@ class Work {
     progress_.begin(kSensors, "comparing the sensors with each other");
     compare_sensors();
     progress_.done(kSensors);
-    if (divided_)
-      notes_.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
     Look look = explain(estimation::Kept::kLast);
     if (preflight::thrust_as_late_as_gyro(look.answer.report.result, consistency_.findings)) {
       consistency::put_thrusters_on_pose_clock(consistency_);

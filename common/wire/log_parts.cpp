@@ -151,11 +151,8 @@ bool LogParts::next(std::size_t most, Recording& part) {
                      " events is on a channel that Fathom knows (docs/messages.md); was another program's bus "
                      "recorded? 'fathom import --types ITS.lcm' reads it");
   }
+  put_in_order(reader.part);
   visit_streams(reader.part, [](const char*, auto& samples) {
-    const auto older = [](const auto& a, const auto& b) { return a.utime < b.utime; };
-    if (!std::is_sorted(samples.begin(), samples.end(), older)) {
-      std::stable_sort(samples.begin(), samples.end(), older);
-    }
     samples.shrink_to_fit();  // what a long stream has grown by is up to as much again
   });
   part = std::exchange(reader.part, {});

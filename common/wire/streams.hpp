@@ -1,6 +1,7 @@
 // The streams of a Recording with their channels: the one list that reader and writer share.
 #pragma once
 
+#include <algorithm>
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/answer_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
@@ -67,6 +68,16 @@ void visit_streams(AnyRecording& recording, Visit&& visit) {
   visit(kResidual, recording.residual);
   visit(kEffects, recording.effects);
   visit(kHealth, recording.health);
+}
+
+/// Each stream in the order of its time stamps; samples of equal ones as they came.
+inline void put_in_order(Recording& recording) {
+  visit_streams(recording, [](const char*, auto& samples) {
+    const auto older = [](const auto& a, const auto& b) { return a.utime < b.utime; };
+    if (!std::is_sorted(samples.begin(), samples.end(), older)) {
+      std::stable_sort(samples.begin(), samples.end(), older);
+    }
+  });
 }
 
 }  // namespace fathom::wire

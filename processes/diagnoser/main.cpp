@@ -1,20 +1,19 @@
-// diagnoser: states, thruster commands, battery voltage, and the sensors that states rest on in, the ranking of
-// candidate causes out.
+// diagnoser: all that `fathom diagnose` reads in a log, the ranking of candidate causes out.
 #include <malloc.h>
 
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
+#include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/optical_flow_t.hpp>
+#include <fathom_lcm/pose_capture_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
 
-#include "common/diagnosis/live_diagnoser.hpp"
-#include "common/estimation/corrections_file.hpp"
-#include "common/estimation/thruster_forces.hpp"
+#include "common/live/live_diagnoser.hpp"
 #include "common/model/site.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
@@ -37,9 +36,9 @@ std::optional<diagnoser::Proposals> proposals_of(const runtime::Process& process
   return diagnoser::Proposals{planning::LiveSeparation{vehicle, settings}};
 }
 
-/// A sensor that STATE rests on; its clock may leap without the trial beginning anew.
+/// A sensor's clock may leap without the trial beginning anew.
 template <class Message>
-void compare(runtime::Process& process, diagnosis::LiveDiagnoser& diagnoser, const std::string& channel) {
+void hear(runtime::Process& process, live::LiveDiagnoser& diagnoser, const std::string& channel) {
   process.listens_to<Message>(channel, [&process, &diagnoser, channel](const Message& message) {
     const auto sample = wire::decode(message);
     if (!sample) return process.reject(channel);
@@ -50,20 +49,21 @@ void compare(runtime::Process& process, diagnosis::LiveDiagnoser& diagnoser, con
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A pass or a look at the sensors needs tens of megabytes for a moment: large blocks go back to the system.
+  // A search needs tens of megabytes for a moment: large blocks go back to the system.
   mallopt(M_MMAP_THRESHOLD, 128 * 1024);
   const runtime::Program program{"diagnoser",
                                  "Ranks the effects that may explain what the model does not, and what to fly next."};
   return runtime::main(program, argc, argv, [](runtime::Process& process) {
+    using Late = live::LiveDiagnoser::Late;
     const model::Vehicle vehicle = model::Vehicle::load(process.config_path("dof"));
-    const estimation::Corrections corrections = estimation::load_corrections(process.config_path("corrections"));
     std::optional<model::Site> site;
     if (process.has_config("site")) site = model::Site::load(process.config_path("site"));
     std::optional<diagnoser::Proposals> proposals = proposals_of(process, vehicle, site);
-    diagnosis::LiveDiagnoser diagnoser{diagnosis::LiveSettings::from(process.config()), vehicle, corrections,
-                                       site ? &*site : nullptr};
-    estimation::ThrusterForces forces{corrections.thrusters, vehicle};
+    live::LiveDiagnoser diagnoser{live::LiveSettings::from(process.config()), vehicle, site,
+                                  process.is_live() ? Late::kIsToldLate : Late::kIsWaitedFor,
+                                  [&] { return process.go_on(); }};
     const auto say = [&](std::optional<EffectRanking> ranking) {
+      for (const std::string& note : diagnoser.take_notes()) process.log_info(note);
       if (!ranking) return;
       if (proposals) proposals->complete(*ranking, diagnoser.rivals());
       process.publish(wire::kEffects, wire::encode(*ranking));
@@ -72,32 +72,24 @@ int main(int argc, char** argv) {
     process.publishes<fathom_lcm::effects_t>(wire::kEffects);
     process.on<fathom_lcm::state_t>(wire::kState, wire::kDecode,
                                     [&](const StateEstimate& state) { say(diagnoser.step(state)); });
-    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, wire::kDecode, [&](const Thrusters& thrusters) {
-      say(diagnoser.step(forces.step(thrusters)));
-    });
-    process.on<fathom_lcm::battery_t>(wire::kBattery, wire::kDecode, [&](const Battery& battery) {
-      forces.step(battery);
-      say(diagnoser.step(battery));
-    });
-    compare<fathom_lcm::ahrs_t>(process, diagnoser, wire::kAhrs);
-    compare<fathom_lcm::dvl_t>(process, diagnoser, wire::kDvl);
-    compare<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
-    compare<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
+    process.on<fathom_lcm::thrusters_t>(wire::kThrusters, wire::kDecode,
+                                        [&](const Thrusters& thrusters) { diagnoser.hear(thrusters); });
+    process.on<fathom_lcm::battery_t>(wire::kBattery, wire::kDecode,
+                                      [&](const Battery& battery) { diagnoser.hear(battery); });
+    hear<fathom_lcm::ahrs_t>(process, diagnoser, wire::kAhrs);
+    hear<fathom_lcm::pose_capture_t>(process, diagnoser, wire::kPoseCapture);
+    hear<fathom_lcm::dvl_t>(process, diagnoser, wire::kDvl);
+    hear<fathom_lcm::depth_t>(process, diagnoser, wire::kDepth);
+    hear<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
+    hear<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
     process.on<fathom_lcm::model_t>(wire::kModel, wire::kDecode, [&](const ModelEstimate& model) {
-      diagnoser.hear(model);
       if (proposals) proposals->hear(model);
     });
     process.on_restart([&] {
       diagnoser.reset();
       if (proposals) proposals->reset();
-      forces.reset();
     });
-    process.on_end([&] {
-      say(diagnoser.finish());
-      for (const auto& [reason, count] : diagnoser.rejected()) {
-        process.log_info(std::to_string(count) + " samples not used: " + reason);
-      }
-    });
+    process.on_end([&] { say(diagnoser.finish()); });
     process.run();
   });
 }

@@ -9,7 +9,7 @@ std::string word(const model::ActiveEffect& effect) {
 
 }  // namespace
 
-void Proposals::complete(EffectRanking& ranking, const Rivals& rivals) {
+void Proposals::complete(EffectRanking& ranking, const live::Rivals& rivals) {
   if (!rivals || !model_) return;
   const std::string question = word(rivals->first) + " or " + word(rivals->second);
   auto known = answers_.find(question);

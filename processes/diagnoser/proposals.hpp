@@ -4,15 +4,12 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 
-#include "common/model/effect.hpp"
+#include "common/live/background_search.hpp"
 #include "common/planning/live_separation.hpp"
 #include "common/samples/estimates.hpp"
 
 namespace fathom::diagnoser {
-
-using Rivals = std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>>;
 
 class Proposals {
  public:
@@ -20,7 +17,7 @@ class Proposals {
 
   void hear(const ModelEstimate& model) { model_ = model; }
   /// Names the segment that tells the rivals apart, if there is one.
-  void complete(EffectRanking& ranking, const Rivals& rivals);
+  void complete(EffectRanking& ranking, const live::Rivals& rivals);
   void reset();
 
  private:

@@ -164,6 +164,8 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
                          std::vector<std::string> told_already;
                          return look_at(options, vehicle, told_already).recordings;
                        }};
+  if (options.validate.empty())
+    notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
   verdict::Explained explained = verdict::of_recordings(
       vehicle, std::move(asked),
       {.inference = {.without = options.without, .threads = options.threads, .time_budget = options.time_budget},

@@ -20,7 +20,7 @@ namespace fathom::simulator {
 namespace {
 
 constexpr double kLook = 0.3;                        // s in which another simulator answers
-constexpr double kPatience = 60.0;                   // s without an answer: a diagnoser may think for some
+constexpr double kPatience = 600.0;                  // s without an answer: a diagnoser searches all of a trial
 constexpr double kComplain = 5.0;                    // s between two lines about who is missing
 constexpr double kAfterwards = 2.0;                  // s of virtual time after the supervisor's end
 constexpr double kToArm = 5.0;                       // s that a supervisor may take to obey
@@ -233,7 +233,7 @@ void Stage::conduct(std::span<const int> descriptors, int milliseconds) {
   if (!interval_over()) {
     poll_for(descriptors, 1e-3 * milliseconds);
     if (seconds(Clock::now() - last_answer_) > kPatience) {
-      throw InputError("lockstep: no answer from " + conductor_->waiting_for() + " for a minute; see what it says");
+      throw InputError("lockstep: no answer from " + conductor_->waiting_for() + " for ten minutes; see what it says");
     }
     return;
   }

@@ -13,12 +13,13 @@
 namespace {
 
 const std::map<std::string, int> kFloors{
-    {"base", 0},       {"samples", 1},    {"model", 2},          {"devices", 2},    {"vision", 3},    {"tables", 2},
-    {"launch", 2},     {"orders", 2},     {"link", 3},           {"estimation", 3}, {"board", 4},     {"likelihood", 3},
-    {"excitation", 3}, {"simulation", 3}, {"identification", 3}, {"diagnosis", 5},  {"inference", 4}, {"joint", 4},
-    {"pictures", 4},   {"report", 4},     {"planning", 6},       {"verdict", 6},    {"runtime", 5},   {"wire", 5},
-    {"driver", 6},     {"recordings", 3}, {"consistency", 4},    {"learning", 5},   {"result", 6},    {"exports", 7},
-    {"drafts", 1},     {"residual", 3},   {"preflight", 4}};
+    {"base", 0},        {"samples", 1},    {"model", 2},      {"devices", 2},    {"vision", 3},
+    {"tables", 2},      {"launch", 2},     {"orders", 2},     {"link", 3},       {"estimation", 3},
+    {"board", 4},       {"likelihood", 3}, {"excitation", 3}, {"simulation", 3}, {"identification", 3},
+    {"inference", 4},   {"joint", 4},      {"pictures", 4},   {"report", 4},     {"planning", 6},
+    {"verdict", 6},     {"runtime", 5},    {"wire", 5},       {"driver", 6},     {"recordings", 3},
+    {"consistency", 4}, {"learning", 5},   {"result", 6},     {"exports", 7},    {"drafts", 1},
+    {"residual", 3},    {"preflight", 4},  {"live", 7}};
 
 // Rooms that see less than their floor allows.
 const std::map<std::string, std::set<std::string>> kNarrow{{"wire", {"samples", "base"}}, {"runtime", {"base"}}};

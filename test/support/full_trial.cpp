@@ -9,9 +9,9 @@
 #include <variant>
 
 #include "common/base/error.hpp"
-#include "common/diagnosis/live_diagnoser.hpp"
 #include "common/estimation/navigator.hpp"
 #include "common/joint/live_identifier.hpp"
+#include "common/live/live_diagnoser.hpp"
 #include "common/model/regressor.hpp"
 #include "test/common/excitation/tank_run.hpp"
 
@@ -116,20 +116,17 @@ FullTrial run_trial(const FullTrialOptions& options) {
   joint::LiveIdentifier& identifier = *mind;
   estimation::Navigator navigator{navigator_settings, places};
   excitation::Supervisor supervisor{ready(s.supervisor, s.vehicle)};
-  std::unique_ptr<diagnosis::LiveDiagnoser> diagnoser;
+  std::unique_ptr<live::LiveDiagnoser> diagnoser;
   if (diagnose)
-    diagnoser = std::make_unique<diagnosis::LiveDiagnoser>(diagnosis::LiveSettings::from(pipeline.section("diagnoser")),
-                                                           s.vehicle, estimation::Corrections{}, &site);
+    diagnoser =
+        std::make_unique<live::LiveDiagnoser>(live::LiveSettings::from(pipeline.section("diagnoser")), s.vehicle, site);
   FullTrial trial;
   const auto rank = [&](const std::optional<EffectRanking>& ranking) {
     if (!ranking) return;
     identifier.hear(*ranking);
     trial.rankings.push_back(*ranking);
   };
-  const auto learnt = [&](const ModelEstimate& model) {
-    supervisor.hear(model);
-    if (diagnoser) diagnoser->hear(model);
-  };
+  const auto learnt = [&](const ModelEstimate& model) { supervisor.hear(model); };
   double n = 0.0;
   bool armed = false;
   StateEstimate last;
@@ -168,9 +165,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
             using T = std::decay_t<decltype(one)>;
             if constexpr (requires { navigator.step(one); }) {
               identifier.hear(one);
-              if constexpr (requires { diagnoser->hear(one); }) {
-                if (diagnoser) diagnoser->hear(one);
-              }
+              if (diagnoser) diagnoser->hear(one);
               for (const StateEstimate& state : navigator.step(one)) {
                 use(state);
                 if (recording != nullptr) recording->state.push_back(state);
@@ -178,7 +173,9 @@ FullTrial run_trial(const FullTrialOptions& options) {
               }
             } else if constexpr (std::is_same_v<T, Thrusters>) {
               for (const auto& model : identifier.step(one).models) learnt(model);
-              if (diagnoser) rank(diagnoser->step(one));
+              if (diagnoser) diagnoser->hear(one);
+            } else if constexpr (std::is_same_v<T, Battery>) {
+              if (diagnoser) diagnoser->hear(one);
             } else if constexpr (std::is_same_v<T, Truth>) {
               truths[one.utime] = one;
             }
@@ -189,6 +186,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
     if (armed && (supervisor.phase() == Phase::kAborted || supervisor.phase() == Phase::kLost)) break;
     if (supervisor.phase() == Phase::kDone && supervisor.visits().size() == s.supervisor.schedule.size()) break;
   }
+  if (diagnoser) rank(diagnoser->finish());
   for (const auto& [utime, truth] : truths) {
     const auto found = states.lower_bound(utime);
     if (found == states.end() || found->first - utime > 5'000 || seconds_between(1'700'000'000'000'000, utime) < 5.0)

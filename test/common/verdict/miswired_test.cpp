@@ -27,5 +27,6 @@ TEST_CASE("miswired: a diagnosis of thrusters that are exchanged has no model, a
   REQUIRE(result.wiring);
   CHECK(result.wiring->readings.front() ==
         vehicle.thrusters[0].name + " and " + vehicle.thrusters[1].name + " exchanged");
+  CHECK(result.manoeuvre.find("each thruster alone") != std::string::npos);
   CHECK(std::ranges::any_of(answer.given.causes, [](const CauseGiven& cause) { return cause.cause == "wiring"; }));
 }
