@@ -35,7 +35,8 @@ Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
   if (verdict == "unexplained" && partly)
     return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
-  if (verdict == "no_model") return {"unexplained", "The model does not follow its thrust: numbers of such axes are withheld"};
+  if (verdict == "no_model")
+    return {"unexplained", "The model does not follow its thrust: numbers of such axes are withheld"};
   if (verdict == "unjudged" || verdict == "not_judged") return {"ambiguous", "These runs show too little to judge by"};
   return {"other", verdict.empty() ? "No verdict" : "Verdict: " + verdict};
 }
@@ -277,8 +278,8 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
     html += tile("0 %", "change of the prediction error: nothing was added to the model");
   } else if (std::isfinite(result.improvement.value)) {
     html += tile(percent(-result.improvement.value),
-                 "change of the prediction error 5 s ahead (95 %: " + percent(-result.improvement.high) + " to " +
-                     percent(-result.improvement.low) + ")");
+                 "change of the prediction error 5 s ahead (" +
+                     percent_interval(-result.improvement.high, -result.improvement.low) + ")");
   }
   if (const auto axis = telling_axis(result)) {
     const Axis& a = kAxes[*axis];

@@ -92,8 +92,8 @@ void errors(Text& out, const DiagnosisResult& result) {
     }
   }
   if (std::isfinite(result.improvement.value)) {
-    out.paragraph("Normalised error 5 s ahead: reduced by " + percent(result.improvement.value) +
-                  " (95 %: " + percent(result.improvement.low) + " to " + percent(result.improvement.high) + ").");
+    out.paragraph("Normalised error 5 s ahead: reduced by " + percent(result.improvement.value) + " (" +
+                  percent_interval(result.improvement.low, result.improvement.high) + ").");
   }
 }
 

@@ -80,6 +80,11 @@ std::string percent(double share) {
   return printed("%.*f", small ? 1 : 0, value) + " %";
 }
 
+std::string percent_interval(double low, double high) {
+  if (!std::isfinite(low) || !std::isfinite(high)) return "too few windows for an interval";
+  return "95 %: " + percent(low) + " to " + percent(high);
+}
+
 std::string odds(double log_odds) {
   if (std::isnan(log_odds)) return "-";
   const double decades = std::abs(log_odds) / std::numbers::ln10;

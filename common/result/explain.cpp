@@ -75,8 +75,8 @@ void errors(Lines& out, const DiagnosisResult& result) {
              "    " + std::string{a.name} + " " + a.velocity, 14);
   }
   if (std::isfinite(result.improvement.value))
-    out.line("normalised error: " + percent(result.improvement.value) +
-             " less (95 %: " + percent(result.improvement.low) + " to " + percent(result.improvement.high) +
+    out.line("normalised error: " + percent(result.improvement.value) + " less (" +
+             report::percent_interval(result.improvement.low, result.improvement.high) +
              "; above 0 throughout it is more than luck)");
 }
 

@@ -7,17 +7,17 @@
 #include "test/common/likelihood/noisy_dive.hpp"
 
 using namespace fathom;
-using namespace fathom::verdict;
 
 namespace {
 
-Answer answer_to(const test::NoisyDive& settings, const std::vector<std::string>& without) {
+verdict::Answer answer_to(const test::NoisyDive& settings, const std::vector<std::string>& without) {
   const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
   const auto train = test::fly(vehicle, settings);
   test::NoisyDive other = settings;
   other.seed += 1;
   const auto validate = test::fly(vehicle, other);
-  return diagnose(vehicle, {&train.trial, 1}, {&validate.trial, 1}, {.without = without}, {}, {.learn = false});
+  return verdict::diagnose(vehicle, {&train.trial, 1}, {&validate.trial, 1}, {.without = without}, {},
+                           {.learn = false});
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ Answer answer_to(const test::NoisyDive& settings, const std::vector<std::string>
 TEST_CASE("claims: beside something that no list holds nothing is a cause, and the model is not worse") {
   const test::NoisyDive settings{
       .duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}};
-  const Answer answer = answer_to(settings, {"current"});
+  const verdict::Answer answer = answer_to(settings, {"current"});
   const DiagnosisResult& result = answer.report.result;
   CHECK(result.verdict == "unexplained");
   CHECK(result.effects.empty());
@@ -40,7 +40,7 @@ TEST_CASE("claims: beside something that no list holds nothing is a cause, and t
 }
 
 TEST_CASE("claims: a listed effect is a cause, and no stand-in") {
-  const Answer answer =
+  const verdict::Answer answer =
       answer_to({.duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}}, {});
   const DiagnosisResult& result = answer.report.result;
   CHECK(result.verdict == "effect");
