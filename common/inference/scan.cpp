@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "common/base/parallel.hpp"
 #include "common/model/effect_size.hpp"
@@ -17,6 +18,7 @@ namespace {
 constexpr double kZeroStart = 0.3;    // of its sigma, for a number whose grid value is zero
 constexpr std::size_t kBatch = 48;    // columns that run through the filter together
 constexpr std::size_t kPairsOf = 24;  // best promises, of which all pairs are asked
+constexpr double kEventApart = 1.0;   // s: a moment that is so far off is on the true one's hill of the likelihood
 constexpr int kOnsetSteps = 8;        // finer times about the best one
 constexpr int kFiner = 2;             // so often
 constexpr std::size_t kFurther = 2;   // grid points beside a law's best one, from which it is fitted too
@@ -183,14 +185,15 @@ std::vector<Question> all_questions(const std::vector<Law>& laws, const model::V
   return questions;
 }
 
-/// Between times of events that the grids of these laws hold; zero: they hold none.
+/// Between times of events that the grids of these laws hold, each time once; zero: they hold none.
 double onset_spacing(std::span<const Law> laws) {
   double spacing = 0.0;
   for (const Law& law : laws) {
-    if (law.onset < 0 || law.grid.size() < 2) continue;
-    const auto at = static_cast<std::size_t>(law.onset);
-    spacing = std::max(
-        spacing, std::abs(law.grid.back()[at] - law.grid.front()[at]) / (static_cast<double>(law.grid.size()) - 1.0));
+    if (law.onset < 0) continue;
+    std::set<double> times;
+    for (const std::vector<double>& theta : law.grid) times.insert(theta[static_cast<std::size_t>(law.onset)]);
+    if (times.size() > 1)
+      spacing = std::max(spacing, (*times.rbegin() - *times.begin()) / (static_cast<double>(times.size()) - 1.0));
   }
   return spacing;
 }
@@ -210,17 +213,17 @@ std::vector<std::vector<double>> next_best(std::span<const Question> questions, 
   return thetas;
 }
 
-/// Asks times about these questions' own, `spacing` to both sides; the first of those that came.
+/// Asks `steps` times about these questions' own, within `spacing`; the first of those that came.
 std::size_t ask_finer(const Scanner& scanner, const likelihood::Problem& problem, std::span<const Law> laws,
-                      const std::vector<std::size_t>& about, double spacing, std::vector<Question>& questions,
-                      std::vector<Promise>& promises) {
+                      const std::vector<std::size_t>& about, double spacing, int steps,
+                      std::vector<Question>& questions, std::vector<Promise>& promises) {
   const std::size_t from = questions.size();
   for (const std::size_t q : about) {
     const Law& law = laws[questions[q].law];
-    for (int s = -kOnsetSteps / 2; law.onset >= 0 && s <= kOnsetSteps / 2; ++s) {
+    for (int s = -steps / 2; law.onset >= 0 && s <= steps / 2; ++s) {
       std::vector<double> theta = questions[q].theta;
       double& onset = theta[static_cast<std::size_t>(law.onset)];
-      onset = std::clamp(onset + s * spacing / kOnsetSteps, problem.t_low, problem.t_high);
+      onset = std::clamp(onset + s * spacing / steps, problem.t_low, problem.t_high);
       if (s != 0) questions.push_back(question(law, questions[q].law, theta, *problem.vehicle));
     }
   }
@@ -240,17 +243,34 @@ std::vector<std::vector<double>> starts_of(const likelihood::Problem& problem, c
   std::vector<Question> questions = all_questions(one, *problem.vehicle);
   std::vector<Promise> promises = scanner.ask(questions);
   const double spacing = onset_spacing(one);
-  // Points of the grid are apart; about each of the best, its finest time.
-  std::vector<std::size_t> order(questions.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, std::greater{}, [&](std::size_t q) { return promises[q].score; });
+  const auto onset = [&](std::size_t q) { return questions[q].theta[static_cast<std::size_t>(law.onset)]; };
+  const auto by_score = [&] {
+    std::vector<std::size_t> order(questions.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, std::greater{}, [&](std::size_t q) { return promises[q].score; });
+    return order;
+  };
+  std::vector<std::size_t> order = by_score();
+  if (spacing > kEventApart) {  // the true moment's own hill may lie between two points that both look at others
+    std::vector<std::size_t> about = order;
+    std::erase_if(about, [&](std::size_t q) { return promises[q].score < 0.5 * promises[order.front()].score; });
+    const int steps = static_cast<int>(std::ceil(spacing / kEventApart));
+    static_cast<void>(ask_finer(scanner, problem, one, about, spacing, steps, questions, promises));
+    order = by_score();
+  }
+  // About each of the best, apart from each other, its finest time.
   std::vector<std::vector<double>> starts;
-  for (std::size_t k = 0; k < std::min(count, order.size()); ++k) {
-    std::size_t best = order[k];
-    double about = spacing;
+  std::vector<std::size_t> taken;
+  for (const std::size_t first : order) {
+    if (taken.size() == count) break;
+    const auto near = [&](std::size_t other) { return std::abs(onset(first) - onset(other)) < 2.0 * kEventApart; };
+    if (law.onset >= 0 && std::ranges::any_of(taken, near)) continue;
+    taken.push_back(first);
+    std::size_t best = first;
+    double about = std::min(spacing, kEventApart);
     for (int finer = 0; finer < kFiner && about > 0.0; ++finer) {
-      for (std::size_t q = ask_finer(scanner, problem, one, {best}, about, questions, promises); q < questions.size();
-           ++q) {
+      for (std::size_t q = ask_finer(scanner, problem, one, {best}, about, kOnsetSteps, questions, promises);
+           q < questions.size(); ++q) {
         if (promises[q].score > promises[best].score) best = q;
       }
       about /= kOnsetSteps;
@@ -319,7 +339,7 @@ Scan scan(const likelihood::Problem& problem, const Seen& seen, const std::vecto
   };
   double spacing = onset_spacing(asked);
   for (int finer = 0; finer < kFiner && spacing > 0.0; ++finer) {
-    take_best(ask_finer(scanner, problem, asked, centres(), spacing, questions, promises));
+    take_best(ask_finer(scanner, problem, asked, centres(), spacing, kOnsetSteps, questions, promises));
     spacing /= kOnsetSteps;
   }
 

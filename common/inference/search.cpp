@@ -256,6 +256,11 @@ void Searching::simplify(const std::vector<model::ActiveEffect>& before) {
 
 Odds Searching::better() const { return {.from = found_.base.score, .to_beat = found_.best.score, .near = 0.0}; }
 
+void Searching::quiet(likelihood::Fit& fit) const {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(problem_.simulated); ++i)
+    fit.noise[i].log[likelihood::kForce] -= std::log(kLouder);
+}
+
 bool Searching::quieten(const Seen& seen, likelihood::Fit& fit) const {
   bool large = false;
   for (int i = 0; i < problem_.simulated; ++i) {
@@ -264,8 +269,7 @@ bool Searching::quieten(const Seen& seen, likelihood::Fit& fit) const {
         large || (fit.noise[axis][likelihood::kForce] > thresholds_.large_random * seen.applied[problem_.axes[axis]] &&
                   fit.noise[axis][likelihood::kForceMemory] > thresholds_.swallowing_memory);
   }
-  for (int i = 0; large && i < problem_.simulated; ++i)
-    fit.noise[static_cast<std::size_t>(i)].log[likelihood::kForce] -= std::log(kLouder);
+  if (large) quiet(fit);
   return large;
 }
 
@@ -292,7 +296,10 @@ void Searching::seek_again(const std::vector<model::ActiveEffect>& before) {
     };
     const Seen seen = see(problem_, fit, threads_);
     look(seen);
-    if (quieten(seen, fit)) look(see(problem_, fit, threads_));
+    // A moment, a place or a frequency that is a little off leaves a random force that hides it: seen with less of it
+    // too.
+    quiet(fit);
+    look(see(problem_, fit, threads_));
     for (const Fitted& other : models_.race(starts(fit.hypothesis, again), better())) {
       if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
     }

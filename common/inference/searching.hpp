@@ -75,6 +75,8 @@ class Searching {
   /// Times, frequencies and places of the effects that were just found, sought once more: they have many maxima, and
   /// the noise at which they were found had taken a part of them.
   void seek_again(const std::vector<model::ActiveEffect>& before);
+  /// A fifth of every random force.
+  void quiet(likelihood::Fit& fit) const;
   /// The random force of some axis may have swallowed something slow; if so, `fit` has a fifth of it afterwards.
   [[nodiscard]] bool quieten(const Seen& seen, likelihood::Fit& fit) const;
   /// Nats that the best model would lose without the effect, by Wald's test of its leading numbers: a linear guess.

@@ -85,6 +85,8 @@ class Covariance {
     const Matrix C_d = rho.asDiagonal() * (nd_.transpose() * H.transpose() + dc_);
     const Matrix C_c = rho_colour.asDiagonal() * shown_start_c;
     nn_ = T_nn * E.transpose() + T_nd * G.transpose();
+    // No measurement sees what rounding leaves of skew, and a craft that is unstable lets it grow.
+    nn_ = (0.5 * (nn_ + nn_.transpose())).eval();
     nd_ = T_nd * rho.asDiagonal();
     nc_ = T_nc * rho_colour.asDiagonal();
     dd_ = (rho.asDiagonal() * dd_ * rho.asDiagonal()).eval();
