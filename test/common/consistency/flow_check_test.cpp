@@ -66,6 +66,25 @@ TEST_CASE("flow check: the position is the tags' where STATE's is led astray") {
   CHECK((error(Checked{{.seed = 4, .state_offset = off}}) - off).norm() < 1e-3);  // nothing wrong: STATE stays
 }
 
+TEST_CASE("flow check: what the flow measured takes the place of what the estimator made of it") {
+  const test::Pictures pictures{{.seed = 4}};
+  const auto velocities = [&](double off) {
+    std::vector<Recording> recordings{pictures.recording};
+    for (StateEstimate& state : recordings.front().state) state.nu.x() += off;
+    take_state_as_measured(recordings.front());
+    ConsistencyResult result;
+    result.corrections.resize(1);
+    check_flow(recordings, pictures.mounts, pictures.site, result);
+    return recordings.front().dvl;
+  };
+  const std::vector<Dvl> right = velocities(0.0), wrong = velocities(0.05);
+  REQUIRE(right.size() > 100);
+  REQUIRE(right.size() == wrong.size());
+  CHECK(right.size() <= pictures.recording.optical_flow.size());
+  for (std::size_t k = 0; k < right.size(); ++k)
+    CHECK(std::abs(right[k].v_WB_B.x() - wrong[k].v_WB_B.x()) < 1e-3);  // m/s: STATE's share along a tilted lens
+}
+
 TEST_CASE("flow check: a flow that is late") {
   const Checked checked{{.seed = 5, .flow_delay = 0.1}};
   const ConsistencyFinding* delay = checked.finding("optical_flow", "delay");

@@ -87,6 +87,7 @@ TEST_CASE("state as measured: stands in for a motion capture that is not there, 
   CHECK(f.recording.pose_capture[0].p_WB == f.p_WB);
   CHECK(f.recording.dvl[0].v_WB_B == f.v_B);
   CHECK(f.recording.one_estimate);
+  CHECK(f.recording.pose_estimated);
   CHECK_FALSE(take_state_as_measured(f.recording));
   Fixture with_dvl;
   with_dvl.recording.dvl.push_back({.utime = 1'000'000});
