@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct ConsistencyResult {
   std::map<std::string, PairResult> pairs;  ///< "gyro", "dvl", "accelerometer": numbers behind the findings
   Pooled distance;                          ///< the position's way over the velocity log's, after what was corrected
   double distance_limit{};                  ///< sigmas of it that count as significant
+  /// By which the position has been divided and by which the velocity log may have to be multiplied instead; nothing
+  /// where no such factor was found, or kinematics tells which is wrong.
+  std::optional<double> either_scale{};
 };
 
 [[nodiscard]] ConsistencyResult check_consistency(std::span<const Recording> recordings);

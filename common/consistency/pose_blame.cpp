@@ -17,7 +17,8 @@ namespace {
 constexpr double kSameHeading = 0.5 * kDegree;  // less between runs is one heading
 constexpr double kSoundSpeed = 0.04;  // of a velocity log's scale: 0 deg fresh water for 30 deg sea water is 10 %, but
                                       // users set it; what is left is below this
-constexpr double kAlike = 0.25;       // of the scale's error by which axes may differ and still be one factor
+constexpr double kLeastScatter = 2e-3;   // of scales that agree: smaller steps than sensors are calibrated to
+constexpr double kAlike = 0.25;          // of the scale's error by which axes may differ and still be one factor
 constexpr double kDistanceFloor = 0.02;  // of a ratio of distances; less changes no fitted model much
 constexpr double kStretch = 2.0;         // s of travel that are compared
 constexpr int kBlocks = 10;
@@ -223,6 +224,10 @@ bool Check::blame_position_scale(const PairResult& dvl) {
            scale, 100.0 * kSoundSpeed) +
           "; a straight leg between two points of known distance, or a second velocity, settles it",
       "corrected: the position is divided by the size (the map's 'unit' or a projection of the position)", "dvl");
+  result_.findings.back().std =
+      std::max(0.5 * (most - least), kLeastScatter) / std::sqrt(static_cast<double>(scales.size()));
+  result_.findings.back().or_else = "dvl";
+  result_.either_scale = scale;
   return true;
 }
 

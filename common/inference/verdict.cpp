@@ -52,6 +52,8 @@ std::string_view word(Cause cause) {
       return "out_of_time";
     case Cause::kSensorsDisagree:
       return "sensors_disagree";
+    case Cause::kSensorsUndecided:
+      return "sensors_undecided";
     case Cause::kBeginsUnseen:
       return "begins_unseen";
     case Cause::kScoresDisagree:

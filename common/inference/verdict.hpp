@@ -32,9 +32,10 @@ enum class Cause {
   kTooShort,      ///< s of data
   kNotFinite,     ///< the filter diverged
   kOutOfTime,     ///< the search was cut short: what it did not ask may be there too
-  kSensorsDisagree,  ///< log odds that a sensor's number is wrong, by comparing the sensors
-  kBeginsUnseen,     ///< s into a run that judges, from which on far more is left than in the fitted ones
-  kScoresDisagree    ///< share by which the open-loop error falls with the numbers of the multi-horizon score
+  kSensorsDisagree,   ///< log odds that a sensor's number is wrong, by comparing the sensors
+  kSensorsUndecided,  ///< log odds between two sensors of which one is wrong: too few to tell which
+  kBeginsUnseen,      ///< s into a run that judges, from which on far more is left than in the fitted ones
+  kScoresDisagree     ///< share by which the open-loop error falls with the numbers of the multi-horizon score
 };
 
 enum class Rule {

@@ -21,10 +21,11 @@ struct ConsistencyFinding {
   std::string finding;    ///< "delay", "scale", "bias", "sign", "axes", "lever_arm", "noise", "gap", ...
   double size{};
   std::string unit;
-  std::string evidence;  ///< one sentence with the numbers
-  std::string action;    ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
-  double std{};          ///< of the size; 0 where it is a count or was not estimated
-  double freedom{};      ///< degrees of freedom of std
+  std::string evidence;   ///< one sentence with the numbers
+  std::string action;     ///< what the fit does about it: "corrected", "trusted pose_capture", "reported only"
+  double std{};           ///< of the size; 0 where it is a count or was not estimated
+  double freedom{};       ///< degrees of freedom of std
+  std::string or_else{};  ///< the other signal that may be wrong in its place; empty: none
 };
 
 /// Open-loop prediction error at one horizon. Axis order u v w p q r; NaN where the axis is not simulated.

@@ -257,6 +257,20 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
   }
 }
 
+/// Surge, sway and heave as they are scored.
+double scored_velocities(const likelihood::Problem& problem) {
+  double count = 0.0;
+  for (const likelihood::RunData& run : problem.runs) {
+    for (const likelihood::Block& block : run.blocks()) {
+      for (int i = 0; i < problem.simulated && block.scored; ++i) {
+        const int axis = problem.axes[static_cast<std::size_t>(i)];
+        count += axis < 3 && block.n[axis] > 0.0 ? 1.0 : 0.0;
+      }
+    }
+  }
+  return count;
+}
+
 /// What begins where no fit could see it is something that nothing here explains.
 void begins_later(const DiagnosisReport& report, Conclusion& conclusion) {
   if (!report.unseen_event || conclusion.verdict == Verdict::no_model) return;
@@ -385,6 +399,8 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   list_not_asked(scene, result);
   result.not_measured = preflight::not_measured(scene);
   result.manoeuvre = next_motion(result);
+  answer.score = conclusion.found.best.score;
+  answer.velocities = scored_velocities(likelihood::make_problem(vehicle, train, settings.runs));
   answer.best = best;
   answer.best_sigma = with_names ? of_named : of_base;
   answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;

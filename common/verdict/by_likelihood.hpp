@@ -19,6 +19,8 @@ struct Answer {
   DiagnosisReport report;
   VerdictGiven given;
   inference::Verdict verdict{inference::Verdict::not_judged};
+  double score{};              ///< nats: evidence of the best set of names, its prior included
+  double velocities{};         ///< scored measurements of surge, sway and heave, each a mean over a block
   likelihood::Fit best;        ///< the model after, with the named effects
   Eigen::VectorXd best_sigma;  ///< of its numbers; empty where nothing was fitted
   /// A named effect, and the likeliest other in its place where that one cannot be ruled out.

@@ -1,12 +1,14 @@
 #include "common/verdict/of_recordings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <span>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/consistency/dead_axes.hpp"
+#include "common/consistency/either_scale.hpp"
 #include "common/consistency/flow_check.hpp"
 #include "common/consistency/thruster_clock.hpp"
 #include "common/estimation/reconstruct.hpp"
@@ -72,6 +74,7 @@ class Work {
     compare_sensors();
     progress_.done(kSensors);
     Look look = explain(estimation::Kept::kLast);
+    if (consistency_.either_scale) look = with_the_likelier_scale(std::move(look), *consistency_.either_scale);
     if (preflight::thrust_as_late_as_gyro(look.answer.report.result, consistency_.findings)) {
       consistency::put_thrusters_on_pose_clock(consistency_);
       look = explain(estimation::Kept::kLast);
@@ -142,6 +145,44 @@ class Work {
     look.answer = diagnose(vehicle_, look.fitting->trials(), look.judging->trials(), settings_.inference, progress_,
                            settings_.learning);
     return look;
+  }
+
+  /// Position or velocity log, which differ by a factor: by the evidence of the motion as the log has it, which is that
+  /// of velocities `scale` times as large where the position is right. Where it tells nothing, no name is a claim.
+  Look with_the_likelier_scale(Look of_log, double scale) {
+    consistency::ConsistencyResult by_position = consistency_;
+    consistency::put_scale_on_velocity_log(by_position);
+    std::swap(consistency_, by_position);
+    Look of_position = explain(estimation::Kept::kLast);
+    const double log_scores = of_log.answer.score - of_log.answer.velocities * std::log(scale);
+    const double odds = of_position.answer.score - log_scores;
+    const bool known = std::isfinite(odds) && of_log.answer.best.finite && of_position.answer.best.finite;
+    if (known && odds > settings_.inference.thresholds.name_odds) {
+      consistency::say_of_scale(consistency_,
+                                estimation::text("the motion decides for the position, log odds %.0f", odds));
+      return of_position;
+    }
+    std::swap(consistency_, by_position);
+    if (known && odds < -settings_.inference.thresholds.name_odds) {
+      consistency::say_of_scale(consistency_,
+                                estimation::text("the motion decides for the velocity log, log odds %.0f", -odds));
+      return of_log;
+    }
+    consistency::say_of_scale(consistency_, "the motion does not tell which of the two is wrong");
+    claim_nothing(of_log.answer, known ? odds : 0.0);
+    return of_log;
+  }
+
+  /// Names rest on which sensor is right, and that is not known.
+  void claim_nothing(Answer& answer, double odds) const {
+    answer.given.causes.push_back({std::string(word(inference::Cause::kSensorsUndecided)), std::abs(odds),
+                                   settings_.inference.thresholds.name_odds, "pose_capture.position or dvl"});
+    if (answer.verdict != inference::Verdict::effect) return;
+    answer.verdict = inference::Verdict::ambiguous;
+    answer.report.result.verdict = word(answer.verdict);
+    answer.report.result.paragraph +=
+        " Position or velocity log is wrong by a factor, and nothing here tells which: "
+        "with the other one right, other effects may be found.";
   }
 
   /// Something begins in what judges, so that no fit has seen it.
