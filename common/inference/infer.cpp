@@ -167,6 +167,11 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
                        model::kAxisNames[static_cast<std::size_t>(force.axis)]});
     unexplained = true;
   }
+  if (const auto names = static_cast<int>(found.best.names.size()); names >= thresholds.most_effects) {
+    reasons.push_back(
+        {Cause::kManyNames, static_cast<double>(names), static_cast<double>(thresholds.most_effects), ""});
+    unexplained = true;
+  }
   if (found.cut_short) reasons.push_back({Cause::kOutOfTime, found.spent, found.given, ""});
   // Odds of names are those of models that are complete; here none is, so none of them is a claim.
   if (unexplained) {

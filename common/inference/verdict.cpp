@@ -32,6 +32,8 @@ std::string_view word(Cause cause) {
       return "free_force";
     case Cause::kSlowRandomForce:
       return "slow_random_force";
+    case Cause::kManyNames:
+      return "many_names";
     case Cause::kNotFollowing:
       return "not_following";
     case Cause::kNoSkill:

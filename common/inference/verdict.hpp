@@ -23,8 +23,9 @@ enum class Cause {
   kRivals,           ///< the same, below what a name needs
   kFreeForce,        ///< log odds of a force that no list holds
   kSlowRandomForce,  ///< memory [s] of a random force of practical size: no noise
-  kNotFollowing,     ///< share of an axis' acceleration that the model explains
-  kNoSkill,          ///< 1 - (error / error where nothing changes)^2 of an axis at 5 s, on runs that no fit has seen
+  kManyNames,     ///< names that the best model holds: as many as the search allows, so that it ended with more to find
+  kNotFollowing,  ///< share of an axis' acceleration that the model explains
+  kNoSkill,       ///< 1 - (error / error where nothing changes)^2 of an axis at 5 s, on runs that no fit has seen
   kWiring,        ///< share of the error that thrusters exchanged or reversed take away: likeliest reason of no_model
   kForceUnit,     ///< fitted inertias over those that the vehicle's file expects, median: another one
   kInputIdle,     ///< Student's t of an axis' thrust in an equation of its own: another one

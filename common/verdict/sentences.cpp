@@ -80,6 +80,12 @@ std::string unexplained(const Conclusion& conclusion) {
     sentence += text("A force in %s remembers itself for %.0f s: that is no noise, and nothing recorded goes with it. ",
                      slow->of.c_str(), slow->value);
   }
+  if (const Reason* many = reason(conclusion, Cause::kManyNames)) {
+    sentence += text(
+        "It takes %.0f listed effects to describe these runs, as many as are tried: something unlisted is "
+        "likelier than all of them. ",
+        many->value);
+  }
   if (const Reason* event = reason(conclusion, Cause::kBeginsUnseen)) {
     sentence += text("Something begins near %.3g s of %s, which judges: no fit has seen it, and it is not explained. ",
                      event->value, event->of.c_str());

@@ -81,6 +81,18 @@ TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves
   }
 }
 
+TEST_CASE("conclusion: as many names as the search allows are no claim") {
+  Nothing nothing;
+  nothing.conclusion.found.best.names = {"a", "b", "c", "d"};
+  nothing.conclusion.found.probability = {1.0, 1.0, 1.0, 1.0};
+  const Conclusion conclusion = nothing.concluded();
+  CHECK(conclusion.verdict == Verdict::unexplained);
+  CHECK(caused(conclusion, Cause::kManyNames, ""));
+  nothing.conclusion.reasons.clear();
+  nothing.conclusion.found.best.names.pop_back();
+  CHECK(nothing.concluded().verdict == Verdict::effect);
+}
+
 TEST_CASE("conclusion: both scores' numbers apart are told, and change no verdict") {
   Nothing nothing;
   nothing.conclusion.disagreement = 0.1;
