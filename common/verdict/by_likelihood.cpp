@@ -377,7 +377,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   const auto deviations = [&](const likelihood::Fit& fit) {
     if (!fit.finite) return Eigen::VectorXd{};
     const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
-    return likelihood::between_runs(problem, fit, settings.threads).sigma;
+    return after_the_commands_clock(problem, fit, likelihood::between_runs(problem, fit, settings.threads).sigma);
   };
   const Eigen::VectorXd of_base = with_difference(conclusion.found.base.fit, conclusion.reported_base,
                                                   deviations(conclusion.found.base.fit)),

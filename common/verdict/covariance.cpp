@@ -4,7 +4,26 @@
 #include <cmath>
 #include <vector>
 
+#include "common/model/effect_size.hpp"
+
 namespace fathom::verdict {
+
+Eigen::VectorXd after_the_commands_clock(const likelihood::Problem& problem, const likelihood::Fit& fit,
+                                         Eigen::VectorXd sigma) {
+  const likelihood::NumberSettings& known = problem.number_settings;
+  const double clock = known.offset_sigma + known.offset_of_step * problem.input_step;
+  const auto& effects = fit.hypothesis.model.effects;
+  for (std::size_t j = 0; j < fit.numbers.size() && static_cast<Eigen::Index>(j) < sigma.size(); ++j) {
+    const likelihood::Number& number = fit.numbers[j];
+    if (number.kind != likelihood::NumberKind::kEffect) continue;
+    const model::ActiveEffect& active = effects[static_cast<std::size_t>(number.index)];
+    const auto component = static_cast<std::size_t>(number.component);
+    if (!model::parameter_of(*active.effect, active.variant, component, *problem.vehicle).after_command) continue;
+    double& own = sigma[static_cast<Eigen::Index>(j)];
+    own = std::hypot(own, clock);
+  }
+  return sigma;
+}
 
 void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, VerdictGiven& given,
                     const std::set<int>& withheld) {
