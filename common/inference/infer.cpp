@@ -75,6 +75,18 @@ std::vector<double> followed(const likelihood::Problem& problem, const Seen& see
   return shares;
 }
 
+/// In standard deviations, the median over base numbers by which both scores differ.
+double apart(const likelihood::Fit& one, const likelihood::Fit& other) {
+  const Eigen::VectorXd sigma = one.sigma();
+  std::vector<double> off;
+  for (std::size_t j = 0; j < one.numbers.size() && j < other.numbers.size(); ++j) {
+    if (one.numbers[j].kind != NumberKind::kBase) continue;
+    const double difference = value(one.hypothesis, one.numbers[j]) - value(other.hypothesis, other.numbers[j]);
+    off.push_back(std::abs(difference) / std::max(sigma[static_cast<Eigen::Index>(j)], 1e-12));
+  }
+  return median(std::move(off));
+}
+
 likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood::Fit& fit, int threads) {
   likelihood::Fit reported = likelihood::fit(problem, fit.hypothesis, fit.noise,
                                              {.noise_rounds = 1,
@@ -218,7 +230,10 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
       gain = deadline.over() ? 0.0 : fall_of_error(problem, trials, fit, by);
       progress.done(kHorizonFit.phase);
-      return gain > settings.thresholds.disagreement ? by : fit;
+      // No chance sets right numbers five deviations apart: then too those that predict, on whatever axes they err
+      // less.
+      constexpr double kFarApart = 5.0;
+      return gain > settings.thresholds.disagreement || apart(fit, by) > kFarApart ? by : fit;
     };
     double of_base = 0.0;
     if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);
