@@ -16,6 +16,7 @@
 #include "common/residual/unseen_event.hpp"
 #include "common/residual/whiteness.hpp"
 #include "common/verdict/covariance.hpp"
+#include "common/verdict/followed_axes.hpp"
 #include "common/verdict/next_motion.hpp"
 #include "common/verdict/skill.hpp"
 
@@ -27,7 +28,6 @@ using inference::Verdict;
 using likelihood::NumberKind;
 
 constexpr inference::Step kLearning{"learning", "learning what no list holds", 10.0};
-constexpr std::size_t kFiveSeconds = 1;                                 // of residual::kHorizons
 constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();  // null in result.json
 constexpr double kStep = 0.04;  // s between the velocities that are predicted: short of it there is only noise
 
@@ -37,23 +37,6 @@ std::vector<std::string> names_of(std::span<const Trial> trials) {
     if (r == 0 || !same_run(trials[r - 1], trials[r])) names.push_back(trials[r].name);
   }
   return names;
-}
-
-/// Axes whose numbers mean nothing: the model does not follow its thrust there. Empty: none.
-std::set<int> withheld_axes(const Conclusion& conclusion) {
-  using inference::Cause;
-  std::set<int> axes;
-  const auto all = [&] { axes = {0, 1, 2, 3, 4, 5}; };
-  if (conclusion.verdict != Verdict::no_model) return axes;
-  for (const inference::Reason& reason : conclusion.reasons) {
-    if (reason.cause == Cause::kNotFollowing || reason.cause == Cause::kNoSkill)
-      axes.insert(static_cast<int>(std::ranges::find(model::kAxisNames, reason.of) - model::kAxisNames.begin()));
-    if (reason.cause == Cause::kWiring || reason.cause == Cause::kForceUnit) all();
-    const auto absurd = model::parameter_from_name(reason.of);
-    if (reason.cause == Cause::kAbsurdNumber && absurd) axes.insert(model::axis(*absurd));
-  }
-  if (axes.empty()) all();
-  return axes;
 }
 
 /// `sigma`: of the numbers.
@@ -194,24 +177,6 @@ Interval held_back(const model::Vehicle& vehicle, std::span<const Trial> unseen,
   return residual::improvement(residual::predict(before, windows), residual::predict(after, windows), vehicle);
 }
 
-/// Axes of which the model, with its names or without, foretells more than that nothing changes.
-std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step, const Conclusion& conclusion) {
-  std::vector<int> axes;
-  const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
-  const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
-  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
-  if (windows.empty()) return axes;
-  const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
-                              by_named = residual::predict(named, windows);
-  for (int axis = 0; axis < 6; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const double sure = std::max(surely_better(by_base, unchanged, kFiveSeconds, a),
-                                 surely_better(by_named, unchanged, kFiveSeconds, a));
-    if (sure > inference::Thresholds{}.skilled) axes.push_back(axis);
-  }
-  return axes;
-}
-
 /// Something that no fit can have seen, in runs that judge. The fitted ones are seen by the same steps of time.
 std::optional<UnseenEvent> something_begins(const model::Model& model, std::span<const Trial> train,
                                             std::span<const Trial> unseen) {
@@ -331,10 +296,11 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     unseen.push_back(identification::sparse(trial, kStep));
     input_step = std::max(input_step, trial.input_step);
   }
+  const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
   if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
     conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
     conclusion.reasons.clear();
-    conclude(likelihood::make_problem(vehicle, train, settings.runs), settings.thresholds, conclusion);
+    conclude(problem, settings.thresholds, conclusion);
   }
   if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
@@ -343,8 +309,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   learning::Learned learned;
   if (learning.learn && conclusion.verdict == Verdict::unexplained) {
     progress.begin(kLearning.phase, kLearning.what);
-    learned = learning::learn(likelihood::make_problem(vehicle, train, settings.runs), train, conclusion, learning,
-                              settings.threads);
+    learned = learning::learn(problem, train, conclusion, learning, settings.threads);
     result.correction = learned.given;
   }
   progress.expect(kLearning.phase, 0);
@@ -376,7 +341,6 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   // Of the one-step likelihood, whose information is that of independent innovations, and of what differs between runs.
   const auto deviations = [&](const likelihood::Fit& fit) {
     if (!fit.finite) return Eigen::VectorXd{};
-    const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
     return after_the_commands_clock(problem, fit, likelihood::between_runs(problem, fit, settings.threads).sigma);
   };
   const Eigen::VectorXd of_base = with_difference(conclusion.found.base.fit, conclusion.reported_base,
@@ -400,7 +364,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.not_measured = preflight::not_measured(scene);
   result.manoeuvre = next_motion(result);
   answer.score = conclusion.found.best.score;
-  answer.velocities = scored_velocities(likelihood::make_problem(vehicle, train, settings.runs));
+  answer.velocities = scored_velocities(problem);
   answer.best = best;
   answer.best_sigma = with_names ? of_named : of_base;
   answer.rivals = names_claim(conclusion.verdict) ? rivals_in(conclusion, named) : std::nullopt;

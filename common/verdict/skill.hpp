@@ -11,6 +11,8 @@
 
 namespace fathom::verdict {
 
+constexpr std::size_t kFiveSeconds = 1;  ///< place among residual::kHorizons: the horizon at which models are judged
+
 /// nu_dot = input tau + linear nu + quadratic |nu| nu + constant, of one axis by itself.
 struct PlainAxis {
   double input{}, linear{}, quadratic{}, constant{};  ///< SI; input: m/s^2 per N, rad/s^2 per N m

@@ -1,0 +1,44 @@
+#include "common/verdict/followed_axes.hpp"
+
+#include <algorithm>
+
+#include "common/residual/prediction.hpp"
+#include "common/verdict/skill.hpp"
+
+namespace fathom::verdict {
+
+std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step,
+                              const inference::Conclusion& conclusion) {
+  std::vector<int> axes;
+  const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
+  const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
+  if (windows.empty()) return axes;
+  const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
+                              by_named = residual::predict(named, windows);
+  for (int axis = 0; axis < 6; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double sure = std::max(surely_better(by_base, unchanged, kFiveSeconds, a),
+                                 surely_better(by_named, unchanged, kFiveSeconds, a));
+    if (sure > inference::Thresholds{}.skilled) axes.push_back(axis);
+  }
+  return axes;
+}
+
+std::set<int> withheld_axes(const inference::Conclusion& conclusion) {
+  using inference::Cause;
+  std::set<int> axes;
+  const auto all = [&] { axes = {0, 1, 2, 3, 4, 5}; };
+  if (conclusion.verdict != inference::Verdict::no_model) return axes;
+  for (const inference::Reason& reason : conclusion.reasons) {
+    if (reason.cause == Cause::kNotFollowing || reason.cause == Cause::kNoSkill)
+      axes.insert(static_cast<int>(std::ranges::find(model::kAxisNames, reason.of) - model::kAxisNames.begin()));
+    if (reason.cause == Cause::kWiring || reason.cause == Cause::kForceUnit) all();
+    const auto absurd = model::parameter_from_name(reason.of);
+    if (reason.cause == Cause::kAbsurdNumber && absurd) axes.insert(model::axis(*absurd));
+  }
+  if (axes.empty()) all();
+  return axes;
+}
+
+}  // namespace fathom::verdict
