@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/model/effect.hpp"
+#include "common/model/parameters.hpp"
 #include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
@@ -262,10 +263,25 @@ std::string cause_line(const EffectFound& effect) {
   return "<b>" + escape(line) + "</b>";
 }
 
+/// "heave, roll": axes that are predicted and of which no number is told; empty where none is told at all.
+std::string axes_without_numbers(const DiagnosisResult& result) {
+  std::string names;
+  if (result.parameters_after.empty() || result.error_after.prediction.empty()) return names;
+  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+    const std::string_view inertia = model::name(model::base_parameters()[axis]);
+    const bool told =
+        std::ranges::find(result.parameters_after, inertia, &NamedValue::name) != result.parameters_after.end();
+    if (told || !std::isfinite(result.error_after.prediction.front().rmse[axis])) continue;
+    names += (names.empty() ? "" : ", ") + std::string{kAxes[axis].name};
+  }
+  return names;
+}
+
 std::string front_section(const DiagnosisReport& report, Album& album) {
   const DiagnosisResult& result = report.result;
-  const Meaning said =
-      meaning(result.verdict, !result.effects.empty() && result.explained < 1.0, result.wiring.has_value());
+  Meaning said = meaning(result.verdict, !result.effects.empty() && result.explained < 1.0, result.wiring.has_value());
+  const std::string axes = result.verdict == "no_model" && !result.wiring ? axes_without_numbers(result) : "";
+  if (!axes.empty()) said.words = "The model does not follow its thrust along " + axes + ": those numbers are withheld";
   std::string html = "<header><h1>Why does " + escape(result.vehicle) +
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +

@@ -1,12 +1,14 @@
 // The first screen of the report says what it comes to; all else is folded, and does not contradict itself.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
 #include "common/report/page.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/table.hpp"
+#include "common/report/text.hpp"
 #include "test/support/diagnosis_fixture.hpp"
 
 using fathom::EffectFound;
@@ -47,6 +49,28 @@ int words_in(const std::string& text) {
 }
 
 }  // namespace
+
+TEST_CASE("The first screen names the axes along which the model does not follow its thrust") {
+  auto report = fathom::test::made_up_report({.samples = 600});
+  auto& result = report.result;
+  result.verdict = "no_model";
+  result.wiring.reset();
+  result.parameters_after.clear();
+  constexpr std::array kInertias{"m_X", "m_Y", "m_Z", "I_X", "I_Y", "I_Z"};
+  std::string withheld;  // one of the axes that are predicted; the others are told
+  for (std::size_t axis = 0; axis < kInertias.size(); ++axis) {
+    if (!std::isfinite(result.error_after.prediction.front().rmse[axis])) continue;
+    if (withheld.empty()) {
+      withheld = fathom::report::kAxes[axis].name;
+    } else {
+      result.parameters_after.push_back({kInertias[axis], 10.0, 1.0, "kg"});
+    }
+  }
+  REQUIRE_FALSE(result.parameters_after.empty());
+  CHECK(has(seen(to_html(report)), "does not follow its thrust along " + withheld + ": those numbers are withheld"));
+  result.parameters_after.clear();
+  CHECK(has(seen(to_html(report)), "does not follow its thrust: numbers of such axes are withheld"));
+}
 
 TEST_CASE("The first screen has a line for every cause, with number and interval") {
   const auto report = fathom::test::made_up_report({.samples = 600});
