@@ -15,6 +15,7 @@
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
 #include "common/estimation/state_as_measured.hpp"
+#include "common/inference/ablations.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/recordings/worth.hpp"
@@ -44,7 +45,7 @@ constexpr double kLight = 0.03;  // of a fit: reading a run, until it has been t
 struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
-  std::vector<std::string> without;
+  std::vector<std::string> without, ablated;
   std::string core{kLikelihood};
   bool no_learning{false};
   int threads{2};
@@ -120,6 +121,7 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   add_words(origin, "--site", options.site);
   add_words(origin, "--config", options.config);
   add_words(origin, "--without", options.without);
+  add_words(origin, "--ablate", options.ablated);
   const auto add_number = [&](const char* option, double value) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.17g", value);
@@ -145,6 +147,9 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     room = rehearsal_settings(options.site, options.config, vehicle);
   }
   check_names(options.without);
+  inference::Settings inference{
+      .without = options.without, .threads = options.threads, .time_budget = options.time_budget};
+  for (const std::string& name : options.ablated) inference::ablate(name, inference);
   make_folder(options.out);
   const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
   progress.expect(kReading, files, kLight);
@@ -168,7 +173,7 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
   verdict::Explained explained = verdict::of_recordings(
       vehicle, std::move(asked),
-      {.inference = {.without = options.without, .threads = options.threads, .time_budget = options.time_budget},
+      {.inference = std::move(inference),
        .learning = {.learn = !options.no_learning},
        .site = site ? &*site : nullptr},
       progress, notes);
@@ -244,6 +249,8 @@ void add_diagnose(runtime::CommandLine& app) {
                    "likelihood, an innovations filter over whole runs, is the only one; for scripts that say so")
       ->one_of({kLikelihood});
   command->add_option("--without", options->without, "effects to take out of the list, by name");
+  command->add_option("--ablate", options->ablated,
+                      "rules or terms of the inference to leave out, to measure what they are good for");
   command
       ->add_option("--time-budget", options->time_budget,
                    "s for the search; what is not asked by then is said to be open")
