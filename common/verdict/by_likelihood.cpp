@@ -298,7 +298,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   }
   const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
   if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
-    conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
+    conclusion.skilled = skilled_axes(vehicle, train, unseen, input_step, conclusion);
     conclusion.reasons.clear();
     conclude(problem, settings.thresholds, conclusion);
   }
