@@ -109,6 +109,7 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
                        .variant = form,
                        .parameters = numbers_of_effect(fit, e, sigma),
                        .log_odds = found.odds[e],
+                       .probability = found.probability[e] * found.reliability[e],
                        .sentence = std::string(effects[e].effect->sentence())};
     if (!found.rival[e].empty() && found.probability[e] < inference::Thresholds{}.name_probability)
       effect.alternatives.push_back(
