@@ -108,7 +108,7 @@ TEST_CASE("The first screen has a line for every cause, with number and interval
   const std::string text = seen(to_html(report));
   CHECK(has(text, "Something was missing, and it was found"));
   CHECK(has(text, "Thrust follows its command with a time constant of 0.352 (0.328 to 0.376) s"));
-  CHECK(has(text, "(thruster lag) it is this cause: &gt; 99.9 %"));
+  CHECK(has(text, "it is this cause: &gt; 99.9 %"));
   CHECK(has(text, "it is this cause: 75 %; or else tether tension"));  // 3 : 1 against its rival
   CHECK(has(text, "error of surge 5 s ahead, before → after"));
   CHECK(has(text, "Next."));

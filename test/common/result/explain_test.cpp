@@ -49,7 +49,7 @@ TEST_CASE("result: what is read back is written the same again, byte for byte") 
 TEST_CASE("result: a file of schema 1 is read, whatever else it tells") {
   const Written w;
   const std::string path = w.save();
-  nlohmann::json old = nlohmann::json::parse(test::read_bytes(path));
+  nlohmann::ordered_json old = nlohmann::ordered_json::parse(test::read_bytes(path));
   old["schema"] = 1;
   old["explained"] = 0.6;
   old["own_in_validation"] = {"current"};
