@@ -106,7 +106,7 @@ LearnedModel read_learned(const std::string& path, const Vehicle& vehicle) {
   if (model.parameters.empty())
     file.fail("parameters", "no numbers are told: the model did not follow its thrust, or was not judged");
   for (const Config& effect : file.list("effects")) {
-    if (!effect.flag("accepted")) continue;
+    if (!effect.flag("accepted") || effect.text("name").starts_with("column ")) continue;  // nobody measures it there
     std::string text = effect.text("name") + "=";
     if (const std::string variant = effect.text("variant"); !variant.empty()) text += "variant:" + variant + ",";
     const Config numbers = effect.section("parameters");
