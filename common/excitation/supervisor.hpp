@@ -139,6 +139,9 @@ class Supervisor {
   };
   [[nodiscard]] std::string order(const Operator& order);
   [[nodiscard]] std::string obey(const Operator& order);
+  /// Why it does not arm where the vehicle is, or cannot know it; empty: nothing speaks against the place.
+  [[nodiscard]] std::string against_the_place() const;
+  [[nodiscard]] std::string place() const;
   void miss_operator();
   [[nodiscard]] bool arm();
   void fly(const Operator& order);
