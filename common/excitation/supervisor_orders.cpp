@@ -33,16 +33,23 @@ void Supervisor::hear(const Answer& answer) {
 // An abort needs no permission. Everything else must come from somebody who has the key, once, and now.
 Answer Supervisor::hear(const Operator& order) {
   Answer answer{.sequence = order.sequence};
+  bool accepted = false;
   if (order.abort) {
     if (has_state_) check_.abort(state_.utime);
     stop(Phase::kAborted, "aborted by the operator", Then::kZero);
     answer.done = true;
     answer.text = reason_;
   } else if (check_.again(order)) {
+    accepted = true;
     answer = answered_;
+    if (answered_.armed && !armed_) {  // what was done then has ended since
+      answer.done = false;
+      answer.text = "ended since: " + reason_;
+    }
   } else {
     answer.text = has_state_ ? std::string{check_.objection(order, state_.utime)} : "no STATE has come";
-    if (answer.text.empty()) {
+    accepted = answer.text.empty();
+    if (accepted) {
       check_.accept(order);
       sign_of_life_ = state_.utime;
       answer.text = obey(order);
@@ -55,7 +62,7 @@ Answer Supervisor::hear(const Operator& order) {
   answer.challenge = check_.challenge();
   answer.accepted = check_.accepted();
   answer.armed = armed_;
-  if (!order.abort) answered_ = answer;
+  if (accepted) answered_ = answer;
   return answer;
 }
 

@@ -41,7 +41,10 @@ TEST_CASE("supervisor: nothing is commanded before the operator has armed, and n
   loop.supervisor.hear(Operator{.abort = true});
   CHECK(loop.supervisor.hear(kept).text.find("before the abort") != std::string::npos);
   loop.run(2.0);
-  loop.supervisor.hear(good);  // replayed
+  const Answer replayed = loop.supervisor.hear(good);
+  CHECK_FALSE(replayed.done);
+  CHECK_FALSE(replayed.armed);
+  CHECK(replayed.text == "ended since: aborted by the operator");
   loop.run(0.5);
   CHECK(loop.supervisor.phase() == Phase::kAborted);
   CHECK_FALSE(loop.thrust());
