@@ -45,11 +45,7 @@ constexpr double kLight = 0.03;  // of a fit: reading a run, until it has been t
 struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
-<<<<<<< HEAD
-  std::vector<std::string> without, ablated;
-=======
-  std::vector<std::string> without, candidates;
->>>>>>> people8
+  std::vector<std::string> without, candidates, ablated;
   std::string core{kLikelihood};
   bool no_learning{false};
   int threads{2};
@@ -69,9 +65,17 @@ void check_names(const std::vector<std::string>& without, const model::Vehicle& 
   }
 }
 
-void make_folder(const std::string& path) {  // before the long work, so that a bad path costs nothing
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
+/// Before the long work, so that a bad path costs nothing. Nothing is left of the try: who is refused or stopped finds
+/// no empty folder.
+void try_folder(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> missing;  // the deepest first
+  std::error_code error, ignored;
+  for (fs::path at = fs::absolute(path).lexically_normal(); !fs::exists(at, ignored) && at.has_relative_path();
+       at = at.parent_path())
+    missing.push_back(at);
+  fs::create_directories(path, error);
+  for (const fs::path& made : missing) fs::remove(made, ignored);  // never one with something in it
   if (error) throw InputError(path + ": cannot make this folder: " + error.message() + "; give another --out");
 }
 
@@ -126,11 +130,8 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   add_words(origin, "--site", options.site);
   add_words(origin, "--config", options.config);
   add_words(origin, "--without", options.without);
-<<<<<<< HEAD
-  add_words(origin, "--ablate", options.ablated);
-=======
   add_words(origin, "--candidate", options.candidates);
->>>>>>> people8
+  add_words(origin, "--ablate", options.ablated);
   const auto add_number = [&](const char* option, double value) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.17g", value);
@@ -156,15 +157,11 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     site = model::Site::load(options.site);
     room = rehearsal_settings(options.site, options.config, vehicle);
   }
-<<<<<<< HEAD
-  check_names(options.without);
+  check_names(options.without, vehicle);
   inference::Settings inference{
       .without = options.without, .threads = options.threads, .time_budget = options.time_budget};
   for (const std::string& name : options.ablated) inference::ablate(name, inference);
-=======
-  check_names(options.without, vehicle);
->>>>>>> people8
-  make_folder(options.out);
+  try_folder(options.out);
   const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
   progress.expect(kReading, files, kLight);
   progress.expect(kReport, 1, 1.0);
@@ -264,14 +261,11 @@ void add_diagnose(runtime::CommandLine& app) {
                    "likelihood, an innovations filter over whole runs, is the only one; for scripts that say so")
       ->one_of({kLikelihood});
   command->add_option("--without", options->without, "effects to take out of the list, by name");
-<<<<<<< HEAD
-  command->add_option("--ablate", options->ablated,
-                      "rules or terms of the inference to leave out, to measure what they are good for");
-=======
   command->add_option("--candidate", options->candidates,
                       "measured columns that a force may go with, as wind_speed^2 or voltage*tau_X; along a measured "
                       "bearing: wind_speed^2 @ wind_direction");
->>>>>>> people8
+  command->add_option("--ablate", options->ablated,
+                      "rules or terms of the inference to leave out, to measure what they are good for");
   command
       ->add_option("--time-budget", options->time_budget,
                    "s for the search; what is not asked by then is said to be open")
