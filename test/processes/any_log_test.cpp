@@ -2,9 +2,13 @@
 // than what the log held, or one clear line. Every command on every kind of log: every_command_test.cpp.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
+#include "common/estimation/kalman_estimator.hpp"
+#include "common/estimation/trial_instruments.hpp"
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
 #include "test/support/full_trial.hpp"
@@ -85,6 +89,40 @@ TEST_CASE("fathom smooth: any live log without a word of configuration, and a st
     CHECK(after.nees_position < 3.0);
     CHECK(after.nees_velocity < 3.0);
   }
+}
+
+TEST_CASE("Kalman estimator: a trial in the tank by tags, flow and laser, no worse than the complementary filters") {
+  const Recording recording = live("tank", 21);
+  const auto told = estimation::instruments_of(recording, estimation::files_in(recording));
+  REQUIRE(told.settings.floor);
+  estimation::KalmanEstimator estimator{told.settings};
+  std::vector<StateEstimate> states;
+  const auto keep = [&](const estimation::KalmanEstimator::Output& output) {
+    std::ranges::copy_if(output, std::back_inserter(states), &StateEstimate::valid);
+  };
+  // As instruments send them: each stream in its order, what is older first.
+  std::size_t tag = 0, flow = 0, laser = 0, depth = 0;
+  const auto until = [&](const auto& stream, std::size_t& next, Utime utime) {
+    for (; next < stream.size() && stream[next].utime <= utime; ++next) keep(estimator.step(stream[next]));
+  };
+  for (const Ahrs& one : recording.ahrs) {
+    until(recording.tag_pose, tag, one.utime);
+    until(recording.optical_flow, flow, one.utime);
+    until(recording.laser_range, laser, one.utime);
+    until(recording.depth, depth, one.utime);
+    keep(estimator.step(one));
+  }
+  keep(estimator.finish());
+  const Errors live_filter = errors(recording.state, recording.truth), kalman = errors(states, recording.truth);
+  CHECK(kalman.count > 0.9 * live_filter.count);
+  CHECK(kalman.position < live_filter.position);
+  CHECK(kalman.velocity < live_filter.velocity);
+  auto blind = told.settings;  // without a floor neither flow nor laser is used, and nothing fails
+  blind.floor.reset();
+  estimation::KalmanEstimator by_tags{blind};
+  for (const OpticalFlow& one : recording.optical_flow) static_cast<void>(by_tags.step(one));
+  for (const LaserRange& one : recording.laser_range) static_cast<void>(by_tags.step(one));
+  CHECK(by_tags.finish().empty());
 }
 
 TEST_CASE("fathom smooth: what it lacks is said with the remedy, and nothing is written") {
