@@ -40,6 +40,7 @@ void add_places(const TrialFiles& files, KalmanSettings& s) {
       for (const model::Transponder& one : site.transponders) s.transponders.push_back({one.name, one.p_W});
     }
     if (!s.floor && std::isfinite(site.floor)) s.floor = site.floor;
+    s.gravity = site.gravity;
     s.walls = {Eigen::Vector2d{site.south, site.west}, Eigen::Vector2d{site.north, site.east}};
   }
 }

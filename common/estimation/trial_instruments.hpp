@@ -31,7 +31,7 @@ struct TrialFiles {
 [[nodiscard]] TrialFiles files_in(const Recording& recording);
 
 /// What the files say of places goes into settings that do not say it themselves: instruments on the vehicle; tags,
-/// transponders, floor and walls of the site.
+/// transponders, floor, walls and gravity of the site.
 void add_places(const TrialFiles& files, KalmanSettings& settings);
 
 struct TrialInstruments {

@@ -95,6 +95,7 @@ TEST_CASE("Kalman estimator: a trial in the tank by tags, flow and laser, no wor
   const Recording recording = live("tank", 21);
   const auto told = estimation::instruments_of(recording, estimation::files_in(recording));
   REQUIRE(told.settings.floor);
+  CHECK(told.settings.gravity == 9.81);  // the site's
   estimation::KalmanEstimator estimator{told.settings};
   std::vector<StateEstimate> states;
   const auto keep = [&](const estimation::KalmanEstimator::Output& output) {
