@@ -22,7 +22,7 @@ using test::program;
 using test::Scratch;
 using test::shell;
 
-constexpr double kFlown = 40.0;  // s: yaw and the beginning of surge
+constexpr double kFlown = 30.0;  // s: yaw, or most of it
 
 const std::string kLbv = file("config/vehicles/seabotix_lbv150.yaml");
 const std::string kBeluga = file("config/vehicles/beluga.yaml");
