@@ -164,6 +164,7 @@ void run_check(const CheckOptions& options) {
       std::printf("%s: %s\n", options.write_map.c_str(), note.c_str());
     std::printf("%s: the map as it should be\n", options.write_map.c_str());
   }
+  std::fflush(stdout);  // what was said of the runs stands before the complaint
   if (!compared) throw InputError(runs.front() + ": " + consistency::conclusion_of(result));
   if (options.write.empty()) return;
   for (const estimation::Corrections& one : result.corrections) {
