@@ -42,6 +42,7 @@ void Board::hear(const Excitation& sample, double now) {
   if (excitation_ && excitation_->sample.mode.empty() && !sample.mode.empty()) {
     track_.clear();
     converging_.clear();
+    learned_.reset();
   }
   take(excitation_, sample, now);
   chronicle_.hear(sample, now);
@@ -72,6 +73,11 @@ void Board::hear(const ModelEstimate& sample, double now) {
 void Board::hear(const EffectRanking& sample, double now) {
   chronicle_.hear(sample, now);
   take(ranking_, sample, now);
+}
+
+void Board::hear(const LearnedTold& sample, double now) {
+  chronicle_.hear(sample, now);
+  take(learned_, sample, now);
 }
 
 void Board::hear(const Residual& sample, double now) {
@@ -142,6 +148,7 @@ std::string Board::json(double now, std::int64_t number_of_text) const {
   });
   all["residuals"] = json_of(residuals_, now);
   all["effects"] = section(ranking_, now, kAsItIs);
+  all["learned"] = section(learned_, now, kAsItIs);
   all["events"] = json_of(chronicle_, now);
   all["abort"] = section(abort_, now, [](const Abort& said) {
     return Json{{"state", said.state}, {"text", text(said.text)}};

@@ -40,6 +40,7 @@ class Board {
   void hear(const StateEstimate& sample, double now);
   void hear(const ModelEstimate& sample, double now);
   void hear(const EffectRanking& sample, double now);
+  void hear(const LearnedTold& sample, double now);
   void hear(const Residual& sample, double now);
   void hear(const VehicleCondition& sample, double now);
   void hear(const Answer& sample, double now) { chronicle_.hear(sample, now); }
@@ -93,6 +94,7 @@ class Board {
   std::optional<Heard<StateEstimate>> state_;
   std::optional<Heard<ModelEstimate>> model_;
   std::optional<Heard<EffectRanking>> ranking_;
+  std::optional<Heard<LearnedTold>> learned_;
   std::optional<Heard<Residual>> residual_;
   std::optional<Heard<VehicleCondition>> vehicle_;
   struct Abort {

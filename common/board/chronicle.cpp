@@ -46,6 +46,10 @@ void Chronicle::hear(const EffectRanking& said, double now) {
   if (changed(verdict_, said.verdict + best)) note(now, "", "verdict: " + said.verdict + best);
 }
 
+void Chronicle::hear(const LearnedTold& said, double now) {
+  note(now, "", said.adopted ? "learned: " + said.words : "a force that no list holds is not learned: " + said.words);
+}
+
 void Chronicle::hear(const ModelEstimate& said, double now) {
   std::string all;
   for (const std::string& each : said.effects) all += (all.empty() ? "" : ", ") + each;

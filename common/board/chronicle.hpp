@@ -26,6 +26,7 @@ class Chronicle {
 
   void hear(const Excitation& said, double now);
   void hear(const EffectRanking& said, double now);
+  void hear(const LearnedTold& said, double now);
   void hear(const ModelEstimate& said, double now);
   void hear(const VehicleCondition& said, double now);
   /// What became of an order; what is told without one is left out.

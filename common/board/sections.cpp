@@ -142,6 +142,14 @@ Json json_of(const EffectRanking& said) {
            })}};
 }
 
+Json json_of(const LearnedTold& said) {
+  return {{"adopted", said.adopted},
+          {"words", text(said.words)},
+          {"equation", text(said.equation)},
+          {"log_odds", number(said.log_odds)},
+          {"held_out", number(said.held_out)}};
+}
+
 Json json_of(const VehicleCondition& said) {
   return {
       {"kind", text(said.kind)},

@@ -37,6 +37,7 @@ using ParameterRows = std::vector<std::array<double, 3>>;
 [[nodiscard]] Json json_of(const StateEstimate& said);
 [[nodiscard]] Json json_of(const ModelEstimate& said);
 [[nodiscard]] Json json_of(const EffectRanking& said);
+[[nodiscard]] Json json_of(const LearnedTold& said);
 [[nodiscard]] Json json_of(const VehicleCondition& said);
 [[nodiscard]] Json json_of(const Place& place);
 /// The last two minutes: times before now, and a list for each component.

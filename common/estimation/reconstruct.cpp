@@ -9,6 +9,7 @@
 #include "common/estimation/pose_derivatives.hpp"
 #include "common/estimation/run_signals.hpp"
 #include "common/estimation/steady_attitude.hpp"
+#include "common/estimation/trial_columns.hpp"
 #include "common/estimation/trial_input.hpp"
 #include "common/estimation/wording.hpp"
 
@@ -238,6 +239,7 @@ Trial reconstruct(const Recording& recording, const Corrections& corrections, co
   if (trial.observed.attitude && (angular.share.array() == 1.0).all()) steady_attitude(trial);
 
   add_input(recording, run.origin, corrections.thrusters, vehicle, {static_cast<int>(block), step}, trial);
+  add_columns(recording, run.origin, vehicle, trial);
   const double start = trial.t.front();
   for (double& t : trial.t) t -= start;
   return trial;

@@ -84,6 +84,7 @@ Trial sparse(const Trial& trial, double dt) {
   out.input_averaged = trial.input_averaged;
   out.input_part = trial.input_part;
   out.nu_sigma = trial.nu_sigma;
+  out.column_units = trial.column_units;
   const auto& held = trial.held.empty() ? trial.input : trial.held;
   const auto& told = trial.told.empty() ? next_of(trial.input) : trial.told;
   const std::size_t parts = trial.parts();
@@ -103,6 +104,7 @@ Trial sparse(const Trial& trial, double dt) {
     add_parts(held, parts, k, step / 2, step, together, out.held);
     add_parts(told, parts, k, step / 2, step, together, out.told);
     if (!trial.voltage.empty()) out.voltage.push_back(trial.voltage[k]);
+    if (!trial.columns.empty()) out.columns.push_back(trial.columns[k]);
   }
   return out;
 }

@@ -29,7 +29,9 @@ bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {
 
 std::vector<Law> catalogue(const model::Scene& scene, const std::vector<std::string>& without) {
   std::vector<Law> laws;
-  for (const model::Effect* effect : model::all_effects()) {
+  std::vector<const model::Effect*> all{model::all_effects().begin(), model::all_effects().end()};
+  all.insert(all.end(), scene.candidates.begin(), scene.candidates.end());
+  for (const model::Effect* effect : all) {
     if (std::ranges::find(without, effect->name()) != without.end()) continue;
     const std::vector<std::string> forms = effect->variants(scene);
     const std::size_t first = laws.size();

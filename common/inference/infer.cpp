@@ -205,7 +205,8 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
 Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, const Settings& settings,
                  const Progress& progress) {
   const likelihood::Problem problem = likelihood::make_problem(vehicle, trials, settings.runs);
-  const model::Scene scene = model::scene_of(vehicle, trials);
+  model::Scene scene = model::scene_of(vehicle, trials);
+  scene.candidates = settings.candidates;
   Conclusion conclusion;
   if (length_of(problem) < settings.thresholds.shortest) {
     conclude(problem, settings.thresholds, conclusion);

@@ -8,7 +8,8 @@
 namespace fathom::inference {
 
 struct Settings {
-  std::vector<std::string> without{};  ///< effects that are not asked
+  std::vector<std::string> without{};              ///< effects that are not asked
+  std::vector<const model::Effect*> candidates{};  ///< of measured columns, asked beside the listed ones
   int threads{2};
   double time_budget{
       std::numeric_limits<double>::infinity()};  ///< s by the clock on the wall: what is left is not asked

@@ -125,8 +125,8 @@ void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& gi
       if (k < at.size()) term.sigma = std::sqrt(std::max(covariance(at[k], at[k]), 0.0));
       for (int f = 0; f < feature.count; ++f) {
         const model::Factor& factor = feature.factors[static_cast<std::size_t>(f)];
-        term.factors.push_back(
-            {std::string{word(factor.quantity)}, factor.index, factor.bank, factor.a, factor.b, factor.c});
+        term.factors.push_back({std::string{word(factor.quantity)}, factor.index, factor.bank, factor.a, factor.b,
+                                factor.c, factor.column});
       }
       given.terms.push_back(std::move(term));
     }

@@ -46,6 +46,36 @@ Columns bumps_over_plan(const model::Scene& scene) {
   return bumps;
 }
 
+/// Measured columns, about their means and over their spreads, as modulators.
+void of_columns(const likelihood::Problem& problem, std::vector<Modulator>& all) {
+  constexpr double kConstant = 1e-6;  // of its mean
+  const std::size_t count = problem.vehicle->candidates.size();
+  for (std::size_t place = 0; place < count; ++place) {
+    const auto at = static_cast<Eigen::Index>(2 * place);
+    double sum = 0.0, square = 0.0, samples = 0.0, most = 0.0;
+    const auto each = [&](const auto& use) {
+      for (const likelihood::RunData& run : problem.runs) {
+        for (const Eigen::VectorXd& columns : run.trial().columns) use(columns[at]);
+      }
+    };
+    each([&](double x) { sum += x, samples += 1.0; });
+    if (samples == 0.0) continue;
+    const double mean = sum / samples;
+    each([&](double x) { square += (x - mean) * (x - mean), most = std::max(most, std::abs(x - mean)); });
+    const double spread = std::sqrt(square / samples);
+    if (spread <= kConstant * std::abs(mean)) continue;
+    const std::string& name = problem.vehicle->candidates[place].text;
+    all.push_back({", by " + name,
+                   {{{.quantity = Quantity::kColumn,
+                      .index = static_cast<int>(place),
+                      .a = mean,
+                      .b = spread,
+                      .c = most,
+                      .column = name}}},
+                   kConstantTerm | kStreamTerm | kDragTerm | kThrustTerm | kThrusterTerm});
+  }
+}
+
 class Terms {
  public:
   Terms(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene) : scene_{scene} {
@@ -187,6 +217,7 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
     all.push_back({", by " + name, {{v(j)}}, kThrustTerm});
     all.push_back({", by |" + name + "|", {{s(j)}}, kThrustTerm | (j < 3 ? kThrusterTerm : 0U)});
   }
+  of_columns(problem, all);
   for (int i = 0; i < problem.simulated; ++i) {
     const int j = problem.axes[static_cast<std::size_t>(i)];
     const std::string name = std::string{"tau_"} + model::kAxisNames[static_cast<std::size_t>(j)];

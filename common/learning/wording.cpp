@@ -90,4 +90,22 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
   return sentence;
 }
 
+std::string spread_sentence(const CorrectionGiven& given) {
+  std::string sentence = " On what judges, all numbers together leave predictions of 10 s open by";
+  for (std::size_t i = 0; i < given.prediction_std.size(); ++i) {
+    if (given.prediction_std[i] > 0.0)
+      sentence += text(" %s %.2g %s,", model::kVelocityNames[i], given.prediction_std[i], i < 3 ? "m/s" : "rad/s");
+  }
+  if (sentence.back() == ',') {
+    sentence.back() = ' ';
+    sentence += "(standard deviation).";
+  } else {
+    sentence.clear();
+  }
+  if (given.not_visited > 0.0)
+    sentence += text(" Of it %.1f %% lies where the force was not learned, not visited: there it fades.",
+                     100.0 * given.not_visited);
+  return sentence;
+}
+
 }  // namespace fathom::learning

@@ -12,4 +12,7 @@ namespace fathom::learning {
 /// "log odds 8.1, at least 20 needed"
 [[nodiscard]] std::string too_little(const std::string& what, double value, const std::string& how, double needed);
 
+/// By how much its numbers spread predictions, and what was not visited; begins with a blank. Empty: nothing is known.
+[[nodiscard]] std::string spread_sentence(const CorrectionGiven& given);
+
 }  // namespace fathom::learning

@@ -69,6 +69,7 @@ void Plant::set(const Interval& interval, double t) {
   motion_.R_WB = interval.R_WB;
   motion_.nu_dot_told = interval.told_slope;
   motion_.voltage = interval.voltage;
+  motion_.columns = interval.columns;
 }
 
 void Plant::begin(const Vector6d& nu) {
@@ -101,6 +102,7 @@ void Plant::show_features() {
   const double across = std::hypot(motion_.R_WB(0, 0), motion_.R_WB(1, 0));
   features_.heading_cosine = across > 0.0 ? motion_.R_WB(0, 0) / across : 1.0;
   features_.heading_sine = across > 0.0 ? motion_.R_WB(1, 0) / across : 0.0;
+  features_.columns = motion_.columns;
   features_.force = force_;
   features_.tau = model_.allocation * force_;
   if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);

@@ -108,6 +108,8 @@ RunData::RunData(const Trial& trial, const model::Vehicle& vehicle, const RunSet
         at.told_slope[i] = (trial.nu[k + 1][i] - trial.nu[k][i]) / trial.dt;
     }
     at.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
+    if (!trial.columns.empty())
+      at.columns = {trial.columns[k].data(), static_cast<std::size_t>(trial.columns[k].size())};
   }
   if (n == 0) return;
   start_ = trial.nu.front();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/base/spatial.hpp"
@@ -30,6 +31,7 @@ struct Interval {
   Vector6d told{Vector6d::Zero()};                ///< measured velocities, used on axes that are not simulated
   Vector6d told_slope{Vector6d::Zero()};          ///< zero on simulated axes
   double voltage{};
+  std::span<const double> columns{};  ///< of the trial
 };
 
 /// Samples (first, last]: the state is carried from sample `first` to sample `last`.

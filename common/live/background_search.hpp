@@ -20,7 +20,8 @@ using Rivals = std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>
 
 /// What a search came to.
 struct Found {
-  EffectRanking ranking;  ///< without its time
+  EffectRanking ranking;                 ///< without its time
+  std::optional<LearnedTold> learned{};  ///< likewise; empty: none was asked for, or the listed effects are enough
   Rivals rivals;
   std::vector<std::string> notes;
 };

@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/trial_columns.hpp"
 #include "common/live/ranking.hpp"
 #include "common/verdict/of_recordings.hpp"
 
@@ -16,6 +17,19 @@ namespace {
 
 constexpr double kTwice = 2.0;    // as long, and there is another look: all looks together cost as much as two
 constexpr double kTimeFor = 0.5;  // of what it sees: a search takes a tenth of that on two idle cores
+
+/// A trial goes on where a candidate's column is silent.
+void drop_unmeasured(const std::vector<Recording>& heard, model::Vehicle& vehicle, std::vector<std::string>& notes) {
+  std::erase_if(vehicle.candidates, [&](const model::Candidate& candidate) {
+    for (const Recording& recording : heard) {
+      const std::string missing = estimation::missing_column(recording, candidate);
+      if (missing.empty()) continue;
+      notes.push_back("candidate '" + candidate.text + "' is not asked: no SIGNAL tells of " + missing);
+      return true;
+    }
+    return false;
+  });
+}
 
 const EffectRanking kCollecting{.verdict = "collecting"};
 
@@ -30,7 +44,7 @@ LiveDiagnoser::LiveDiagnoser(const LiveSettings& settings, const model::Vehicle&
       go_on_{std::move(go_on)},
       trial_{settings.keep},
       next_look_{settings.first_look},
-      told_{.ranking = kCollecting, .rivals = {}, .notes = {}} {}
+      told_{.ranking = kCollecting, .learned = {}, .rivals = {}, .notes = {}} {}
 
 std::optional<EffectRanking> LiveDiagnoser::step(const StateEstimate& state) {
   trial_.hear(state);
@@ -51,7 +65,8 @@ void LiveDiagnoser::look() {
   const double told_after = std::max((1.0 + kTimeFor) * next_look_, next_look_ + settings_.max_skew);
   const auto priority =
       late_ == Late::kIsToldLate ? BackgroundSearch::Priority::kBelow : BackgroundSearch::Priority::kAsCaller;
-  look_.emplace(next_look_, utime_after(*first_, told_after), search(utime_after(*first_, next_look_), priority));
+  look_.emplace(next_look_, utime_after(*first_, told_after),
+                search(utime_after(*first_, next_look_), priority, false));
   next_look_ *= kTwice;
 }
 
@@ -80,20 +95,21 @@ void LiveDiagnoser::tell(Found found, double seconds) {
   told_ = std::move(found);
 }
 
-BackgroundSearch LiveDiagnoser::search(Utime end, BackgroundSearch::Priority priority) const {
+BackgroundSearch LiveDiagnoser::search(Utime end, BackgroundSearch::Priority priority, bool learn) const {
   verdict::RecordingsSettings settings;
   settings.inference.threads = settings_.threads;
-  settings.learning.learn = false;
+  settings.learning.learn = learn;
   settings.site = site_.get();
-  return {[settings, heard = trial_.until(end), vehicle = vehicle_.get()](const Progress& progress) mutable {
+  return {[settings, heard = trial_.until(end), vehicle = *vehicle_](const Progress& progress) mutable {
             Found found;
             try {
+              drop_unmeasured(heard, vehicle, found.notes);
               for (Recording& recording : heard) estimation::take_state_as_measured(recording);
               const std::size_t count = heard.size();
               verdict::Asked asked{.recordings = std::move(heard), .fitted = count};
-              const auto explained =
-                  verdict::of_recordings(*vehicle, std::move(asked), settings, progress, found.notes);
+              const auto explained = verdict::of_recordings(vehicle, std::move(asked), settings, progress, found.notes);
               found.ranking = ranking_of(explained.answer);
+              found.learned = learned_of(explained.answer);
               found.rivals = rivals_of(explained.answer);
             } catch (const InputError& error) {  // too short, or without motion: the next look sees more
               found.ranking.verdict = "not_judged";
@@ -107,12 +123,13 @@ BackgroundSearch LiveDiagnoser::search(Utime end, BackgroundSearch::Priority pri
 std::optional<EffectRanking> LiveDiagnoser::finish() {
   if (!first_ || !go_on_()) return {};
   if (look_) look_->search.abandon();
-  BackgroundSearch whole = search(std::numeric_limits<Utime>::max(), BackgroundSearch::Priority::kAsCaller);
+  BackgroundSearch whole = search(std::numeric_limits<Utime>::max(), BackgroundSearch::Priority::kAsCaller, true);
   std::optional<Found> found = whole.wait(go_on_);
   if (!found) return {};
   tell(*std::move(found), seconds_between(*first_, newest_));
   look_.reset();
   told_.ranking.utime = newest_;
+  if (told_.learned) told_.learned->utime = newest_;
   return told_.ranking;
 }
 
@@ -123,7 +140,7 @@ void LiveDiagnoser::reset() {
   newest_ = 0;
   next_look_ = settings_.first_look;
   said_ = 0;
-  told_ = {.ranking = kCollecting, .rivals = {}, .notes = {}};
+  told_ = {.ranking = kCollecting, .learned = {}, .rivals = {}, .notes = {}};
 }
 
 }  // namespace fathom::live

@@ -37,13 +37,14 @@ class LiveDiagnoser {
   /// The trial's clock. A ranking follows every LiveSettings::interval: what the last search has found, "collecting"
   /// before.
   std::optional<EffectRanking> step(const StateEstimate& state);
-  /// The streams have ended: what `fathom diagnose` says of all that was heard. Of a force that it learns EFFECTS
-  /// cannot tell, so none is learned.
+  /// The streams have ended: what `fathom diagnose` says of all that was heard, a force that it learns included.
   std::optional<EffectRanking> finish();
   void reset();
 
   /// The first candidate of the last ranking and the one that it cannot be told from, with the numbers of both.
   [[nodiscard]] const Rivals& rivals() const { return told_.rivals; }
+  /// What the end of the streams has shown that no list holds; nothing before it, or where the list explains all.
+  [[nodiscard]] const std::optional<LearnedTold>& learned() const { return told_.learned; }
   /// What searches have told since they were last asked for, a line each.
   [[nodiscard]] std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
 
@@ -56,7 +57,8 @@ class LiveDiagnoser {
   void look();
   [[nodiscard]] bool take_what_is_due(Utime utime);
   void tell(Found found, double seconds);
-  [[nodiscard]] BackgroundSearch search(Utime end, BackgroundSearch::Priority priority) const;
+  /// `learn`: what the listed effects leave. A look has no time for it.
+  [[nodiscard]] BackgroundSearch search(Utime end, BackgroundSearch::Priority priority, bool learn) const;
 
   LiveSettings settings_;
   std::unique_ptr<const model::Vehicle> vehicle_;

@@ -49,9 +49,30 @@ EffectRanking ranking_of(const verdict::Answer& answer) {
   return ranking;
 }
 
+std::optional<LearnedTold> learned_of(const verdict::Answer& answer) {
+  const auto& correction = answer.report.result.correction;
+  if (!correction || !correction->asked) return {};
+  const auto told = [](double value, double otherwise) { return std::isfinite(value) ? value : otherwise; };
+  LearnedTold learned{.adopted = correction->adopted,
+                      .log_odds = told(correction->log_odds, 0.0),
+                      .size = told(correction->size, 0.0),
+                      .held_out = told(correction->held_out, 1.0),
+                      .words = correction->adopted ? correction->words : correction->refused,
+                      .equation = {},
+                      .numbers = {}};
+  if (correction->adopted && correction->formula) {
+    learned.equation = correction->formula->equation;
+    learned.numbers = correction->formula->numbers;
+  }
+  return learned;
+}
+
 Rivals rivals_of(const verdict::Answer& answer) {
   const auto& rivals = answer.rivals;
-  return rivals && !rivals->first.effect->measures() && !rivals->second.effect->measures() ? rivals : Rivals{};
+  const auto flown = [](const model::ActiveEffect& active) {
+    return !active.effect->measures() && model::find_effect(active.effect->name()) != nullptr;
+  };
+  return rivals && flown(rivals->first) && flown(rivals->second) ? rivals : Rivals{};
 }
 
 }  // namespace fathom::live

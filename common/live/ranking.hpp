@@ -10,7 +10,10 @@ namespace fathom::live {
 /// that no list holds is no candidate (docs/decisions/194). Without its time.
 [[nodiscard]] EffectRanking ranking_of(const verdict::Answer& answer);
 
-/// Of two that the data cannot tell apart, where a motion could: none of a sensor's.
+/// What was learned beside the listed effects, or why not; nothing where they explain all. Without its time.
+[[nodiscard]] std::optional<LearnedTold> learned_of(const verdict::Answer& answer);
+
+/// Of two that the data cannot tell apart, where a motion could: none of a sensor's, nor of a column's.
 [[nodiscard]] Rivals rivals_of(const verdict::Answer& answer);
 
 }  // namespace fathom::live

@@ -77,6 +77,7 @@ struct Motion {
   Vector6d w_memory{Vector6d::Zero()};              ///< N, N m: wrench of what effects remember of past motion
   ActuatorForces force{};                           ///< N, as they reach the water; effects alter it
   double voltage{};                                 ///< V; 0 when not logged
+  std::span<const double> columns{};                ///< as Trial::columns has them; empty: none were measured
   const InputSignal* input{};                       ///< commanded forces at other times (delay)
   const Vehicle* vehicle{};
 

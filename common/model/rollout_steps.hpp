@@ -241,6 +241,8 @@ class Rollout {
     motion_.w_memory.setZero();
     input_.now(motion_.t, motion_.force);
     motion_.voltage = trial_.voltage.empty() ? 0.0 : trial_.voltage[from];
+    if (!trial_.columns.empty())
+      motion_.columns = {trial_.columns[from].data(), static_cast<std::size_t>(trial_.columns[from].size())};
   }
 
   void step(std::size_t from, double offset, double h) {

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "common/model/motion.hpp"
 
 namespace fathom::model {
+
+class Effect;
 
 /// A force that swings with time alone: cosine cos(omega t) + sine sin(omega t), t from the run's start.
 struct Tone {
@@ -36,6 +39,7 @@ struct Scene {
   double tilt_rms{};           ///< horizontal share of the body's down axis; 0 when attitude was not measured
   /// Oscillating forces that a linear regression leaves in the longest run, most prominent first; empty when not known.
   std::vector<Tone> tones_horizontal{}, tones_vertical{};
+  std::span<const Effect* const> candidates{};  ///< effects of measured columns, asked beside the listed ones
 };
 
 }  // namespace fathom::model

@@ -11,6 +11,7 @@
 #include "common/model/actuators.hpp"
 #include "common/model/after_abort.hpp"
 #include "common/model/bounded.hpp"
+#include "common/model/candidates/candidate.hpp"
 #include "common/model/vehicle_file.hpp"
 #include "common/model/wide_prior.hpp"
 
@@ -236,6 +237,16 @@ void read_parameters(const Config& config, Vehicle& vehicle) {
   }
 }
 
+void read_candidates(const Config& config, Vehicle& vehicle) {
+  for (const std::string& text : config.texts("candidates")) {
+    try {
+      add_candidate(text, vehicle.candidates);
+    } catch (const InputError& error) {
+      config.fail("candidates", error.what());
+    }
+  }
+}
+
 }  // namespace
 
 double ThrustCurve::force_at(double pwm) const {
@@ -285,6 +296,7 @@ Vehicle vehicle_from(const Config& config) {
       }
     }
   }
+  if (config.has("candidates")) read_candidates(config, vehicle);
   if (config.has("hydrodynamics")) vehicle.hydrodynamics = Hydrodynamics::from(config.section("hydrodynamics"));
   if (config.has("after_abort")) {
     const AfterAbort after = AfterAbort::from(config.section("after_abort"));

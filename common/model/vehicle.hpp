@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/spatial.hpp"
+#include "common/model/candidates/candidate.hpp"
 #include "common/model/hydrodynamics.hpp"
 #include "common/model/mounts.hpp"
 
@@ -97,6 +98,7 @@ struct Vehicle {
   Mounts mounts{};                                      ///< where the instruments sit
 
   std::optional<Hydrodynamics> hydrodynamics;  ///< for manoeuvres and regression
+  std::vector<Candidate> candidates{};         ///< measured columns that a force may go with
 
   bool flow_matters{false};  ///< some actuator's force depends on the water's speed past it
   bool weight_moves{false};  ///< some actuator's wrench is that of a weight: it depends on the attitude

@@ -19,7 +19,8 @@ Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 std::string factor_words(const CorrectionFactor& factor) {
   const auto quantity = model::quantity_from(factor.quantity);
   if (!quantity) return factor.quantity;
-  return model::kind_of(*quantity).words({*quantity, factor.index, factor.bank, factor.a, factor.b, factor.c});
+  return model::kind_of(*quantity).words(
+      {*quantity, factor.index, factor.bank, factor.a, factor.b, factor.c, factor.column});
 }
 
 }  // namespace
@@ -28,9 +29,11 @@ Json correction_json(const CorrectionGiven& given) {
   Json terms = Json::array();
   for (const CorrectionTerm& term : given.terms) {
     Json factors = Json::array();
-    for (const CorrectionFactor& f : term.factors)
+    for (const CorrectionFactor& f : term.factors) {
       factors.push_back(
           {{"quantity", f.quantity}, {"index", f.index}, {"bank", f.bank}, {"a", f.a}, {"b", f.b}, {"c", f.c}});
+      if (!f.column.empty()) factors.back()["column"] = f.column;
+    }
     terms.push_back({{"group", term.group},
                      {"axis", term.axis},
                      {"factors", factors},
@@ -63,6 +66,9 @@ Json correction_json(const CorrectionGiven& given) {
                      {"p_low", given.visited_low},
                      {"p_high", given.visited_high}};
   json["left"] = left;
+  json["prediction_std"] = Json::array();
+  for (const double std : given.prediction_std) json["prediction_std"].push_back(finite(std));
+  json["not_visited"] = finite(given.not_visited);
   if (given.formula) {
     Json numbers = Json::object();
     for (const NamedValue& number : given.formula->numbers)

@@ -146,10 +146,24 @@ std::optional<Feature> feature_of(const CorrectionTerm& term) {
     const CorrectionFactor& f = term.factors[i];
     const auto quantity = model::quantity_from(f.quantity);
     if (!quantity) return std::nullopt;
-    feature.factors[i] = {*quantity, f.index, f.bank, f.a, f.b, f.c};
+    feature.factors[i] = {*quantity, f.index, f.bank, f.a, f.b, f.c, f.column};
   }
   return feature;
 }
+
+namespace {
+
+/// With measured columns one spread above their means.
+Feature beside_columns(Feature feature) {
+  const auto end = feature.factors.begin() + feature.count;
+  const auto kept = std::remove_if(feature.factors.begin(), end, [](const model::Factor& factor) {
+    return factor.quantity == model::Quantity::kColumn;
+  });
+  feature.count = static_cast<int>(kept - feature.factors.begin());
+  return feature;
+}
+
+}  // namespace
 
 std::vector<CorrectionCurve> correction_curves(const CorrectionGiven& given) {
   std::vector<CorrectionCurve> curves;
@@ -160,7 +174,7 @@ std::vector<CorrectionCurve> correction_curves(const CorrectionGiven& given) {
     for (; last < given.terms.size() && given.terms[last].group == given.terms[first].group &&
            given.terms[last].axis == given.terms[first].axis;
          ++last) {
-      if (const auto feature = feature_of(given.terms[last])) features.push_back(*feature);
+      if (const auto feature = feature_of(given.terms[last])) features.push_back(beside_columns(*feature));
     }
     std::set<Argument> arguments;
     for (const Feature& feature : features) {

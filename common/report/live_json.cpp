@@ -91,6 +91,14 @@ std::string to_json(const LiveTrialResult& result, const ResultOrigin& origin) {
                                                {"log_odds", number_or_null(one.log_odds)},
                                                {"error_reduction", number_or_null(one.error_reduction)}});
   }
+  if (result.learned) {
+    const LearnedTold& learned = *result.learned;
+    json["diagnosis"]["learned"] = {{"adopted", learned.adopted},
+                                    {"words", learned.words},
+                                    {"equation", learned.equation},
+                                    {"log_odds", number_or_null(learned.log_odds)},
+                                    {"error_where_not_fitted", number_or_null(learned.held_out)}};
+  }
   if (result.afterwards) {
     Json effects = Json::array();
     for (const EffectEvidence& one : result.afterwards->effects)

@@ -210,10 +210,15 @@ std::string evolution(const Recording& recording, const LiveTrialResult& result,
 }
 
 std::string suspects(const LiveTrialResult& result) {
-  if (result.ranking.candidates.empty()) return "";
+  if (result.ranking.candidates.empty() && !result.learned) return "";
   std::string html = "<section><h2>What the diagnoser said while it ran</h2><p>Verdict: <b>" +
-                     escape(result.ranking.verdict) + "</b></p><table>" +
-                     heading_cells({"Candidate", "Log odds", "Explains", ""}, {1, 2});
+                     escape(result.ranking.verdict) + "</b></p>";
+  if (result.learned) {
+    const LearnedTold& learned = *result.learned;
+    html += "<p><b>" + std::string{learned.adopted ? "Learned" : "Not learned"} + ".</b> " + escape(learned.words) +
+            (learned.equation.empty() ? "" : " <code>" + escape(learned.equation) + "</code>") + "</p>";
+  }
+  html += "<table>" + heading_cells({"Candidate", "Log odds", "Explains", ""}, {1, 2});
   for (const EffectEvidence& one : result.ranking.candidates) {
     const bool adopted = std::ranges::find(result.adopted, one.name) != result.adopted.end();
     html += std::string{adopted ? "<tr class=\"yes\">" : "<tr>"} + cell(escape(effect_title(one.name)), "k") +

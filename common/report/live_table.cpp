@@ -68,6 +68,8 @@ std::string suspects(const LiveTrialResult& result) {
     text += "  " + pad_right(effect_title(one.name), 28) + "log odds " + pad_left(number(one.log_odds, 3), 7) +
             ", explains " + percent(one.error_reduction) + "\n";
   }
+  if (result.learned)
+    text += (result.learned->adopted ? "  learned: " : "  not learned: ") + result.learned->words + "\n";
   text += "  in the identifier's model: " + (result.adopted.empty() ? "no effect" : join(result.adopted, ", ")) + "\n";
   for (const NamedValue& p : result.effect_numbers) {
     text += "    " + pad_right(p.name, 32) + number(p.value, 4) + " ± " + number(kNormal95 * p.std, 2) + " " + p.unit +

@@ -161,6 +161,7 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
         {.name = vehicle.parameters[i], .value = vehicle.priors[i].mean, .std = vehicle.priors[i].sigma, .unit = ""});
   }
   if (!recording.effects.empty()) result.ranking = recording.effects.back();
+  if (!recording.learned.empty()) result.learned = recording.learned.back();
   result.complaints = complaints_of(recording.health);
   return result;
 }

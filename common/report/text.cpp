@@ -98,7 +98,7 @@ std::string log_odds_text(double log_odds) { return number(std::abs(log_odds) < 
 
 std::string effect_title(const std::string& name, const std::string& variant) {
   std::string title = name;
-  std::ranges::replace(title, '_', ' ');
+  if (!name.starts_with("column ")) std::ranges::replace(title, '_', ' ');
   return variant.empty() ? title : title + " (" + variant + ")";
 }
 

@@ -28,6 +28,8 @@ std::vector<Sides> sides_of(const model::Model& model, const Trial& trial, const
                          .nu = nu.col(static_cast<Eigen::Index>(k))};
     input.at(motion.t, motion.force);
     motion.voltage = trial.voltage.empty() ? 0.0 : trial.voltage[k];
+    if (!trial.columns.empty())
+      motion.columns = {trial.columns[k].data(), static_cast<std::size_t>(trial.columns[k].size())};
     motion.input = &input;
     motion.vehicle = model.vehicle;
     if (k == 0) model::settle(model, motion, memory);

@@ -16,6 +16,7 @@ struct CorrectionFactor {
   std::string quantity;
   int index{}, bank{};
   double a{}, b{}, c{};
+  std::string column{};  ///< of a measured column: its candidate
 };
 
 /// weight times scale times the product of the factors, along an axis: N or N m, or a share of the drag or thrust that
@@ -61,6 +62,10 @@ struct CorrectionGiven {
   bool input_is_wrench{false};
   std::array<double, 3> visited_low{}, visited_high{};  ///< m
   std::vector<CorrectionLeft> left;
+  /// Deviation of predictions of 10 s on what judges, by the covariance of all numbers, weights included: u v w [m/s],
+  /// p q r [rad/s].
+  std::array<double, 6> prediction_std{};
+  double not_visited{};  ///< share of what judges that is beyond what it was learned from: there it fades
   std::optional<FormulaGiven> formula;  ///< where one fits: the terms are then its own
 };
 

@@ -1,4 +1,4 @@
-// What the minds say to each other: STATE, MODEL, RESIDUAL, EFFECTS.
+// What the minds say to each other: STATE, MODEL, RESIDUAL, EFFECTS, LEARNED.
 #pragma once
 
 #include <Eigen/Core>
@@ -106,6 +106,17 @@ struct EffectRanking {
   std::string against;  ///< candidate, or in words what no list holds, that the first cannot be told from; empty: none
   std::string segment;  ///< what tells them apart when flown; empty: not known
   double duration{};    ///< s of it, again and again
+};
+
+/// A force that no list holds, as the diagnoser has learned it by a trial's end: a correction with arguments.
+struct LearnedTold {
+  Utime utime{};
+  bool adopted{false};              ///< else `words` say why it is refused
+  double log_odds{};                ///< over the best listed model
+  double size{};                    ///< share of the applied force, on its worst axis
+  double held_out{1.0};             ///< open-loop error over the model's without it, where no weight was fitted
+  std::string words, equation;      ///< a sentence; Fossen's notation, empty: no closed form
+  std::vector<NamedValue> numbers;  ///< of the equation
 };
 
 }  // namespace fathom

@@ -68,6 +68,7 @@ struct LiveTrialResult {
   std::vector<std::string> adopted;        ///< effects in the identifier's model
   std::vector<NamedValue> effect_numbers;  ///< theirs, "effect.parameter"
   EffectRanking ranking;                   ///< the diagnoser's last
+  std::optional<LearnedTold> learned{};    ///< at the end
   std::map<std::string, std::string> complaints;  ///< by process: what it called unhealthy
   std::optional<Afterwards> afterwards;
   std::optional<TruthComparison> truth;

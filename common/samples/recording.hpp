@@ -40,6 +40,7 @@ struct Recording {
   std::vector<ModelEstimate> model;
   std::vector<Residual> residual;
   std::vector<EffectRanking> effects;
+  std::vector<LearnedTold> learned;
   std::vector<Truth> truth;
   std::vector<Health> health;
   std::vector<ProcessInfo> process_info;

@@ -41,9 +41,13 @@ struct Trial {
   /// Mean over each of parts() equal parts of each step if inputs are held until the next one; empty: `input` itself.
   /// Inputs around a time count as the velocities there were averaged.
   std::vector<Eigen::VectorXd> held;
-  std::vector<Eigen::VectorXd> told;    ///< the same if inputs act from the one before on; empty: the next of `input`
-  std::vector<double> voltage;          ///< V; empty when not logged
-  Vector6d nu_sigma{Vector6d::Zero()};  ///< noise of nu, m/s and rad/s, as estimated from the data
+  std::vector<Eigen::VectorXd> told;  ///< the same if inputs act from the one before on; empty: the next of `input`
+  std::vector<double> voltage;        ///< V; empty when not logged
+  /// Of each of the vehicle's candidates (Vehicle::candidates) the product of its measured columns and the bearing
+  /// [rad] that it goes along, 0 where it has none: of the step that begins there. Empty: no candidate is asked.
+  std::vector<Eigen::VectorXd> columns;
+  std::vector<std::string> column_units;  ///< of these products
+  Vector6d nu_sigma{Vector6d::Zero()};    ///< noise of nu, m/s and rad/s, as estimated from the data
 
   [[nodiscard]] std::size_t size() const { return t.size(); }
   [[nodiscard]] std::size_t parts() const { return held.size() > t.size() ? held.size() / t.size() : 1; }

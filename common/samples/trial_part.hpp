@@ -37,6 +37,8 @@ namespace fathom {
   part.held = cut(trial.held, trial.parts());
   part.told = cut(trial.told, trial.parts());
   part.voltage = cut(trial.voltage);
+  part.columns = cut(trial.columns);
+  part.column_units = trial.column_units;
   part.nu_sigma = trial.nu_sigma;
   return part;
 }

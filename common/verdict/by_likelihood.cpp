@@ -7,6 +7,8 @@
 
 #include "common/base/statistics.hpp"
 #include "common/identification/sparse.hpp"
+#include "common/learning/spread.hpp"
+#include "common/learning/wording.hpp"
 #include "common/likelihood/between_runs.hpp"
 #include "common/preflight/applicability.hpp"
 #include "common/preflight/wiring.hpp"
@@ -222,6 +224,21 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
   }
 }
 
+/// What the learned force leaves open on runs that judge.
+void tell_of_spread(const learning::Learned& learned, const model::LearnedForce& force, double input_step,
+                    std::span<const Trial> unseen, CorrectionGiven& given) {
+  const learning::Telling tell = [&](const model::FreeForce& all) {
+    if (&force == learned.here.get()) return all;
+    return &force == learned.elsewhere.get() ? model::lasting_of(all) : model::as_it_stands(all, learned.until);
+  };
+  const model::Model model = learning::as_model(learned.fit.hypothesis, input_step, &force);
+  const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(model));
+  const Vector6d sigma = learning::spread_of(learned.fit, force.visited(), tell, input_step, windows);
+  std::copy(sigma.begin(), sigma.end(), given.prediction_std.begin());
+  given.not_visited = learning::not_visited(force, unseen);
+  given.words += learning::spread_sentence(given);
+}
+
 /// Surge, sway and heave as they are scored.
 double scored_velocities(const likelihood::Problem& problem) {
   double count = 0.0;
@@ -279,8 +296,11 @@ void seek_reason(const model::Vehicle& vehicle, std::span<const Trial> train, co
 }  // namespace
 
 Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
-                const inference::Settings& settings, const Progress& progress, const learning::Settings& learning) {
+                const inference::Settings& of_caller, const Progress& progress, const learning::Settings& learning) {
   Answer answer;
+  inference::Settings settings = of_caller;
+  answer.candidates = model::candidates_of(vehicle, train);
+  settings.candidates = answer.candidates.pointers();
   DiagnosisReport& report = answer.report;
   DiagnosisResult& result = report.result;
   answer.given.core = "likelihood";
@@ -322,6 +342,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
+    if (force != nullptr) tell_of_spread(learned, *force, input_step, unseen, *result.correction);
   }
   if (conclusion.verdict == Verdict::no_model) {
     if (!result.wiring) seek_wiring(vehicle, train, result, conclusion);
@@ -361,6 +382,9 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
         {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
   const model::Scene scene = model::scene_of(vehicle, train);
   list_not_asked(scene, result);
+  for (const model::Candidates::Idle& idle : answer.candidates.idle)
+    result.candidates.push_back(
+        {.name = idle.name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = idle.reason});
   result.not_measured = preflight::not_measured(scene);
   result.manoeuvre = next_motion(result);
   answer.score = conclusion.found.best.score;

@@ -10,6 +10,7 @@
 
 #include "common/inference/infer.hpp"
 #include "common/learning/learn.hpp"
+#include "common/model/candidates/column_effect.hpp"
 #include "common/samples/diagnosis_result.hpp"
 #include "common/samples/verdict_given.hpp"
 
@@ -23,6 +24,8 @@ struct Answer {
   double velocities{};         ///< scored measurements of surge, sway and heave, each a mean over a block
   likelihood::Fit best;        ///< the model after, with the named effects
   Eigen::VectorXd best_sigma;  ///< of its numbers; empty where nothing was fitted
+  /// Effects of measured columns, which models here point to.
+  model::Candidates candidates;
   /// A named effect, and the likeliest other in its place where that one cannot be ruled out.
   std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals;
 };

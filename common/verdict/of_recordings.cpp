@@ -206,6 +206,8 @@ class Work {
 
   Explained told(Look look) {
     DiagnosisResult& result = look.answer.report.result;
+    for (const model::Candidates::Idle& idle : look.answer.candidates.idle)
+      notes_.push_back(idle.name + ": " + idle.reason);
     result.consistency = std::move(consistency_.findings);
     std::ranges::move(look.gaps, std::back_inserter(result.consistency));
     adopt_sensor_faults(look.answer);

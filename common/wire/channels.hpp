@@ -27,6 +27,7 @@ inline constexpr char kSmoothed[] = "SMOOTHED";
 inline constexpr char kModel[] = "MODEL";
 inline constexpr char kResidual[] = "RESIDUAL";
 inline constexpr char kEffects[] = "EFFECTS";
+inline constexpr char kLearned[] = "LEARNED";
 inline constexpr char kExcitation[] = "EXCITATION";
 inline constexpr char kTruth[] = "TRUTH";
 inline constexpr char kHealth[] = "HEALTH";

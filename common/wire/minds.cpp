@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/learned_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/process_info_t.hpp>
 #include <fathom_lcm/residual_t.hpp>
@@ -188,6 +189,35 @@ fathom_lcm::effects_t encode(const EffectRanking& sample) {
   message.against = sample.against;
   message.segment = sample.segment;
   message.duration = sample.duration;
+  return message;
+}
+
+std::optional<LearnedTold> decode(const fathom_lcm::learned_t& message) {
+  if (!length(message.n_numbers, message.numbers.size())) return {};
+  if (!finite(message.log_odds) || !finite(message.size) || !finite(message.held_out)) return {};
+  LearnedTold sample{.utime = message.utime,
+                     .adopted = message.adopted != 0,
+                     .log_odds = message.log_odds,
+                     .size = message.size,
+                     .held_out = message.held_out,
+                     .words = message.words,
+                     .equation = message.equation,
+                     .numbers = {}};
+  if (!take(message.numbers, sample.numbers)) return {};
+  return sample;
+}
+
+fathom_lcm::learned_t encode(const LearnedTold& sample) {
+  fathom_lcm::learned_t message{};
+  message.utime = sample.utime;
+  message.adopted = sample.adopted ? 1 : 0;
+  message.log_odds = sample.log_odds;
+  message.size = sample.size;
+  message.held_out = sample.held_out;
+  message.words = sample.words;
+  message.equation = sample.equation;
+  message.n_numbers = count(sample.numbers);
+  put(sample.numbers, message.numbers);
   return message;
 }
 

@@ -18,6 +18,7 @@ class smoothed_t;
 class model_t;
 class residual_t;
 class effects_t;
+class learned_t;
 class truth_t;
 class health_t;
 class process_info_t;
@@ -35,6 +36,7 @@ namespace fathom::wire {
 [[nodiscard]] std::optional<ModelEstimate> decode(const fathom_lcm::model_t& message);
 [[nodiscard]] std::optional<Residual> decode(const fathom_lcm::residual_t& message);
 [[nodiscard]] std::optional<EffectRanking> decode(const fathom_lcm::effects_t& message);
+[[nodiscard]] std::optional<LearnedTold> decode(const fathom_lcm::learned_t& message);
 [[nodiscard]] std::optional<Truth> decode(const fathom_lcm::truth_t& message);
 [[nodiscard]] std::optional<Health> decode(const fathom_lcm::health_t& message);
 [[nodiscard]] std::optional<ProcessInfo> decode(const fathom_lcm::process_info_t& message);
@@ -48,6 +50,7 @@ namespace fathom::wire {
 [[nodiscard]] fathom_lcm::model_t encode(const ModelEstimate& sample);
 [[nodiscard]] fathom_lcm::residual_t encode(const Residual& sample);
 [[nodiscard]] fathom_lcm::effects_t encode(const EffectRanking& sample);
+[[nodiscard]] fathom_lcm::learned_t encode(const LearnedTold& sample);
 [[nodiscard]] fathom_lcm::truth_t encode(const Truth& sample);
 [[nodiscard]] fathom_lcm::health_t encode(const Health& sample);
 [[nodiscard]] fathom_lcm::process_info_t encode(const ProcessInfo& sample);

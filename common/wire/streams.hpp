@@ -11,6 +11,7 @@
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/health_t.hpp>
 #include <fathom_lcm/laser_range_t.hpp>
+#include <fathom_lcm/learned_t.hpp>
 #include <fathom_lcm/loads_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
@@ -67,6 +68,7 @@ void visit_streams(AnyRecording& recording, Visit&& visit) {
   visit(kModel, recording.model);
   visit(kResidual, recording.residual);
   visit(kEffects, recording.effects);
+  visit(kLearned, recording.learned);
   visit(kHealth, recording.health);
 }
 

@@ -11,6 +11,7 @@
 #include <fathom_lcm/effects_t.hpp>
 #include <fathom_lcm/excitation_t.hpp>
 #include <fathom_lcm/health_t.hpp>
+#include <fathom_lcm/learned_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/operator_t.hpp>
 #include <fathom_lcm/process_info_t.hpp>
@@ -166,6 +167,7 @@ void listen(const Source& source, board::Board& board, runtime::Speakers& speake
   show.operator()<fathom_lcm::state_t>(wire::kState);
   show.operator()<fathom_lcm::model_t>(wire::kModel);
   show.operator()<fathom_lcm::effects_t>(wire::kEffects);
+  show.operator()<fathom_lcm::learned_t>(wire::kLearned);
   show.operator()<fathom_lcm::residual_t>(wire::kResidual);
   show.operator()<fathom_lcm::process_info_t>(wire::kProcessInfo);
 }

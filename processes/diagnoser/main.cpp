@@ -6,9 +6,11 @@
 #include <fathom_lcm/depth_t.hpp>
 #include <fathom_lcm/dvl_t.hpp>
 #include <fathom_lcm/effects_t.hpp>
+#include <fathom_lcm/learned_t.hpp>
 #include <fathom_lcm/model_t.hpp>
 #include <fathom_lcm/optical_flow_t.hpp>
 #include <fathom_lcm/pose_capture_t.hpp>
+#include <fathom_lcm/signal_t.hpp>
 #include <fathom_lcm/state_t.hpp>
 #include <fathom_lcm/tag_pose_t.hpp>
 #include <fathom_lcm/thrusters_t.hpp>
@@ -70,6 +72,7 @@ int main(int argc, char** argv) {
     };
 
     process.publishes<fathom_lcm::effects_t>(wire::kEffects);
+    process.publishes<fathom_lcm::learned_t>(wire::kLearned);
     process.on<fathom_lcm::state_t>(wire::kState, wire::kDecode,
                                     [&](const StateEstimate& state) { say(diagnoser.step(state)); });
     process.on<fathom_lcm::thrusters_t>(wire::kThrusters, wire::kDecode,
@@ -81,6 +84,7 @@ int main(int argc, char** argv) {
     hear<fathom_lcm::dvl_t>(process, diagnoser, wire::kDvl);
     hear<fathom_lcm::depth_t>(process, diagnoser, wire::kDepth);
     hear<fathom_lcm::tag_pose_t>(process, diagnoser, wire::kTagPose);
+    if (!vehicle.candidates.empty()) hear<fathom_lcm::signal_t>(process, diagnoser, wire::kSignal);
     hear<fathom_lcm::optical_flow_t>(process, diagnoser, wire::kOpticalFlow);
     process.on<fathom_lcm::model_t>(wire::kModel, wire::kDecode, [&](const ModelEstimate& model) {
       if (proposals) proposals->hear(model);
@@ -89,7 +93,10 @@ int main(int argc, char** argv) {
       diagnoser.reset();
       if (proposals) proposals->reset();
     });
-    process.on_end([&] { say(diagnoser.finish()); });
+    process.on_end([&] {
+      say(diagnoser.finish());
+      if (diagnoser.learned()) process.publish(wire::kLearned, wire::encode(*diagnoser.learned()));
+    });
     process.run();
   });
 }

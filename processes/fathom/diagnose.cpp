@@ -44,7 +44,7 @@ constexpr double kLight = 0.03;  // of a fit: reading a run, until it has been t
 struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
-  std::vector<std::string> without;
+  std::vector<std::string> without, candidates;
   std::string core{kLikelihood};
   bool no_learning{false};
   int threads{2};
@@ -53,8 +53,9 @@ struct DiagnoseOptions {
   int folds{0};
 };
 
-void check_names(const std::vector<std::string>& without) {
-  const std::vector<std::string> listed = inference::listed_names();
+void check_names(const std::vector<std::string>& without, const model::Vehicle& vehicle) {
+  std::vector<std::string> listed = inference::listed_names();
+  for (const model::Candidate& candidate : vehicle.candidates) listed.push_back(model::effect_name(candidate));
   for (const std::string& name : without) {
     if (std::ranges::find(listed, name) != listed.end()) continue;
     std::string all;
@@ -63,9 +64,17 @@ void check_names(const std::vector<std::string>& without) {
   }
 }
 
-void make_folder(const std::string& path) {  // before the long work, so that a bad path costs nothing
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
+/// Before the long work, so that a bad path costs nothing. Nothing is left of the try: who is refused or stopped finds
+/// no empty folder.
+void try_folder(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> missing;  // the deepest first
+  std::error_code error, ignored;
+  for (fs::path at = fs::absolute(path).lexically_normal(); !fs::exists(at, ignored) && at.has_relative_path();
+       at = at.parent_path())
+    missing.push_back(at);
+  fs::create_directories(path, error);
+  for (const fs::path& made : missing) fs::remove(made, ignored);  // never one with something in it
   if (error) throw InputError(path + ": cannot make this folder: " + error.message() + "; give another --out");
 }
 
@@ -120,6 +129,7 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   add_words(origin, "--site", options.site);
   add_words(origin, "--config", options.config);
   add_words(origin, "--without", options.without);
+  add_words(origin, "--candidate", options.candidates);
   const auto add_number = [&](const char* option, double value) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.17g", value);
@@ -135,7 +145,8 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
 
 verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string>& notes, const Progress& progress,
                          ResultOrigin& origin) {
-  const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
+  for (const std::string& text : options.candidates) model::add_candidate(text, vehicle.candidates);
   check_command_units(options.map, vehicle);
   if (const std::string note = model::undriven_note(vehicle); !note.empty()) notes.push_back(note);
   std::optional<model::Site> site;  // both are read before the long work
@@ -144,8 +155,8 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     site = model::Site::load(options.site);
     room = rehearsal_settings(options.site, options.config, vehicle);
   }
-  check_names(options.without);
-  make_folder(options.out);
+  check_names(options.without, vehicle);
+  try_folder(options.out);
   const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
   progress.expect(kReading, files, kLight);
   progress.expect(kReport, 1, 1.0);
@@ -173,7 +184,8 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
        .site = site ? &*site : nullptr},
       progress, notes);
   if (room && explained.answer.rivals) {
-    const model::Model best = likelihood::model_of(explained.answer.best.hypothesis, explained.fitted.front().input_step);
+    const model::Model best =
+        likelihood::model_of(explained.answer.best.hypothesis, explained.fitted.front().input_step);
     separate(vehicle, *room, explained.fitted, best, explained.answer.report.result);
   }
   return std::move(explained.answer);
@@ -244,6 +256,9 @@ void add_diagnose(runtime::CommandLine& app) {
                    "likelihood, an innovations filter over whole runs, is the only one; for scripts that say so")
       ->one_of({kLikelihood});
   command->add_option("--without", options->without, "effects to take out of the list, by name");
+  command->add_option("--candidate", options->candidates,
+                      "measured columns that a force may go with, as wind_speed^2 or voltage*tau_X; along a measured "
+                      "bearing: wind_speed^2 @ wind_direction");
   command
       ->add_option("--time-budget", options->time_budget,
                    "s for the search; what is not asked by then is said to be open")

@@ -61,7 +61,10 @@ void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& 
         best.effects, [&](const model::ActiveEffect& a) { return a.effect->name() == effect.name; });
     if (active == best.effects.end()) continue;
     for (const auto& [other, log_odds, corrupts, corruption] : effect.alternatives) {
-      const auto answer = planning::segment_between(*active, *model::find_effect(other), scene, data, flights.extras());
+      const model::Effect* listed = model::find_effect(other);
+      if (listed == nullptr || model::find_effect(effect.name) == nullptr)
+        continue;  // a column, which no flight changes
+      const auto answer = planning::segment_between(*active, *listed, scene, data, flights.extras());
       if (answer) effect.told_apart.push_back({other, answer->segment, answer->seconds});
     }
     if (proposal.empty()) proposal = sentence(effect);

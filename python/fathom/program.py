@@ -104,7 +104,7 @@ def diagnose(vehicle, train, validate=(), *, out=None, progress=None, **options)
     """What the vehicle's model lacks: result.json as a dictionary (docs/schema/diagnosis-1.schema.json).
 
     `out`: folder that keeps result.json and report.html; without, both are gone afterwards. `options` are those of
-    `fathom diagnose --help`: map, site, config, core, without, time_budget, no_learning, threads.
+    `fathom diagnose --help`: map, site, config, core, without, candidate, time_budget, no_learning, threads.
     """
     with tempfile.TemporaryDirectory(prefix="fathom-") as folder:
         place = os.fspath(out) if out is not None else folder

@@ -25,6 +25,7 @@ inline Trial cut_trial(const Trial& trial, std::size_t begin, std::size_t end) {
   keep(part.input);
   keep(part.input_valid);
   keep(part.voltage);
+  keep(part.columns);
   return part;
 }
 

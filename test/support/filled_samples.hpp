@@ -106,6 +106,10 @@ inline void fill(Fill& f, EffectRanking& s) {
   s = {f.utime(), f.word(), {}, f.word(), f.word(), f.number()};
   for (int i = 0; i < 2; ++i) s.candidates.push_back({f.word(), f.number(), f.number(), f.word(), f.list()});
 }
+inline void fill(Fill& f, LearnedTold& s) {
+  s = {f.utime(), true, f.number(), f.number(), f.number(), f.word(), f.word(), {}};
+  for (int i = 0; i < 2; ++i) s.numbers.push_back({f.word(), f.number(), f.number(), f.word()});
+}
 inline void fill(Fill& f, Truth& s) {
   s = {f.utime(),           f.matrix<Vector3>(), f.quaternion(), f.matrix<Vector6d>(), f.matrix<Vector6d>(),
        f.matrix<Vector3>(), f.matrix<Vector6d>()};

@@ -163,6 +163,9 @@ const sections = {
     said.push(e.candidates.length ? table(["candidate", ">odds", "~>log odds", "", ">explains"], sorted.map((c) =>
       row("", cell("k", c.name, c.variant ? el("span", { class: "soft" }, " " + c.variant) : null), cell("n", odds(c.log_odds)), cell("n soft roomy", fixed(c.log_odds, 1)),
         cell("wide", bar(c.log_odds, most, true)), cell("n", fixed(times(100, c.error_reduction), 0) + " %")))) : el("p", { class: "soft" }, "no candidate yet"));
+    const l = all.learned;
+    if (l) said.push(el("p", { class: l.adopted ? "" : "soft" }, el("b", {}, l.adopted ? "learned: " : "not learned: "), l.words));
+    if (l && l.equation) said.push(el("p", {}, l.equation));
     return said;
   },
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,8 +31,9 @@ struct FeatureState {
   model::ActuatorForces force{};   ///< N
   std::array<Vector6d, kThrustMemories.size()> slow_tau{};
   std::array<Vector6d, kVelocityMemories.size()> slow_nu{};
-  Vector6d drag{Vector6d::Zero()};  ///< N, N m: the hull's own by the base numbers
-  const Allocation* allocation{};   ///< tau = B f
+  Vector6d drag{Vector6d::Zero()};    ///< N, N m: the hull's own by the base numbers
+  const Allocation* allocation{};     ///< tau = B f
+  std::span<const double> columns{};  ///< as Motion::columns
 };
 
 /// Largest sizes that a recording has shown of what features read.
@@ -60,6 +62,7 @@ struct Factor {
   Quantity quantity{};
   int index{}, bank{};
   double a{}, b{1.0}, c{1.0};
+  std::string column{};  ///< what a measured column is called; others have none
 };
 
 /// Along what a feature acts: X..N of the body; north, east and down of the world; all of the hull's drag; all thrust,

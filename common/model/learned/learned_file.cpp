@@ -24,10 +24,12 @@ Factor factor_of(const Config& config) {
   factor.a = config.quantity("a", "");
   factor.b = config.quantity("b", "");
   factor.c = config.quantity("c", "");
+  if (config.has("column")) factor.column = config.text("column");
   const FactorKind& kind = kind_of(*quantity);
   if (kind.banks > 0 && (factor.bank < 0 || factor.bank >= kind.banks))
     config.fail("bank", "there is no such low pass");
-  if (factor.index < 0 || factor.index >= (kind.indexed == Indexed::kThrusters ? kMaxActuators : 6))
+  const bool of_six = kind.indexed != Indexed::kThrusters && kind.indexed != Indexed::kColumns;
+  if (factor.index < 0 || (of_six && factor.index >= 6) || factor.index >= kMaxActuators)
     config.fail("index", "there is no such axis or thruster");
   if (factor.b == 0.0 || factor.c == 0.0) config.fail("b", "a width is not 0");
   return factor;
@@ -104,7 +106,7 @@ LearnedModel read_learned(const std::string& path, const Vehicle& vehicle) {
   if (model.parameters.empty())
     file.fail("parameters", "no numbers are told: the model did not follow its thrust, or was not judged");
   for (const Config& effect : file.list("effects")) {
-    if (!effect.flag("accepted")) continue;
+    if (!effect.flag("accepted") || effect.text("name").starts_with("column ")) continue;  // nobody measures it there
     std::string text = effect.text("name") + "=";
     if (const std::string variant = effect.text("variant"); !variant.empty()) text += "variant:" + variant + ",";
     const Config numbers = effect.section("parameters");

@@ -39,6 +39,7 @@ FeatureState LearnedForm::state_of(const Motion& motion) const {
   state.heading_sine = across > 0.0 ? motion.R_WB(1, 0) / across : 0.0;
   state.tau = allocation_ * motion.force;
   state.allocation = &allocation_;
+  state.columns = motion.columns;
   return state;
 }
 
@@ -50,6 +51,11 @@ double LearnedForm::fade(const Feature& feature, const FeatureState& state) cons
     if (kind.within != nullptr) left *= kind.within(factor, state, visited_);
   }
   return left;
+}
+
+bool LearnedForm::beyond(const Motion& motion) const {
+  const FeatureState state = state_of(motion);
+  return std::ranges::any_of(force_.features, [&](const Feature& feature) { return fade(feature, state) < 1.0; });
 }
 
 Vector6d LearnedForm::sum(const FeatureState& state, Part part) const {

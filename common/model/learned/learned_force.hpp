@@ -22,6 +22,8 @@ class LearnedForm final : public Form {
 
   [[nodiscard]] const FreeForce& force() const { return force_; }
   [[nodiscard]] const Visited& visited() const { return visited_; }
+  /// Whether some term fades there; what is remembered apart.
+  [[nodiscard]] bool beyond(const Motion& motion) const;
 
  private:
   enum class Part { kRemembers, kMoves, kStill };
@@ -41,6 +43,7 @@ class LearnedForce final : public Effect {
   LearnedForce(FreeForce force, Visited visited, Allocation allocation);
   [[nodiscard]] const FreeForce& force() const { return learned().force(); }
   [[nodiscard]] const Visited& visited() const { return learned().visited(); }
+  [[nodiscard]] bool beyond(const Motion& motion) const { return learned().beyond(motion); }
 
  private:
   [[nodiscard]] const LearnedForm& learned() const { return static_cast<const LearnedForm&>(form(0)); }

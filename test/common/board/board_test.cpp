@@ -117,7 +117,11 @@ TEST_CASE("board: state, model, thrusters and effects as they were said") {
                           .segment = "full steps in surge",
                           .duration = 20.0},
             0.0);
+  some.hear(LearnedTold{.adopted = true, .held_out = 0.4, .words = "A force.", .equation = "tau_Y = c u v"}, 0.0);
   const Json all = told(some, 0.1);
+  CHECK(all["learned"]["adopted"] == true);
+  CHECK(all["learned"]["words"] == "A force.");
+  CHECK(all["learned"]["equation"] == "tau_Y = c u v");
   CHECK(all["state"]["values"][2] == doctest::Approx(3.0));
   CHECK(all["state"]["values"][5] == doctest::Approx(0.5));
   CHECK(all["state"]["values"][6] == doctest::Approx(0.7));

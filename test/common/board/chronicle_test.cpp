@@ -115,4 +115,12 @@ TEST_CASE("thinned: hours in a bounded number of points, evenly, with the first 
   CHECK(kept.points().size() == 1);
 }
 
+TEST_CASE("chronicle: what was learned at the end, or why it was not") {
+  Chronicle chronicle;
+  chronicle.hear(LearnedTold{.adopted = true, .words = "A force."}, 1.0);
+  CHECK(newest(chronicle) == "|learned: A force.");
+  chronicle.hear(LearnedTold{.words = "log odds 12, at least 20 needed"}, 2.0);
+  CHECK(newest(chronicle) == "|a force that no list holds is not learned: log odds 12, at least 20 needed");
+}
+
 }  // namespace fathom::board

@@ -72,4 +72,32 @@ TEST_CASE("ranking: a sensor's fault keeps the numbers that it was found with, a
   CHECK(rivals_of(answer)->second.effect->name() == "thruster_lag");
 }
 
+TEST_CASE("ranking: what was learned at the end is told with its law, or with why it is not") {
+  verdict::Answer answer = answer_with("unexplained");
+  CHECK_FALSE(learned_of(answer).has_value());
+  CorrectionGiven& given = answer.report.result.correction.emplace();
+  CHECK_FALSE(learned_of(answer).has_value());  // nothing was asked
+  given.asked = true;
+  given.log_odds = 12.0;
+  given.size = 0.08;
+  given.refused = "log odds 12, at least 20 needed";
+  given.words = "A force.";
+  std::optional<LearnedTold> learned = learned_of(answer);
+  REQUIRE(learned.has_value());
+  CHECK_FALSE(learned->adopted);
+  CHECK(learned->words == "log odds 12, at least 20 needed");
+  CHECK(learned->log_odds == 12.0);
+  given.adopted = true;
+  given.held_out = 0.4;
+  given.formula = FormulaGiven{.equation = "tau_Y = c u v", .numbers = {{"c", 3.0, 0.1, "SI"}}};
+  learned = learned_of(answer);
+  REQUIRE(learned.has_value());
+  CHECK(learned->adopted);
+  CHECK(learned->words == "A force.");
+  CHECK(learned->held_out == 0.4);
+  CHECK(learned->equation == "tau_Y = c u v");
+  REQUIRE(learned->numbers.size() == 1);
+  CHECK(learned->numbers[0].value == 3.0);
+}
+
 }  // namespace fathom::live

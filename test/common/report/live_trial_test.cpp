@@ -160,6 +160,19 @@ TEST_CASE("live trial: what was wrong is told, in lockstep too; what was not the
   CHECK(complaints.at("diagnoser") == "MODEL is silent; ");
 }
 
+TEST_CASE("live trial: what the diagnoser has learned at the end is told on page, table and in data") {
+  Recording recording = trial();
+  CHECK_FALSE(nlohmann::json::parse(to_json(summarise(recording, vehicle(), site())))["diagnosis"].contains("learned"));
+  recording.learned.push_back({.adopted = true, .held_out = 0.4, .words = "A force.", .equation = "tau_Y = c u v"});
+  const LiveTrialResult result = summarise(recording, vehicle(), site());
+  const auto learned = nlohmann::json::parse(to_json(result))["diagnosis"]["learned"];
+  CHECK(learned["adopted"] == true);
+  CHECK(learned["equation"] == "tau_Y = c u v");
+  CHECK(to_table(result).find("  learned: A force.\n") != std::string::npos);
+  const std::string page = to_html(result, recording, vehicle(), site());
+  CHECK(page.find("<b>Learned.</b> A force. <code>tau_Y = c u v</code>") != std::string::npos);
+}
+
 TEST_CASE("live trial: a diagnosis of the log is told, with its page; a file that is none is refused") {
   const test::Scratch scratch;
   const Recording recording = trial();

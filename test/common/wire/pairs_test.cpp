@@ -173,6 +173,7 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<ModelEstimate, 12>();
   check_pair<Residual, 2>();
   check_pair<EffectRanking, 6>();
+  check_pair<LearnedTold, 8>();
   check_pair<Truth, 7>();
   check_pair<Health, 16>();
   check_pair<ProcessInfo, 5>();
@@ -210,6 +211,9 @@ TEST_CASE("wire: a stated length that is not the real one is refused") {
   auto effects = filled_message<EffectRanking>();
   effects.candidates.emplace_back();
   CHECK_FALSE(wire::decode(effects).has_value());
+  auto learned = filled_message<LearnedTold>();
+  learned.n_numbers = 7;
+  CHECK_FALSE(wire::decode(learned).has_value());
 }
 
 TEST_CASE("wire: a length of two thousand million is refused before anything is allocated") {

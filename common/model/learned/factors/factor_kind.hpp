@@ -13,7 +13,7 @@
 namespace fathom::model {
 
 /// What `index` of a factor counts.
-enum class Indexed : std::uint8_t { kNothing, kAxes, kThrusters, kHarmonics };
+enum class Indexed : std::uint8_t { kNothing, kAxes, kThrusters, kHarmonics, kColumns };
 
 struct FactorKind {
   std::string_view word;      ///< in result.json
