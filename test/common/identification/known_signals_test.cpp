@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/identification/manoeuvre_regression.hpp"
 #include "common/model/derivative_motion.hpp"
+#include "common/model/sensors/kinematic_point.hpp"
 #include "test/support/virtual_dive.hpp"
 
 namespace fathom::identification {
