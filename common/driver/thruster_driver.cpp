@@ -142,6 +142,10 @@ class ThrusterDriver final : public devices::Output {
     if (order.abort) step(steady_seconds());  // at once
     say(answer);
   }
+  void hear(const Answer& said) {
+    const Utime now = wall_clock();
+    if (gate_.hear(said, now)) say(gate_.answer(now));
+  }
 
   void wait(std::span<const int> descriptors, int milliseconds) {
     const double left = std::max(0.0, next_ - steady_seconds());
@@ -347,6 +351,9 @@ int thruster_main(int argc, const char* const* argv) {
     process.on<fathom_lcm::operator_t>(
         wire::kOperator, [&](const auto& message) { return wire::open(message, keys.order); },
         [&](const Operator& order) { driver.hear(order); });
+    process.listens_to<fathom_lcm::answer_t>(wire::kAnswer, [&](const auto& message) {
+      if (const auto answer = wire::open(message, keys.answer)) driver.hear(*answer);
+    });
     process.waits_with(
         [&](std::span<const int> descriptors, int milliseconds) { driver.wait(descriptors, milliseconds); });
     process.on_health([&] { return driver.condition(); });

@@ -4,8 +4,14 @@
 #include <cmath>
 
 #include "common/base/printable.hpp"
+#include "common/orders/words.hpp"
 
 namespace fathom::driver {
+namespace {
+
+constexpr std::string_view kTakenBack = "not armed: the supervisor refused";
+
+}  // namespace
 
 bool ThrusterGate::was_armed(const WrenchCommand& command) const {
   return armed_ && command.challenge == check_.challenge() && command.armed_by >= armed_since_ &&
@@ -97,10 +103,8 @@ Answer ThrusterGate::hear(const Operator& order, Utime now) {
   if (order.abort) {
     check_.abort(now);
     aborted_ = true;
-    armed_ = false;
-    command_.reset();
-    asked_.reset();
-    ignores_ = false;
+    taken_back_ = false;
+    disarm();
     return said(true, "thrust is zero until it is armed again");
   }
   if (!check_.again(order)) {
@@ -110,10 +114,30 @@ Answer ThrusterGate::hear(const Operator& order, Utime now) {
       return said(false, why);
     }
     check_.accept(order);
-    if (order.enable) arm(now);
+    if (order.enable) {
+      arm(now);
+      for_another_ = order.order == orders::kOther;
+    }
   }
   if (!order.enable) return said(true, armed_ ? "heard" : "heard; not armed");
-  return said(armed_, armed_ ? "armed" : "aborted since");
+  return said(armed_, armed_ ? "armed" : taken_back_ ? kTakenBack : "aborted since");
+}
+
+bool ThrusterGate::hear(const Answer& said, Utime now) {
+  const bool refused = said.authentic && !said.gate && !said.done && !said.armed;
+  const bool of_what_armed = said.challenge == check_.challenge() && said.sequence == check_.accepted();
+  if (!armed_ || for_another_ || !refused || !of_what_armed) return false;
+  if (command_ && seconds_between(heard_, now) <= kPause) return false;
+  disarm();
+  taken_back_ = true;
+  return true;
+}
+
+void ThrusterGate::disarm() {
+  armed_ = false;
+  command_.reset();
+  asked_.reset();
+  ignores_ = false;
 }
 
 void ThrusterGate::arm(Utime now) {
@@ -127,12 +151,13 @@ void ThrusterGate::arm(Utime now) {
   asked_.reset();
   ignores_ = false;
   aborted_ = false;
+  taken_back_ = false;
   contested_.reset();
 }
 
 std::string_view ThrusterGate::reason(Utime now) const {
   if (aborted_) return "aborted by the operator; waits to be armed";
-  if (!armed_) return "not armed";
+  if (!armed_) return taken_back_ ? kTakenBack : "not armed";
   if (!command_) {
     return hears_stranger(now) ? "who commands was not armed; stop it" : "no command";
   }

@@ -17,7 +17,7 @@ namespace fathom::driver {
 /// stated life, after half a second without a new one, and when its own time is too old. It must name the order that
 /// armed its commander: who has been publishing before, or goes on when the commander has refused, stopped or died, is
 /// never obeyed. Of several who heard the order the first is; while another one speaks none is, and the other never
-/// without a new arming.
+/// without a new arming. An arming that the supervisor refuses is taken back: nothing stays armed for nobody.
 class ThrusterGate {
  public:
   static constexpr double kPause = 0.5;     ///< s
@@ -31,6 +31,9 @@ class ThrusterGate {
   /// What became of it; to be said. An order that comes twice, as a console sends it where answers are lost, is
   /// answered again and does nothing.
   Answer hear(const Operator& order, Utime now);
+  /// The supervisor's answer to the order that armed: when it refuses and nobody is obeyed by an earlier one, the
+  /// arming is taken back. True when it was.
+  bool hear(const Answer& said, Utime now);
   /// What the next order must quote.
   [[nodiscard]] Answer answer(Utime now) const;
   [[nodiscard]] std::int64_t challenge() const { return check_.challenge(); }
@@ -59,13 +62,15 @@ class ThrusterGate {
   [[nodiscard]] bool was_armed(const WrenchCommand& command) const;
   void hear_unarmed(const WrenchCommand& command, Utime now);
   void arm(Utime now);
-
+  void disarm();
   void refuse(const WrenchCommand& command, Utime now);
 
   orders::OrderCheck check_{kOrderAge};
   bool armed_{false};
   bool aborted_{false};
-  std::int64_t armed_since_{};     // of the order that armed, while commands went on
+  bool for_another_{false};     // another controller than the supervisor was armed, whose word counts for nothing then
+  bool taken_back_{false};      // the supervisor refused what armed
+  std::int64_t armed_since_{};  // of the order that armed, while commands went on
   std::optional<Utime> stranger_;  // when thrust was asked for by one whom no order armed
   std::optional<WrenchCommand> command_;
   Utime heard_{};

@@ -1,7 +1,9 @@
 #include "common/excitation/fence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace fathom::excitation {
@@ -10,7 +12,8 @@ namespace {
 constexpr double kReaction = 0.15;  // s from deciding to feeling the thrust
 constexpr double kSoften = 0.4;     // s in which outward speed shall be taken away
 constexpr double kCalm = 0.4;       // of the largest tilt: up to there nothing is done
-constexpr double kOutward = 0.2;    // share of an axis's push that leads outwards before its signal turns
+constexpr std::array kSides{"south", "north", "west", "east", "up", "down"};
+constexpr double kOutward = 0.2;  // share of an axis's push that leads outwards before its signal turns
 
 // 0 far inside, 1 where all that is left must go into braking.
 double urgency(double room, double speed, double braking, double band) {
@@ -101,11 +104,14 @@ Fence::Bent Fence::bend(const Vector6d& tau, const StateEstimate& state, double 
   return bent;
 }
 
+double Fence::room(const Eigen::Vector3d& p_WB, std::size_t side) const {
+  const auto axis = static_cast<Eigen::Index>(side / 2);
+  return side % 2 == 0 ? p_WB[axis] - settings_.low[axis] : settings_.high[axis] - p_WB[axis];
+}
+
 std::string Fence::outside(const StateEstimate& state, double turned) const {
-  constexpr const char* kNames[] = {"south", "north", "west", "east", "up", "down"};
-  for (int i = 0; i < 3; ++i) {
-    if (state.p_WB[i] < settings_.low[i] - settings_.hard) return std::string{"too far "} + kNames[2 * i];
-    if (state.p_WB[i] > settings_.high[i] + settings_.hard) return std::string{"too far "} + kNames[2 * i + 1];
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    if (room(state.p_WB, side) < -settings_.hard) return std::string{"too far "} + kSides[side];
   }
   if (state.nu.head<3>().norm() > settings_.largest_speed) return "too fast";
   if (state.nu.tail<3>().norm() > settings_.largest_rate) return "turning too fast";
@@ -113,6 +119,22 @@ std::string Fence::outside(const StateEstimate& state, double turned) const {
   if (upright < std::cos(settings_.largest_tilt)) return "tilted too far";
   if (std::abs(turned) > 2.0 * std::numbers::pi * (settings_.turns + 1.0)) return "the tether is wound up";
   return {};
+}
+
+std::string Fence::place(const StateEstimate& state, double surface) const {
+  std::size_t nearest = 0;
+  for (std::size_t side = 1; side < kSides.size(); ++side) {
+    if (room(state.p_WB, side) < room(state.p_WB, nearest)) nearest = side;
+  }
+  const double left = room(state.p_WB, nearest), under = state.p_WB.z() - surface;
+  std::array<char, 120> text{};
+  std::snprintf(text.data(), text.size(), "at %.2f m north, %.2f m east, the hull's top %.2f m %s the surface",
+                state.p_WB.x(), state.p_WB.y(), std::abs(under), under < 0.0 ? "above" : "below");
+  std::string said = text.data();
+  if (!std::isfinite(left)) return said;  // no bound anywhere
+  std::snprintf(text.data(), text.size(), ", %.2f m %s the bound: %s", std::abs(left), left < 0.0 ? "beyond" : "from",
+                kSides[nearest]);
+  return said + text.data();
 }
 
 bool Fence::holds(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB) const {

@@ -42,12 +42,18 @@ class Fence {
                           const Vector6d& largest) const;
   /// Why all must stop now; empty inside the envelope.
   [[nodiscard]] std::string outside(const StateEstimate& state, double turned) const;
+  /// Where it is, in an operator's words: place, water above the hull, room to the nearest bound. `surface` [m]: z of
+  /// Bo with the hull's top at the water's surface.
+  [[nodiscard]] std::string place(const StateEstimate& state, double surface) const;
   /// True when the vehicle can be there with this velocity and still stop inside.
   [[nodiscard]] bool holds(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB) const;
   [[nodiscard]] Eigen::Vector3d middle() const;
   [[nodiscard]] const FenceSettings& settings() const { return settings_; }
 
  private:
+  /// m to the bound in the south, north, west, east, up and down; negative beyond it.
+  [[nodiscard]] double room(const Eigen::Vector3d& p_WB, std::size_t side) const;
+
   FenceSettings settings_;
 };
 

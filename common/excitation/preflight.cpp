@@ -40,7 +40,20 @@ PreflightLine process_line(const PreflightInput& heard, const std::string& need)
   return {*spoke, ok || words == kNotArmedYet, health.state + (words.empty() ? "" : ": " + words)};
 }
 
+PreflightLine place_line(const std::optional<Answer>& place) {
+  if (!place) return {kPlace, false, "not known: the supervisor did not answer (has it this key?)"};
+  return {kPlace, place->done, place->done ? place->text : place->text + remedy_of(place->text)};
+}
+
 }  // namespace
+
+std::string remedy_of(const std::string& refusal) {
+  const auto says = [&](const char* words) { return refusal.find(words) != std::string::npos; };
+  if (says("tilted too far")) return "; set it upright, then arm again";
+  if (says("too far ")) return "; bring it inside the room, by hand or by its own ground station, then arm again";
+  if (says("the state is not valid")) return "; 'fathom status' says what the estimator hears";
+  return {};
+}
 
 const std::vector<std::string>& usual_needs() {
   static const std::vector<std::string> kNeeds{"estimator", "identifier", "thruster_driver or simulator",
@@ -52,6 +65,7 @@ std::vector<PreflightLine> preflight(const PreflightInput& heard, const std::vec
   std::vector<PreflightLine> lines;
   for (const std::string& need : needs) lines.push_back(process_line(heard, need));
   lines.push_back(process_line(heard, kSupervisor));
+  const bool judged = lines.back().ok;
   if (!heard.state || heard.state->age > kNoState) {
     lines.push_back({"state", false, "no STATE: is the attitude sensor's driver running?"});
   } else if (!heard.state->sample.valid) {
@@ -59,6 +73,7 @@ std::vector<PreflightLine> preflight(const PreflightInput& heard, const std::vec
   } else {
     lines.push_back({"state", true, "valid"});
   }
+  if (judged) lines.push_back(place_line(heard.place));
   std::ranges::move(vehicle_lines(heard), std::back_inserter(lines));
   return lines;
 }

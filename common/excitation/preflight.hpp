@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/samples/commands.hpp"
 #include "common/samples/estimates.hpp"
 #include "common/samples/health.hpp"
 #include "common/samples/vehicle_condition.hpp"
@@ -27,6 +28,7 @@ struct PreflightInput {
   std::map<std::string, Aged<Health>> health;  ///< by the process's name
   std::optional<Aged<StateEstimate>> state;
   std::optional<Aged<VehicleCondition>> vehicle;
+  std::optional<Answer> place;  ///< the supervisor's, who was asked whether it would arm at this place
 };
 
 struct PreflightLine {
@@ -35,12 +37,17 @@ struct PreflightLine {
   std::string text;  ///< what is so; where it is not ok, with the remedy
 };
 
-/// Every condition, those that hold too, in the order of the remedies: processes, state, vehicle. Pure.
+/// Name of the line about where the vehicle is; there is one where a supervisor runs that can be asked.
+inline constexpr char kPlace[] = "place";
+
+/// Every condition, those that hold too, in the order of the remedies: processes, state, place, vehicle. Pure.
 /// `needs` as in the supervisor's section: names, "A or B" where B stands in for A.
 [[nodiscard]] std::vector<PreflightLine> preflight(const PreflightInput& heard,
                                                    const std::vector<std::string>& needs = usual_needs());
 /// Those of the vehicle alone, behind the thruster driver; none of a simulator.
 [[nodiscard]] std::vector<PreflightLine> vehicle_lines(const PreflightInput& heard);
+/// What to do about a refusal of the supervisor whose words do not say it; empty: they do.
+[[nodiscard]] std::string remedy_of(const std::string& refusal);
 [[nodiscard]] bool all_ok(const std::vector<PreflightLine>& lines);
 /// One line as a terminal shows it: "ok       recorder      running: ...".
 [[nodiscard]] std::string shown(const PreflightLine& line);

@@ -139,6 +139,9 @@ class Supervisor {
   };
   [[nodiscard]] std::string order(const Operator& order);
   [[nodiscard]] std::string obey(const Operator& order);
+  /// Why it does not arm where the vehicle is, or cannot know it; empty: nothing speaks against the place.
+  [[nodiscard]] std::string against_the_place() const;
+  [[nodiscard]] std::string place() const;
   void miss_operator();
   [[nodiscard]] bool arm();
   void fly(const Operator& order);
@@ -180,7 +183,7 @@ class Supervisor {
   Phase phase_{Phase::kDisarmed};
   std::string reason_{"waits for the operator to arm"};
   bool armed_{false};
-  Answer answered_;                              // to the last order
+  Answer answered_;                              // to the order that was accepted last
   std::int64_t armed_by_{}, armed_challenge_{};  // kept after a stop: the zeros that follow it must be obeyed
   std::int64_t commands_{};                      // number of the last one
   double attends_{};                             // s between the operator's signs of life; 0: nobody stays

@@ -5,6 +5,7 @@
 
 #include "common/excitation/segments.hpp"
 #include "common/excitation/supervisor.hpp"
+#include "common/orders/words.hpp"
 
 namespace fathom::excitation {
 namespace {
@@ -32,33 +33,46 @@ void Supervisor::hear(const Answer& answer) {
 // An abort needs no permission. Everything else must come from somebody who has the key, once, and now.
 Answer Supervisor::hear(const Operator& order) {
   Answer answer{.sequence = order.sequence};
+  bool accepted = false;
   if (order.abort) {
     if (has_state_) check_.abort(state_.utime);
     stop(Phase::kAborted, "aborted by the operator", Then::kZero);
     answer.done = true;
     answer.text = reason_;
   } else if (check_.again(order)) {
+    accepted = true;
     answer = answered_;
+    if (answered_.armed && !armed_) {  // what was done then has ended since
+      answer.done = false;
+      answer.text = "ended since: " + reason_;
+    }
   } else {
     answer.text = has_state_ ? std::string{check_.objection(order, state_.utime)} : "no STATE has come";
-    if (answer.text.empty()) {
+    accepted = answer.text.empty();
+    if (accepted) {
       check_.accept(order);
       sign_of_life_ = state_.utime;
       answer.text = obey(order);
       answer.done = answer.text.empty();
-      if (answer.done) answer.text = std::string{name(phase_)} + ": " + reason_;
+      if (answer.done)
+        answer.text = order.order == orders::kPreflight ? place() : std::string{name(phase_)} + ": " + reason_;
     }
   }
   answer.utime = has_state_ ? state_.utime : order.utime;
   answer.challenge = check_.challenge();
   answer.accepted = check_.accepted();
   answer.armed = armed_;
-  if (!order.abort) answered_ = answer;
+  if (accepted) answered_ = answer;
   return answer;
 }
 
 /// Empty when it is done, else why not.
 std::string Supervisor::obey(const Operator& order) {
+  if (order.order == orders::kPreflight) {
+    const std::string why = against_the_place();
+    return why.empty() || !state_.valid ? why : why + ": " + place();
+  }
+  if (order.order == orders::kOther) return "another controller is armed; this supervisor stays out of it";
   std::string why;
   const bool flies = order.order == "fly";
   if (order.enable && settings_.wants_operator && !(order.attends > 0.0)) {
@@ -137,10 +151,15 @@ std::string Supervisor::order(const Operator& order) {
   return {};
 }
 
+// By the site's bounds: those around the place of the last arming were that trial's alone.
+std::string Supervisor::against_the_place() const {
+  return state_.valid ? Fence{settings_.fence}.outside(state_, 0.0) : "the state is not valid";
+}
+
+std::string Supervisor::place() const { return Fence{settings_.fence}.place(state_, settings_.surface); }
+
 bool Supervisor::arm() {
-  std::string why;
-  if (!state_.valid) why = "the state is not valid";
-  if (why.empty()) why = fence_.outside(state_, 0.0);
+  std::string why = against_the_place();
   if (const auto trouble = needs_.trouble(); why.empty() && trouble)
     why = trouble->process + " " + trouble->what + "; " + trouble->remedy;
   if (why.empty()) why = grave_;

@@ -64,9 +64,17 @@ void check_names(const std::vector<std::string>& without, const model::Vehicle& 
   }
 }
 
-void make_folder(const std::string& path) {  // before the long work, so that a bad path costs nothing
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
+/// Before the long work, so that a bad path costs nothing. Nothing is left of the try: who is refused or stopped finds
+/// no empty folder.
+void try_folder(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> missing;  // the deepest first
+  std::error_code error, ignored;
+  for (fs::path at = fs::absolute(path).lexically_normal(); !fs::exists(at, ignored) && at.has_relative_path();
+       at = at.parent_path())
+    missing.push_back(at);
+  fs::create_directories(path, error);
+  for (const fs::path& made : missing) fs::remove(made, ignored);  // never one with something in it
   if (error) throw InputError(path + ": cannot make this folder: " + error.message() + "; give another --out");
 }
 
@@ -148,7 +156,7 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     room = rehearsal_settings(options.site, options.config, vehicle);
   }
   check_names(options.without, vehicle);
-  make_folder(options.out);
+  try_folder(options.out);
   const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
   progress.expect(kReading, files, kLight);
   progress.expect(kReport, 1, 1.0);

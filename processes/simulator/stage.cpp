@@ -88,6 +88,7 @@ void Stage::hear(const Operator& order) {
 
 void Stage::hear(const Answer& answer) {
   if (answer.gate && answer.authentic && answer.process != "simulator") driver_ = answer;
+  gate_.hear(answer, simulator_.now());
 }
 
 void Stage::say(Answer answer) {

@@ -298,6 +298,21 @@ TEST_CASE("fathom: an effect to be taken out must be listed") {
   one_line(shell(common + "curent"), 1, "no effect has this name; listed are");
 }
 
+TEST_CASE("fathom: a diagnosis that is refused leaves no folder behind, and takes none away") {
+  const Scratch scratch;
+  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  const std::string common =
+      kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + scratch.path("missing.csv") + " --out ";
+  CHECK(shell(common + scratch.path("new/deep/out")).code == 1);
+  CHECK_FALSE(std::filesystem::exists(scratch.path("new")));
+  std::filesystem::create_directories(scratch.path("old/empty"));
+  CHECK(shell(common + scratch.path("old/empty/")).code == 1);
+  CHECK(shell(common + scratch.path("old/out/")).code == 1);
+  CHECK(std::filesystem::exists(scratch.path("old/empty")));
+  CHECK_FALSE(std::filesystem::exists(scratch.path("old/out")));
+  one_line(shell(common + scratch.path("v.yaml/out")), 1, "cannot make this folder");
+}
+
 TEST_CASE("fathom: what begins in the last 30 % of a run is fitted too, and other parts judge") {
   if (!test::kTimed) return;
   const Scratch scratch;

@@ -40,6 +40,7 @@ struct Vehicle {
   std::function<void()> meanwhile;  ///< every 5 ms
   std::string identifier{"running"};
   bool deaf_supervisor{false};  ///< one says HEALTH and hears nothing
+  double north{};               ///< m, where STATE sees it
 
   Vehicle() { start_driver(); }
   void start_driver() {
@@ -75,7 +76,7 @@ struct Vehicle {
       }
       if (i % 10 == 0) {
         StateEstimate state{.utime = now(), .valid = true};
-        state.p_WB = {0.0, 0.0, 0.75};
+        state.p_WB = {north, 0.0, 0.75};
         bus.publish("STATE", wire::encode(state));
       }
       if (meanwhile) meanwhile();
@@ -277,6 +278,52 @@ TEST_CASE("orders: fathom arm fails with the reason where it is refused or nobod
   vehicle.run(1.0);
   const auto armed = vehicle.tool("arm --operator " + kOperator);
   CHECK_MESSAGE(armed.code == 0, armed.text);
+}
+
+TEST_CASE("orders: what the supervisor refuses leaves the thruster driver disarmed, and fathom arm says so") {
+  Vehicle vehicle;
+  vehicle.identifier = "fault";
+  vehicle.start_supervisor();
+  const auto gate = [&] { return vehicle.bus.gate()->armed != 0; };
+  for (const char* command : {"arm", "fly line"}) {
+    CAPTURE(command);
+    const auto refused = vehicle.tool(command + std::string{" --needs thruster_driver --operator "} + kOperator);
+    CHECK(refused.code == 1);
+    CHECK_MESSAGE(refused.says("REFUSED: not armed: identifier is fault"), refused.text);
+    CHECK_MESSAGE(refused.says("thruster_driver  not armed"), refused.text);
+    CHECK_MESSAGE(vehicle.until([&] { return !gate(); }), vehicle.bus.said_of("thruster_driver"));
+  }
+  // Nor does it hang on the console: an order alone, whose giver is gone.
+  const auto order = give(vehicle.bus, {.enable = true, .order = "identify"});
+  const auto taken_back = [&] {
+    return vehicle.bus.said_of("thruster_driver").find("not armed: the supervisor refused") != std::string::npos &&
+           vehicle.bus.gate()->accepted >= order.sequence && !gate();
+  };
+  CHECK_MESSAGE(vehicle.until(taken_back), vehicle.bus.said_of("thruster_driver"));
+  CHECK(vehicle.strongest_since(0) == 0.0);
+  // A controller of somebody else's is armed beside it: the supervisor's word counts for nothing there.
+  const auto other = vehicle.tool("arm --no-supervisor --operator " + kOperator);
+  CHECK_MESSAGE(other.code == 0, other.text);
+  vehicle.run(1.0);
+  CHECK(gate());
+}
+
+TEST_CASE(
+    "preflight: fathom arm says where the vehicle is, and refuses outside of the fence before anything is armed") {
+  Vehicle vehicle;
+  vehicle.start_supervisor();
+  vehicle.north = 9.0;
+  vehicle.run(1.0);
+  const auto outside = vehicle.tool("arm --operator " + kOperator);
+  CHECK(outside.code == 1);
+  CHECK_MESSAGE(outside.says("NOT OK  place           too far north: at 9.00 m north"), outside.text);
+  CHECK(outside.says("bring it inside the room"));
+  CHECK(std::ranges::none_of(vehicle.bus.answers, [](const auto& each) { return each.armed != 0; }));
+  vehicle.north = 0.0;
+  vehicle.run(1.0);
+  const auto inside = vehicle.tool("arm --operator " + kOperator);
+  CHECK_MESSAGE(inside.code == 0, inside.text);
+  CHECK_MESSAGE(inside.says("ok      place           at 0.00 m north, 0.00 m east, the hull's top "), inside.text);
 }
 
 TEST_CASE("orders: number and time come from the vehicle, whatever the operator's clock shows") {

@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/printable.hpp"
+#include "common/orders/words.hpp"
 #include "common/runtime/command_line.hpp"
 #include "processes/fathom/operator/orders.hpp"
 
@@ -28,7 +29,7 @@ void print(const Excitation& e) {
 void order(const Options& options, bool enable, const std::string& word) {
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
-  if (enable) go_through(console, options.needs, !options.no_supervisor);
+  if (enable) go_through(console, orders, options.needs, !options.no_supervisor);
   const double stays = enable ? promised(options, console) : 0.0;
   orders.give(
       {.enable = enable, .order = word, .segment = options.segment, .duration = options.seconds, .attends = stays},
@@ -95,7 +96,7 @@ void add_operator(runtime::CommandLine& app) {
                         "identifier, thruster_driver or simulator, recorder or simulator");
   };
   with_needs(arm);
-  arm->callback([options] { order(*options, true, "identify"); });
+  arm->callback([options] { order(*options, true, options->no_supervisor ? orders::kOther : "identify"); });
   runtime::CommandLine* say = add(app, "order", "say hold, identify, skip or retry to an armed supervisor", options);
   with_key(say);
   say->add_option("word", options->word)->required()->one_of({"hold", "identify", "skip", "retry"});

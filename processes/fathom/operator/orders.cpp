@@ -2,20 +2,20 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "common/base/error.hpp"
+#include "common/orders/words.hpp"
 
 namespace fathom::tool {
 namespace {
 
-/// What to do about a refusal whose words do not say it.
-std::string remedy_of(const std::string& refusal) {
-  const auto says = [&](const char* words) { return refusal.find(words) != std::string::npos; };
-  if (says("tilted too far")) return "; set it upright, then arm again";
-  if (says(": too far ")) return "; bring it inside the room, by hand or by its own ground station, then arm again";
-  if (says("the state is not valid")) return "; 'fathom status' says what the estimator hears";
-  return {};
-}
+constexpr double kAgain = 0.25;  // s until what is not answered is said again
+constexpr const char* kGo = "the vehicle may not do what you want; fathom status tells more, fathom abort stops it";
+constexpr const char* kNoSupervisor = "NOT CONFIRMED: no supervisor answered (is it running? has it this key?)";
+
+/// What is armed when its order is answered may have been aborted meanwhile, and that was an answer, too.
+bool done(const Answer& one, const Operator& wanted) { return one.done && (one.armed || !wanted.enable); }
 
 }  // namespace
 
@@ -46,60 +46,104 @@ Operator Orders::numbered(Operator order) {
 
 void Orders::say(Operator order) { console_.say(numbered(std::move(order))); }
 
-void Orders::give(Operator wanted, bool supervisor) {
-  constexpr int kTries = 3;        // two operators may have taken the same number
-  constexpr double kAgain = 0.25;  // s until what is not answered is said again
-  const char* kGo = "the vehicle may not do what you want; fathom status tells more, fathom abort stops it";
+const Answer* Orders::answer(bool gate) const {
+  for (const auto& [process, each] : console_.answers) {
+    if (each.gate == gate) return &each;
+  }
+  return nullptr;
+}
+
+Operator Orders::exchange(const Operator& wanted, const std::function<bool()>& enough) {
+  constexpr int kTries = 3;  // two operators may have taken the same number
   for (int i = 0;; ++i) {
     const Operator order = numbered(wanted);
     console_.asked = order.sequence;
     console_.answers.clear();
-    const auto answer = [&](bool gate) -> const Answer* {
-      for (const auto& [process, each] : console_.answers) {
-        if (each.gate == gate) return &each;
-      }
-      return nullptr;
-    };
-    const auto all = [&] {
-      const Answer* gate = answer(true);
-      return gate != nullptr && (!gate->done || !supervisor || answer(false) != nullptr);
-    };
-    for (double waited = 0.0; waited < kReply && !all(); waited += kAgain) {
+    for (double waited = 0.0; waited < kReply && !enough(); waited += kAgain) {
       console_.say(order);
-      console_.listen(kAgain, all);
+      console_.listen(kAgain, enough);
     }
-    // What is armed when its order is answered may have been aborted meanwhile, and that was an answer, too.
-    const auto done = [&](const Answer& one) { return one.done && (one.armed || !wanted.enable); };
-    const Answer* gate = answer(true);
-    const auto was_late = [](const Answer* one) { return one != nullptr && !one->done && one->text == "heard before"; };
-    if ((was_late(gate) || (supervisor && was_late(answer(false)))) && i + 1 < kTries) continue;
-    for (const auto& [process, each] : console_.answers) {
-      std::printf("%-16s %s%s\n", process.c_str(), done(each) ? "" : "REFUSED: ", each.text.c_str());
-    }
-    if (gate == nullptr) throw InputError(std::string{"NOT CONFIRMED: the thrusters did not answer; "} + kGo);
-    if (!done(*gate)) throw InputError("refused by " + gate->process + ": " + gate->text);
-    if (!supervisor) return;
-    const Answer* other = answer(false);
-    if (other == nullptr)
-      throw InputError(std::string{"NOT CONFIRMED: no supervisor answered (is it running? has it this key?); "} + kGo);
-    if (!done(*other)) throw InputError("refused by " + other->process + ": " + other->text + remedy_of(other->text));
-    return;
+    const bool late = std::ranges::any_of(
+        console_.answers, [](const auto& each) { return !each.second.done && each.second.text == "heard before"; });
+    if (!late || i + 1 == kTries) return order;
   }
 }
 
-void go_through(Console& console, const std::vector<std::string>& needs, bool supervisor) {
-  constexpr double kLongest = 2.5;  // s: HEALTH comes each second
-  const auto lines = [&] {
-    return supervisor ? excitation::preflight(console.heard(), needs) : excitation::vehicle_lines(console.heard());
+std::optional<Answer> Orders::ask(const Operator& order) {
+  exchange(order, [&] { return answer(false) != nullptr; });
+  const Answer* said = answer(false);
+  return said == nullptr ? std::nullopt : std::optional{*said};
+}
+
+/// The thrusters hear the supervisor's refusal by themselves; said again, it refuses again.
+void Orders::see_it_disarmed(const Operator& order, bool was_armed) {
+  const auto disarmed = [&] { return !console_.gate->armed; };
+  for (double waited = 0.0; waited < kReply && !disarmed(); waited += kAgain) {
+    console_.say(order);
+    console_.listen(kAgain, disarmed);
+  }
+  if (disarmed()) {
+    std::printf("%-16s not armed\n", console_.gate->process.c_str());
+  } else if (was_armed) {
+    std::printf("%-16s still armed by an earlier order; fathom abort makes thrust zero\n",
+                console_.gate->process.c_str());
+  } else {
+    abort_now(console_, true);
+  }
+  std::fflush(stdout);
+}
+
+void Orders::give(const Operator& wanted, bool supervisor) {
+  const bool was_armed = console_.gate->armed;
+  const Operator order = exchange(wanted, [&] {
+    const Answer* gate = answer(true);
+    return gate != nullptr && (!gate->done || !supervisor || answer(false) != nullptr);
+  });
+  const std::map<std::string, Answer> answers = console_.answers;
+  for (const auto& [process, each] : answers) {
+    std::printf("%-16s %s%s\n", process.c_str(), done(each, wanted) ? "" : "REFUSED: ", each.text.c_str());
+  }
+  const auto found = [&](bool gate) {
+    const auto one = std::ranges::find_if(answers, [&](const auto& each) { return each.second.gate == gate; });
+    return one == answers.end() ? nullptr : &one->second;
   };
+  const Answer *gate = found(true), *other = found(false);
+  if (gate == nullptr) throw InputError(std::string{"NOT CONFIRMED: the thrusters did not answer; "} + kGo);
+  if (!done(*gate, wanted)) throw InputError("refused by " + gate->process + ": " + gate->text);
+  if (!supervisor) return;
+  if (other == nullptr) {
+    if (!wanted.enable || was_armed) throw InputError(std::string{kNoSupervisor} + "; " + kGo);
+    abort_now(console_, true);  // armed for nobody
+    throw InputError(std::string{kNoSupervisor} + "; nothing is armed");
+  }
+  if (done(*other, wanted)) return;
+  if (wanted.enable && !other->armed) see_it_disarmed(order, was_armed);
+  throw InputError("refused by " + other->process + ": " + other->text + excitation::remedy_of(other->text));
+}
+
+void go_through(Console& console, Orders& orders, const std::vector<std::string>& needs, bool supervisor) {
+  constexpr double kLongest = 2.5;  // s: HEALTH comes each second
+  excitation::PreflightInput heard;
+  std::optional<Answer> place;
+  const auto lines = [&] {
+    heard = console.heard();
+    heard.place = place;
+    return supervisor ? excitation::preflight(heard, needs) : excitation::vehicle_lines(heard);
+  };
+  const auto is_place = [](const excitation::PreflightLine& line) { return line.name == excitation::kPlace; };
   const bool simulated = console.gate && console.gate->process == "simulator";  // nothing stands behind it
   console.listen(kLongest, [&] {
     const auto all = lines();
-    return excitation::all_ok(all) && (simulated || !all.empty());
+    return std::ranges::all_of(all, [&](const auto& line) { return line.ok || is_place(line); }) &&
+           (simulated || !all.empty());
   });
-  for (const excitation::PreflightLine& line : lines()) std::printf("%s\n", excitation::shown(line).c_str());
+  const bool judged = std::ranges::any_of(lines(), is_place);  // a supervisor runs that can be asked
+  if (judged) place = orders.ask({.order = orders::kPreflight});
+  const auto all = lines();
+  for (const excitation::PreflightLine& line : all) std::printf("%s\n", excitation::shown(line).c_str());
   std::fflush(stdout);
-  if (!excitation::all_ok(lines())) throw InputError("not armed: see to what is NOT OK above, then arm again");
+  if (judged && !place) throw InputError(std::string{kNoSupervisor} + "; nothing is armed");
+  if (!excitation::all_ok(all)) throw InputError("not armed: see to what is NOT OK above, then arm again");
 }
 
 }  // namespace fathom::tool

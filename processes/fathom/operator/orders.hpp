@@ -1,6 +1,8 @@
 // Orders and their answers, as pairs: what an operator's commands share.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,13 +35,20 @@ class Orders {
   explicit Orders(Console& console);
 
   /// Waits for the answers. `supervisor`: the supervisor's counts too. Prints who said what.
-  /// InputError, with the reason, when one refused or did not answer.
-  void give(Operator order, bool supervisor);
+  /// InputError, with the reason, when one refused or did not answer. What this order armed is then armed no more, and
+  /// that is said too, or that it is NOT CONFIRMED.
+  void give(const Operator& order, bool supervisor);
+  /// The supervisor's answer to an order that changes nothing; nothing when it did not answer.
+  [[nodiscard]] std::optional<Answer> ask(const Operator& order);
   /// Says it once and waits for nothing: signs of life, steering.
   void say(Operator order);
 
  private:
   [[nodiscard]] Operator numbered(Operator order);
+  /// Says it, again where nobody hears, until `enough` was answered or kReply has passed. As it was said last.
+  Operator exchange(const Operator& order, const std::function<bool()>& enough);
+  [[nodiscard]] const Answer* answer(bool gate) const;
+  void see_it_disarmed(const Operator& order, bool was_armed);
 
   Console& console_;
   std::int64_t given_{};
@@ -59,7 +68,7 @@ inline constexpr char kNobodySays[] =
 void attend(Console& console, Orders& orders, double promised, bool supervised);
 /// Line by line what must hold before anything moves, of the vehicle alone where no `supervisor` of ours commands;
 /// InputError where it does not.
-void go_through(Console& console, const std::vector<std::string>& needs, bool supervisor);
+void go_through(Console& console, Orders& orders, const std::vector<std::string>& needs, bool supervisor);
 /// Thrusters to zero. InputError "NOT CONFIRMED" unless THRUSTERS says within two seconds that they are.
 void abort_now(Console& console, bool checked);
 /// Keyboard or joystick to forces, until Ctrl-C.

@@ -115,7 +115,7 @@ void steer(const OperatorOptions& options) {
   Hand hand{options};
   Console console{options.url, Console::Hears::kAll, operator_keys(options.operator_file)};
   Orders orders{console};
-  go_through(console, options.needs, true);
+  go_through(console, orders, options.needs, true);
   orders.give({.enable = true, .order = "hold", .attends = kPromised}, true);
   std::fflush(stdout);
   console.excitation.reset();  // of before

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/driver/thruster_gate.hpp"
+#include "common/orders/words.hpp"
 
 using namespace fathom;
 using namespace fathom::driver;
@@ -261,6 +262,54 @@ TEST_CASE("gate: an order to arm that was given before an abort and comes after 
   gate.hear(surge(2.2, "supervisor", 1.9), at(2.2));
   CHECK(gate.wrench(at(2.2)).isZero());
   CHECK(gate.hear(arm(2.5), at(2.5)).done);
+}
+
+TEST_CASE(
+    "gate: what the supervisor refuses is armed no more, unless somebody is obeyed or another controller was armed") {
+  const auto refusal = [](const Operator& order) {
+    return Answer{.challenge = kChallenge, .sequence = order.sequence, .text = "outside", .authentic = true};
+  };
+  ThrusterGate gate{kChallenge};
+  const Operator order = arm(1.0);
+  CHECK(gate.hear(order, at(1.0)).armed);
+  Answer other = refusal(order);  // none of these is the supervisor's refusal of this order
+  other.authentic = false;
+  CHECK_FALSE(gate.hear(other, at(1.05)));
+  other = refusal(order);
+  other.gate = true;
+  CHECK_FALSE(gate.hear(other, at(1.05)));
+  other = refusal(order);
+  other.armed = true;
+  CHECK_FALSE(gate.hear(other, at(1.05)));
+  CHECK_FALSE(gate.hear(refusal(arm(0.9)), at(1.05)));
+  CHECK(gate.armed());
+  CHECK(gate.hear(refusal(order), at(1.05)));
+  CHECK_FALSE(gate.armed());
+  CHECK(gate.reason(at(1.1)) == "not armed: the supervisor refused");
+  const Answer again = gate.hear(order, at(1.2));  // the console says it again
+  CHECK_FALSE(again.done);
+  CHECK(again.text == "not armed: the supervisor refused");
+  gate.hear(surge(1.3, "supervisor", 1.0), at(1.3));
+  CHECK(gate.wrench(at(1.3)).isZero());
+  CHECK(gate.hear(arm(2.0), at(2.0)).armed);
+  CHECK(gate.reason(at(2.0)) == "no command");
+
+  ThrusterGate flying{kChallenge};  // what follows a trial is flown on, as before the refused order
+  flying.hear(arm(kArmed), at(kArmed));
+  flying.hear(surge(1.0), at(1.0));
+  const Operator late = arm(1.1);
+  flying.hear(late, at(1.1));
+  CHECK_FALSE(flying.hear(refusal(late), at(1.2)));
+  flying.hear(surge(1.25), at(1.25));
+  CHECK(flying.wrench(at(1.25))(0) == 10.0);
+
+  ThrusterGate another{kChallenge};
+  Operator foreign = arm(1.0);
+  foreign.order = orders::kOther;
+  another.hear(foreign, at(1.0));
+  CHECK_FALSE(another.hear(refusal(foreign), at(1.05)));
+  another.hear(surge(1.1, "a controller of another", 1.0), at(1.1));
+  CHECK(another.wrench(at(1.1))(0) == 10.0);
 }
 
 TEST_CASE("gate: who asks for thrust in vain is told, until it is armed; what is on its way at an abort is not meant") {

@@ -149,6 +149,21 @@ TEST_CASE("fence: outside of the envelope it says why") {
   CHECK(fence.outside(tilted, 0.0) == "tilted too far");
 }
 
+TEST_CASE("fence: where the vehicle is, is told with the water above it and the room to the nearest bound") {
+  FenceSettings settings;
+  settings.low = {-2.0, -1.0, 0.3};
+  settings.high = {2.0, 1.0, 1.2};
+  constexpr double kSurface = 0.15;  // m, z of Bo with the hull's top at the surface
+  CHECK(Fence{settings}.place(at({1.5, -0.9, 0.75}), kSurface) ==
+        "at 1.50 m north, -0.90 m east, the hull's top 0.60 m below the surface, 0.10 m from the bound: west");
+  CHECK(Fence{settings}.place(at({2.5, 0.0, 0.1}), kSurface) ==
+        "at 2.50 m north, 0.00 m east, the hull's top 0.05 m above the surface, 0.50 m beyond the bound: north");
+  settings.low.setConstant(-std::numeric_limits<double>::infinity());
+  settings.high.setConstant(std::numeric_limits<double>::infinity());
+  CHECK(Fence{settings}.place(at({0.0, 0.0, 5.15}), kSurface) ==
+        "at 0.00 m north, 0.00 m east, the hull's top 5.00 m below the surface");
+}
+
 TEST_CASE("fence: the largest thrust held against every side, in every heading, touches nothing") {
   const auto settings = test::tank_settings();
   const Fence fence{settings.supervisor.fence};

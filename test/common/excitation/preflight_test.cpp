@@ -20,6 +20,7 @@ PreflightInput ready() {
   VehicleCondition vehicle{.utime = 1, .kind = "ArduSub"};
   vehicle.lines = {{"armed", true, false, "armed"}, {"mode", true, false, "MANUAL"}};
   heard.vehicle = {vehicle, 0.3};
+  heard.place = Answer{.done = true, .text = "at 0.10 m north, 0.20 m east"};
   return heard;
 }
 
@@ -40,7 +41,7 @@ TEST_CASE("preflight: all that must hold is listed, the recorder among it, and n
   const auto lines = preflight(ready());
   CHECK(all_ok(lines));
   for (const char* name :
-       {"estimator", "identifier", "thruster_driver", "recorder", "supervisor", "state", "armed", "mode"}) {
+       {"estimator", "identifier", "thruster_driver", "recorder", "supervisor", "state", "place", "armed", "mode"}) {
     CAPTURE(name);
     CHECK(std::any_of(lines.begin(), lines.end(), [&](const PreflightLine& line) { return line.name == name; }));
   }
@@ -71,6 +72,19 @@ TEST_CASE("preflight: each trouble alone refuses, and its line names it") {
   heard = ready();
   heard.state.reset();
   CHECK(against(heard) == "state ");
+  heard = ready();
+  heard.place = Answer{.text = "too far north: at 2.45 m north"};
+  CHECK(against(heard) == "place ");
+  const auto lines = preflight(heard);
+  const auto place = std::ranges::find(lines, kPlace, &PreflightLine::name);
+  REQUIRE(place != lines.end());
+  CHECK(
+      place->text ==
+      "too far north: at 2.45 m north; bring it inside the room, by hand or by its own ground station, then arm again");
+  heard.place.reset();  // it was asked and did not answer
+  CHECK(against(heard) == "place ");
+  heard.health["supervisor"].age = 4.0;  // nobody is there to ask
+  CHECK(against(heard) == "supervisor ");
   heard = ready();
   heard.vehicle->sample.lines[0] = {"armed", false, false, "the vehicle is disarmed: arm it"};
   CHECK(against(heard) == "armed ");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/orders/words.hpp"
 #include "test/common/excitation/supervisor_loop.hpp"
 #include "test/support/scratch.hpp"
 
@@ -40,7 +41,10 @@ TEST_CASE("supervisor: nothing is commanded before the operator has armed, and n
   loop.supervisor.hear(Operator{.abort = true});
   CHECK(loop.supervisor.hear(kept).text.find("before the abort") != std::string::npos);
   loop.run(2.0);
-  loop.supervisor.hear(good);  // replayed
+  const Answer replayed = loop.supervisor.hear(good);
+  CHECK_FALSE(replayed.done);
+  CHECK_FALSE(replayed.armed);
+  CHECK(replayed.text == "ended since: aborted by the operator");
   loop.run(0.5);
   CHECK(loop.supervisor.phase() == Phase::kAborted);
   CHECK_FALSE(loop.thrust());
@@ -72,6 +76,65 @@ TEST_CASE("supervisor: it does not arm on an invalid state, outside of the envel
   loop.arm();
   loop.run(0.2);
   CHECK(loop.commands > 0);
+}
+
+TEST_CASE("supervisor: asked before, it says whether it would arm at this place, and nothing is armed by that") {
+  Loop loop;
+  loop.run(0.5);
+  const auto ask = [&] {
+    Operator order = order_to_arm(loop.plant.utime());
+    order.enable = false;
+    order.order = orders::kPreflight;
+    return loop.supervisor.hear(order);
+  };
+  const Answer inside = ask();
+  CHECK(inside.done);
+  CHECK_FALSE(inside.armed);
+  CHECK_MESSAGE(inside.text.starts_with("at 0.2"), inside.text);
+  CHECK(inside.text.find("below the surface") != std::string::npos);
+  loop.run(0.5);
+  CHECK(loop.commands == 0);
+  CHECK(loop.supervisor.reason() == "waits for the operator to arm");
+  loop.plant.place({2.45, 0.0, 0.75});
+  loop.run(0.1);
+  const Answer outside = ask();
+  CHECK_FALSE(outside.done);
+  CHECK_MESSAGE(outside.text.starts_with("too far north: at 2.45 m north"), outside.text);
+  CHECK(outside.text.find("beyond the bound: north") != std::string::npos);
+  loop.valid = false;
+  loop.run(0.1);
+  CHECK(ask().text == "the state is not valid");
+}
+
+TEST_CASE("supervisor: in open water it arms again wherever the vehicle has drifted since the last trial") {
+  test::TankSettings open = settings_without_model();
+  open.supervisor.fence.low.setConstant(-std::numeric_limits<double>::infinity());
+  open.supervisor.fence.high.setConstant(std::numeric_limits<double>::infinity());
+  Loop loop{open};
+  loop.run(0.2);
+  loop.arm();
+  loop.run(1.0);
+  CHECK(loop.commands > 0);
+  loop.supervisor.hear(Operator{.abort = true});
+  loop.run(2.0);
+  loop.plant.place({3.0 * open.supervisor.open_range, 0.0, 0.75});
+  loop.run(0.1);
+  loop.arm();
+  loop.run(1.0);
+  CHECK_MESSAGE(loop.commands > 0, loop.supervisor.reason());
+  CHECK_FALSE(loop.supervisor.reason().starts_with("not armed"));
+}
+
+TEST_CASE("supervisor: an order that arms another controller arms no supervisor") {
+  Loop loop;
+  loop.run(0.5);
+  Operator order = order_to_arm(loop.plant.utime());
+  order.order = orders::kOther;
+  const Answer answer = loop.supervisor.hear(order);
+  CHECK_FALSE(answer.done);
+  CHECK_FALSE(answer.armed);
+  loop.run(0.5);
+  CHECK(loop.commands == 0);
 }
 
 TEST_CASE("supervisor: commands name the order that armed, those after a stop too, until the next arming") {
