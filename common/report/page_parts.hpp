@@ -38,6 +38,10 @@ class Album {
 [[nodiscard]] std::string candidate_section(const DiagnosisResult& result);
 [[nodiscard]] std::string parameter_section(const DiagnosisResult& result);
 [[nodiscard]] std::string certainty_section(const DiagnosisResult& result);
+/// A section whose heading unfolds it. What is folded does not print.
+[[nodiscard]] std::string folded(std::string section);
+/// A number that is read at a glance, on the first screen.
+[[nodiscard]] std::string tile(const std::string& big, const std::string& small);
 /// Which build wrote the page: the last line of every page.
 [[nodiscard]] std::string version_line();
 
