@@ -42,7 +42,7 @@ constexpr std::array kAblations{
     Ablation{"following", "axes that do not follow their thrust as a reason for \"no_model\"",
              [](Settings& s) { s.thresholds.following = -kNever; }},
     Ablation{"two_scores", "numbers of the multi-horizon score",
-             [](Settings& s) { s.thresholds.disagreement = s.thresholds.far_apart = kNever; }},
+             [](Settings& s) { s.thresholds.disagreement = kNever; }},
 };
 
 }  // namespace

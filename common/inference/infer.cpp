@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/base/statistics.hpp"
 #include "common/model/rollout.hpp"
 #include "common/residual/open_loop.hpp"
 
@@ -75,18 +74,6 @@ std::vector<double> followed(const likelihood::Problem& problem, const Seen& see
   return shares;
 }
 
-/// In standard deviations, the median over base numbers by which both scores differ.
-double apart(const likelihood::Fit& one, const likelihood::Fit& other) {
-  const Eigen::VectorXd sigma = one.sigma();
-  std::vector<double> off;
-  for (std::size_t j = 0; j < one.numbers.size() && j < other.numbers.size(); ++j) {
-    if (one.numbers[j].kind != NumberKind::kBase) continue;
-    const double difference = value(one.hypothesis, one.numbers[j]) - value(other.hypothesis, other.numbers[j]);
-    off.push_back(std::abs(difference) / std::max(sigma[static_cast<Eigen::Index>(j)], 1e-12));
-  }
-  return median(std::move(off));
-}
-
 likelihood::Fit by_horizon(const likelihood::Problem& problem, const likelihood::Fit& fit, int threads) {
   likelihood::Fit reported = likelihood::fit(problem, fit.hypothesis, fit.noise,
                                              {.noise_rounds = 1,
@@ -116,8 +103,7 @@ double fall_of_error(const likelihood::Problem& problem, std::span<const Trial> 
                     windows, {}, compared);
   const residual::Ratio ratio = ratio_of(compared);
   const bool sure = ratio.windows > 2 && std::log(ratio.value) + kSure * ratio.log_error < 0.0;
-  const double chance = static_cast<double>(other.numbers.size()) / (4.0 * std::max(ratio.windows, 1));
-  return sure ? std::max(0.0, 1.0 - ratio.value - chance) : 0.0;
+  return sure ? 1.0 - ratio.value : 0.0;
 }
 
 double length_of(const likelihood::Problem& problem) {
@@ -237,8 +223,7 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
       gain = deadline.over() ? 0.0 : fall_of_error(problem, trials, fit, by);
       progress.done(kHorizonFit.phase);
-      const bool wrong = gain > settings.thresholds.disagreement || apart(fit, by) > settings.thresholds.far_apart;
-      return wrong ? by : fit;
+      return gain > settings.thresholds.disagreement ? by : fit;
     };
     double of_base = 0.0;
     if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);

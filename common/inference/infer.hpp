@@ -39,7 +39,7 @@ struct Conclusion {
   double disagreement{};
   /// Numbers for reports and exports, all of one fit, of the base model and of the best: those of the likelihood, which
   /// wastes nothing where the model is right, or of the multi-horizon score where these predict better by more than
-  /// Thresholds::disagreement or lie further than Thresholds::far_apart away.
+  /// Thresholds::disagreement.
   likelihood::Fit reported_base, reported;
 };
 

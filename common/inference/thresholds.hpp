@@ -33,13 +33,10 @@ struct Thresholds {
   double foreign_unit{5.0};       ///< fitted over expected inertia, or its inverse: thrust in another unit
   double absurd{10.0};            ///< times its prior's mean and sigma together: a number that nothing can have
   double shortest{20.0};          ///< s of data to judge at all: ten blocks for each number of an ordinary model
-  /// Share by which the open-loop error of the fitted runs surely falls with the numbers of the multi-horizon score: a
-  /// right model's differ by what chance leaves of numbers, a percent or two.
-  double disagreement{0.05};
-  /// Deviations by which the median base number differs between both scores. Of 30 sealed sets with a complete model
-  /// none had more than 1.6; where something unlisted acted it was 2 to 6, and unseen runs erred by 1 to 6 % less with
-  /// the numbers of the multi-horizon score.
-  double far_apart{2.0};
+  /// Share by which the open-loop error of the fitted runs surely falls with the numbers of the multi-horizon score. Of
+  /// sealed sets with a complete model none had more than .002; where something unlisted acted it was .03 to .2, and
+  /// unseen runs erred by as much less.
+  double disagreement{0.01};
 
   /// How often a name of that evidence, nats, is right, as sealed sets show (docs/benchmark.md has the curve): no model
   /// is exact, so that evidence of an approximate one does not make certain. The odds grow with its root, that is
