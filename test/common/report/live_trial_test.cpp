@@ -233,16 +233,22 @@ TEST_CASE("live trial: page, table and JSON say when the model lacks something")
   CHECK(page.find("badge adequate") == std::string::npos);
 }
 
-TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
-  for (const int lacking : {0, 1, 2}) {
-    Recording recording = trial();
-    if (lacking == 0) recording.state.clear();
-    if (lacking == 1) recording.excitation.clear();
-    if (lacking == 2) recording.model.clear();
-    const char* const channels[] = {"no STATE", "no EXCITATION", "no MODEL"};
-    const std::string complaint =
-        test::complaint_of<InputError>([&] { (void)summarise(recording, vehicle(), site()); });
-    CHECK_MESSAGE(complaint.find(channels[lacking]) != std::string::npos, complaint);
+TEST_CASE("live trial: a log without STATE is refused; without supervisor or identifier it is drawn, and says so") {
+  Recording recording = trial();
+  recording.state.clear();
+  const std::string complaint = test::complaint_of<InputError>([&] { (void)summarise(recording, vehicle(), site()); });
+  CHECK_MESSAGE(complaint.find("no STATE") != std::string::npos, complaint);
+  for (const int lacking : {1, 2, 3}) {
+    recording = trial();
+    if ((lacking & 1) != 0) recording.excitation.clear();
+    if ((lacking & 2) != 0) recording.model.clear();
+    const LiveTrialResult result = summarise(recording, vehicle(), site());
+    CHECK((result.reason.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
+    CHECK((result.reason.find("no MODEL") != std::string::npos) == ((lacking & 2) != 0));
+    CHECK(result.visits.empty() == ((lacking & 1) != 0));
+    CHECK(result.parameters.empty() == ((lacking & 2) != 0));
+    for (const std::string& text : {to_table(result), to_html(result, recording, vehicle(), site())})
+      CHECK((text.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
   }
 }
 
