@@ -1,6 +1,6 @@
 // What a live trial's log becomes: modes from EXCITATION, the last model, a table, JSON, and a page whose comparison
 // with the truth stands apart and is there only when the truth is.
-#include "common/report/live_trial.hpp"
+#include "common/report/live/live_trial.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/health_words.hpp"
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "test/support/schema.hpp"
 #include "test/support/scratch.hpp"
 
