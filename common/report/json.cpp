@@ -93,6 +93,7 @@ Json effects(const std::vector<EffectFound>& found) {
                      {"accepted", e.accepted},
                      {"parameters", named(e.parameters)},
                      {"log_odds", number_or_null(e.log_odds)},
+                     {"probability", number_or_null(e.probability)},
                      {"alternatives", names},
                      {"rivals", rivals},
                      {"told_apart_by", told_apart},

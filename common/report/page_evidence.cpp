@@ -123,7 +123,7 @@ std::string candidate_section(const DiagnosisResult& result) {
     const std::string mark = !found                            ? "<span class=\"mark no\">refused</span>"
                              : result.verdict == "unexplained" ? "<span class=\"mark\">kept</span>"
                                                                : "<span class=\"mark\">accepted</span>";
-    const double probability = found ? probability_of(*found) : std::nan("");
+    const double probability = found ? found->probability : std::nan("");
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
             cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
             (found ? cell(bar(kWhole, probability) + "<div>" + escape(sure(probability)) + "</div>", "bars")
@@ -193,7 +193,7 @@ std::string certainty_section(const DiagnosisResult& result) {
   for (const auto& effect : result.effects) {
     if (!effect.sentence.empty()) {
       html += "<p class=\"note\">" + escape(effect.sentence) +
-              " <b>It is this cause: " + escape(sure(probability_of(effect))) + ".</b></p>\n";
+              " <b>It is this cause: " + escape(sure(effect.probability)) + ".</b></p>\n";
     }
     if (!effect.alternatives.empty()) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +

@@ -203,12 +203,12 @@ std::string causes(const DiagnosisResult& result) {
     std::string others;
     for (const Alternative& other : effect.alternatives)
       others += (others.empty() ? "" : ", ") + effect_title(other.name);
-    const bool likely = probability_of(effect) >= 0.5;
+    const bool likely = effect.probability >= 0.5;
     const std::string what = of_sensor(effect) ? "In the sensors, and corrected: "
                              : likely          ? ""
                                                : "A stand-in, hardly the cause: ";
     items += "<li>" + what + cause_line(effect) + " <span class=\"soft\">" +
-             "it is this cause: " + escape(sure(probability_of(effect))) +
+             "it is this cause: " + escape(sure(effect.probability)) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
   }
   std::string refused;
@@ -234,12 +234,6 @@ std::string sure(double probability) {
   constexpr double kNearly = 0.999;
   if (!std::isfinite(probability)) return "-";
   return probability > kNearly ? "> 99.9 %" : percent(probability);
-}
-
-double probability_of(const EffectFound& effect) {
-  double odds = effect.log_odds;
-  for (const Alternative& other : effect.alternatives) odds = std::min(odds, other.log_odds);
-  return 1.0 / (1.0 + std::exp(-odds));
 }
 
 std::string cause_line(const EffectFound& effect) {

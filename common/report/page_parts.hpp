@@ -28,8 +28,6 @@ class Album {
 [[nodiscard]] std::string cause_line(const EffectFound& effect);
 /// 0.93 becomes "93 %"; what is nearly certain "> 99.9 %".
 [[nodiscard]] std::string sure(double probability);
-/// Probability that the name is right, beside nothing and beside every rival.
-[[nodiscard]] double probability_of(const EffectFound& effect);
 [[nodiscard]] std::string error_section(const DiagnosisResult& result, Album& album);
 [[nodiscard]] std::string motion_section(const DiagnosisReport& report, Album& album);
 [[nodiscard]] std::string sensor_section(const DiagnosisReport& report);

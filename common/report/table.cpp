@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/report/correction.hpp"
+#include "common/report/page_parts.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -105,12 +106,12 @@ std::string score(const std::string& title, double log_odds) {
 
 void accepted(Text& out, const DiagnosisResult& result) {
   out.title(result.verdict == "unexplained" && !result.effects.empty() ? "Effects kept" : "Effects accepted");
-  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(head_of_scores("odds"));
+  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(head_of_scores("probability"));
   bool any = false;
   for (const auto& effect : result.effects) {
     if (!effect.accepted) continue;
     any = true;
-    out.line(score(effect_title(effect.name, effect.variant), effect.log_odds) + odds(effect.log_odds));
+    out.line(score(effect_title(effect.name, effect.variant), effect.log_odds) + sure(effect.probability));
     for (const auto& value : effect.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");
     for (const Alternative& other : effect.alternatives)
       out.paragraph("cannot be told apart from " + other.name + " (" + odds(other.log_odds) + " against it)", "      ");

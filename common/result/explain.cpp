@@ -84,7 +84,8 @@ void evidence(Lines& out, const Stored& stored) {
   out.title("3. What was suspected, and what the evidence says");
   for (const EffectFound& effect : stored.result.effects) {
     if (!effect.accepted) continue;
-    out.line(report::effect_title(effect.name, effect.variant) + ": odds of the name " + report::odds(effect.log_odds),
+    out.line(report::effect_title(effect.name, effect.variant) + ": it is this cause: " + percent(effect.probability) +
+                 ", log odds " + report::log_odds_text(effect.log_odds),
              "  + ");
     for (const NamedValue& value : effect.parameters)
       out.line(value.name + " = " + report::with_interval(value), "", 6);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -84,6 +85,7 @@ EffectFound effect(const Json& e) {
                     .parameters = numbers(e.at("parameters")),
                     .log_odds = real(e, "log_odds"),
                     .sentence = text(e, "sentence")};
+  found.probability = e.contains("probability") ? real(e, "probability") : 1.0 / (1.0 + std::exp(-found.log_odds));
   for (const Json& rival : list(e, "rivals"))
     found.alternatives.push_back({text(rival, "name"), real(rival, "log_odds")});
   for (const Json& told : list(e, "told_apart_by"))

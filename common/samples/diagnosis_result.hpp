@@ -75,7 +75,10 @@ struct EffectFound {
   std::string variant;  ///< e.g. "thruster 3"; empty when the effect has one form only
   bool accepted{true};
   std::vector<NamedValue> parameters;
-  double log_odds{};  ///< natural, that the name is right: against nothing, what a part explains, and alternatives
+  double log_odds{};  ///< natural, over what is likeliest without it
+  /// That the name is right: beside other names, and as often as names of such odds are right on data whose truth is
+  /// known (docs/benchmark.md).
+  double probability{1.0};
   std::vector<Alternative> alternatives;  ///< other effects that the data cannot rule out
   std::string sentence;
   std::vector<ToldApart> told_apart{};  ///< from some alternatives, by a segment; only where a site was given

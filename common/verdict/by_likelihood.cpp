@@ -111,6 +111,7 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
                        .variant = form,
                        .parameters = numbers_of_effect(fit, e, sigma),
                        .log_odds = found.odds[e],
+                       .probability = found.probability[e] * found.reliability[e],
                        .sentence = std::string(effects[e].effect->sentence())};
     if (!found.rival[e].empty() && found.probability[e] < inference::Thresholds{}.name_probability)
       effect.alternatives.push_back(
@@ -314,7 +315,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   }
   const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
   if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
-    conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
+    conclusion.skilled = skilled_axes(vehicle, train, unseen, input_step, conclusion);
     conclusion.reasons.clear();
     conclude(problem, settings.thresholds, conclusion);
   }

@@ -141,6 +141,7 @@ inline DiagnosisReport made_up_report(const FixtureOptions& options = {}) {
                 true,
                 {{"time_constant", 0.352, 0.012, "s"}},
                 214.6,
+                0.92,
                 {},
                 "The thrusters reach a new force only after about 0.35 s."},
                {"current",
@@ -148,6 +149,7 @@ inline DiagnosisReport made_up_report(const FixtureOptions& options = {}) {
                 true,
                 {{"V_N", 0.081, 0.009, "m/s"}, {"V_E", -0.034, 0.011, "m/s"}},
                 18.2,
+                0.75,
                 {{"tether_tension", 1.1}},
                 "The water moves at 0.09 m/s towards the north-west."}};
   r.candidates = {{"thruster_lag", "", 214.6, "explains the late answer in every axis"},

@@ -37,8 +37,8 @@ TEST_CASE("result.json holds exactly the promised names") {
   CHECK(file["train"].size() == 5);
   CHECK(keys(file["consistency"][0]) ==
         Names{"action", "evidence", "finding", "reference", "run", "signal", "size", "unit"});
-  CHECK(keys(file["effects"][0]) == Names{"accepted", "alternatives", "log_odds", "name", "parameters", "rivals",
-                                          "sentence", "told_apart_by", "variant"});
+  CHECK(keys(file["effects"][0]) == Names{"accepted", "alternatives", "log_odds", "name", "parameters", "probability",
+                                          "rivals", "sentence", "told_apart_by", "variant"});
   CHECK(file["effects"][1]["alternatives"] == json{"tether_tension"});
   CHECK(file["effects"][1]["rivals"][0]["name"] == "tether_tension");
   CHECK(file["effects"][1]["rivals"][0]["log_odds"] == 1.1);

@@ -94,7 +94,7 @@ TEST_CASE("explain: every reason with its value and threshold, within the termin
     if (c == '\n' && !flat.empty() && flat.back() != ' ') flat += ' ';
   }
   for (const char* words :
-       {"Beluga <test>: effect", "Thrust comes late.", "thruster lag: odds of the name", "time_constant = 0.352",
+       {"Beluga <test>: effect", "Thrust comes late.", "thruster lag: it is this cause: 92 %", "time_constant = 0.352",
         "or tether_tension: ", "threshold 0.4", "probability 0.999, threshold 0.95",
         "The residual goes with something that was measured: X with position",
         "fraction of the residual's variance 0.400, threshold 0.100", "What to do next"}) {
@@ -111,7 +111,7 @@ TEST_CASE("explain: what is open is never called settled, and what was not asked
   w.result.verdict = "unexplained";
   const std::string text = result::explained(result::read_result(w.save()));
   CHECK(text.find("Nothing is open") == std::string::npos);
-  CHECK(text.find(": odds of the name") != std::string::npos);
+  CHECK(text.find(": it is this cause: ") != std::string::npos);
   w.result.verdict = "adequate";
   CHECK(result::explained(result::read_result(w.save())).find("Nothing is open") != std::string::npos);
 }
