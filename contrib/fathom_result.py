@@ -16,7 +16,7 @@ from collections import namedtuple
 
 import numpy
 
-SCHEMA = 1  # versions of docs/schema that this module reads
+SCHEMAS = (1, 2)  # versions of docs/schema that this module reads
 AXES = ("u", "v", "w", "p", "q", "r")
 
 Number = namedtuple("Number", "value std unit interval")
@@ -39,9 +39,9 @@ class Result:
     """A file's content, `data` as json gives it, and the parts that one computes with as numpy arrays."""
 
     def __init__(self, data):
-        if data.get("schema") != SCHEMA:
-            raise ValueError("schema %r: this reader knows %d; take the one that came with the program" %
-                             (data.get("schema"), SCHEMA))
+        if data.get("schema") not in SCHEMAS:
+            raise ValueError("schema %r: this reader knows %s; take the one that came with the program" %
+                             (data.get("schema"), " and ".join(map(str, SCHEMAS))))
         self.data = data
         self.kind = data.get("kind", "diagnosis")
         live = self.kind == "live trial"

@@ -37,7 +37,9 @@ EventLog::EventLog(std::string path) : path_{std::move(path)} {
   std::array<std::uint8_t, 4> start{};
   if (size_ == 0) throw InputError(path_ + ": empty file, no LCM log; record one with lcm-logger");
   if (size_ < start.size() || !read(start) || !begins_with_sync(start)) {
-    throw InputError(path_ + ": byte 0: not an LCM log (those begin with ED A1 DA 01); record one with lcm-logger");
+    throw InputError(path_ +
+                     ": byte 0: not an LCM log (those begin with ED A1 DA 01); record one with lcm-logger, or make one "
+                     "of another recording or table with 'fathom import'");
   }
   file_.seekg(0);
 }

@@ -160,10 +160,12 @@ PairResult compare_flow(std::span<const Recording> seen, const model::Site& site
   PairResult flow = std::move(checked.pairs.at("dvl"));
   const double least = least_arm(seen, site);
   std::erase_if(flow.findings, [&](const ConsistencyFinding& one) { return !is_the_flows(one, least); });
-  for (ConsistencyFinding& one : flow.findings) {
+  const auto rename = [](auto& one) {  // compared as if they were a velocity log and a motion capture
     one.signal.replace(0, 3, "optical_flow");
     one.reference = "tag_pose";
-  }
+  };
+  std::ranges::for_each(flow.findings, rename);
+  std::ranges::for_each(flow.statements, rename);
   return flow;
 }
 

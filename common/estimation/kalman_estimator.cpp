@@ -5,8 +5,8 @@
 namespace fathom::estimation {
 namespace {
 
-template <class... Kinds>
-bool holds(const std::variant<Ahrs, PoseCapture, Dvl, Depth, Usbl, Ranges, TagPose>& sample) {
+template <class... Kinds, class Sample>
+bool holds(const Sample& sample) {
   return (std::holds_alternative<Kinds>(sample) || ...);
 }
 
@@ -74,10 +74,17 @@ void KalmanEstimator::release(Utime until) {
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(done));
 }
 
+bool KalmanEstimator::used(const Sample& sample) const {
+  if (holds<OpticalFlow>(sample)) return settings_.flow && settings_.floor;
+  if (holds<LaserRange>(sample)) return settings_.laser && settings_.floor;
+  return true;
+}
+
 void KalmanEstimator::use(const Event& event) {
+  if (!used(event.sample)) return;
   now_ = event.utime;
   const SampleView view = std::visit([](const auto& one) { return SampleView{&one}; }, event.sample);
-  if (holds<PoseCapture, Dvl, Usbl, Ranges, TagPose>(event.sample)) fixed_ = event.utime;
+  if (holds<PoseCapture, Dvl, Usbl, Ranges, TagPose, OpticalFlow>(event.sample)) fixed_ = event.utime;
   std::visit(
       [&](auto& estimator) {
         if (!estimator.started()) {

@@ -30,6 +30,9 @@ class KalmanEstimator {
   const Output& step(const Usbl& sample) { return wait({sample.utime, sample}); }
   const Output& step(const Ranges& sample) { return wait({sample.utime, sample}); }
   const Output& step(const TagPose& sample) { return wait({sample.utime, sample}); }
+  /// Flow and laser need a floor in the settings; without one they are not used.
+  const Output& step(const OpticalFlow& sample) { return wait({sample.utime, sample}); }
+  const Output& step(const LaserRange& sample) { return wait({sample.utime, sample}); }
   /// The input has ended: everything that waits.
   const Output& finish();
   /// A log started over.
@@ -39,7 +42,7 @@ class KalmanEstimator {
   [[nodiscard]] std::map<std::string, std::int64_t> rejected() const;
 
  private:
-  using Sample = std::variant<Ahrs, PoseCapture, Dvl, Depth, Usbl, Ranges, TagPose>;
+  using Sample = std::variant<Ahrs, PoseCapture, Dvl, Depth, Usbl, Ranges, TagPose, OpticalFlow, LaserRange>;
   struct Event {
     Utime utime{};
     Sample sample;
@@ -50,6 +53,7 @@ class KalmanEstimator {
   const Output& wait(Event event);
   void release(Utime until);
   void use(const Event& event);
+  [[nodiscard]] bool used(const Sample& sample) const;
   void say(Utime utime);
   [[nodiscard]] Machine machine() const;
 

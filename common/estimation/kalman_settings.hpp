@@ -44,6 +44,7 @@ struct KalmanSettings {
   double latency{0.3};  ///< s behind the newest sample (live)
   double max_gap{1.0};  ///< s without position or velocity after which the state is no longer valid
 
+  double gravity{model::kGravity};                                       ///< m/s^2, the site's where it is known
   Eigen::Vector3d p_BI{Eigen::Vector3d::Zero()};                         ///< m, inertial package
   Eigen::Matrix3d R_BI{Eigen::Matrix3d::Identity()};                     ///< what its mounting is off by
   Eigen::Vector3d accelerometer_noise{Eigen::Vector3d::Constant(0.05)};  ///< m/s^2 of one sample, per axis

@@ -84,7 +84,7 @@ void StartFinder::use(const Ahrs& sample) {
     heading_ = euler_from_rotation(sample.q_WB.toRotationMatrix()).z() + settings_->declination;
   }
   const Eigen::Vector3d f = settings_->R_BI * sample.f_B;
-  if (sample.has_specific_force && std::abs(f.norm() / model::kGravity - 1.0) < kGravityBand) up_ = f.normalized();
+  if (sample.has_specific_force && std::abs(f.norm() / settings_->gravity - 1.0) < kGravityBand) up_ = f.normalized();
 }
 
 void StartFinder::use(const PoseCapture& sample) {

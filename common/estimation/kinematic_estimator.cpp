@@ -149,7 +149,7 @@ void KinematicEstimator<N>::use(const Ahrs& sample) {
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d direction = s.R_BI.col(i);
     if (sample.has_specific_force) {
-      const model::Accelerometer sensor{s.p_BI, direction, biases ? i : -1};
+      const model::Accelerometer sensor{s.p_BI, direction, biases ? i : -1, s.gravity};
       apply(kAccelerometer, observe(point, sensor, f[i], square(s.accelerometer_noise[i])));
     }
     if (sample.has_rates) {

@@ -5,8 +5,7 @@
 namespace fathom::estimation {
 namespace {
 
-const Eigen::Vector3d kGravity{0.0, 0.0, 9.81};  // m/s^2, NED
-constexpr double kTiltTime = 1.0;                // s, for which a vehicle stays tilted the same way
+constexpr double kTiltTime = 1.0;  // s, for which a vehicle stays tilted the same way
 using Axis = NavigationFilter::AxisCovariance;
 
 // x' = F x with p' = p + dt v - dt^2/2 b, v' = v - dt b.
@@ -48,7 +47,7 @@ void NavigationFilter::start(const Eigen::Vector3d& p_WB, const Eigen::Vector3d&
 
 void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eigen::Vector3d& f_B) {
   const Eigen::Vector3d felt_B = f_B - b_;
-  const Eigen::Vector3d a_W = R_WB * (felt_B + tilt_.cross(felt_B)) + kGravity;
+  const Eigen::Vector3d a_W = R_WB * (felt_B + tilt_.cross(felt_B)) + noise_.gravity * Eigen::Vector3d::UnitZ();
   p_WB_ += dt * v_WB_ + (0.5 * dt * dt) * a_W;
   v_WB_ += dt * a_W;
   const double across = noise_.acceleration * noise_.acceleration;
@@ -56,7 +55,7 @@ void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eig
   const double noise_b = noise_.bias_walk * noise_.bias_walk;
   // A bias of the accelerometer across passes for a wrong attitude while level, and a tilt turns it up until the
   // vertical has told it; as large as what a wrong attitude makes of gravity, since the two are learnt as one.
-  const double tilted = kGravity.z() * noise_.attitude * std::hypot(R_WB(2, 0), R_WB(2, 1));
+  const double tilted = noise_.gravity * noise_.attitude * std::hypot(R_WB(2, 0), R_WB(2, 1));
   const Eigen::Vector3d noise_v{across, across,
                                 (vertical > 0.0 ? vertical : across) + 2.0 * kTiltTime * tilted * tilted};
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -67,7 +66,7 @@ void NavigationFilter::predict(double dt, const Eigen::Matrix3d& R_WB, const Eig
 // What acceleration lacks across is a wrong attitude's, which gravity multiplies, and stays across however the vehicle
 // tilts; up and down it is the accelerometer's. A tilted vehicle thus tells the accelerometer's other axes as well.
 void NavigationFilter::learn(const Eigen::Vector3d& lacking_W, const Eigen::Matrix3d& R_WB) {
-  tilt_ += R_WB.transpose() * Eigen::Vector3d{lacking_W.y(), -lacking_W.x(), 0.0} / kGravity.z();
+  tilt_ += R_WB.transpose() * Eigen::Vector3d{lacking_W.y(), -lacking_W.x(), 0.0} / noise_.gravity;
   b_ -= lacking_W.z() * R_WB.row(2).transpose();
 }
 

@@ -27,6 +27,7 @@ class NavigationFilter {
     double bias_walk{};              ///< m/s^2 in one second
     double bias_prior{};             ///< m/s^2
     double attitude{};               ///< rad, of roll and pitch
+    double gravity{9.81};            ///< m/s^2
   };
   /// Covariance of position p, velocity v and bias b along one axis of W.
   struct AxisCovariance {

@@ -29,7 +29,8 @@ Navigator::Navigator(const NavigatorSettings& settings, const NavigatorPlaces& p
                                  .vertical_acceleration = settings_.vertical_acceleration_noise,
                                  .bias_walk = settings_.bias_walk,
                                  .bias_prior = settings_.bias_prior,
-                                 .attitude = settings_.attitude_noise}};
+                                 .attitude = settings_.attitude_noise,
+                                 .gravity = places_.gravity}};
   nodes_.assign(kHistory, Node{.after = {.filter = filter}});
   waiting_.reserve(kHistory);
 }
@@ -93,7 +94,8 @@ const Navigator::Output& Navigator::step(const Ahrs& sample) {
                                                    .vertical_acceleration = settings_.vertical_acceleration_noise,
                                                    .bias_walk = settings_.bias_walk,
                                                    .bias_prior = settings_.bias_prior,
-                                                   .attitude = settings_.attitude_noise}}};
+                                                   .attitude = settings_.attitude_noise,
+                                                   .gravity = places_.gravity}}};
     nodes_[newest].after = fresh;
   } else {
     std::size_t from = count_ - 2;

@@ -73,6 +73,7 @@ struct NavigatorPlaces {
   std::optional<double> floor{};          ///< m, z of a level floor
   Eigen::AlignedBox2d walls{Eigen::Vector2d::Constant(-HUGE_VAL), Eigen::Vector2d::Constant(HUGE_VAL)};  ///< m, x and y
   Eigen::Vector3d p_BI{Eigen::Vector3d::Zero()};  ///< m, accelerometer in the body
+  double gravity{9.81};                           ///< m/s^2
 };
 
 /// The paper's gains, made for one interval at 30 Hz; zero for an aid that it has none for.

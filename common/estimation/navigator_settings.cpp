@@ -66,6 +66,7 @@ NavigatorPlaces NavigatorPlaces::of(const model::Mounts& mounts, const model::Si
   for (const model::Tag& tag : site.tags) places.tags[tag.number()] = tag.p_WT;
   places.floor = site.floor;
   places.walls = {Eigen::Vector2d{site.south, site.west}, Eigen::Vector2d{site.north, site.east}};
+  places.gravity = site.gravity;
   if (mounts.ahrs) places.p_BI = mounts.ahrs->p_BS;
   return places;
 }

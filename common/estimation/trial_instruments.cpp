@@ -19,6 +19,8 @@ constexpr double kLeastRate = 1e-4;
 
 model::Pose pose_of(const model::Mount& mount) { return {mount.p_BS, Eigen::Quaterniond{mount.R_BS}}; }
 
+}  // namespace
+
 void add_places(const TrialFiles& files, KalmanSettings& s) {
   if (files.mounts) {
     const model::Mounts& mounts = *files.mounts;
@@ -38,9 +40,12 @@ void add_places(const TrialFiles& files, KalmanSettings& s) {
       for (const model::Transponder& one : site.transponders) s.transponders.push_back({one.name, one.p_W});
     }
     if (!s.floor && std::isfinite(site.floor)) s.floor = site.floor;
+    s.gravity = site.gravity;
     s.walls = {Eigen::Vector2d{site.south, site.west}, Eigen::Vector2d{site.north, site.east}};
   }
 }
+
+namespace {
 
 void measure_white_noises(const std::vector<Ahrs>& stream, KalmanSettings& s) {
   std::vector<double> t, series;

@@ -30,6 +30,10 @@ struct TrialFiles {
 /// From PROCESS_INFO of the newest estimator (and identifier, for its section); empty without one.
 [[nodiscard]] TrialFiles files_in(const Recording& recording);
 
+/// What the files say of places goes into settings that do not say it themselves: instruments on the vehicle; tags,
+/// transponders, floor, walls and gravity of the site.
+void add_places(const TrialFiles& files, KalmanSettings& settings);
+
 struct TrialInstruments {
   KalmanSettings settings;
   bool noises_stated{false};   ///< by the pipeline, for a filter that knows lasting errors: no rest may replace them

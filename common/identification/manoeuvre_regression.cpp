@@ -6,7 +6,9 @@
 
 #include "common/base/error.hpp"
 #include "common/base/statistics.hpp"
+#include "common/identification/known_signals.hpp"
 #include "common/identification/term_errors.hpp"
+#include "common/model/derivative_motion.hpp"
 #include "common/model/manoeuvres.hpp"
 
 namespace fathom::identification {
@@ -101,6 +103,20 @@ std::vector<WrenchSignal> parts_of(const Recording& recording, const model::Vehi
   return parts;
 }
 
+/// Drag of an umbilical whose length the log tells and whose force nothing measures.
+WrenchSignal umbilical_of(const Recording& recording, const model::Vehicle& vehicle, const KnownSignal& paid_out,
+                          const KnownFlow& flow) {
+  WrenchSignal signal;
+  for (const SmoothedState& one : recording.smoothed) {
+    const Eigen::Vector3d v_WF_B = one.q_WB.conjugate() * flow.velocity(one.utime);
+    const Eigen::Vector3d force = model::umbilical_drag(vehicle, paid_out.at(one.utime), one.nu, v_WF_B);
+    Vector6d wrench;
+    wrench << force, vehicle.hydrodynamics->umbilical->p_BU.cross(force);
+    signal.add(one.utime, wrench);
+  }
+  return signal;
+}
+
 /// Medians over the run of what SMOOTHED says of itself from `begin` on.
 Eigen::Vector3d typical_sigma(const std::vector<SmoothedState>& states, Eigen::Index begin) {
   Eigen::Vector3d result;
@@ -141,7 +157,17 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
   ManoeuvreRows rows;
   rows.name = recording.name;
   rows.known_from = cells.empty() ? "THRUSTERS" : thrust.empty() ? "load cells" : "load cells and THRUSTERS";
-  const std::vector<WrenchSignal> parts = parts_of(recording, vehicle, !cells.empty(), !thrust.empty());
+  std::vector<WrenchSignal> parts = parts_of(recording, vehicle, !cells.empty(), !thrust.empty());
+  const KnownFlow flow{recording};
+  if (!flow.empty()) rows.known_from += ", the water's velocity";
+  WrenchSignal umbilical;
+  if (const KnownSignal paid_out{recording, kPaidOut, "m"};
+      !paid_out.empty() && pulls[0].empty() && vehicle.hydrodynamics->umbilical) {
+    umbilical = umbilical_of(recording, vehicle, paid_out, flow);
+    pulls[0] = umbilical;
+    parts.push_back(umbilical);
+    rows.known_from += ", the umbilical's length";
+  }
   rows.cells = cells.empty() ? 0 : vehicle.hydrodynamics->load_cells.size();
   rows.sigma_attitude = typical_sigma(states, 3);
   rows.sigma_velocity = typical_sigma(states, 6);
@@ -169,6 +195,9 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
           if (!pulls[i].empty()) row.pulls[i] += pulls[i].at(states[k].utime);
         }
         if (!thrust.empty()) row.known += thrust.at(states[k].utime);
+        if (!umbilical.empty()) row.known += umbilical.at(states[k].utime);
+        row.v_WF += flow.velocity(states[k].utime);
+        row.a_WF += flow.acceleration(states[k].utime);
         for (std::size_t i = 0; i < parts.size(); ++i) row.parts[i] += parts[i].at(states[k].utime);
         const double sign = states[k].q_WB.dot(states[first].q_WB) < 0.0 ? -1.0 : 1.0;
         q += sign * states[k].q_WB.coeffs();
@@ -177,6 +206,8 @@ ManoeuvreRows rows_of(const Recording& recording, const model::Vehicle& vehicle,
       row.nu /= count;
       row.nu_dot /= count;
       row.known /= count;
+      row.v_WF /= count;
+      row.a_WF /= count;
       for (Vector6d& pull : row.pulls) pull /= count;
       for (Vector6d& part : row.parts) part /= count;
       row.q_WB = Eigen::Quaterniond{Eigen::Vector4d(q.normalized())};
@@ -219,12 +250,11 @@ Eigen::MatrixXd columns_of(const std::vector<ManoeuvreRows::Row>& stretch, int a
   for (std::size_t n = 0; n < stretch.size(); ++n) {
     const auto& row = stretch[n];
     const auto i = static_cast<Eigen::Index>(n);
-    // Steady water seen from a turning body accelerates by -w x v_F: its share of the added mass's force.
-    const Eigen::Vector3d v_F = row.q_WB.conjugate() * v_WF;
+    const Eigen::Vector3d v_F = row.q_WB.conjugate() * (row.v_WF + v_WF);
     Vector6d nu_r = row.nu;
     nu_r.head<3>() -= v_F;
-    Vector6d b = model::hydrodynamic_wrench(vehicle, row.q_WB, row.nu, row.nu_dot, row.known);
-    b.head<3>() += h.added_mass.head<3>().cwiseProduct(row.nu.tail<3>().cross(v_F));
+    const Vector6d b = model::hydrodynamic_wrench(vehicle, row.q_WB, row.nu, row.nu_dot, row.known) -
+                       model::water_wrench(vehicle, row.nu.tail<3>(), v_F, row.q_WB.conjugate() * row.a_WF);
     for (Eigen::Index j = 0; j < columns; ++j) {
       z(i, j) = scale[j] * candidates.terms[static_cast<std::size_t>(j)]->value(nu_r);
     }

@@ -16,7 +16,7 @@ namespace fathom::identification {
 
 struct RegressionSettings {
   double rate{10.0};                              ///< Hz, of the rows: averages of what is recorded faster
-  Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};  ///< m/s, steady velocity of the water
+  Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};  ///< m/s, steady velocity of the water, beside what a log tells
   double block{2.0};                              ///< s, of the blocks that tell how independent samples are
   double cell_gain{0.03};                         ///< std of a load cell's gain: makers' and mounting's together
   double thrust_gain{0.10};                       ///< std of a thruster's force over what its curve says
@@ -35,12 +35,15 @@ struct ManoeuvreRows {
     Vector6d known{Vector6d::Zero()};  ///< N, N m: thrusters, umbilical and chain, as measured
     std::array<Vector6d, kPulls.size()> pulls{Vector6d::Zero(), Vector6d::Zero()};  ///< what of it is theirs
     std::vector<Vector6d> parts{};  ///< and what each load cell and thruster says, whose gains err apart
+    Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};  ///< m/s, the water's velocity as the log's SIGNAL tells it
+    Eigen::Vector3d a_WF{Eigen::Vector3d::Zero()};  ///< m/s^2, its rate
   };
   std::string name;
-  double dt{};                                              ///< s
-  std::vector<std::vector<Row>> stretches;                  ///< of equal steps
-  std::string known_from;                                   ///< "load cells", "load cells and THRUSTERS", "THRUSTERS"
-  std::size_t cells{};                                      ///< so many of the parts are load cells, the rest thrusters
+  double dt{};                              ///< s
+  std::vector<std::vector<Row>> stretches;  ///< of equal steps
+  /// "load cells", "load cells and THRUSTERS", "THRUSTERS"; then ", the umbilical's length", ", the water's velocity"
+  std::string known_from;
+  std::size_t cells{};                                      ///< so many of the parts are load cells, the rest computed
   Eigen::Vector3d sigma_attitude{Eigen::Vector3d::Zero()};  ///< rad, typical of SMOOTHED
   Eigen::Vector3d sigma_velocity{Eigen::Vector3d::Zero()};  ///< m/s
 };

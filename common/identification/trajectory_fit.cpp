@@ -17,18 +17,9 @@
 namespace fathom::identification {
 namespace {
 
-constexpr double kLeastFreedom = 3.0;    // of a covariance from fewer windows than it has numbers
 constexpr double kReleaseStep = 0.02;    // of a parameter's scale, away from its bound
 constexpr double kTrimmedShare = 0.05;   // worst windows left out when the residual's scale is measured
 constexpr double kSmallestSigma = 1e-5;  // m/s, rad/s: below any sensor's noise; keeps perfect data finite
-
-std::vector<int> numbers_at_bound(const ParameterMap& map, const Eigen::VectorXd& x) {
-  std::vector<int> held;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (map[i].at_bound(x[static_cast<Eigen::Index>(i)])) held.push_back(static_cast<int>(i));
-  }
-  return held;
-}
 
 bool all_at_bound(const ParameterMap& map, const std::vector<int>& numbers, const Eigen::VectorXd& x) {
   return std::ranges::all_of(numbers, [&](int i) { return map[static_cast<std::size_t>(i)].at_bound(x[i]); });
@@ -219,8 +210,7 @@ FitResult TrajectoryFit::fit(const model::Model& start, const FitResult* like, d
   return fit;
 }
 
-std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool hold_bounds,
-                                                      std::span<const ProjectedWindow> like) const {
+std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit) const {
   const ParameterMap map{fit.model};
   std::vector<ProjectedWindow> projected(windows_.size());
   for_each_index(windows_.size(), settings_.threads, [&](std::size_t w) {
@@ -231,10 +221,7 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
     window.evaluate(fit.model, fit.nu0[w], fit.sigma, trace, out.residual);
     Eigen::MatrixXd initial;
     window.jacobians(fit.model, map, fit.nu0[w], fit.sigma, out.residual, out.jacobian, initial);
-    if (hold_bounds) {
-      for (const int held : numbers_at_bound(map, map.pack(fit.model))) out.jacobian.col(held).setZero();
-    }
-    out.weight = like.empty() ? robust_weight(out.residual, window.axes()) : like[w].weight;
+    out.weight = robust_weight(out.residual, window.axes());
     out.residual.array() *= out.weight.array();
     out.jacobian.array().colwise() *= out.weight.array();
     initial.array().colwise() *= out.weight.array();
@@ -243,38 +230,6 @@ std::vector<ProjectedWindow> TrajectoryFit::linearise(const FitResult& fit, bool
     out.jacobian -= out.initial_basis * (out.initial_basis.transpose() * out.jacobian);
   });
   return projected;
-}
-
-double TrajectoryFit::input_step() const {
-  double step = 0.0;
-  for (const WindowResidual& window : windows_) step = std::max(step, window.window().trial->input_step);
-  return step;
-}
-
-void TrajectoryFit::add_covariance(FitResult& fit) const {
-  const ParameterMap map{fit.model};
-  const auto n = static_cast<Eigen::Index>(map.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const FreeParameter& free = map[static_cast<std::size_t>(i)];
-    information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
-    meat(i, i) = information(i, i);
-  }
-  fit.input_step = input_step();
-  for (const ProjectedWindow& window : linearise(fit, false)) {
-    information += window.jacobian.transpose() * window.jacobian;
-    const Eigen::VectorXd gradient = window.jacobian.transpose() * window.residual;
-    meat += gradient * gradient.transpose();
-  }
-  const auto clusters = static_cast<double>(windows_.size());
-  const double small_sample =
-      clusters > static_cast<double>(n) + 1.0 ? clusters / (clusters - static_cast<double>(n)) : 2.0;
-  const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-  Eigen::VectorXd scale(n);
-  for (Eigen::Index i = 0; i < n; ++i) scale[i] = map[static_cast<std::size_t>(i)].scale;
-  fit.freedom = std::max(clusters - static_cast<double>(n), kLeastFreedom);
-  fit.covariance = small_sample * scale.asDiagonal() * (inverse * meat * inverse) * scale.asDiagonal();
 }
 
 }  // namespace fathom::identification

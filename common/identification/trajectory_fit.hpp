@@ -39,16 +39,10 @@ class TrajectoryFit {
   [[nodiscard]] FitResult fit(const model::Model& start, const FitResult* like = nullptr, double tolerance = 0.0) const;
   /// Cost of a model with the weights and the initial velocities of a fit.
   [[nodiscard]] double cost(const model::Model& model, const FitResult& like) const;
-  /// Residuals and derivatives at a fit, per window. With `hold_bounds`, numbers on a physical bound have no
-  /// derivative: they stay there. With `like`, rows have the weights that they had there.
-  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit, bool hold_bounds = true,
-                                                       std::span<const ProjectedWindow> like = {}) const;
-  /// Fills fit.covariance: sandwich with windows as clusters, so that correlation inside a window is counted.
-  void add_covariance(FitResult& fit) const;
+  /// Residuals and derivatives at a fit, per window.
+  [[nodiscard]] std::vector<ProjectedWindow> linearise(const FitResult& fit) const;
 
   [[nodiscard]] std::span<const WindowResidual> windows() const { return windows_; }
-  /// s, the longest time between inputs.
-  [[nodiscard]] double input_step() const;
   [[nodiscard]] const model::Vehicle& vehicle() const { return vehicle_; }
   [[nodiscard]] const FitSettings& settings() const { return settings_; }
 

@@ -191,9 +191,15 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     return;
   }
   if (!found.best.names.empty()) {
-    const double least = *std::ranges::min_element(found.probability);
+    const double beside_others = *std::ranges::min_element(found.probability);
+    double least = 1.0;
+    for (std::size_t e = 0; e < found.probability.size(); ++e)
+      least = std::min(least, found.probability[e] * found.reliability[e]);
     const bool sure = least >= thresholds.name_probability;
-    reasons.push_back({sure ? Cause::kNamed : Cause::kRivals, least, thresholds.name_probability, ""});
+    const Cause cause = sure                                          ? Cause::kNamed
+                        : beside_others < thresholds.name_probability ? Cause::kRivals
+                                                                      : Cause::kWeakEvidence;
+    reasons.push_back({cause, least, thresholds.name_probability, ""});
     conclusion.verdict = sure && !found.cut_short ? Verdict::effect : Verdict::ambiguous;
     return;
   }
@@ -231,10 +237,8 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       likelihood::Fit by = deadline.over() ? fit : by_horizon(problem, fit, settings.threads);
       gain = deadline.over() ? 0.0 : fall_of_error(problem, trials, fit, by);
       progress.done(kHorizonFit.phase);
-      // No chance sets right numbers five deviations apart: then too those that predict, on whatever axes they err
-      // less.
-      constexpr double kFarApart = 5.0;
-      return gain > settings.thresholds.disagreement || apart(fit, by) > kFarApart ? by : fit;
+      const bool wrong = gain > settings.thresholds.disagreement || apart(fit, by) > settings.thresholds.far_apart;
+      return wrong ? by : fit;
     };
     double of_base = 0.0;
     if (!found.best.names.empty()) progress.expect(kHorizonFit.phase, 2, kHorizonFit.weight);

@@ -31,14 +31,15 @@ struct Conclusion {
   Found found;
   std::vector<RandomForce> random;
   std::vector<double> followed;  ///< per simulated axis: share of the acceleration that the model foretells
-  /// Axes that runs which no fit has seen show to be foretold better than by saying that nothing changes: what the
-  /// model lacks within a second, as of a thrust that comes late, is no reason to withhold its numbers there.
+  /// Axes on which thrust acts and that runs which no fit has seen show to be foretold better than by saying that
+  /// nothing changes and than by an equation of the axis alone: what the model lacks within a second, as of a thrust
+  /// that comes late or a vehicle that shakes, is no reason to withhold its numbers there.
   std::vector<int> skilled;
   /// Share by which numbers of the multi-horizon score surely lower the open-loop error of the fitted runs; 0: not.
   double disagreement{};
   /// Numbers for reports and exports, all of one fit, of the base model and of the best: those of the likelihood, which
   /// wastes nothing where the model is right, or of the multi-horizon score where these predict better by more than
-  /// Thresholds::disagreement.
+  /// Thresholds::disagreement or lie further than Thresholds::far_apart away.
   likelihood::Fit reported_base, reported;
 };
 

@@ -82,6 +82,7 @@ void Searching::judge_effects() {
   found_.odds.clear();
   found_.size.clear();
   found_.probability.clear();
+  found_.reliability.clear();
   found_.rival.clear();
   if (effects().empty()) return;
   const Seen seen = see(problem_, found_.best.fit, threads_);
@@ -92,6 +93,7 @@ void Searching::judge_effects() {
     found_.probability.push_back(standing.probability);
     const auto in_place = in_place_.find(std::string(effects()[e].effect->name()));
     found_.odds.push_back(in_place != in_place_.end() ? std::min(standing.odds, in_place->second) : standing.odds);
+    found_.reliability.push_back(thresholds_.reliability(found_.odds.back()));
     found_.rival.push_back(standing.rival);
   }
 }

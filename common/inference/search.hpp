@@ -29,7 +29,8 @@ struct Found {
   Fitted base, best;
   std::vector<double> odds;         ///< per effect of the best: nats over the best without it
   std::vector<double> size;         ///< per effect
-  std::vector<double> probability;  ///< per effect: that its name is right, among all that was fitted
+  std::vector<double> probability;  ///< per effect: of its name among all that was fitted
+  std::vector<double> reliability;  ///< per effect: how often names of such odds are right
   std::vector<std::string> rival;   ///< per effect: the likeliest other name in its place; empty: none came near
   std::vector<Refused> refused;
   std::optional<FreeForceFound> free_force;

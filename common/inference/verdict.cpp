@@ -28,6 +28,8 @@ std::string_view word(Cause cause) {
       return "named";
     case Cause::kRivals:
       return "rivals";
+    case Cause::kWeakEvidence:
+      return "weak_evidence";
     case Cause::kFreeForce:
       return "free_force";
     case Cause::kSlowRandomForce:

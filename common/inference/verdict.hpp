@@ -19,8 +19,9 @@ enum class Verdict {
 
 enum class Cause {
   kNothingFound,     ///< no effect of practical size and odds
-  kNamed,            ///< least probability of an accepted name against others
-  kRivals,           ///< the same, below what a name needs
+  kNamed,            ///< least probability of an accepted name
+  kRivals,           ///< the same, below what a name needs: others fit as well
+  kWeakEvidence,     ///< the same: names of so little evidence are not right often enough
   kFreeForce,        ///< log odds of a force that no list holds
   kSlowRandomForce,  ///< memory [s] of a random force of practical size: no noise
   kManyNames,     ///< names that the best model holds: as many as the search allows, so that it ended with more to find

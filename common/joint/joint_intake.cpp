@@ -164,7 +164,8 @@ void JointEstimate::use_inertial(const Event& event, double dt) {
   const Eigen::Matrix3d here = event.q_WB.toRotationMatrix();
   const Eigen::Matrix3d carried = before_->q_WB.toRotationMatrix() *
                                   quaternion_from_rotation_vector(0.5 * dt * (before_->a + event.a)).toRotationMatrix();
-  const Felt felt{.told = here, .carried = carried, .tau = tau_, .w_dot = w_dot, .p_BI = places_.p_BI};
+  const Felt felt{
+      .told = here, .carried = carried, .tau = tau_, .w_dot = w_dot, .p_BI = places_.p_BI, .gravity = places_.gravity};
   const std::size_t count = feel_force(filter_.model(), filter_.state(), felt, event.b, std::span{at_once_}.first<3>());
   const double own = navigator_.vertical_acceleration_noise > 0.0 ? navigator_.vertical_acceleration_noise
                                                                   : navigator_.acceleration_noise;

@@ -5,8 +5,6 @@
 namespace fathom::joint {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s^2
-
 void begin(const JointVector& x, double innovation, JointRow& row) {
   row.h.setZero(x.size());
   row.innovation = innovation;
@@ -121,13 +119,13 @@ std::size_t feel_force(const Normalised& model, const JointVector& x, const Felt
     if (!model.moves(3 + i)) nu_dot[3 + i] = felt.w_dot[i];
   }
   const Eigen::Vector3d w_dot = nu_dot.tail<3>(), turned = w.cross(r);
-  const Eigen::Vector3d force = nu_dot.head<3>() + w.cross(v) + w_dot.cross(r) + w.cross(turned) - kGravity * down;
+  const Eigen::Vector3d force = nu_dot.head<3>() + w.cross(v) + w_dot.cross(r) + w.cross(turned) - felt.gravity * down;
   const Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() + skew(Eigen::Vector3d{x.segment<3>(part::kTurned)});
   const Eigen::Vector3d foretold = turn * force + x.segment<3>(part::kBias);
   const Eigen::Matrix3d by_turn = -skew(force);
   const Eigen::Matrix3d skew_r = skew(r);
   Eigen::Matrix<double, 3, 9> by_motion = slope.by_motion.topRows<3>() - skew_r * slope.by_motion.bottomRows<3>();
-  by_motion.leftCols<3>() -= kGravity * skew(down);
+  by_motion.leftCols<3>() -= felt.gravity * skew(down);
   by_motion.middleCols<3>(3) += skew(w);
   by_motion.rightCols<3>() -= skew(v) + skew(turned) + skew(w) * skew_r;
   by_motion = (turn * by_motion).eval();

@@ -39,6 +39,7 @@ struct Felt {
   const Vector6d& tau;           ///< N, N m
   const Eigen::Vector3d& w_dot;  ///< rad/s^2, of the axes that no model moves
   const Eigen::Vector3d& p_BI;   ///< m, where it sits
+  double gravity;                ///< m/s^2
 };
 /// Specific force f [m/s^2] at the instrument, which the model foretells:
 ///   v_dot + w x v + w_dot x r + w x (w x r) - g down, turned like the gyros, + bias

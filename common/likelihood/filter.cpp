@@ -63,11 +63,15 @@ NoisePrior prior_of(const Shown& shown, double block) {
   return prior;
 }
 
+/// A size of noise that is next to nothing and stays so.
+void take_out(NoiseNumber size, NoisePrior& prior) { prior.mean[size] = prior.high[size] = prior.low[size]; }
+
 }  // namespace
 
 Problem make_problem(const model::Vehicle& vehicle, std::span<const Trial> trials, const RunSettings& settings) {
   Problem problem{.vehicle = &vehicle};
   problem.run_settings = settings;
+  problem.number_settings.command_offset = settings.terms.command_clock;
   for (int i = 0; i < 6; ++i) {
     if (vehicle.dof[static_cast<std::size_t>(i)]) problem.axes.push_back(i);
   }
@@ -89,7 +93,9 @@ Problem make_problem(const model::Vehicle& vehicle, std::span<const Trial> trial
   const double block = problem.runs.front().blocks().empty() ? 0.1 : problem.runs.front().blocks().front().dt;
   for (const int axis : problem.axes) {
     const Shown shown = shown_by(problem.runs, axis, problem.runs.front().trial().nu_sigma[axis]);
-    problem.noise_prior.push_back(prior_of(shown, block));
+    NoisePrior& prior = problem.noise_prior.emplace_back(prior_of(shown, block));
+    if (!settings.terms.random_force) take_out(kForce, prior);
+    if (!settings.terms.coloured_noise) take_out(kColoured, prior);
     problem.acceleration.push_back(shown.acceleration);
   }
   return problem;

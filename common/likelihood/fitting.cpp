@@ -265,6 +265,8 @@ void Fitting::choose_tails() {
     double best = kNever;
     for (const Tail tail :
          {Tail{}, Tail{0.0, true}, Tail{8.0, false}, Tail{8.0, true}, Tail{4.0, false}, Tail{4.0, true}}) {
+      const Terms& terms = problem_->run_settings.terms;
+      if ((tail.freedom > 0.0 && !terms.tails) || (tail.follows && !terms.followed_scale)) continue;
       AxisNoise start = noise_[axis];
       start.tail = tail;
       const AxisNoise fitted = fit_noise(blocks, start, problem_->noise_prior[axis]).noise;

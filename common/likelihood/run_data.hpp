@@ -15,12 +15,22 @@
 
 namespace fathom::likelihood {
 
+/// Terms of the likelihood beside the model's motion. All of them, but where it is measured what one is good for.
+struct Terms {
+  bool random_force{true};    ///< with a memory, per axis
+  bool coloured_noise{true};  ///< of the sensors
+  bool tails{true};           ///< Student's t
+  bool followed_scale{true};  ///< of the innovations, as the recording has it
+  bool command_clock{true};   ///< off the samples', per run
+};
+
 struct RunSettings {
   double block_rate{25.0};     ///< Hz at most; blocks are whole numbers of samples
   double burn_in{2.0};         ///< s that are filtered and not scored: what is remembered from before is unknown
   double burn_in_share{0.1};   ///< of a run at most
   double quickest_share{0.2};  ///< largest step over the quickest time constant: third-order steps then err by 3e-4
   double largest_step{0.05};   ///< s
+  Terms terms{};
 };
 
 /// Between two samples, at the middle.

@@ -45,17 +45,30 @@ Vector6d rigid_wrench(const Vehicle& vehicle, const Eigen::Vector3d& down_B, con
   return wrench;
 }
 
+Vector6d water_wrench(const Vehicle& vehicle, const Eigen::Vector3d& w, const Eigen::Vector3d& v_WF_B,
+                      const Eigen::Vector3d& a_WF_B) {
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  Vector6d wrench = at_origin(vehicle.buoyancy / kGravity * a_WF_B, h.p_BB);
+  wrench.head<3>() += h.added_mass.head<3>().cwiseProduct(a_WF_B - w.cross(v_WF_B));
+  return wrench;
+}
+
+Eigen::Vector3d umbilical_drag(const Vehicle& vehicle, double paid_out, const Vector6d& nu,
+                               const Eigen::Vector3d& v_WF_B) {
+  const Umbilical& u = *vehicle.hydrodynamics->umbilical;
+  const Eigen::Vector3d v_U = nu.head<3>() - v_WF_B + nu.tail<3>().cross(u.p_BU);
+  const double k = 0.5 * vehicle.water_density * u.drag_coefficient * u.diameter * paid_out * kSwept;
+  return -k * v_U.norm() * v_U;
+}
+
 Attached attached(const Vehicle& vehicle, const Eigen::Vector3d& p_WB, const Eigen::Matrix3d& R_WB, const Vector6d& nu,
                   const Eigen::Vector3d& pull_W, const Eigen::Vector3d& v_WF_B) {
   const Hydrodynamics& h = *vehicle.hydrodynamics;
   const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
   Attached a;
   if (h.umbilical) {
-    const Umbilical& u = *h.umbilical;
-    const Eigen::Vector3d v_U = v - v_WF_B + w.cross(u.p_BU);
-    const double k = 0.5 * vehicle.water_density * u.drag_coefficient * u.diameter * u.paid_out * kSwept;
-    a.F_umbilical_B = -k * v_U.norm() * v_U + R_WB.transpose() * pull_W;
-    a.umbilical = at_origin(a.F_umbilical_B, u.p_BU);
+    a.F_umbilical_B = umbilical_drag(vehicle, h.umbilical->paid_out, nu, v_WF_B) + R_WB.transpose() * pull_W;
+    a.umbilical = at_origin(a.F_umbilical_B, h.umbilical->p_BU);
   }
   if (h.chain) {
     const Chain& c = *h.chain;
@@ -82,10 +95,7 @@ Vector6d derivative_acceleration(const Model& model, const Motion& motion, const
   Vector6d force = motion.w_memory + load.drag + attached.umbilical + attached.chain +
                    rigid_wrench(vehicle, motion.R_WB.row(2).transpose(), motion.nu);
   for (Eigen::Index i = 0; i < motion.force.size(); ++i) force += model.allocation.col(i) * motion.force[i];
-  // Steady water seen in B turns with the body; accelerating water pushes as in the base model.
-  const Eigen::Vector3d w = motion.nu.tail<3>();
-  force.head<3>() -= h.added_mass.head<3>().cwiseProduct(w.cross(motion.v_WF_B));
-  force.head<3>() += inertia.head<3>().cwiseProduct(motion.a_WF_B);
+  force += water_wrench(vehicle, motion.nu.tail<3>(), motion.v_WF_B, motion.a_WF_B);
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   force += load.wrench;
   if (!load.has_inertia()) return force.cwiseQuotient(inertia);

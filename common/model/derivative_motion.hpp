@@ -13,12 +13,20 @@ struct Attached {
   Vector6d umbilical{Vector6d::Zero()}, chain{Vector6d::Zero()};  ///< N, N m at Bo, in B
 };
 
+/// Force of an umbilical of which `paid_out` [m] trail, at its attachment in B [N]: its drag.
+[[nodiscard]] Eigen::Vector3d umbilical_drag(const Vehicle& vehicle, double paid_out, const Vector6d& nu,
+                                             const Eigen::Vector3d& v_WF_B);
 /// `pull_W` [N]: at the umbilical's attachment, besides its drag; `v_WF_B` [m/s]: the water's velocity.
 [[nodiscard]] Attached attached(const Vehicle& vehicle, const Eigen::Vector3d& p_WB, const Eigen::Matrix3d& R_WB,
                                 const Vector6d& nu, const Eigen::Vector3d& pull_W,
                                 const Eigen::Vector3d& v_WF_B = Eigen::Vector3d::Zero());
 /// Diagonal of rigid body and added mass [kg, kg m^2].
 [[nodiscard]] Vector6d total_inertia(const Vehicle& vehicle);
+/// What the water's own motion does besides drag: the pressure that accelerates it acts on the hull, at the centre of
+/// buoyancy, and added mass feels its acceleration as seen from a turning body. `a_WF_B` [m/s^2]: rate of v_WF in W,
+/// along B.
+[[nodiscard]] Vector6d water_wrench(const Vehicle& vehicle, const Eigen::Vector3d& w, const Eigen::Vector3d& v_WF_B,
+                                    const Eigen::Vector3d& a_WF_B);
 /// Weight, buoyancy and the rigid body's Coriolis forces [N, N m].
 [[nodiscard]] Vector6d rigid_wrench(const Vehicle& vehicle, const Eigen::Vector3d& down_B, const Vector6d& nu);
 /// InputError when the vehicle file lacks what such a motion needs.

@@ -9,6 +9,7 @@
 #include "common/base/progress.hpp"
 #include "common/inference/infer.hpp"
 #include "common/planning/energies.hpp"
+#include "common/samples/estimates.hpp"
 
 namespace fathom::planning {
 

@@ -25,7 +25,7 @@ View::View(const model::Vehicle& vehicle, std::vector<Trial> trials, const model
   at_.model = model;
   at_.sigma = sigma;
   for (const auto& each : fit_.windows()) at_.nu0.push_back(each.window().trial->nu[each.window().start]);
-  const std::vector<identification::ProjectedWindow> windows = fit_.linearise(at_, false);
+  const std::vector<identification::ProjectedWindow> windows = fit_.linearise(at_);
   for (const auto& each : windows) rows_.push_back(each.jacobian.rows());
   const Eigen::Index all = std::accumulate(rows_.begin(), rows_.end(), Eigen::Index{0});
   jacobian_.resize(all, windows.front().jacobian.cols() + 1);

@@ -93,12 +93,14 @@ std::vector<EffectFound> sensor_faults(std::span<const ConsistencyFinding> findi
       found.push_back({.name = fault.effect,
                        .variant = fault.signal,
                        .log_odds = odds,
+                       .probability = 1.0 / (1.0 + std::exp(-odds)),
                        .sentence = effect != nullptr ? std::string(effect->sentence()) : ""});
       place = found.end() - 1;
     } else if (place->variant.find(fault.signal) == std::string::npos) {
       place->variant += ", " + fault.signal;
     }
     place->log_odds = std::max(place->log_odds, odds);
+    place->probability = 1.0 / (1.0 + std::exp(-place->log_odds));
     place->parameters.push_back(fault.number);
   }
   return found;

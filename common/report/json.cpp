@@ -1,4 +1,4 @@
-// Writes result.json. Keys are a contract with other programs: never rename, only add.
+// Writes result.json. Keys are a contract with other programs: under one number of the schema, never rename, only add.
 #include "common/report/json.hpp"
 
 #include <cmath>
@@ -86,25 +86,17 @@ Json effects(const std::vector<EffectFound>& found) {
     Json names = Json::array(), rivals = Json::array();
     for (const Alternative& other : e.alternatives) {
       names.push_back(other.name);
-      rivals.push_back({{"name", other.name},
-                        {"log_odds", number_or_null(other.log_odds)},
-                        {"corrupts", other.corrupts},
-                        {"corruption", number_or_null(other.corruption)}});
+      rivals.push_back({{"name", other.name}, {"log_odds", number_or_null(other.log_odds)}});
     }
     array.push_back({{"name", e.name},
                      {"variant", e.variant},
                      {"accepted", e.accepted},
                      {"parameters", named(e.parameters)},
                      {"log_odds", number_or_null(e.log_odds)},
-                     {"error_reduction", number_or_null(e.error_reduction)},
+                     {"probability", number_or_null(e.probability)},
                      {"alternatives", names},
                      {"rivals", rivals},
-                     {"corrupts", e.corrupts},
-                     {"corruption", number_or_null(e.corruption)},
-                     {"unlisted_alternative", e.unlisted},
                      {"told_apart_by", told_apart},
-                     {"other_forms", e.other_forms},
-                     {"acts_last", e.last},
                      {"sentence", e.sentence}});
   }
   return array;
@@ -124,12 +116,8 @@ Json stand_ins(const std::vector<StandIn>& found) {
 Json candidates(const std::vector<CandidateTried>& tried, const VerdictGiven& given) {
   Json array = Json::array();
   for (const auto& c : tried) {
-    array.push_back({{"name", c.name},
-                     {"variant", c.variant},
-                     {"log_odds", number_or_null(c.log_odds)},
-                     {"error_reduction", number_or_null(c.error_reduction)},
-                     {"aliased_with", c.aliased_with},
-                     {"reason", c.reason}});
+    array.push_back(
+        {{"name", c.name}, {"variant", c.variant}, {"log_odds", number_or_null(c.log_odds)}, {"reason", c.reason}});
     const auto found = given.refusals.find(c.name);
     if (found == given.refusals.end()) continue;
     Json refusals = Json::array();
@@ -180,18 +168,6 @@ Json not_measured(const std::vector<NotMeasured>& groups) {
   return array;
 }
 
-Json associations(const std::vector<Association>& left) {
-  Json array = Json::array();
-  for (const auto& a : left) {
-    array.push_back({{"axis", a.axis},
-                     {"with", a.with},
-                     {"share", number_or_null(a.share)},
-                     {"log_odds", number_or_null(a.log_odds)},
-                     {"of_wrench", number_or_null(a.of_wrench)}});
-  }
-  return array;
-}
-
 /// Covariance of parameters.after and of the effects' numbers, under names that say whose they are.
 Json covariance(const VerdictGiven& given) {
   const std::size_t n = given.covariance_of.size();
@@ -227,7 +203,7 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   improvement["ci95"] = Json::array({number_or_null(result.improvement.low), number_or_null(result.improvement.high)});
 
   Json file;
-  begin_result(file, "diagnosis", origin);
+  begin_result(file, kDiagnosisSchema, "diagnosis", origin);
   file["vehicle"] = result.vehicle;
   file["train"] = result.train;
   file["validate"] = result.validate;
@@ -252,18 +228,15 @@ std::string to_json(const DiagnosisResult& result, const VerdictGiven& given, co
   file["parameters"]["before"] = named(result.parameters_before);
   file["parameters"]["after"] = named(result.parameters_after);
   file["covariance"] = covariance(given);
-  file["explained"] = result.explained;
-  if (!result.own_in_validation.empty()) file["own_in_validation"] = result.own_in_validation;
   if (result.wiring)
     file["wiring"] = {{"readings", result.wiring->readings}, {"error_reduction", result.wiring->error_reduction}};
   file["residual"]["before"] = whiteness(result.residual_before);
   file["residual"]["after"] = whiteness(result.residual_after);
-  file["residual"]["goes_with"] = associations(result.goes_with);
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string check_json(const CheckGiven& check) {
-  const Json file{{"schema", kSchema},
+  const Json file{{"schema", kCheckSchema},
                   {"kind", "check"},
                   {"fathom_version", std::string{version()}},
                   {"vehicle", check.vehicle},

@@ -11,7 +11,7 @@
 namespace fathom::report {
 
 /// `given`: causes, covariance, and the refusals of the likelihood's core where it answered.
-/// JSON text as docs/schema/diagnosis-1.schema.json describes it: SI units and radians; numbers that do not exist are
+/// JSON text as docs/schema/diagnosis-2.schema.json describes it: SI units and radians; numbers that do not exist are
 /// null.
 [[nodiscard]] std::string to_json(const DiagnosisResult& result, const VerdictGiven& given = {},
                                   const ResultOrigin& origin = {});

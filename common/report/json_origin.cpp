@@ -31,7 +31,7 @@ Json file_entry(const OriginFile& file) {
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-void begin_result(Json& file, std::string_view kind, const ResultOrigin& origin) {
+void begin_result(Json& file, int schema, std::string_view kind, const ResultOrigin& origin) {
   std::optional<Utime> begin, end;
   Json files = Json::array();
   for (const OriginFile& one : origin.files) {
@@ -39,7 +39,7 @@ void begin_result(Json& file, std::string_view kind, const ResultOrigin& origin)
     if (one.begin) begin = std::min(begin.value_or(*one.begin), *one.begin);
     if (one.end) end = std::max(end.value_or(*one.end), *one.end);
   }
-  file["schema"] = kSchema;
+  file["schema"] = schema;
   file["kind"] = kind;
   file["fathom_version"] = version();
   file["command"] = origin.command;

@@ -8,14 +8,14 @@
 
 namespace fathom::report {
 
-/// Version of the schemas in docs/schema. Keys are only ever added under one number; a change of a key's meaning or its
-/// removal raises it.
-inline constexpr int kSchema = 1;
+/// Versions of the schemas in docs/schema. Keys are only ever added under one number; a change of a key's meaning or
+/// its removal raises it.
+inline constexpr int kDiagnosisSchema = 2, kLiveTrialSchema = 1, kCheckSchema = 1;
 
 /// Number, or null where it is not finite.
 [[nodiscard]] nlohmann::ordered_json number_or_null(double value);
 
 /// Writes schema, kind, fathom_version, command, data and files.
-void begin_result(nlohmann::ordered_json& file, std::string_view kind, const ResultOrigin& origin);
+void begin_result(nlohmann::ordered_json& file, int schema, std::string_view kind, const ResultOrigin& origin);
 
 }  // namespace fathom::report

@@ -38,10 +38,9 @@ Afterwards read_afterwards(const std::string& folder, const std::string& page) {
     found.verdict = result.at("verdict").get<std::string>();
     for (const auto& effect : result.at("effects")) {
       found.effects.push_back({.name = effect.at("name").get<std::string>(),
-                               .log_odds = effect.at("log_odds").get<double>(),
-                               .error_reduction = effect.at("error_reduction").is_number()
-                                                      ? effect.at("error_reduction").get<double>()
-                                                      : std::numeric_limits<double>::quiet_NaN()});
+                               .log_odds = effect.at("log_odds").is_number()
+                                               ? effect.at("log_odds").get<double>()
+                                               : std::numeric_limits<double>::quiet_NaN()});
     }
     found.before = errors_of(result.at("error").at("before"));
     found.after = errors_of(result.at("error").at("after"));
@@ -61,10 +60,9 @@ std::string afterwards_section(const Afterwards& found) {
   if (!found.page.empty()) html += ". Evidence and pictures: <a href=\"" + escape(found.page) + "\">the diagnosis</a>";
   html += ".</p>";
   if (!found.effects.empty()) {
-    html += "<table>" + heading_cells({"Effect", "Log odds", "Explains"}, {1, 2});
+    html += "<table>" + heading_cells({"Effect", "Log odds"}, {1});
     for (const EffectEvidence& one : found.effects) {
-      html += "<tr>" + cell(escape(effect_title(one.name)), "k") + cell(number(one.log_odds), "n") +
-              cell(percent(one.error_reduction), "n") + "</tr>\n";
+      html += "<tr>" + cell(escape(effect_title(one.name)), "k") + cell(number(one.log_odds), "n") + "</tr>\n";
     }
     html += "</table>\n";
   }

@@ -41,7 +41,7 @@ Json truth_of(const LiveTrialResult& result) {
 
 std::string to_json(const LiveTrialResult& result, const ResultOrigin& origin) {
   Json json;
-  begin_result(json, "live trial", origin);
+  begin_result(json, kLiveTrialSchema, "live trial", origin);
   json["vehicle"] = result.vehicle;
   json["site"] = result.site;
   json["seconds"] = result.seconds;

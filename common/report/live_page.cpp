@@ -1,4 +1,6 @@
-// The page of a live trial: outcome, Table 1.1, the paper's figures from the log; last and apart, what the truth says.
+// The page of a live trial: first what came of it, what was flown and the vehicle's numbers; folded, the motion and how
+// the numbers settled; last and apart, what the truth says. The figures of the paper (Karras et al.) are named small
+// beside.
 #include <algorithm>
 #include <cmath>
 
@@ -26,33 +28,76 @@ std::string key(const std::vector<std::pair<std::string, std::string>>& entries)
   return html + "</p>\n";
 }
 
-std::string tile(const std::string& big, const std::string& small) {
-  return "<div class=\"tile\"><b>" + escape(big) + "</b>" + escape(small) + "</div>";
+/// "Where it was", and small beside it the paper's figure that it is.
+std::string heading(const std::string& title, const std::string& paper) {
+  return "<section><h2>" + title + " <span class=\"paper\">" + paper + "</span></h2>";
 }
 
-std::string outcome(const LiveTrialResult& result) {
+/// A line per motion that is not settled, per effect that is suspected, per process that was not well.
+std::string findings(const LiveTrialResult& result) {
+  std::string items;
+  for (const ModeVisit& visit : result.visits) {
+    if (!visit.left)
+      items += "<li><b>Not settled: " + escape(visit.mode) +
+               "</b> <span class=\"soft\">missing: " + escape(visit.missing) + "</span></li>\n";
+  }
+  const bool named = result.ranking.verdict == "effect" || result.ranking.verdict == "ambiguous";
+  for (const EffectEvidence& one : result.ranking.candidates) {
+    if (!named || !(one.log_odds > 0.0)) continue;
+    const bool adopted = std::ranges::find(result.adopted, one.name) != result.adopted.end();
+    items += "<li>Missing in the base model: <b>" + escape(effect_title(one.name, one.variant)) +
+             "</b> <span class=\"soft\">" + escape(odds(one.log_odds)) + "; " +
+             escape(adopted ? "in the identifier's model" : "not in the identifier's model") + "</span></li>\n";
+  }
+  for (const auto& [process, words] : result.complaints)
+    items += "<li>" + escape(process) + " said: " + escape(words) + "</li>\n";
+  return items.empty() ? "" : "<ul class=\"causes\">" + items + "</ul>\n";
+}
+
+std::string next(const LiveTrialResult& result) {
+  if (!result.ranking.segment.empty())
+    return "Fly '" + result.ranking.segment + "': it tells " + effect_title(result.ranking.candidates.front().name) +
+           " from " + effect_title(result.ranking.against) + ".";
+  if (!result.settled() && result.phase != "recorded")
+    return "Fly on until every motion is settled: what is missing stands above.";
+  return result.afterwards ? std::string{}
+                           : "Have the log diagnosed: fathom diagnose --vehicle V.yaml --train RUN.lcmlog --out DIR.";
+}
+
+std::string outcome(const LiveTrialResult& result, const Recording& recording, const estimation::AidsSeen& seen,
+                    Album& album) {
   const bool settled = result.settled();
   std::string words = "The trial was not finished";
   if (result.phase == "done") words = settled ? "All modes are settled" : "Finished, but not everything is settled";
   if (result.phase == "aborted") words = "The trial was aborted";
   if (result.phase == "lost") words = "The state was lost";
+  if (result.phase == "recorded") words = "A recorded run, flown without a supervisor";
   if (!result.failing.empty()) words += "; the model lacks something on " + join(result.failing, ", ");
   const auto left = std::ranges::count_if(result.visits, [](const ModeVisit& visit) { return visit.left; });
   std::string html = "<header><h1>Live trial of " + escape(result.vehicle) +
                      "</h1>\n<p class=\"soft\">Site: " + escape(result.site) + "</p>\n<div class=\"badge " +
                      (settled && result.failing.empty() ? "adequate" : "ambiguous") + "\">" + escape(words) +
-                     "</div>\n<p class=\"lead\">" + escape(result.reason) + "</p>\n<div class=\"tiles\">";
+                     "</div>\n<p class=\"lead\">" + escape(result.reason) + "</p>\n" + findings(result) +
+                     "<div class=\"tiles\">";
   html += tile(number(result.seconds, 4) + " s", "from the first state to the last");
   html += tile(std::to_string(left) + " of " + std::to_string(result.visits.size()), "modes settled");
   html += tile(std::to_string(result.parameters.size()), "parameters identified on line");
   html += tile(result.ranking.verdict.empty() ? "-" : result.ranking.verdict,
                "the diagnoser's verdict; in the model: " +
                    (result.adopted.empty() ? std::string{"no effect"} : join(result.adopted, ", ")));
-  return html + "</div></header>\n";
+  const bool deep = seen.tags.t.empty();
+  const std::array place{AidCurve{deep ? &seen.usbl : &seen.tags, kTagColour}};
+  html += "</div>\n<div class=\"grid pair\">" +
+          figure(album.place(draw_plan(recording, place)), "The path from above.") +
+          figure(album.place(draw_path(recording)), "The path in space. <span class=\"paper\">Figure 1.14</span>") +
+          "</div>";
+  if (const std::string words_of_next = next(result); !words_of_next.empty())
+    html += "<p class=\"note\"><b>Next.</b> " + escape(words_of_next) + "</p>\n";
+  return html + "</header>\n";
 }
 
 std::string mode_table(const LiveTrialResult& result) {
-  std::string html = "<section><h2>The schedule</h2><table>" +
+  std::string html = "<section><h2>What was flown</h2><table>" +
                      heading_cells({"Mode", "From [s]", "To [s]", "Metric", "Threshold", "Outcome"}, {1, 2, 3, 4});
   for (const ModeVisit& visit : result.visits) {
     html += "<tr>" + cell(escape(visit.mode), "k") + cell(number(visit.begun, 4), "n") +
@@ -71,7 +116,7 @@ std::string mode_table(const LiveTrialResult& result) {
 
 std::string table_1_1(const LiveTrialResult& result) {
   std::string html =
-      "<section><h2>Table 1.1: the identified set</h2><p>Numbers of the <b>" + escape(estimate_words(result)) +
+      heading("The vehicle's numbers", "Table 1.1") + "<p>Numbers of the <b>" + escape(estimate_words(result)) +
       "</b>. <b>" + escape(doubt_words(result)) + "</b></p><table>" +
       heading_cells({"Parameter", "Identified", "Std", "95 % interval", "Unit", "Vehicle file", "Entangled"},
                     {1, 2, 3, 5, 6});
@@ -112,8 +157,9 @@ std::string filter_section(const estimation::NavigatorSettings& settings, const 
                                number(filter.gains.value, 3) +
                                (second ? ", k_b " + number(filter.gains.rate, 3) + " per s" : std::string{}));
     }
-    html += std::string{"<section><h2>Figure "} +
-            (second ? "1.5: second order, velocity" : "1.4: first order, horizontal position") + "</h2>\n" +
+    html += heading(second ? "What the filter lets through: velocity, second order"
+                           : "What the filter lets through: horizontal position, first order",
+                    second ? "Figure 1.5" : "Figure 1.4") +
             key(entries) + "<p class=\"small soft\">Solid: what passes of the measurement; dashed: of the integrated " +
             (second ? "acceleration" : "velocity") + ". Gains as the filter had them, at the median interval.</p>" +
             "<div class=\"grid pair\">" + figure(album.place(draw_bode(drawn, BodePart::kMagnitude)), "") +
@@ -132,24 +178,21 @@ std::string motion(const Recording& recording, const estimation::AidsSeen& seen,
   const auto put = [&](Figure drawn) { return figure(album.place(std::move(drawn)), ""); };
   const std::array only_place{place}, only_speed{speed};
   const std::array both = deep ? std::array{height, height} : std::array{place, height};
-  std::string html = "<section><h2>Figure 1.11: horizontal position</h2>\n" +
+  std::string html = heading("Where it was", "Figure 1.11") +
                      key({{kTagColour, place_name}, {kMeasuredColour, "estimate"}}) + "<div class=\"grid pair\">" +
                      put(draw_component(recording, 0, only_place)) + put(draw_component(recording, 1, only_place)) +
-                     put(draw_plan(recording, only_place)) + "</div></section>\n";
-  html += "<section><h2>Figure 1.12: horizontal velocity</h2>\n" +
-          key({{kTagColour, speed_name}, {kMeasuredColour, "estimate"}}) + "<div class=\"grid pair\">" +
-          put(draw_component(recording, 3, only_speed)) + put(draw_component(recording, 4, only_speed)) +
-          "</div></section>\n";
+                     "</div></section>\n";
+  html += heading("How fast it went", "Figure 1.12") + key({{kTagColour, speed_name}, {kMeasuredColour, "estimate"}}) +
+          "<div class=\"grid pair\">" + put(draw_component(recording, 3, only_speed)) +
+          put(draw_component(recording, 4, only_speed)) + "</div></section>\n";
   html +=
-      "<section><h2>Figure 1.13: depth and heave</h2>\n" +
+      heading("Depth and heave", "Figure 1.13") +
       key({{kLaserColour, deep ? "depth sensor alone" : "laser alone"},
            {kTagColour, deep ? "velocity log alone" : place_name},
            {kMeasuredColour, "estimate"}}) +
       "<div class=\"grid pair\">" + put(draw_component(recording, 2, both)) +
       put(draw_component(recording, 5, deep ? std::span<const AidCurve>{only_speed} : std::span<const AidCurve>{})) +
       "</div></section>\n";
-  html += "<section><h2>Figure 1.14: the path in space</h2>\n<div class=\"grid pair\">" + put(draw_path(recording)) +
-          "</div></section>\n";
   return html;
 }
 
@@ -173,9 +216,10 @@ std::string evolution(const Recording& recording, const LiveTrialResult& result,
     total_begins = visit.begun;
     total_ends = visit.ended;
   }
-  const auto section = [&](const std::string& title, const std::vector<std::string>& names, double begin, double end) {
+  const auto section = [&](const std::string& title, const std::string& paper, const std::vector<std::string>& names,
+                           double begin, double end) {
     if (names.empty() || !(end > begin)) return std::string{};
-    std::string html = "<section><h2>" + title + "</h2><div class=\"grid\">";
+    std::string html = heading(title, paper) + "<div class=\"grid\">";
     for (const std::string& name : names) {
       html += figure(album.place(draw_parameter(recording, result.visits, name, begin, end)), "");
     }
@@ -185,17 +229,20 @@ std::string evolution(const Recording& recording, const LiveTrialResult& result,
   // Designed segments begin with all axes at once.
   const bool has_own = std::ranges::any_of(result.visits, [](const ModeVisit& visit) { return visit.mode != "total"; });
   const double modes_end = !has_total ? result.seconds : has_own ? total_begins : 0.0;
-  std::string html =
-      section("Figure 1.15: parameters of surge and sway, modes of their own", surge_sway, 0.0, modes_end) +
-      section("Figure 1.16: parameters of heave and yaw, modes of their own", heave_yaw, 0.0, modes_end) +
-      section("Parameters of roll and pitch", tilt, 0.0, result.seconds);
+  std::string html = section("How the numbers of surge and sway settled, in modes of their own", "Figure 1.15",
+                             surge_sway, 0.0, modes_end) +
+                     section("How the numbers of heave and yaw settled, in modes of their own", "Figure 1.16",
+                             heave_yaw, 0.0, modes_end) +
+                     section("How the numbers of roll and pitch settled", "", tilt, 0.0, result.seconds);
   if (has_total) {
-    html += section("Figure 1.17: surge and sway in mode Total", surge_sway, total_begins, total_ends) +
-            section("Figure 1.18: heave and yaw in mode Total", heave_yaw, total_begins, total_ends);
+    html += section("How the numbers of surge and sway settled, all motions at once", "Figure 1.17", surge_sway,
+                    total_begins, total_ends) +
+            section("How the numbers of heave and yaw settled, all motions at once", "Figure 1.18", heave_yaw,
+                    total_begins, total_ends);
   }
-  html +=
-      "<section><h2>Figure 1.19: how sure</h2><p class=\"small soft\">Sum of the variances of a mode's parameters "
-      "(eq. 1.15) against its threshold (dashed); shaded: the mode itself.</p><div class=\"grid\">";
+  html += heading("When each motion was sure", "Figure 1.19") +
+          "<p class=\"small soft\">Sum of the variances of a mode's parameters "
+          "(eq. 1.15) against its threshold (dashed); shaded: the mode itself.</p><div class=\"grid\">";
   std::vector<std::string> drawn;
   for (const ModeVisit& visit : result.visits) {
     if (std::ranges::find(drawn, visit.mode) != drawn.end()) continue;
@@ -265,6 +312,19 @@ std::string truth_section(const LiveTrialResult& result, const Recording& record
   return html + "</section>\n";
 }
 
+/// Sections one after the other, each folded.
+std::string each_folded(const std::string& sections) {
+  constexpr std::string_view kEnd = "</section>\n";
+  std::string html;
+  for (std::size_t begin = 0; begin < sections.size();) {
+    const std::size_t end = sections.find(kEnd, begin);
+    if (end == std::string::npos) return html + sections.substr(begin);
+    html += folded(sections.substr(begin, end + kEnd.size() - begin));
+    begin = end + kEnd.size();
+  }
+  return html;
+}
+
 }  // namespace
 
 std::string to_html(const LiveTrialResult& result, const Recording& recording, const model::Vehicle& vehicle,
@@ -276,13 +336,12 @@ std::string to_html(const LiveTrialResult& result, const Recording& recording, c
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><title>Fathom: live trial of " +
       escape(result.vehicle) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n";
-  page += outcome(result) + mode_table(result) + table_1_1(result);
-  if (filters != nullptr) page += filter_section(*filters, seen, album);
-  page += motion(recording, seen, album);
-  page += contact_sheet(pictures, trial_origin(recording));
-  page += evolution(recording, result, album);
-  page += suspects(result);
+  page += outcome(result, recording, seen, album) + mode_table(result) + table_1_1(result);
   if (result.afterwards) page += afterwards_section(*result.afterwards);
+  page += each_folded(suspects(result) + motion(recording, seen, album));
+  page += contact_sheet(pictures, trial_origin(recording));
+  page += each_folded(evolution(recording, result, album));
+  if (filters != nullptr) page += each_folded(filter_section(*filters, seen, album));
   if (result.truth) page += truth_section(result, recording, album);
   return album.fill(page + version_line() + "</main></body></html>\n", gnuplot);
 }

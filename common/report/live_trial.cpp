@@ -117,18 +117,20 @@ std::string doubt_words(const LiveTrialResult& result) {
 LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehicle, const model::Site& site) {
   const auto need = [&](bool there, const char* channel, const char* who) {
     if (!there) {
-      throw InputError(recording.name + ": no " + channel + " in this log; a live trial's log has it, from the " + who);
+      throw InputError(recording.name + ": no " + channel + " in this log; a live trial's log has it, from the " + who +
+                       ", and what 'fathom smooth' writes of any other");
     }
   };
   need(!recording.state.empty(), "STATE", "estimator");
-  need(!recording.excitation.empty(), "EXCITATION", "supervisor");
-  need(!recording.model.empty(), "MODEL", "identifier");
   LiveTrialResult result;
   result.vehicle = vehicle.name;
   result.site = site.name;
   const Utime origin = trial_origin(recording);
   result.seconds = seconds_between(origin, recording.state.back().utime);
-  const Excitation& last = recording.excitation.back();
+  const Excitation last =
+      recording.excitation.empty()
+          ? Excitation{.reason = "nobody told of modes: no EXCITATION in this log", .phase = "recorded"}
+          : recording.excitation.back();
   result.phase = last.phase;
   result.reason = last.reason;
   result.visits = visits_of(recording.excitation, origin);
@@ -140,7 +142,9 @@ LiveTrialResult summarise(const Recording& recording, const model::Vehicle& vehi
     if (visit.left) visit.missing.clear();
   }
   complete_metrics(result.visits, recording.model, origin);
-  const ModelEstimate& model = recording.model.back();
+  if (recording.model.empty())
+    result.reason += std::string{result.reason.empty() ? "" : "; "} + "nothing was identified: no MODEL in this log";
+  const ModelEstimate model = recording.model.empty() ? ModelEstimate{} : recording.model.back();
   result.parameters = model.parameters;
   result.joint = model.joint;
   const auto first_joint = std::ranges::find_if(recording.model, &ModelEstimate::joint);

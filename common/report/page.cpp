@@ -33,15 +33,6 @@ const char* kWords =
     "<div><dt>X Y Z, K M N</dt><dd>Forces forward, right and down; moments in roll, pitch and yaw.</dd></div>"
     "</dl></section>\n";
 
-/// A section whose heading unfolds it. What is folded does not print.
-std::string folded(std::string section) {
-  constexpr std::string_view kBegin = "<section><h2>", kHeading = "</h2>", kEnd = "</section>\n";
-  if (!section.starts_with(kBegin) || !section.ends_with(kEnd)) return section;
-  section.replace(section.size() - kEnd.size(), kEnd.size(), "</details>\n");
-  section.insert(section.find(kHeading) + kHeading.size(), "</summary>");
-  return section.replace(0, kBegin.size(), "<details class=\"section\"><summary><h2>");
-}
-
 }  // namespace
 
 std::string to_html(const DiagnosisReport& report, const std::string& gnuplot) {

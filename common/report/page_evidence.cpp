@@ -29,29 +29,12 @@ std::string bar(const Scale& scale, double value) {
   return html + "<u style=\"left:" + per_cent(zero) + "\"></u></div>";
 }
 
-/// "tether tension (3 : 1 against it)", one after the other, and what each falsifies unnoticed.
+/// "tether tension (3 : 1 against it)", one after the other.
 std::string rivals(const EffectFound& effect) {
-  std::string names, harm;
-  const auto falsifies = [](const std::string& name, const std::string& parameter, double share) {
-    if (parameter.empty()) return std::string{};
-    const std::string unnoticed = " Unnoticed, " + effect_title(name, "");
-    if (share < -1.0) return unnoticed + " gives " + parameter + " the wrong sign.";
-    return unnoticed + " makes " + parameter + " " + percent(std::abs(share)) +
-           (share > 0.0 ? " too large" : " too small") + ".";
-  };
-  harm += falsifies(effect.name, effect.corrupts, effect.corruption);
-  for (const Alternative& other : effect.alternatives) {
+  std::string names;
+  for (const Alternative& other : effect.alternatives)
     names += (names.empty() ? "" : ", ") + effect_title(other.name, "") + " (" + odds(other.log_odds) + " against it)";
-    harm += falsifies(other.name, other.corrupts, other.corruption);
-  }
-  return escape(names + "." + harm);
-}
-
-std::string titles(const std::vector<std::string>& names) {
-  std::vector<std::string> words;
-  words.reserve(names.size());
-  for (const auto& name : names) words.push_back(effect_title(name));
-  return join(words, ", ");
+  return escape(names + ".");
 }
 
 std::string interval_cell(const NamedValue* value) {
@@ -126,45 +109,26 @@ std::string sensor_section(const DiagnosisReport& report) {
 std::string candidate_section(const DiagnosisResult& result) {
   std::string html = "<section><h2>Which causes were suspected</h2>\n";
   if (result.candidates.empty()) return html + "<p>No cause was tried.</p></section>\n";
-  const bool tells = tells_error_removed(result);
-  html += tells
-              ? "<p>Each known effect was asked two questions. <b>It helps</b>: the share of the error that goes when "
-                "it joins the model, which a stand-in does too. <b>It is this cause</b>: how likely the name is right, "
-                "beside nothing and beside every other name; asked of what was kept alone.</p>\n<table>" +
-                    heading_cells({"Suspected cause", "it helps: error removed", "it is this cause", "why"}, {})
-              : "<p>Each known effect was asked. <b>It is this cause</b>: how likely the name is right, beside nothing "
-                "and beside every other name; asked of what was kept alone.</p>\n<table>" +
-                    heading_cells({"Suspected cause", "it is this cause", "why"}, {});
+  html +=
+      "<p>Each known effect was asked. <b>It is this cause</b>: how likely the name is right, beside nothing and "
+      "beside "
+      "every other name; asked of what was kept alone.</p>\n<table>" +
+      heading_cells({"Suspected cause", "it is this cause", "why"}, {});
   std::vector<const CandidateTried*> ranked;
   for (const auto& candidate : result.candidates) ranked.push_back(&candidate);
-  // Kept rows first. Not a number ranks last, so that the order stays strict.
-  const auto rank = [&](const CandidateTried* c) {
-    const double helps = std::isnan(c->error_reduction) ? -1e300 : c->error_reduction;
-    return std::pair{accepted_form(result, *c) != nullptr, helps};
-  };
-  std::ranges::stable_sort(ranked, std::ranges::greater{}, rank);
+  std::ranges::stable_partition(ranked, [&](const CandidateTried* c) { return accepted_form(result, *c) != nullptr; });
   constexpr Scale kWhole{0.0, 1.0};
   for (const auto* c : ranked) {
     const EffectFound* found = accepted_form(result, *c);
-    std::string why = escape(c->reason);
-    if (!c->aliased_with.empty()) {
-      why += std::string(why.empty() ? "" : " ") + "<b>Looks the same as " + escape(titles(c->aliased_with)) +
-             " on this data.</b>";
-    }
     const std::string mark = !found                            ? "<span class=\"mark no\">refused</span>"
                              : result.verdict == "unexplained" ? "<span class=\"mark\">kept</span>"
                                                                : "<span class=\"mark\">accepted</span>";
-    const double probability = found ? probability_of(*found) : std::nan("");
+    const double probability = found ? found->probability : std::nan("");
     html += std::string("<tr") + (found ? " class=\"yes\">" : ">") +
             cell(escape(effect_title(c->name, c->variant)) + "<br>" + mark, "name") +
-            (!tells ? ""
-             : !std::isfinite(c->error_reduction) || (found && c->error_reduction == 0.0)  // found among the sensors
-                 ? cell("<span class=\"soft\">not asked</span>", "bars")
-                 : cell(bar(kWhole, c->error_reduction) + "<div>" + escape(percent(c->error_reduction)) + "</div>",
-                        "bars")) +
             (found ? cell(bar(kWhole, probability) + "<div>" + escape(sure(probability)) + "</div>", "bars")
                    : cell("<span class=\"soft\">not asked</span>", "bars")) +
-            cell(why) + "</tr>\n";
+            cell(escape(c->reason)) + "</tr>\n";
   }
   return html + "</table></section>\n";
 }
@@ -229,19 +193,11 @@ std::string certainty_section(const DiagnosisResult& result) {
   for (const auto& effect : result.effects) {
     if (!effect.sentence.empty()) {
       html += "<p class=\"note\">" + escape(effect.sentence) +
-              " <b>It is this cause: " + escape(sure(probability_of(effect))) + ".</b></p>\n";
+              " <b>It is this cause: " + escape(sure(effect.probability)) + ".</b></p>\n";
     }
     if (!effect.alternatives.empty()) {
       open += "<li>On this data, <b>" + escape(effect_title(effect.name, effect.variant)) +
               "</b> cannot be told apart from " + rivals(effect) + "</li>\n";
-    }
-    if (!effect.unlisted.empty()) {
-      open += "<li><b>" + escape(effect_title(effect.name, effect.variant)) + "</b> looks the same as " +
-              escape(effect.unlisted) + ".</li>\n";
-    }
-    for (const std::string& forms : effect.other_forms) {
-      open += "<li>Which form of <b>" + escape(effect_title(effect.name, "")) +
-              "</b> it is remains open: " + escape(forms) + ".</li>\n";
     }
   }
   for (const auto& axis : result.residual_after) {

@@ -21,20 +21,17 @@ namespace {
 constexpr double kHorizon = 5.0;           // s
 constexpr double kCloseUp = 60.0;          // s: six windows of 10 s
 constexpr std::size_t kMostPoints = 1200;  // one per pixel of a wide screen is plenty
-constexpr std::size_t kMostCauses = 5;     // lines where nothing is named: what the residual goes with
 
 struct Meaning {
   std::string css;
   std::string words;
 };
 
-Meaning meaning(const std::string& verdict, bool partly, bool wiring) {
+Meaning meaning(const std::string& verdict, bool wiring) {
   if (wiring) return {"unexplained", "The vehicle's file seems to have other thrusters than the vehicle"};
   if (verdict == "adequate") return {"adequate", "The model is adequate: nothing is missing that this data can show"};
   if (verdict == "effect") return {"effect", "Something was missing, and it was found"};
   if (verdict == "ambiguous") return {"ambiguous", "Something is missing, but this data fits several causes"};
-  if (verdict == "unexplained" && partly)
-    return {"unexplained", "Something is missing, and the known causes explain only a part of it"};
   if (verdict == "unexplained") return {"unexplained", "Something is missing, and none of the known causes fits"};
   if (verdict == "no_model")
     return {"unexplained", "The model does not follow its thrust: numbers of such axes are withheld"};
@@ -49,10 +46,6 @@ std::string recordings(const DiagnosisResult& result) {
     for (const std::string& name : *names) runs.insert(name.substr(0, name.find(" (")));
   }
   return std::to_string(runs.size()) + (runs.size() == 1 ? " recorded run" : " recorded runs");
-}
-
-std::string tile(const std::string& big, const std::string& small) {
-  return "<div class=\"tile\"><b>" + escape(big) + "</b>" + escape(small) + "</div>";
 }
 
 std::string lines(const std::string& text) {
@@ -178,8 +171,7 @@ std::string in_words(const EffectFound& effect) {
   return "";
 }
 
-std::string picture(const DiagnosisReport& report, Album& album) {
-  const auto axis = telling_axis(report.result);
+std::string picture(const DiagnosisReport& report, std::optional<std::size_t> axis, Album& album) {
   if (!axis) return "";
   for (const PredictionTrace& trace : report.traces) {
     const std::size_t size = trace.t.size();
@@ -200,7 +192,7 @@ std::string picture(const DiagnosisReport& report, Album& album) {
 /// What the sensors say, not what the vehicle does: no force is missing for it.
 bool of_sensor(const EffectFound& effect) {
   const model::Effect* known = model::find_effect(effect.name);
-  return known != nullptr && known->measures() && !(effect.error_reduction > 0.0);
+  return known != nullptr && known->measures();
 }
 
 std::string causes(const DiagnosisResult& result) {
@@ -211,30 +203,28 @@ std::string causes(const DiagnosisResult& result) {
     std::string others;
     for (const Alternative& other : effect.alternatives)
       others += (others.empty() ? "" : ", ") + effect_title(other.name);
-    if (!effect.unlisted.empty()) others += (others.empty() ? "" : ", ") + effect.unlisted;
-    const bool measured = effect.error_reduction > 0.0, likely = probability_of(effect) >= 0.5;
+    const bool likely = effect.probability >= 0.5;
     const std::string what = of_sensor(effect) ? "In the sensors, and corrected: "
                              : likely          ? ""
                                                : "A stand-in, hardly the cause: ";
     items += "<li>" + what + cause_line(effect) + " <span class=\"soft\">" +
-             (measured ? "removes " + escape(percent(effect.error_reduction)) + " of the error; " : std::string{}) +
-             "it is this cause: " + escape(sure(probability_of(effect))) +
+             "it is this cause: " + escape(sure(effect.probability)) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
   }
-  for (const StandIn& one : result.stand_ins)
+  std::string refused;
+  for (const StandIn& one : result.stand_ins) {
+    if (!one.in_model) {
+      refused += (refused.empty() ? "" : ", ") + effect_title(one.name, one.variant);
+      continue;
+    }
     items += "<li>A stand-in, no cause: " + escape(effect_title(one.name, one.variant)) + " <span class=\"soft\">" +
-             escape(percent(one.size)) + " of the applied force; " +
-             (one.in_model ? "lowers the error on what was not fitted" : "not taken: the error does not fall") +
-             "</span></li>\n";
+             escape(percent(one.size)) + " of the applied force; lowers the error on what was not fitted</span></li>\n";
+  }
+  if (!refused.empty())
+    items += "<li><span class=\"soft\">Stand-ins that were tried and not taken, since the error does not fall: " +
+             escape(refused) + "</span></li>\n";
   if (result.correction && result.correction->adopted)
     items += "<li>A correction, not a cause: " + escape(result.correction->words) + "</li>\n";
-  if (items.empty()) {
-    for (std::size_t i = 0; i < std::min(result.goes_with.size(), kMostCauses); ++i) {
-      const Association& one = result.goes_with[i];
-      items += "<li>unexplained: " + escape(one.axis + " goes with " + one.with) + " <span class=\"soft\">(" +
-               escape(percent(one.share)) + " of what is left there)</span></li>\n";
-    }
-  }
   return items.empty() ? "" : "<ul class=\"causes\">" + items + "</ul>\n";
 }
 
@@ -244,12 +234,6 @@ std::string sure(double probability) {
   constexpr double kNearly = 0.999;
   if (!std::isfinite(probability)) return "-";
   return probability > kNearly ? "> 99.9 %" : percent(probability);
-}
-
-double probability_of(const EffectFound& effect) {
-  double odds = effect.log_odds;
-  for (const Alternative& other : effect.alternatives) odds = std::min(odds, other.log_odds);
-  return 1.0 / (1.0 + std::exp(-odds));
 }
 
 std::string cause_line(const EffectFound& effect) {
@@ -263,25 +247,32 @@ std::string cause_line(const EffectFound& effect) {
   return "<b>" + escape(line) + "</b>";
 }
 
-/// "heave, roll": axes that are predicted and of which no number is told; empty where none is told at all.
-std::string axes_without_numbers(const DiagnosisResult& result) {
-  std::string names;
-  if (result.parameters_after.empty() || result.error_after.prediction.empty()) return names;
+/// Axes that are predicted and of which no number is told; empty where none is told at all.
+std::vector<std::size_t> axes_without_numbers(const DiagnosisResult& result) {
+  std::vector<std::size_t> axes;
+  if (result.parameters_after.empty() || result.error_after.prediction.empty()) return axes;
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const std::string_view inertia = model::name(model::base_parameters()[axis]);
     const bool told =
         std::ranges::find(result.parameters_after, inertia, &NamedValue::name) != result.parameters_after.end();
-    if (told || !std::isfinite(result.error_after.prediction.front().rmse[axis])) continue;
-    names += (names.empty() ? "" : ", ") + std::string{kAxes[axis].name};
+    if (!told && std::isfinite(result.error_after.prediction.front().rmse[axis])) axes.push_back(axis);
   }
-  return names;
+  return axes;
 }
 
 std::string front_section(const DiagnosisReport& report, Album& album) {
   const DiagnosisResult& result = report.result;
-  Meaning said = meaning(result.verdict, !result.effects.empty() && result.explained < 1.0, result.wiring.has_value());
-  const std::string axes = result.verdict == "no_model" && !result.wiring ? axes_without_numbers(result) : "";
-  if (!axes.empty()) said.words = "The model does not follow its thrust along " + axes + ": those numbers are withheld";
+  Meaning said = meaning(result.verdict, result.wiring.has_value());
+  std::optional<std::size_t> telling = telling_axis(result);
+  if (result.verdict == "no_model" && !result.wiring) {
+    std::string names;
+    for (const std::size_t axis : axes_without_numbers(result)) {
+      if (names.empty() && at_horizon(result.error_before) != nullptr) telling = axis;
+      names += (names.empty() ? "" : ", ") + std::string{kAxes[axis].name};
+    }
+    if (!names.empty())
+      said.words = "The model does not follow its thrust along " + names + ": those numbers are withheld";
+  }
   std::string html = "<header><h1>Why does " + escape(result.vehicle) +
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +
@@ -297,17 +288,17 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
                  "change of the prediction error 5 s ahead (" +
                      percent_interval(-result.improvement.high, -result.improvement.low) + ")");
   }
-  if (const auto axis = telling_axis(result)) {
-    const Axis& a = kAxes[*axis];
-    const auto rmse = [&](const ModelError& error) { return number(a.scale * at_horizon(error)->rmse[*axis], 3); };
-    html += tile(rmse(result.error_before) + " → " + rmse(result.error_after) + " " + a.unit,
-                 std::string{"error of "} + a.name + " 5 s ahead, before → after");
+  if (telling && at_horizon(result.error_before) != nullptr && at_horizon(result.error_after) != nullptr) {
+    const Axis& a = kAxes[*telling];
+    const auto rmse = [&](const ModelError& error) { return number(a.scale * at_horizon(error)->rmse[*telling], 3); };
+    html += tile((added ? rmse(result.error_before) + " → " : std::string{}) + rmse(result.error_after) + " " + a.unit,
+                 std::string{"error of "} + a.name + " 5 s ahead" + (added ? ", before → after" : ""));
   }
   const std::size_t doubts = group_findings(result.consistency).size();
   html += tile(std::to_string(doubts), doubts == 1 ? "doubt about a sensor" : "doubts about sensors");
   const bool judged = !result.error_after.prediction.empty();
   html += tile(join(result.validate, ", "), judged ? "judged on, not used in the fit" : "too short to judge on");
-  html += "</div>\n" + picture(report, album);
+  html += "</div>\n" + picture(report, telling, album);
   if (!result.manoeuvre.empty()) html += "<p class=\"note\"><b>Next.</b> " + escape(result.manoeuvre) + "</p>\n";
   if (!result.paragraph.empty())
     html += "<details><summary>The whole verdict in words</summary>" + lines(result.paragraph) + "</details>\n";

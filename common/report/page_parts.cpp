@@ -88,4 +88,16 @@ std::string whiskers(const std::vector<Whisker>& rows, double low, double high, 
   return svg + "</svg>";
 }
 
+std::string folded(std::string section) {
+  constexpr std::string_view kBegin = "<section><h2>", kHeading = "</h2>", kEnd = "</section>\n";
+  if (!section.starts_with(kBegin) || !section.ends_with(kEnd)) return section;
+  section.replace(section.size() - kEnd.size(), kEnd.size(), "</details>\n");
+  section.insert(section.find(kHeading) + kHeading.size(), "</summary>");
+  return section.replace(0, kBegin.size(), "<details class=\"section\"><summary><h2>");
+}
+
+std::string tile(const std::string& big, const std::string& small) {
+  return "<div class=\"tile\"><b>" + escape(big) + "</b>" + escape(small) + "</div>";
+}
+
 }  // namespace fathom::report

@@ -28,8 +28,6 @@ class Album {
 [[nodiscard]] std::string cause_line(const EffectFound& effect);
 /// 0.93 becomes "93 %"; what is nearly certain "> 99.9 %".
 [[nodiscard]] std::string sure(double probability);
-/// Probability that the name is right, beside nothing and beside every rival.
-[[nodiscard]] double probability_of(const EffectFound& effect);
 [[nodiscard]] std::string error_section(const DiagnosisResult& result, Album& album);
 [[nodiscard]] std::string motion_section(const DiagnosisReport& report, Album& album);
 [[nodiscard]] std::string sensor_section(const DiagnosisReport& report);
@@ -38,6 +36,10 @@ class Album {
 [[nodiscard]] std::string candidate_section(const DiagnosisResult& result);
 [[nodiscard]] std::string parameter_section(const DiagnosisResult& result);
 [[nodiscard]] std::string certainty_section(const DiagnosisResult& result);
+/// A section whose heading unfolds it. What is folded does not print.
+[[nodiscard]] std::string folded(std::string section);
+/// A number that is read at a glance, on the first screen.
+[[nodiscard]] std::string tile(const std::string& big, const std::string& small);
 /// Which build wrote the page: the last line of every page.
 [[nodiscard]] std::string version_line();
 

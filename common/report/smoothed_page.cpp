@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "common/base/spatial.hpp"
+#include "common/base/statistics.hpp"
+#include "common/report/page_parts.hpp"
 #include "common/report/plot.hpp"
+#include "common/report/style.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -185,18 +188,38 @@ std::string smoothed_figures(const Recording& recording, std::span<const StateEs
                ? number(" Its mean is %.4f m/s^2, that of the inertial y acceleration %.4f.", body / n, inertial / n)
                : "")};
   const std::vector<std::string> pictures = render(figures);
-  std::string html = "<h2>" + escape(recording.name) + "</h2><div class='six'>\n";
+  std::string html = "<section><h2>" + escape(recording.name) + "</h2><div class=\"grid pair\">\n";
   for (std::size_t i = 0; i < pictures.size(); ++i)
     html += "<figure>" + pictures[i] + "<figcaption>" + captions[i] + "</figcaption></figure>\n";
-  return html + "</div>\n";
+  return html + "</div></section>\n";
 }
 
 std::string smoothed_page(const Recording& recording, std::span<const StateEstimate> filtered, bool inclinometer_used) {
-  return "<!doctype html><meta charset='utf-8'><title>" + escape(recording.name) +
-         "</title><style>body{font-family:sans-serif;max-width:1160px;margin:auto}.six{display:grid;"
-         "grid-template-columns:1fr "
-         "1fr;gap:8px}figure{margin:0}figcaption{font-size:13px}pre{overflow:auto}</style>\n" +
-         smoothed_figures(recording, filtered, inclinometer_used);
+  const auto& s = recording.smoothed;
+  std::vector<double> place, speed;  // m, m/s: standard deviations of the worst component
+  for (const SmoothedState& one : s) {
+    place.push_back(one.sigma.head<3>().maxCoeff());
+    speed.push_back(one.sigma.segment<3>(6).maxCoeff());
+  }
+  const std::string title = "How the vehicle moved: " + recording.name;
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><title>Fathom: " +
+      escape(title) + "</title><style>" + kStyle + "</style></head>\n<body><main>\n<header><h1>" + escape(title) +
+      "</h1>\n<p class=\"soft\">A recorded run, smoothed: each state rests on what was measured before and after "
+      "it.</p>\n";
+  if (!s.empty())
+    html +=
+        "<div class=\"badge adequate\">Position within " + number("%.2g m", kNormal95 * median(place)) +
+        ", velocity within " + number("%.2g m/s", kNormal95 * median(speed)) + "</div>\n" +
+        "<p class=\"lead\">As the smoother states it: 95 %, on the worst axis, at half of the instants better.</p>\n" +
+        "<div class=\"tiles\">" + tile(number("%.4g s", seconds_between(s.front().utime, s.back().utime)), "smoothed") +
+        tile(std::to_string(s.size()), "states") +
+        tile(std::to_string(filtered.size()), "states of the filter beside them") + "</div>\n";
+  html +=
+      "<p class=\"note\"><b>Next.</b> Forces from this motion: fathom regress SMOOTHED.lcmlog --vehicle "
+      "V.yaml.</p></header>\n";
+  return html + smoothed_figures(recording, filtered, inclinometer_used) + version_line() + "</main></body></html>\n";
 }
 
 }  // namespace fathom::report

@@ -27,7 +27,8 @@ th.group{text-align:center}.grid figure{margin:6px 0}
 svg,img{display:block;width:100%;height:auto}figure{margin:10px 0}figcaption{font-size:14px;color:var(--soft);max-width:110ch}
 table{border-collapse:collapse;width:100%;font-size:14px;margin:10px 0}
 th{text-align:left;font-weight:600;color:var(--soft);border-bottom:2px solid var(--line);padding:4px 8px;vertical-align:bottom}
-td{border-bottom:1px solid var(--line);padding:5px 8px;vertical-align:top;overflow-wrap:anywhere}
+td{border-bottom:1px solid var(--line);padding:5px 8px;vertical-align:top;overflow-wrap:break-word}
+.paper{font-size:13px;font-weight:400;color:var(--soft);margin-left:8px}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
 td.k{white-space:nowrap;font-weight:600}
 .b{color:#a85c00}.a{color:var(--after);font-weight:600}
@@ -49,6 +50,7 @@ ul.causes{font-size:19px;margin:12px 0 4px;padding-left:22px}ul.causes li{margin
 dt{font-weight:600}dd{margin:0 0 8px;color:var(--soft)}dl{font-size:14px;margin:4px 0;columns:2;column-gap:36px}dl div{break-inside:avoid}
 @media screen and (max-width:800px){.grid,.grid.pair{grid-template-columns:1fr}.tiles{grid-template-columns:1fr 1fr}dl{columns:1}
  main{padding:8px}section,header,details.section{padding:12px;overflow-x:auto}.badge{font-size:19px}.tile b{font-size:18px}
+ table{display:block;overflow-x:auto}
  h1{font-size:21px}ul.causes{font-size:17px}td.bars,td.name{width:auto}.key{padding:6px 12px}}
 @page{size:A4;margin:11mm}
 @media print{*{-webkit-print-color-adjust:exact;print-color-adjust:exact}.key{position:static;padding:3px 12px;margin:0 0 6px;font-size:9px}body{background:#fff;font-size:10px;line-height:1.35}

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/report/correction.hpp"
+#include "common/report/page_parts.hpp"
 #include "common/report/text.hpp"
 
 namespace fathom::report {
@@ -97,39 +98,23 @@ void errors(Text& out, const DiagnosisResult& result) {
   }
 }
 
-/// Log odds, and the share of the error that goes with the effect where that was asked.
-class Scores {
- public:
-  explicit Scores(const DiagnosisResult& result) : removes_{tells_error_removed(result)} {}
-  [[nodiscard]] std::string head(const char* last) const {
-    return "  " + pad_right("", kNameWidth) + " log odds  " + (removes_ ? "removes  " : "") + last;
-  }
-  [[nodiscard]] std::string row(const std::string& title, double log_odds, double error_reduction) const {
-    return "  " + pad_right(title, kNameWidth) + " " + pad_left(log_odds_text(log_odds), 8) + "  " +
-           (removes_ ? pad_left(percent(error_reduction), 7) + "  " : "");
-  }
+std::string head_of_scores(const char* last) { return "  " + pad_right("", kNameWidth) + " log odds  " + last; }
 
- private:
-  bool removes_;
-};
+std::string score(const std::string& title, double log_odds) {
+  return "  " + pad_right(title, kNameWidth) + " " + pad_left(log_odds_text(log_odds), 8) + "  ";
+}
 
 void accepted(Text& out, const DiagnosisResult& result) {
   out.title(result.verdict == "unexplained" && !result.effects.empty() ? "Effects kept" : "Effects accepted");
-  const Scores scores{result};
-  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(scores.head("odds"));
+  if (std::ranges::any_of(result.effects, &EffectFound::accepted)) out.line(head_of_scores("probability"));
   bool any = false;
   for (const auto& effect : result.effects) {
     if (!effect.accepted) continue;
     any = true;
-    out.line(scores.row(effect_title(effect.name, effect.variant), effect.log_odds, effect.error_reduction) +
-             odds(effect.log_odds));
+    out.line(score(effect_title(effect.name, effect.variant), effect.log_odds) + sure(effect.probability));
     for (const auto& value : effect.parameters) out.paragraph(value.name + " = " + with_interval(value), "      ");
     for (const Alternative& other : effect.alternatives)
       out.paragraph("cannot be told apart from " + other.name + " (" + odds(other.log_odds) + " against it)", "      ");
-    if (!effect.unlisted.empty()) out.paragraph("looks the same as " + effect.unlisted, "      ");
-    if (!effect.other_forms.empty()) {
-      out.paragraph("which one is not certain: " + join(effect.other_forms, "; "), "      ");
-    }
   }
   if (!any) out.line("  none");
 }
@@ -147,14 +132,12 @@ void stand_ins(Text& out, const DiagnosisResult& result) {
 
 void refused(Text& out, const DiagnosisResult& result) {
   out.title("Effects refused");
-  const Scores scores{result};
   bool any = false;
   for (const auto& candidate : result.candidates) {
     if (accepted_form(result, candidate) != nullptr) continue;
-    if (!any) out.line(scores.head("why"));
+    if (!any) out.line(head_of_scores("why"));
     any = true;
-    const std::string start =
-        scores.row(effect_title(candidate.name, candidate.variant), candidate.log_odds, candidate.error_reduction);
+    const std::string start = score(effect_title(candidate.name, candidate.variant), candidate.log_odds);
     out.line(start + pad_right(candidate.reason, kTableColumns - columns(start)));
   }
   if (!any) out.line("  none");

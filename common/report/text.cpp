@@ -223,10 +223,4 @@ const EffectFound* accepted_form(const DiagnosisResult& result, const CandidateT
   return found == result.effects.end() ? nullptr : &*found;
 }
 
-bool tells_error_removed(const DiagnosisResult& result) {
-  return std::ranges::any_of(result.candidates, [](const CandidateTried& candidate) {
-    return std::isfinite(candidate.error_reduction) && candidate.error_reduction != 0.0;
-  });
-}
-
 }  // namespace fathom::report

@@ -73,7 +73,5 @@ struct FindingGroup {
 [[nodiscard]] bool predicted(const DiagnosisResult& result, std::size_t axis);
 /// The candidate's accepted form, or nullptr.
 [[nodiscard]] const EffectFound* accepted_form(const DiagnosisResult& result, const CandidateTried& candidate);
-/// Whether it was asked of any candidate how much of the error goes with it.
-[[nodiscard]] bool tells_error_removed(const DiagnosisResult& result);
 
 }  // namespace fathom::report

@@ -9,6 +9,7 @@ namespace {
 constexpr std::array kWords{
     CauseWords{"nothing_found", "log odds", "No effect has the odds that a name needs", false},
     CauseWords{"named", "probability", "The evidence sets an effect apart from every other"},
+    CauseWords{"weak_evidence", "probability", "Names of so little evidence are often wrong", false},
     CauseWords{"rivals", "probability", "The data fits more than one name", false},
     CauseWords{"free_force", "log odds", "A force acts that no listed effect explains"},
     CauseWords{"slow_random_force", "memory [s]", "A random force remembers itself for too long to be noise"},

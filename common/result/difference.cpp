@@ -118,11 +118,8 @@ std::string difference(const Stored& first, const Stored& second) {
   for (const EffectFound& effect : b.effects) {
     if (find(a, effect.name) != nullptr) continue;
     any = true;
-    out.line(report::effect_title(effect.name, effect.variant) + ": new in B, " +
-                 (std::isfinite(effect.error_reduction)
-                      ? "removes " + report::percent(effect.error_reduction) + " of the error, "
-                      : std::string{}) +
-                 "odds " + report::odds(effect.log_odds),
+    out.line(report::effect_title(effect.name, effect.variant) +
+                 ": new in B, it is this cause: " + report::percent(effect.probability),
              "  + ");
   }
   if (!any) out.line("none in either");

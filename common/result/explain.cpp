@@ -84,18 +84,13 @@ void evidence(Lines& out, const Stored& stored) {
   out.title("3. What was suspected, and what the evidence says");
   for (const EffectFound& effect : stored.result.effects) {
     if (!effect.accepted) continue;
-    out.line(report::effect_title(effect.name, effect.variant) +
-                 (std::isfinite(effect.error_reduction)
-                      ? ": removes " + percent(effect.error_reduction) + " of the error; odds"
-                      : std::string{": odds"}) +
-                 " of the name " + report::odds(effect.log_odds),
+    out.line(report::effect_title(effect.name, effect.variant) + ": it is this cause: " + percent(effect.probability) +
+                 ", log odds " + report::log_odds_text(effect.log_odds),
              "  + ");
     for (const NamedValue& value : effect.parameters)
       out.line(value.name + " = " + report::with_interval(value), "", 6);
     for (const Alternative& other : effect.alternatives)
       out.line("or " + other.name + ": " + report::odds(other.log_odds) + " against it", "", 6);
-    if (!effect.unlisted.empty()) out.line("or, unlisted: " + effect.unlisted, "", 6);
-    for (const std::string& forms : effect.other_forms) out.line("form open: " + forms, "", 6);
   }
   for (const StandIn& one : stored.result.stand_ins)
     out.line(report::effect_title(one.name, one.variant) + ": a stand-in for something unlisted, " + percent(one.size) +
@@ -112,8 +107,7 @@ void evidence(Lines& out, const Stored& stored) {
     ++told;
     std::string words = report::effect_title(candidate.name, candidate.variant) + ": " + candidate.reason;
     if (!stored.given.refusals.contains(candidate.name) && std::isfinite(candidate.log_odds))
-      words += "; log odds " + report::log_odds_text(candidate.log_odds) + ", would remove " +
-               percent(candidate.error_reduction);
+      words += "; log odds " + report::log_odds_text(candidate.log_odds);
     out.line(words, "  - ");
   }
   if (more > 0) out.line("and " + std::to_string(more) + " more refused: 'candidates' in the file");
@@ -128,10 +122,6 @@ void residual(Lines& out, const DiagnosisResult& result) {
                  number(kNotRandom) + "), " + percent(axis.explained) + " of the applied wrench accounted for",
              "    " + axis.axis, 8);
   }
-  for (const Association& one : result.goes_with)
-    out.line(one.axis + " goes with " + one.with + ": " + percent(one.share) + " of its variance, log odds " +
-                 report::log_odds_text(one.log_odds),
-             "  ! ");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -14,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchema = 1;
+constexpr int kOldestSchema = 1, kSchema = 2;
 constexpr std::array<const char*, 6> kVelocities{"u", "v", "w", "p", "q", "r"};
 
 double real(const Json& value) {
@@ -83,17 +84,10 @@ EffectFound effect(const Json& e) {
                     .accepted = e.at("accepted").get<bool>(),
                     .parameters = numbers(e.at("parameters")),
                     .log_odds = real(e, "log_odds"),
-                    .error_reduction = real(e, "error_reduction"),
-                    .other_forms = texts(e, "other_forms"),
-                    .sentence = text(e, "sentence"),
-                    .unlisted = text(e, "unlisted_alternative"),
-                    .corrupts = text(e, "corrupts"),
-                    .corruption = real(e, "corruption"),
-                    .last = e.value("acts_last", false)};
-  for (const Json& rival : list(e, "rivals")) {
-    found.alternatives.push_back(
-        {text(rival, "name"), real(rival, "log_odds"), text(rival, "corrupts"), real(rival, "corruption")});
-  }
+                    .sentence = text(e, "sentence")};
+  found.probability = e.contains("probability") ? real(e, "probability") : 1.0 / (1.0 + std::exp(-found.log_odds));
+  for (const Json& rival : list(e, "rivals"))
+    found.alternatives.push_back({text(rival, "name"), real(rival, "log_odds")});
   for (const Json& told : list(e, "told_apart_by"))
     found.told_apart.push_back({text(told, "name"), text(told, "segment"), real(told, "seconds")});
   return found;
@@ -127,10 +121,8 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
   for (const Json& s : list(file, "stand_ins"))
     result.stand_ins.push_back({text(s, "name"), text(s, "variant"), s.value("in_model", false), real(s, "size"),
                                 numbers(s.at("parameters"))});
-  for (const Json& c : file.at("candidates")) {
-    result.candidates.push_back({text(c, "name"), text(c, "variant"), real(c, "log_odds"), real(c, "error_reduction"),
-                                 texts(c, "aliased_with"), text(c, "reason")});
-  }
+  for (const Json& c : file.at("candidates"))
+    result.candidates.push_back({text(c, "name"), text(c, "variant"), real(c, "log_odds"), text(c, "reason")});
   for (const Json& g : list(file, "not_measured"))
     result.not_measured.push_back({text(g, "group"), texts(g, "cannot_be_asked"), text(g, "means")});
   result.error_before = error(file.at("error").at("before"));
@@ -140,15 +132,10 @@ void read_diagnosis(const Json& file, DiagnosisResult& result) {
   result.improvement = {real(gain, "value"), real(interval.at(0)), real(interval.at(1))};
   result.parameters_before = numbers(file.at("parameters").at("before"));
   result.parameters_after = numbers(file.at("parameters").at("after"));
-  result.explained = real(file, "explained");
-  result.own_in_validation = texts(file, "own_in_validation");
   if (file.contains("wiring"))
     result.wiring = WiringFault{texts(file.at("wiring"), "readings"), real(file.at("wiring"), "error_reduction")};
   result.residual_before = whiteness(file.at("residual").at("before"));
   result.residual_after = whiteness(file.at("residual").at("after"));
-  for (const Json& a : list(file.at("residual"), "goes_with"))
-    result.goes_with.push_back(
-        {text(a, "axis"), text(a, "with"), real(a, "share"), real(a, "log_odds"), real(a, "of_wrench")});
 }
 
 void read_given(const Json& file, VerdictGiven& given) {
@@ -194,10 +181,11 @@ Stored read_result(const std::string& path) {
     throw InputError(stored.path + ": is the result of a " + file.value("kind", "") +
                      "; the diagnosis of its log stands in the folder diagnosis beside it");
   try {
-    if (file.at("schema").get<int>() != kSchema)
+    const int schema = file.at("schema").get<int>();
+    if (schema < kOldestSchema || schema > kSchema)
       throw InputError(stored.path + ": has schema " + file.at("schema").dump() + ", and this version reads " +
-                       std::to_string(kSchema) + "; take the version that wrote it (" + text(file, "fathom_version") +
-                       ")");
+                       std::to_string(kOldestSchema) + " to " + std::to_string(kSchema) +
+                       "; take the version that wrote it (" + text(file, "fathom_version") + ")");
     stored.version = text(file, "fathom_version");
     if (file.contains("data")) {
       stored.begin = text(file.at("data"), "begin");
@@ -207,7 +195,7 @@ Stored read_result(const std::string& path) {
     read_given(file, stored.given);
     read_origin(file, stored.origin);
   } catch (const Json::exception& wrong) {
-    throw InputError(stored.path + ": is not as docs/schema/diagnosis-1.schema.json says: " + wrong.what());
+    throw InputError(stored.path + ": is not as docs/schema/diagnosis-2.schema.json says: " + wrong.what());
   }
   return stored;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -55,15 +54,6 @@ struct AxisWhiteness {
   double noise{};  ///< what the sensors' white noise alone leaves of a residual, over the applied wrench's variance
 };
 
-/// Something that the residual of one axis goes with.
-struct Association {
-  std::string axis;   ///< "X" .. "N"
-  std::string with;   ///< "position", "heading", "a step at 30 s", ...
-  double share{};     ///< of the residual's variance that the base model's own numbers could not take up
-  double log_odds{};  ///< natural, that there is such a relation, all that was asked having been paid for
-  double of_wrench{std::numeric_limits<double>::quiet_NaN()};  ///< its size over that of the applied wrench (rms)
-};
-
 constexpr double kNoMemory = 0.4;    ///< s: white noise shows half of what a residual is the mean over, .25 to .35 s
 constexpr double kNotRandom = 0.01;  ///< p-value below which a residual counts as having a memory
 
@@ -78,9 +68,6 @@ struct ToldApart {
 struct Alternative {
   std::string name;
   double log_odds{};  ///< natural, of the effect that was found over this one
-  std::string
-      corrupts{};  ///< the base parameter that goes most wrong if this acts unnoticed; empty where none surely does
-  double corruption{};  ///< by so much of its value; above zero: its size is overstated
 };
 
 struct EffectFound {
@@ -88,17 +75,13 @@ struct EffectFound {
   std::string variant;  ///< e.g. "thruster 3"; empty when the effect has one form only
   bool accepted{true};
   std::vector<NamedValue> parameters;
-  double log_odds{};  ///< natural, that the name is right: against nothing, what a part explains, and alternatives
-  double error_reduction{};
+  double log_odds{};  ///< natural, over what is likeliest without it
+  /// That the name is right: beside other names, and as often as names of such odds are right on data whose truth is
+  /// known (docs/benchmark.md).
+  double probability{1.0};
   std::vector<Alternative> alternatives;  ///< other effects that the data cannot rule out
-  std::vector<std::string> other_forms;   ///< "T4 or T0": forms of this effect that would explain as much
   std::string sentence;
-  std::string unlisted{};               ///< what no list holds and would look the same; the odds are even then
-  std::string unlisted_told_by{};       ///< the motion that would tell it apart
   std::vector<ToldApart> told_apart{};  ///< from some alternatives, by a segment; only where a site was given
-  std::string corrupts{};               ///< as for an alternative; empty where none moves
-  double corruption{};
-  bool last{false};  ///< acts on the thrust that the others leave, not on the command
 };
 
 /// A listed effect that takes up a part of what no listed effect explains. It claims no cause: it is a correction of
@@ -113,9 +96,7 @@ struct StandIn {
 struct CandidateTried {
   std::string name;
   std::string variant;
-  double log_odds{};
-  double error_reduction{};
-  std::vector<std::string> aliased_with;
+  double log_odds{};  ///< natural; NaN where it was not asked
   std::string reason;
 };
 
@@ -153,16 +134,12 @@ struct DiagnosisResult {
   ModelError error_before;
   ModelError error_after;
   std::optional<WiringFault> wiring{};
-  /// Effects whose moment, phase or flow is another in the validation run, set by its first half; its second is judged.
-  std::vector<std::string> own_in_validation{};
-  double explained{1.0};  ///< by the accepted effects, of the lasting error on validation; 1 when there are none
-  Interval improvement;   ///< relative reduction of the normalised 5 s prediction error on validation
+  Interval improvement;  ///< relative reduction of the normalised 5 s prediction error on validation
   std::vector<NamedValue> parameters_before;
   std::vector<NamedValue> parameters_after;
   std::vector<AxisWhiteness> residual_before;
   std::vector<AxisWhiteness> residual_after;
   std::optional<CorrectionGiven> correction{};  ///< a learned force: no cause
-  std::vector<Association> goes_with;           ///< what the residual after still goes with, largest share first
 };
 
 /// One stretch of validation data with the open-loop predictions laid over it, for the plots.

@@ -232,13 +232,16 @@ std::string thrusters(const ThrusterColumns& columns) {
 
 std::string signals(const SignalColumns& signals) {
   std::vector<Column> columns;
-  std::string units;
+  std::string units, quantities;
+  bool any = false;
   for (const SignalColumn& one : signals.columns) {
     columns.push_back(one.group.columns.front());
     units += (units.empty() ? "" : ", ") + written_name(one.written);
+    quantities += (quantities.empty() ? "" : ", ") + (one.quantity.empty() ? std::string{"none"} : one.quantity);
+    any = any || !one.quantity.empty();
   }
   return "signals:\n  columns: " + listed(columns) + "\n  units: [" + units + "]\n" +
-         flags(signals.invalid_where, "  ");
+         (any ? "  quantities: [" + quantities + "]\n" : "") + flags(signals.invalid_where, "  ");
 }
 
 std::string wind(const SignalColumns& wind) {

@@ -104,20 +104,20 @@ void list_effects(const Conclusion& conclusion, const likelihood::Fit& fit, cons
     const std::string name{effects[e].effect->name()}, &form = effects[e].variant_name;
     if (!names_claim(conclusion.verdict)) {
       result.stand_ins.push_back({name, form, in_model, found.size[e], numbers_of_effect(fit, e, sigma)});
-      result.candidates.push_back({name, form, found.odds[e], kNotAsked, {}, "stand-in"});
+      result.candidates.push_back({name, form, found.odds[e], "stand-in"});
       continue;
     }
     EffectFound effect{.name = name,
                        .variant = form,
                        .parameters = numbers_of_effect(fit, e, sigma),
                        .log_odds = found.odds[e],
-                       .error_reduction = kNotAsked,
+                       .probability = found.probability[e] * found.reliability[e],
                        .sentence = std::string(effects[e].effect->sentence())};
     if (!found.rival[e].empty() && found.probability[e] < inference::Thresholds{}.name_probability)
       effect.alternatives.push_back(
           {.name = found.rival[e],
            .log_odds = std::log(found.probability[e] / std::max(1.0 - found.probability[e], 1e-300))});
-    result.candidates.push_back({name, form, effect.log_odds, kNotAsked, {}, "accepted"});
+    result.candidates.push_back({name, form, effect.log_odds, "accepted"});
     result.effects.push_back(std::move(effect));
   }
 }
@@ -140,8 +140,7 @@ std::optional<std::pair<model::ActiveEffect, model::ActiveEffect>> rivals_in(con
 
 void list_refused(const inference::Found& found, DiagnosisResult& result, VerdictGiven& given) {
   for (const inference::Refused& refused : found.refused) {
-    CandidateTried candidate{
-        .name = refused.name, .variant = refused.form, .log_odds = kNotAsked, .error_reduction = kNotAsked};
+    CandidateTried candidate{.name = refused.name, .variant = refused.form, .log_odds = kNotAsked};
     for (const inference::Refusal& refusal : refused.refusals) {
       given.refusals[refused.name].push_back({std::string(word(refusal.rule)), refusal.value, refusal.needed});
       if (refusal.rule == inference::Rule::kOdds) candidate.log_odds = refusal.value;
@@ -162,10 +161,8 @@ void list_not_asked(const model::Scene& scene, DiagnosisResult& result) {
   for (const model::Effect* effect : model::all_effects()) {
     const std::string name{effect->name()};
     if (std::ranges::find(laws, name, &inference::Law::name) != laws.end()) continue;
-    result.candidates.push_back({.name = name,
-                                 .log_odds = kNotAsked,
-                                 .error_reduction = kNotAsked,
-                                 .reason = preflight::why_not_asked(*effect, scene)});
+    result.candidates.push_back(
+        {.name = name, .log_odds = kNotAsked, .reason = preflight::why_not_asked(*effect, scene)});
   }
 }
 
@@ -318,7 +315,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   }
   const likelihood::Problem problem = likelihood::make_problem(vehicle, train, settings.runs);
   if (conclusion.verdict == Verdict::no_model && conclusion.reported.finite) {
-    conclusion.skilled = skilled_axes(unseen, input_step, conclusion);
+    conclusion.skilled = skilled_axes(vehicle, train, unseen, input_step, conclusion);
     conclusion.reasons.clear();
     conclude(problem, settings.thresholds, conclusion);
   }
@@ -376,15 +373,12 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
         told || (conclusion.reported.finite && vehicle.dof[static_cast<std::size_t>(axis)] && !withheld.contains(axis));
   list_effects(conclusion, named, of_named, with_names && told, result);
   list_refused(conclusion.found, result, answer.given);
-  if (!conclusion.found.best.names.empty()) result.explained = kNotAsked;
   for (const std::string& name : settings.without)
-    result.candidates.push_back(
-        {.name = name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = "taken out of the list"});
+    result.candidates.push_back({.name = name, .log_odds = kNotAsked, .reason = "taken out of the list"});
   const model::Scene scene = model::scene_of(vehicle, train);
   list_not_asked(scene, result);
   for (const model::Candidates::Idle& idle : answer.candidates.idle)
-    result.candidates.push_back(
-        {.name = idle.name, .log_odds = kNotAsked, .error_reduction = kNotAsked, .reason = idle.reason});
+    result.candidates.push_back({.name = idle.name, .log_odds = kNotAsked, .reason = idle.reason});
   result.not_measured = preflight::not_measured(scene);
   result.manoeuvre = next_motion(result);
   answer.score = conclusion.found.best.score;

@@ -7,20 +7,25 @@
 
 namespace fathom::verdict {
 
-std::vector<int> skilled_axes(std::span<const Trial> unseen, double input_step,
+std::vector<int> skilled_axes(const model::Vehicle& vehicle, std::span<const Trial> train,
+                              std::span<const Trial> unseen, double input_step,
                               const inference::Conclusion& conclusion) {
   std::vector<int> axes;
   const model::Model base = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
   const model::Model named = likelihood::model_of(conclusion.reported.hypothesis, input_step);
   const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(named));
   if (windows.empty()) return axes;
-  const residual::Predictions unchanged = predict_unchanged(windows), by_base = residual::predict(base, windows),
-                              by_named = residual::predict(named, windows);
+  const std::array<PlainAxis, 6> plain = plain_fit(vehicle, train);
+  const residual::Predictions unchanged = predict_unchanged(windows),
+                              plainly = predict_plainly(vehicle, plain, windows),
+                              by_base = residual::predict(base, windows), by_named = residual::predict(named, windows);
   for (int axis = 0; axis < 6; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double sure = std::max(surely_better(by_base, unchanged, kFiveSeconds, a),
-                                 surely_better(by_named, unchanged, kFiveSeconds, a));
-    if (sure > inference::Thresholds{}.skilled) axes.push_back(axis);
+    const double own = std::min(mean_square(by_base, kFiveSeconds, a), mean_square(by_named, kFiveSeconds, a));
+    const bool acts = plain[a].known && plain[a].t_of_input >= inference::Thresholds{}.idle_input;
+    if (acts && own >= 0.0 && own < mean_square(unchanged, kFiveSeconds, a) &&
+        own < mean_square(plainly, kFiveSeconds, a))
+      axes.push_back(axis);
   }
   return axes;
 }

@@ -250,9 +250,8 @@ void adopt_sensor_faults(Answer& answer) {
                      "); that is corrected in everything that follows. " + result.paragraph;
   for (auto effect = found.rbegin(); effect != found.rend(); ++effect) {
     std::erase_if(result.candidates, [&](const CandidateTried& c) { return c.name == effect->name; });
-    result.candidates.insert(
-        result.candidates.begin(),
-        {effect->name, effect->variant, effect->log_odds, 0.0, {}, "accepted: found by comparing the sensors"});
+    result.candidates.insert(result.candidates.begin(), {effect->name, effect->variant, effect->log_odds,
+                                                         "accepted: found by comparing the sensors"});
     answer.given.causes.insert(answer.given.causes.begin(),
                                {std::string(word(inference::Cause::kSensorsDisagree)), effect->log_odds,
                                 inference::Thresholds{}.name_odds, effect->name});

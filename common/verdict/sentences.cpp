@@ -12,8 +12,6 @@ using inference::Conclusion;
 using inference::Reason;
 using inference::Verdict;
 
-constexpr double kCertain = 100.0;  // nats beyond which odds are given as "beyond doubt, if the model is right"
-
 template <typename... Arguments>
 std::string text(const char* format, Arguments... arguments) {
   char buffer[512];
@@ -37,7 +35,7 @@ std::string names(const Conclusion& conclusion) {
     all += (e > 0 ? ", " : "") + title(std::string(effects[e].effect->name()));
     if (!effects[e].variant_name.empty()) all += " (" + effects[e].variant_name + ")";
     all += ": " + percent(conclusion.found.size[e]) + " of the applied force";
-    all += odds > kCertain ? ", beyond doubt if the model is right" : text(", log odds %.0f", odds);
+    all += text(", log odds %.0f", odds);
   }
   return all;
 }
@@ -144,7 +142,10 @@ std::string paragraph(const Conclusion& conclusion) {
       words = "Found: " + names(conclusion) + ". ";
       break;
     case Verdict::ambiguous: {
-      words = "Something is missing, and more than one name fits it. Likeliest: " + names(conclusion) + ". ";
+      words = reason(conclusion, Cause::kWeakEvidence) != nullptr
+                  ? "Something is missing, and the evidence for a name is weak. Likeliest: "
+                  : "Something is missing, and more than one name fits it. Likeliest: ";
+      words += names(conclusion) + ". ";
       for (const std::string& rival : conclusion.found.rival) {
         if (!rival.empty()) words += "It may be " + title(rival) + " as well. ";
       }

@@ -46,6 +46,8 @@ Predictions predict_by(std::span<const model::Window> windows, const Step& step)
   return predictions;
 }
 
+}  // namespace
+
 double mean_square(const Predictions& predictions, std::size_t h, std::size_t axis) {
   double square = 0.0, count = 0.0;
   for (const WindowErrors& window : predictions.windows) {
@@ -54,8 +56,6 @@ double mean_square(const Predictions& predictions, std::size_t h, std::size_t ax
   }
   return count > 0.0 ? square / count : -1.0;
 }
-
-}  // namespace
 
 std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<const Trial> trials) {
   using Information = Eigen::Matrix4d;
@@ -155,21 +155,6 @@ double p_no_worse(const Predictions& model, const Predictions& simpler, std::siz
   if (n < 3.0 || sum <= 0.0) return 1.0;
   const double scatter = (square - sum * sum / n) / (n - 1.0);  // of one window
   return scatter > 0.0 ? 0.5 * f_tail(sum * sum / n / scatter, n - 1.0) : 0.0;
-}
-
-double surely_better(const Predictions& model, const Predictions& simpler, std::size_t horizon, std::size_t axis) {
-  double n = 0.0, sum = 0.0, square = 0.0;
-  for (std::size_t w = 0; w < model.windows.size(); ++w) {
-    const double own = model.windows[w].square[horizon][axis], other = simpler.windows[w].square[horizon][axis];
-    if (model.windows[w].count[horizon][axis] <= 0.0 || !(own > 0.0) || !(other > 0.0)) continue;
-    const double fall = 0.5 * std::log(other / own);
-    n += 1.0;
-    sum += fall;
-    square += fall * fall;
-  }
-  if (n < 3.0) return 0.0;
-  const double variance = (square - sum * sum / n) / (n - 1.0);
-  return variance > 0.0 ? sum / n / std::sqrt(variance / n) : 0.0;
 }
 
 }  // namespace fathom::verdict

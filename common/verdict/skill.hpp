@@ -38,9 +38,7 @@ struct PlainAxis {
 [[nodiscard]] double p_no_worse(const residual::Predictions& model, const residual::Predictions& simpler,
                                 std::size_t horizon, std::size_t axis);
 
-/// Standard errors, over windows, by which the logarithm of the model's error lies below that of `simpler`; 0: too few
-/// windows tell.
-[[nodiscard]] double surely_better(const residual::Predictions& model, const residual::Predictions& simpler,
-                                   std::size_t horizon, std::size_t axis);
+/// Of one axis over all windows; below zero: nothing was measured.
+[[nodiscard]] double mean_square(const residual::Predictions& predictions, std::size_t horizon, std::size_t axis);
 
 }  // namespace fathom::verdict

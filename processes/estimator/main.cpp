@@ -20,6 +20,7 @@
 #include "common/estimation/estimator.hpp"
 #include "common/estimation/kalman_estimator.hpp"
 #include "common/estimation/navigator.hpp"
+#include "common/estimation/trial_instruments.hpp"
 #include "common/model/site.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/runtime/process.hpp"
@@ -144,8 +145,12 @@ void run_trial(runtime::Process& process, const Config& config) {
 }
 
 void run_kalman(runtime::Process& process, const Config& config) {
-  const auto settings = estimation::KalmanSettings::from(config);
-  // Offline these places may come from a site's file; here nobody else tells them.
+  auto settings = estimation::KalmanSettings::from(config);
+  estimation::TrialFiles files;  // places that the section does not say
+  for (const char* key : {"sensors", "site"}) {
+    if (process.has_config(key)) files.add(Config::load(process.config_path(key)));
+  }
+  add_places(files, settings);
   if (config.has("ranges") && settings.transponders.empty())
     config.section("ranges").fail("transponders", "key 'transponders' is missing in 'estimator.ranges'");
   if (config.has("tags") && settings.tags.empty())
@@ -158,8 +163,8 @@ void run_kalman(runtime::Process& process, const Config& config) {
   hear<fathom_lcm::usbl_t>(process, estimator, wire::kUsbl);
   hear<fathom_lcm::ranges_t>(process, estimator, wire::kRanges);
   hear<fathom_lcm::tag_pose_t>(process, estimator, wire::kTagPose);
-  ignore<fathom_lcm::optical_flow_t>(process, wire::kOpticalFlow);
-  ignore<fathom_lcm::laser_range_t>(process, wire::kLaserRange);
+  hear<fathom_lcm::optical_flow_t>(process, estimator, wire::kOpticalFlow);
+  hear<fathom_lcm::laser_range_t>(process, estimator, wire::kLaserRange);
   process.on_restart([&] { estimator.reset(); });
   process.on_end([&] {
     for (const StateEstimate& state : estimator.finish()) process.publish(wire::kState, wire::encode(state));

@@ -16,6 +16,7 @@
 #include "common/estimation/corrections_file.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
+#include "common/estimation/trial_instruments.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/recordings/worth.hpp"
@@ -68,6 +69,7 @@ class Checking {
     consistency::ConsistencyResult result = consistency::check_consistency(recordings);
     result.findings.insert(result.findings.begin(), dead.begin(), dead.end());
     consistency::check_thrusters(recordings, vehicle_, result);
+    if (!site_) take_site(recordings);
     if (site_) consistency::check_flow(recordings, vehicle_.mounts, *site_, result);
     for (std::size_t i = 0; i < recordings.size(); ++i) {
       if (recordings[i].thrusters.empty()) continue;  // sensors alone can be compared too
@@ -95,6 +97,17 @@ class Checking {
   [[nodiscard]] consistency::ConsistencyResult result() { return std::move(merged_).result(); }
 
  private:
+  /// A log of Fathom's own tells where it was.
+  void take_site(const std::vector<Recording>& recordings) {
+    for (const Recording& one : recordings) {
+      if (one.optical_flow.empty()) continue;
+      site_ = estimation::files_in(one).site;
+      if (!site_) continue;
+      notes_.push_back(one.name + ": optical flow is compared with the tags of the site that the log's estimator told");
+      return;
+    }
+  }
+
   const model::Vehicle& vehicle_;
   std::vector<std::string> runs_;
   std::optional<model::Site> site_;
@@ -136,11 +149,9 @@ void run_check(const CheckOptions& options) {
   notes.insert(notes.end(), reasons.begin(), reasons.end());
   consistency::keep_axes(result, vehicle.dof);
   for (const std::string& line : consistency::table_of(result)) std::printf("%s\n", line.c_str());
-  if (result.findings.empty()) {
-    std::printf("%s\n", consistency::conclusion_of(result).c_str());
-  } else {
-    print(result.findings);
-  }
+  const bool compared = !result.findings.empty() || !consistency::table_of(result).empty();
+  if (result.findings.empty() && compared) std::printf("%s\n", consistency::conclusion_of(result).c_str());
+  if (!result.findings.empty()) print(result.findings);
   if (!options.json.empty()) {
     report::CheckGiven given{.vehicle = vehicle.name, .compared = consistency::table_of(result), .notes = notes};
     given.runs = checking.runs();
@@ -153,6 +164,8 @@ void run_check(const CheckOptions& options) {
       std::printf("%s: %s\n", options.write_map.c_str(), note.c_str());
     std::printf("%s: the map as it should be\n", options.write_map.c_str());
   }
+  std::fflush(stdout);  // what was said of the runs stands before the complaint
+  if (!compared) throw InputError(runs.front() + ": " + consistency::conclusion_of(result));
   if (options.write.empty()) return;
   for (const estimation::Corrections& one : result.corrections) {
     if (one.velocity_frame == estimation::VectorFrame::kBody && one.rates_frame == estimation::VectorFrame::kBody &&

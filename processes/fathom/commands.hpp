@@ -33,6 +33,7 @@ void add_pictures(runtime::CommandLine& app);
 void add_trial(runtime::CommandLine& app);
 void add_watch(runtime::CommandLine& app);
 void add_bus(runtime::CommandLine& app);
+void add_spy(runtime::CommandLine& app);
 void add_vehicle(runtime::CommandLine& app);
 void add_explain(runtime::CommandLine& app);
 void add_export(runtime::CommandLine& app);

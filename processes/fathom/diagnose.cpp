@@ -15,6 +15,7 @@
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
 #include "common/estimation/state_as_measured.hpp"
+#include "common/inference/ablations.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
 #include "common/recordings/worth.hpp"
@@ -44,7 +45,7 @@ constexpr double kLight = 0.03;  // of a fit: reading a run, until it has been t
 struct DiagnoseOptions {
   std::string vehicle, map, out, site, config;
   std::vector<std::string> train, validate;
-  std::vector<std::string> without, candidates;
+  std::vector<std::string> without, candidates, ablated;
   std::string core{kLikelihood};
   bool no_learning{false};
   int threads{2};
@@ -130,6 +131,7 @@ ResultOrigin origin_of(const DiagnoseOptions& options, const Looked& looked) {
   add_words(origin, "--config", options.config);
   add_words(origin, "--without", options.without);
   add_words(origin, "--candidate", options.candidates);
+  add_words(origin, "--ablate", options.ablated);
   const auto add_number = [&](const char* option, double value) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.17g", value);
@@ -156,6 +158,9 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     room = rehearsal_settings(options.site, options.config, vehicle);
   }
   check_names(options.without, vehicle);
+  inference::Settings inference{
+      .without = options.without, .threads = options.threads, .time_budget = options.time_budget};
+  for (const std::string& name : options.ablated) inference::ablate(name, inference);
   try_folder(options.out);
   const auto files = static_cast<double>(paths_of(options.train).size() + paths_of(options.validate).size());
   progress.expect(kReading, files, kLight);
@@ -179,7 +184,7 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
   verdict::Explained explained = verdict::of_recordings(
       vehicle, std::move(asked),
-      {.inference = {.without = options.without, .threads = options.threads, .time_budget = options.time_budget},
+      {.inference = std::move(inference),
        .learning = {.learn = !options.no_learning},
        .site = site ? &*site : nullptr},
       progress, notes);
@@ -259,6 +264,8 @@ void add_diagnose(runtime::CommandLine& app) {
   command->add_option("--candidate", options->candidates,
                       "measured columns that a force may go with, as wind_speed^2 or voltage*tau_X; along a measured "
                       "bearing: wind_speed^2 @ wind_direction");
+  command->add_option("--ablate", options->ablated,
+                      "rules or terms of the inference to leave out, to measure what they are good for");
   command
       ->add_option("--time-budget", options->time_budget,
                    "s for the search; what is not asked by then is said to be open")

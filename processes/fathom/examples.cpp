@@ -38,6 +38,7 @@ constexpr std::array kExamples{Example{"vehicle", "bluerov2_heavy"},
                                Example{"repair-log", "BROKEN.lcmlog --out WHOLE.lcmlog"},
                                Example{"watch", ""},
                                Example{"bus", "--seconds 1"},
+                               Example{"spy", "--check"},
                                Example{"trial", "RUN.lcmlog --vehicle V.yaml --site S.yaml --out TRIAL"}};
 
 }  // namespace

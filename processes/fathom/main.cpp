@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   fathom::tool::add_pictures(app);
   fathom::tool::add_watch(app);
   fathom::tool::add_bus(app);
+  fathom::tool::add_spy(app);
   fathom::tool::add_trial(app);
   fathom::tool::add_vehicle(app);
   fathom::tool::add_examples(app);

@@ -231,6 +231,32 @@ void print_parameters(const std::vector<Method>& methods, const identification::
                    "; what a table would show is the vehicle file's prior");
 }
 
+/// Of a recording that does not say who measured: a laboratory's motion capture and a tactical gyro, as on Beluga.
+estimation::EstimatorSettings usual_estimator() {
+  estimation::EstimatorSettings settings;
+  settings.position_noise = 1e-3;     // m
+  settings.attitude_noise = 5e-3;     // rad
+  settings.depth_noise = 1e-2;        // m
+  settings.velocity_noise = 1e-2;     // m/s
+  settings.rate_noise = 1e-2;         // rad/s
+  settings.bias_walk = 2e-5;          // rad/s in one second
+  settings.bias_prior = 2e-3;         // rad/s
+  settings.acceleration_walk = 5e-2;  // m/s in one second
+  settings.rate_walk = 0.1;           // rad/s in one second
+  return settings;
+}
+
+/// Of a recording that does not say how it was identified: nothing is forgotten, nothing frozen, and noise in
+/// proportion to the vehicle.
+identification::IdentifierSettings usual_identifier() {
+  identification::IdentifierSettings settings;
+  settings.noise_force = 0.1;           // N
+  settings.noise_moment = 0.05;         // N m
+  settings.noise_acceleration = 0.015;  // m/s^2 of a window's average, as the pipelines have it
+  settings.max_skew = 30.0;             // s: recordings are heard one stream after the other
+  return settings;
+}
+
 void run_methods(const MethodsOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   check_command_units(options.map, vehicle);
@@ -242,14 +268,19 @@ void run_methods(const MethodsOptions& options) {
   const estimation::TrialFiles files = trial_files(
       {.config = options.config, .vehicle = options.vehicle, .site = options.site}, recordings.front(), notes);
   for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+  const auto identifier_settings =
+      files.identifier ? identification::IdentifierSettings::from(*files.identifier) : usual_identifier();
   if (!files.identifier)
-    throw InputError(recordings.front().name +
-                     ": no section identifier, neither in the log's PROCESS_INFO nor in --config; the recursive "
-                     "estimate needs one (config/pipelines)");
-  const auto identifier_settings = identification::IdentifierSettings::from(*files.identifier);
+    std::fprintf(
+        stderr,
+        "%s: no section identifier in the log or in --config: recursive estimate with windows of %.0f s, noise "
+        "of %.1f cm/s^2\n",
+        recordings.front().name.c_str(), identifier_settings.window, 100.0 * identifier_settings.noise_acceleration);
   const std::string filter =
       files.estimator && files.estimator->has("filter") ? files.estimator->text("filter") : "recorded";
-  const bool captured = files.estimator && filter == "recorded";
+  const bool captured = filter == "recorded" && std::ranges::all_of(recordings, [](const Recording& one) {
+                          return !one.pose_capture.empty() && !one.ahrs.empty();
+                        });
 
   auto checked = consistency::check_consistency(recordings);
   consistency::check_thrusters(recordings, vehicle, checked);
@@ -275,7 +306,9 @@ void run_methods(const MethodsOptions& options) {
     if (i == 0) process = found.settings.process;
     if (own)
       methods.front().runs.push_back(
-          captured ? filtered(recording, estimation::EstimatorSettings::from(*files.estimator)) : recording.state);
+          captured ? filtered(recording, files.estimator ? estimation::EstimatorSettings::from(*files.estimator)
+                                                         : usual_estimator())
+                   : recording.state);
     if (own) compare(methods.front().runs.back(), recording.truth, methods.front().errors);
     compare(found.trial.filtered, recording.truth, forward.errors);
     compare(found.trial.smoothed, recording.truth, smoothed.errors);
@@ -323,7 +356,7 @@ void add_methods(runtime::CommandLine& app) {
   runtime::CommandLine* command = app.add_subcommand("methods", "identify recordings by both methods and compare");
   command->add_option("--vehicle", options->vehicle, "vehicle file (YAML)")->required();
   command->add_option("--config", options->config,
-                      "pipeline file with sections estimator and identifier; else what the log tells");
+                      "pipeline file with sections estimator and identifier; else what the log tells, else the usual");
   command->add_option("--site", options->site, "site file (YAML): tags, transponders, floor; else the log's");
   command->add_option("--train", options->train, "logs or tables to identify from")->required();
   command->add_option("--validate", options->validate, "logs or tables on which predictions are judged");

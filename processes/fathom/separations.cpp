@@ -60,7 +60,7 @@ void separate(const model::Vehicle& vehicle, const planning::RehearsalSettings& 
     const auto active = std::ranges::find_if(
         best.effects, [&](const model::ActiveEffect& a) { return a.effect->name() == effect.name; });
     if (active == best.effects.end()) continue;
-    for (const auto& [other, log_odds, corrupts, corruption] : effect.alternatives) {
+    for (const auto& [other, log_odds] : effect.alternatives) {
       const model::Effect* listed = model::find_effect(other);
       if (listed == nullptr || model::find_effect(effect.name) == nullptr)
         continue;  // a column, which no flight changes

@@ -58,13 +58,13 @@ void run_trial(const TrialOptions& options) {
   const model::Vehicle vehicle = model::Vehicle::load(options.vehicle);
   const model::Site site = model::Site::load(options.site);
   const auto filters = filters_in(options.pipeline);
-  std::error_code failed;
-  std::filesystem::create_directories(options.out, failed);
-  if (failed) throw InputError(options.out + ": cannot be made (" + failed.message() + "); choose another --out");
   const wire::LogContents contents = wire::read_log(options.log);
   const std::string complaints = wire::complaints(options.log, contents.report);
   if (!complaints.empty()) std::fprintf(stderr, "note: %s", complaints.c_str());
   LiveTrialResult result = report::summarise(contents.recording, vehicle, site);
+  std::error_code failed;
+  std::filesystem::create_directories(options.out, failed);
+  if (failed) throw InputError(options.out + ": cannot be made (" + failed.message() + "); choose another --out");
   if (!options.diagnosis.empty()) {
     const auto beside = std::filesystem::path{options.diagnosis}.lexically_proximate(options.out) / "report.html";
     result.afterwards = report::read_afterwards(options.diagnosis, beside.generic_string());

@@ -4,7 +4,7 @@
     run = fathom.open("RUN.lcmlog")              # any recording that `fathom import` reads
     run["STATE"]["p_WB"]                         # (n, 3); run["STATE"].unit["p_WB"] is "m"
     fathom.check("V.yaml", ["RUN.lcmlog"])       # a dictionary as docs/schema/check-1.schema.json says
-    result = fathom.diagnose("V.yaml", ["RUN.lcmlog"], out="DIR")  # docs/schema/diagnosis-1.schema.json
+    result = fathom.diagnose("V.yaml", ["RUN.lcmlog"], out="DIR")  # docs/schema/diagnosis-2.schema.json
     model = fathom.load_model("DIR")
     model.fly(t, force)                          # position, attitude, velocities over time
 

@@ -101,7 +101,7 @@ def check(vehicle, runs, *, map=None, site=None, progress=None):
 
 
 def diagnose(vehicle, train, validate=(), *, out=None, progress=None, **options):
-    """What the vehicle's model lacks: result.json as a dictionary (docs/schema/diagnosis-1.schema.json).
+    """What the vehicle's model lacks: result.json as a dictionary (docs/schema/diagnosis-2.schema.json).
 
     `out`: folder that keeps result.json and report.html; without, both are gone afterwards. `options` are those of
     `fathom diagnose --help`: map, site, config, core, without, candidate, time_budget, no_learning, threads.

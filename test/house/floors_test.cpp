@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -130,4 +131,15 @@ TEST_CASE("floors: every folder of common/ is a room of the table") {
       CHECK(kFloors.contains(entry.path().filename().string()));
     }
   }
+}
+
+TEST_CASE("floors: docs/architecture.md tells every room with its floor") {
+  std::ifstream text{std::string{FATHOM_SOURCE_DIR} + "/docs/architecture.md"};
+  std::map<std::string, int> told;
+  for (std::string line; std::getline(text, line);) {
+    char room[32];
+    int floor = -1;
+    if (std::sscanf(line.c_str(), "| `%31[a-z]` | %d |", room, &floor) == 2) told[room] = floor;
+  }
+  CHECK(told == kFloors);
 }

@@ -1,17 +1,19 @@
-// Every command that takes a recorded run, on a log of every kind that the repository can make: a result that is no
-// worse than what the log held, or one clear line and an exit code that is not 0.
+// What fathom smooth and fathom methods make of live logs without a word of configuration: states that are no worse
+// than what the log held, or one clear line. Every command on every kind of log: every_command_test.cpp.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
+#include "common/estimation/kalman_estimator.hpp"
+#include "common/estimation/trial_instruments.hpp"
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
 #include "test/support/full_trial.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
-#include "test/support/trial_recording.hpp"
-#include "test/support/virtual_dive.hpp"
 
 namespace fathom {
 namespace {
@@ -89,6 +91,41 @@ TEST_CASE("fathom smooth: any live log without a word of configuration, and a st
   }
 }
 
+TEST_CASE("Kalman estimator: a trial in the tank by tags, flow and laser, no worse than the complementary filters") {
+  const Recording recording = live("tank", 21);
+  const auto told = estimation::instruments_of(recording, estimation::files_in(recording));
+  REQUIRE(told.settings.floor);
+  CHECK(told.settings.gravity == 9.81);  // the site's
+  estimation::KalmanEstimator estimator{told.settings};
+  std::vector<StateEstimate> states;
+  const auto keep = [&](const estimation::KalmanEstimator::Output& output) {
+    std::ranges::copy_if(output, std::back_inserter(states), &StateEstimate::valid);
+  };
+  // As instruments send them: each stream in its order, what is older first.
+  std::size_t tag = 0, flow = 0, laser = 0, depth = 0;
+  const auto until = [&](const auto& stream, std::size_t& next, Utime utime) {
+    for (; next < stream.size() && stream[next].utime <= utime; ++next) keep(estimator.step(stream[next]));
+  };
+  for (const Ahrs& one : recording.ahrs) {
+    until(recording.tag_pose, tag, one.utime);
+    until(recording.optical_flow, flow, one.utime);
+    until(recording.laser_range, laser, one.utime);
+    until(recording.depth, depth, one.utime);
+    keep(estimator.step(one));
+  }
+  keep(estimator.finish());
+  const Errors live_filter = errors(recording.state, recording.truth), kalman = errors(states, recording.truth);
+  CHECK(kalman.count > 0.9 * live_filter.count);
+  CHECK(kalman.position < live_filter.position);
+  CHECK(kalman.velocity < live_filter.velocity);
+  auto blind = told.settings;  // without a floor neither flow nor laser is used, and nothing fails
+  blind.floor.reset();
+  estimation::KalmanEstimator by_tags{blind};
+  for (const OpticalFlow& one : recording.optical_flow) static_cast<void>(by_tags.step(one));
+  for (const LaserRange& one : recording.laser_range) static_cast<void>(by_tags.step(one));
+  CHECK(by_tags.finish().empty());
+}
+
 TEST_CASE("fathom smooth: what it lacks is said with the remedy, and nothing is written") {
   const Scratch scratch;
   Recording tank = live("tank", 22);
@@ -152,48 +189,6 @@ TEST_CASE("fathom methods: one live log without a word of configuration, on ever
   const auto idle = shell(methods + scratch.path("idle.lcmlog"));
   CHECK(idle.code == 1);
   CHECK_MESSAGE(!idle.says("m_X"), idle.text);
-}
-
-TEST_CASE("any log: a command gives a result, or one clear line that says what is missing") {
-  const Scratch scratch;
-  wire::write_log(live("deep", 24), scratch.path("deep.lcmlog"));
-  const model::Manoeuvre manoeuvre{.kind = model::ManoeuvreKind::kZigzag, .duration = 40.0, .difference = 4.5};
-  wire::write_log(test::record_trial(test::vehicle_from_repository("pap104_half"),
-                                     test::instruments_from_repository("pap104_half"), {.manoeuvre = manoeuvre})
-                      .recording,
-                  scratch.path("pap.lcmlog"));
-  const std::string deep = scratch.path("deep.lcmlog"), pap = scratch.path("pap.lcmlog");
-  const std::string beluga = file("test/data/beluga/yaw-1.csv") + " --map " + file("config/maps/beluga.yaml");
-  const std::string lbv = " --vehicle " + file("config/vehicles/seabotix_lbv150.yaml");
-  const std::string half = " --vehicle " + file("config/vehicles/pap104_half.yaml");
-  const std::string out = " --out " + scratch.path("smooth.lcmlog");
-  struct Row {
-    std::string command;
-    int code;
-    const char* says;
-  };
-  const std::vector<Row> rows{
-      {"smooth " + deep + out, 0, "range north"},
-      {"smooth " + pap + out, 1, "nothing that is known tells the position"},
-      {"smooth " + pap + out + " --config " + file("config/pipelines/pap104_half.yaml"), 0, "range A"},
-      {"smooth " + beluga + out, 0, "pose position"},
-      {"regress " + deep + lbv, 1, "no SMOOTHED in this log"},
-      {"regress " + pap + half, 1, "no SMOOTHED in this log"},
-      {"methods" + lbv + " --train " + deep, 0, "Kalman smoother, recursi"},
-      {"methods" + half + " --train " + pap, 1, "no section identifier"},
-  };
-  for (const Row& row : rows) {
-    CAPTURE(row.command);
-    const auto ran = shell(program("fathom") + " " + row.command);
-    CHECK_MESSAGE(ran.code == row.code, ran.text);
-    CHECK_MESSAGE(ran.says(row.says), ran.text);
-  }
-  // What a live log smoothed gives is not what regress takes: the vehicle has no derivatives.
-  const auto smoothed = shell(program("fathom") + " smooth " + deep + out);
-  REQUIRE_MESSAGE(smoothed.code == 0, smoothed.text);
-  const auto regressed = shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + lbv);
-  CHECK(regressed.code == 1);
-  CHECK_MESSAGE(regressed.says("the vehicle file has no section hydrodynamics"), regressed.text);
 }
 
 }  // namespace fathom

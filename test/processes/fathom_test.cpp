@@ -256,7 +256,7 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   }
   CHECK(result.at("error").at("improvement").contains("ci95"));
   CHECK(test::read_bytes(scratch.path("out/report.html")).size() > 10'000);
-  CHECK(test::against_schema(scratch, scratch.path("out/result.json"), "diagnosis-1") == "");
+  CHECK(test::against_schema(scratch, scratch.path("out/result.json"), "diagnosis-2") == "");
   CHECK_FALSE(result.at("causes").empty());
   CHECK(result.at("command") == "fathom diagnose --vehicle " + scratch.path("v.yaml") + " --train " +
                                     scratch.path("run1.lcmlog") + " --validate " + scratch.path("run2.csv"));

@@ -75,7 +75,7 @@ TEST_CASE("live: a trial that is cut short still gives table, result, page and t
   CHECK(result["compared_with_truth"]["states_compared"].get<int>() > 500);
   CHECK(result["files"][0]["role"] == "log");
   CHECK(test::against_schema(scratch, scratch.path("out/result.json"), "live_trial-1") == "");
-  CHECK(test::against_schema(scratch, scratch.path("out/diagnosis/result.json"), "diagnosis-1") == "");
+  CHECK(test::against_schema(scratch, scratch.path("out/diagnosis/result.json"), "diagnosis-2") == "");
   const std::string page = test::read_bytes(scratch.path("out/report.html"));
   for (const char* words : {"Table 1.1", "Figure 1.11", "Figure 1.12", "Figure 1.13", "Figure 1.14", "Figure 1.15",
                             "Figure 1.16", "Figure 1.19", "None of the processes heard"}) {

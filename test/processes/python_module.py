@@ -145,7 +145,7 @@ class Programs(unittest.TestCase):
         self.assertEqual(found["vehicle"], "Sled")
         self.assertTrue(found["conclusion"] or found["consistency"])
         result = fathom.diagnose(FOLDER / "V.yaml", FOLDER / "RUN.lcmlog", out=FOLDER / "DIAGNOSIS", threads=1)
-        self.assertEqual(against_schema(result, "diagnosis-1"), [])
+        self.assertEqual(against_schema(result, "diagnosis-2"), [])
         self.assertEqual(result, json.loads((FOLDER / "DIAGNOSIS/result.json").read_text()))
         example("fly_model.py", FOLDER / "DIAGNOSIS", "--wrench", words="after 20 s")
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 struct Options {
-  std::string seeds{"0..122"}, only, size, out, tool, page;
+  std::string seeds{"0..122"}, only, size, out, tool, page, ablated;
   int jobs{1};
   bool draw_only{}, score_only{}, learning{};
   std::uint64_t first{}, last{};
@@ -76,6 +76,7 @@ std::vector<std::string> command(const Options& options, const std::string& way,
   if (fs::exists(where.data + "/validate.csv")) words.insert(words.end(), {"--validate", where.data + "/validate.csv"});
   words.insert(words.end(), {"--out", where.found, "--threads",
                              std::to_string(std::max(1U, cores / static_cast<unsigned>(options.jobs)))});
+  if (!options.ablated.empty()) words.insert(words.end(), {"--ablate", options.ablated});
   if (way == kLeftOut) {
     const Json truth = read_json(where.truth);
     for (const Json& effect : truth.at("effects"))
@@ -225,6 +226,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "folder of data, truth and answers")->required();
   app.add_option("--tool", options.tool, "the program fathom")->required();
   app.add_option("--page", options.page, "write the page here instead of into --out; its picture beside it");
+  app.add_option("--ablate", options.ablated, "rule or term of the inference that is left out; into another --out");
   app.add_option("-j", options.jobs, "sets at a time")->check(CLI::Range(1, 64));
   app.add_flag("--learning", options.learning,
                "what is learned: single effects are asked once more with theirs taken out of the list; errors on a new "

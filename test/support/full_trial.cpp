@@ -126,7 +126,10 @@ FullTrial run_trial(const FullTrialOptions& options) {
     identifier.hear(*ranking);
     trial.rankings.push_back(*ranking);
   };
-  const auto learnt = [&](const ModelEstimate& model) { supervisor.hear(model); };
+  const auto learnt = [&](const ModelEstimate& model) {
+    supervisor.hear(model);
+    if (recording != nullptr) recording->model.push_back(model);
+  };
   double n = 0.0;
   bool armed = false;
   StateEstimate last;
@@ -138,6 +141,7 @@ FullTrial run_trial(const FullTrialOptions& options) {
     for (const auto& model : identifier.step(state).models) learnt(model);
     if (diagnoser) rank(diagnoser->step(state));
     const auto& output = supervisor.step(state);
+    if (recording != nullptr && output.excitation) recording->excitation.push_back(*output.excitation);
     if (output.command) simulator.command(*output.command);
     if (output.excitation) identifier.hear(*output.excitation);
     const double t = seconds_between(1'700'000'000'000'000, state.utime);

@@ -60,7 +60,8 @@ struct FullTrialOptions {
   std::vector<std::pair<std::string, std::string>> pipeline{};
   /// The same for config/simulation/VEHICLE.yaml: which error of an instrument makes which error of the model.
   std::vector<std::pair<std::string, std::string>> simulation{};
-  /// Takes what a recorder would: instruments, thrusters, STATE, TRUTH, and PROCESS_INFO of the estimator.
+  /// Takes what a recorder would: instruments, thrusters, STATE, MODEL, EXCITATION, TRUTH, and PROCESS_INFO of the
+  /// estimator.
   Recording* recording{};
 };
 

@@ -46,6 +46,14 @@ TEST_CASE("navigation filter: a horizontal velocity moves nothing vertical, what
   CHECK(filter.covariance()[1].vv == doctest::Approx(0.25 * 0.01 + 0.25 * 1e-4));
 }
 
+TEST_CASE("navigation filter: at rest where gravity is another, nothing falls") {
+  NavigationFilter filter{{.acceleration = 0.01, .bias_prior = 0.05, .gravity = 9.78}};
+  filter.start(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Zero(), 0.1);
+  for (int i = 0; i < 100; ++i)
+    filter.predict(0.1, pitched(kTilt), pitched(kTilt).transpose() * Eigen::Vector3d{0.0, 0.0, -9.78});
+  CHECK(filter.velocity().norm() < 1e-9);
+}
+
 // A vehicle that rocks on the spot, seen exactly at 30 Hz, with an attitude sensor whose level is off, or an
 // accelerometer that is. Largest error of heave from 40 s on.
 double heave_error(double off_level, double off_force) {

@@ -84,13 +84,34 @@ TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves
 TEST_CASE("conclusion: as many names as the search allows are no claim") {
   Nothing nothing;
   nothing.conclusion.found.best.names = {"a", "b", "c", "d"};
-  nothing.conclusion.found.probability = {1.0, 1.0, 1.0, 1.0};
+  nothing.conclusion.found.probability = nothing.conclusion.found.reliability = {1.0, 1.0, 1.0, 1.0};
   const Conclusion conclusion = nothing.concluded();
   CHECK(conclusion.verdict == Verdict::unexplained);
   CHECK(caused(conclusion, Cause::kManyNames, ""));
   nothing.conclusion.reasons.clear();
   nothing.conclusion.found.best.names.pop_back();
   CHECK(nothing.concluded().verdict == Verdict::effect);
+}
+
+TEST_CASE("conclusion: a name of little evidence is no claim, however far behind the others are") {
+  const Thresholds thresholds;
+  CHECK(thresholds.reliability(thresholds.even_evidence) == doctest::Approx(0.5));
+  CHECK(thresholds.reliability(-5.0) == 0.0);
+  Nothing nothing;
+  nothing.conclusion.found.best.names = {"a"};
+  nothing.conclusion.found.probability = {1.0};
+  nothing.conclusion.found.reliability = {thresholds.reliability(2.0 * thresholds.name_odds)};
+  const Conclusion weak = nothing.concluded();
+  CHECK(weak.verdict == Verdict::ambiguous);
+  CHECK(caused(weak, Cause::kWeakEvidence, ""));
+  nothing.conclusion.reasons.clear();
+  nothing.conclusion.found.reliability = {thresholds.reliability(1000.0)};
+  CHECK(nothing.concluded().verdict == Verdict::effect);
+  nothing.conclusion.reasons.clear();
+  nothing.conclusion.found.probability = {0.6};
+  const Conclusion rivals = nothing.concluded();
+  CHECK(rivals.verdict == Verdict::ambiguous);
+  CHECK(caused(rivals, Cause::kRivals, ""));
 }
 
 TEST_CASE("conclusion: both scores' numbers apart are told, and change no verdict") {

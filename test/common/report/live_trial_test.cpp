@@ -179,7 +179,7 @@ TEST_CASE("live trial: a diagnosis of the log is told, with its page; a file tha
   LiveTrialResult result = summarise(recording, vehicle(), site());
   CHECK_FALSE(nlohmann::json::parse(to_json(result)).contains("closed_loop"));
   std::ofstream{scratch.path("result.json")} << R"json({"verdict": "effect",
-      "effects": [{"name": "thruster_lag", "log_odds": 9.5, "error_reduction": 0.6}],
+      "effects": [{"name": "thruster_lag", "log_odds": 9.5}, {"name": "current", "log_odds": null}],
       "error": {"before": {"prediction": [{"horizon_s": 1, "rmse": {"u": 0.5}}, {"horizon_s": 5, "rmse": {"u": 0.04, "p": null}}]},
                 "after": {"prediction": [{"horizon_s": 5, "rmse": {"u": 0.01, "p": null}}]},
                 "improvement": {"value": 0.75, "ci95": [0.7, 0.8]}}})json";
@@ -190,7 +190,7 @@ TEST_CASE("live trial: a diagnosis of the log is told, with its page; a file tha
   CHECK(json["closed_loop"]["verdict"] == "effect");
   CHECK(json["closed_loop"]["effects"][0]["name"] == "thruster_lag");
   CHECK(json["closed_loop"]["improvement"] == 0.75);
-  CHECK(to_table(result).find("effect (thruster_lag); diagnosis/report.html") != std::string::npos);
+  CHECK(to_table(result).find("effect (thruster_lag, current); diagnosis/report.html") != std::string::npos);
   const std::string page = to_html(result, recording, vehicle(), site());
   for (const char* words : {"The loop closed on the log", "href=\"diagnosis/report.html\"", "0.0400 m/s", "0.0100 m/s"})
     CHECK_MESSAGE(page.find(words) != std::string::npos, words);
@@ -233,16 +233,24 @@ TEST_CASE("live trial: page, table and JSON say when the model lacks something")
   CHECK(page.find("badge adequate") == std::string::npos);
 }
 
-TEST_CASE("live trial: a log that lacks what a live trial says is refused with the channel's name") {
-  for (const int lacking : {0, 1, 2}) {
-    Recording recording = trial();
-    if (lacking == 0) recording.state.clear();
-    if (lacking == 1) recording.excitation.clear();
-    if (lacking == 2) recording.model.clear();
-    const char* const channels[] = {"no STATE", "no EXCITATION", "no MODEL"};
-    const std::string complaint =
-        test::complaint_of<InputError>([&] { (void)summarise(recording, vehicle(), site()); });
-    CHECK_MESSAGE(complaint.find(channels[lacking]) != std::string::npos, complaint);
+TEST_CASE("live trial: a log without STATE is refused; without supervisor or identifier it is drawn, and says so") {
+  Recording recording = trial();
+  recording.state.clear();
+  const std::string complaint = test::complaint_of<InputError>([&] { (void)summarise(recording, vehicle(), site()); });
+  CHECK_MESSAGE(complaint.find("no STATE") != std::string::npos, complaint);
+  for (const int lacking : {1, 2, 3}) {
+    recording = trial();
+    if ((lacking & 1) != 0) recording.excitation.clear();
+    if ((lacking & 2) != 0) recording.model.clear();
+    const LiveTrialResult result = summarise(recording, vehicle(), site());
+    CHECK((result.reason.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
+    CHECK((result.reason.find("no MODEL") != std::string::npos) == ((lacking & 2) != 0));
+    CHECK(result.visits.empty() == ((lacking & 1) != 0));
+    CHECK(result.parameters.empty() == ((lacking & 2) != 0));
+    for (const std::string& text : {to_table(result), to_html(result, recording, vehicle(), site())})
+      CHECK((text.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
+    const bool recorded = to_html(result, recording, vehicle(), site()).find("A recorded run") != std::string::npos;
+    CHECK(recorded == ((lacking & 1) != 0));
   }
 }
 
@@ -285,6 +293,20 @@ TEST_CASE("live trial: JSON, table and page agree, and speak of truth only when 
     CHECK_MESSAGE(page.find(words) != std::string::npos, words);
   }
   CHECK(page.find("Compared with the simulator's truth") > page.find("Figure 1.19"));
+}
+
+TEST_CASE("Live trial: the first screen says what is not settled, what is suspected, and what to do next") {
+  const Recording recording = trial();
+  LiveTrialResult result = summarise(recording, vehicle(), site());
+  std::string page = to_html(result, recording, vehicle(), site());
+  const auto first = [&] { return page.substr(0, page.find("</header>")); };
+  for (const char* words : {"Not settled: surge", "residual on X has 5 times", "<b>tether tension</b>",
+                            "not in the identifier&#39;s model", "Next.", "Fly on until", "The path from above"})
+    CHECK_MESSAGE(first().find(words) != std::string::npos, words);
+  result.ranking.against = "current";
+  result.ranking.segment = "full steps in surge";
+  page = to_html(result, recording, vehicle(), site());
+  CHECK(first().find("Fly &#39;full steps in surge&#39;: it tells tether tension from current.") != std::string::npos);
 }
 
 TEST_CASE("Live trial: designed segments, of all axes at once, have no figures of modes of their own") {

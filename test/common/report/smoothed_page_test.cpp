@@ -43,6 +43,8 @@ TEST_CASE(
   CHECK(count(page, "<svg") == 6);
   CHECK(count(page, "<figcaption>") == 6);
   CHECK(page.find("a &lt; b") != std::string::npos);
+  CHECK(page.find("Position within ") < page.find("</header>"));
+  CHECK(page.find("name=\"viewport\"") != std::string::npos);
   CHECK(page.find("V is 90 degrees ahead of U") != std::string::npos);
   CHECK(page.find("5.0 0.0 0.0 cm apart") != std::string::npos);
   // v does not change in a steady circle; u r = 0.5 x -0.1 m/s^2 pulls the vehicle round.

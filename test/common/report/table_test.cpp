@@ -51,7 +51,7 @@ TEST_CASE("The table names verdict, errors, effects with parameters and odds, re
   CHECK_FALSE(says(table, "roll p"));
   CHECK(says(table, "10 s ahead"));
   CHECK(says(table, "time_constant = 0.352 ± 0.024 s"));
-  CHECK(says(table, "10^93 : 1"));  // 214.6 / ln 10 = 93.2
+  CHECK(says(table, "215  92 %"));
   CHECK(says(table, "thruster gain (thruster 3)"));
   CHECK(says(table, "gyro.r against pose_capture: delay 0.0940 to 0.112 s (3 runs); corrected"));
 }

@@ -11,7 +11,7 @@ using namespace fathom;
 
 TEST_CASE("causes: the schema lists the same as the program, each with its quantity") {
   const auto schema =
-      nlohmann::json::parse(test::read_bytes(std::string{FATHOM_SOURCE_DIR} + "/docs/schema/diagnosis-1.schema.json"));
+      nlohmann::json::parse(test::read_bytes(std::string{FATHOM_SOURCE_DIR} + "/docs/schema/diagnosis-2.schema.json"));
   const auto& listed = schema.at("properties").at("causes").at("items").at("properties").at("cause").at("oneOf");
   REQUIRE(listed.size() == result::cause_words().size());
   for (std::size_t i = 0; i < listed.size(); ++i) {

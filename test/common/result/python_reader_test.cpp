@@ -50,10 +50,10 @@ print(json.dumps({"verdict": r.verdict, "X_uu": r.parameters["X_u|u|"].value,
   CHECK(told.code == 0);
   CHECK(told.says("Thrust comes late."));
   CHECK(told.says("strongest correlation: -0.500 of X_u and m_X"));
-  test::write_bytes(scratch.path("result.json"), R"({"schema": 2})");
+  test::write_bytes(scratch.path("result.json"), R"({"schema": 3})");
   const test::Ran newer = test::shell(python + "'" + contrib + "/fathom_result.py' " + scratch.path("result.json"));
   CHECK(newer.code == 1);
-  CHECK(newer.says("this reader knows 1"));
+  CHECK(newer.says("this reader knows 1 and 2"));
   CHECK(newer.lines() == 1);
 }
 

@@ -368,3 +368,28 @@ TEST_CASE("columns: tags, optical flow and laser dots come in from tables, and t
   CHECK_THROWS_WITH_AS(import_text(csv, "usbl: {position: {columns: [lx, ly], unit: m, frame: ENU}, sigma: 1 m}\n"),
                        doctest::Contains("'columns' needs 3 columns, not 2"), InputError);
 }
+
+TEST_CASE("columns: a signal that is the water's velocity or a tether's length says so, in a unit that fits") {
+  const std::string csv = "t,cn,winch,temp\n0,20,3,11\n1,30,4,12\n";
+  const std::string map =
+      "signals: {columns: [cn, winch, temp], units: [cm/s, m, C], quantities: [water_velocity_north, tether_paid_out, "
+      "none]}\n";
+  const ColumnMap first = ColumnMap::parse(kAbout + map, "map.yaml");
+  for (const std::string& text : {kAbout + map, to_yaml(first)}) {
+    CAPTURE(text);
+    const Imported in = import_table(parse_csv(csv, "run.csv"), ColumnMap::parse(text, "map.yaml"));
+    REQUIRE(in.recording.signals.size() == 6);
+    for (const Signal& one : in.recording.signals) {
+      if (one.name == "cn") CHECK(one.quantity == "water_velocity_north");
+      if (one.name == "winch") CHECK(one.quantity == "tether_paid_out");
+      if (one.name == "temp") CHECK(one.quantity.empty());
+    }
+    CHECK(in.recording.signals[0].value == doctest::Approx(0.2));
+  }
+  CHECK_THROWS_WITH_AS(import_text(csv, "signals: {columns: [cn], units: [kn], quantities: [flow]}\n"),
+                       doctest::Contains("is no quantity"), InputError);
+  CHECK_THROWS_WITH_AS(import_text(csv, "signals: {columns: [cn], units: [kn], quantities: [tether_paid_out]}\n"),
+                       doctest::Contains("told in m"), InputError);
+  CHECK_THROWS_WITH_AS(import_text(csv, "signals: {columns: [cn, temp], units: [kn, C], quantities: [none]}\n"),
+                       doctest::Contains("one word for each"), InputError);
+}

@@ -60,6 +60,8 @@ TEST_CASE("accelerometer: at rest and level the one along z says -g, and bias ad
   const Observation seen =
       observe(KinematicPoint{x}, Accelerometer{{0.3, 0.1, 0.2}, {0.0, 0.0, 1.0}, 2}, -kGravity, 1.0);
   CHECK(seen.innovation == doctest::Approx(-0.3).epsilon(kExact));
+  const Accelerometer elsewhere{.direction_B = {0.0, 0.0, 1.0}, .gravity = 9.78};  // at rest on the equator
+  CHECK(observe(KinematicPoint{KinematicVector::Zero()}, elsewhere, -9.78, 1.0).innovation == doctest::Approx(0.0));
 }
 
 TEST_CASE("accelerometer: bow down by 0.2 rad it feels gravity forward as Pereira and Duncan's eq. 12 says") {
