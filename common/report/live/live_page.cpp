@@ -58,7 +58,8 @@ std::string next(const LiveTrialResult& result) {
   if (!result.ranking.segment.empty())
     return "Fly '" + result.ranking.segment + "': it tells " + effect_title(result.ranking.candidates.front().name) +
            " from " + effect_title(result.ranking.against) + ".";
-  if (!result.settled()) return "Fly on until every motion is settled: what is missing stands above.";
+  if (!result.settled() && result.phase != "recorded")
+    return "Fly on until every motion is settled: what is missing stands above.";
   return result.afterwards ? std::string{}
                            : "Have the log diagnosed: fathom diagnose --vehicle V.yaml --train RUN.lcmlog --out DIR.";
 }
@@ -70,6 +71,7 @@ std::string outcome(const LiveTrialResult& result, const Recording& recording, c
   if (result.phase == "done") words = settled ? "All modes are settled" : "Finished, but not everything is settled";
   if (result.phase == "aborted") words = "The trial was aborted";
   if (result.phase == "lost") words = "The state was lost";
+  if (result.phase == "recorded") words = "A recorded run, flown without a supervisor";
   if (!result.failing.empty()) words += "; the model lacks something on " + join(result.failing, ", ");
   const auto left = std::ranges::count_if(result.visits, [](const ModeVisit& visit) { return visit.left; });
   std::string html = "<header><h1>Live trial of " + escape(result.vehicle) +

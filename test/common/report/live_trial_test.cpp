@@ -249,6 +249,8 @@ TEST_CASE("live trial: a log without STATE is refused; without supervisor or ide
     CHECK(result.parameters.empty() == ((lacking & 2) != 0));
     for (const std::string& text : {to_table(result), to_html(result, recording, vehicle(), site())})
       CHECK((text.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
+    const bool recorded = to_html(result, recording, vehicle(), site()).find("A recorded run") != std::string::npos;
+    CHECK(recorded == ((lacking & 1) != 0));
   }
 }
 
