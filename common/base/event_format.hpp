@@ -43,8 +43,9 @@ struct Header {
 /// Whether another recording begins with `next`: a logger counts its events and never logs into the past. Files that
 /// were joined with `cat` hold several.
 [[nodiscard]] inline bool begins_anew(const Header& before, const Header& next) {
-  constexpr Utime kBack = 1'000'000;  // us: a clock that is set by a network steps back by less
-  return next.number < before.number || (next.number == before.number && next.time < before.time - kBack);
+  constexpr double kBack = 1.0;  // s: a clock that is set by a network steps back by less
+  return next.number < before.number ||
+         (next.number == before.number && seconds_between(next.time, before.time) > kBack);
 }
 
 }  // namespace fathom::event_format

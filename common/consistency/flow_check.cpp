@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/spatial.hpp"
-#include "common/estimation/camera_geometry.hpp"
+#include "common/estimation/online/camera_geometry.hpp"
 
 namespace fathom::consistency {
 

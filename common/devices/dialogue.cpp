@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "common/devices/checksum.hpp"
-#include "common/devices/emulation.hpp"
-#include "common/devices/sbg_ig500.hpp"
+#include "common/devices/emulation/emulation.hpp"
+#include "common/devices/inertial/sbg_ig500.hpp"
 #include "common/devices/text.hpp"
-#include "common/devices/water_linked_serial.hpp"
+#include "common/devices/velocity/water_linked_serial.hpp"
 
 namespace fathom::devices {
 namespace {

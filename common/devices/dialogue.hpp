@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/devices/emulated_vehicle.hpp"
+#include "common/devices/emulation/emulated_vehicle.hpp"
 #include "common/devices/parser.hpp"
 #include "common/devices/settings.hpp"
 

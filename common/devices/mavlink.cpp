@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/devices/checksum.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/mavlink/definitions.hpp"
 
 namespace fathom::devices {

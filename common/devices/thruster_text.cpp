@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 
 namespace fathom::devices {
 

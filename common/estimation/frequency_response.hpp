@@ -4,7 +4,7 @@
 
 #include <complex>
 
-#include "common/estimation/complementary_filter.hpp"
+#include "common/estimation/online/complementary_filter.hpp"
 
 namespace fathom::estimation {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "common/model/priors/wide_prior.hpp"
 #include "common/model/regressor.hpp"
 #include "common/model/vehicle.hpp"
-#include "common/model/wide_prior.hpp"
 
 namespace fathom::excitation {
 namespace {

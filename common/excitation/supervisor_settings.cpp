@@ -5,10 +5,10 @@
 #include "common/base/config.hpp"
 #include "common/excitation/preflight.hpp"
 #include "common/excitation/supervisor.hpp"
-#include "common/model/expected_inertia.hpp"
 #include "common/model/parameters.hpp"
+#include "common/model/priors/expected_inertia.hpp"
+#include "common/model/priors/wide_prior.hpp"
 #include "common/model/site.hpp"
-#include "common/model/wide_prior.hpp"
 
 namespace fathom::excitation {
 namespace {

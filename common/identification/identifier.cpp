@@ -8,7 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/model/actuators.hpp"
 #include "common/model/effect_size.hpp"
-#include "common/model/expected_inertia.hpp"
+#include "common/model/priors/expected_inertia.hpp"
 
 namespace fathom::identification {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "common/base/config.hpp"
 #include "common/base/spatial.hpp"
-#include "common/model/expected_inertia.hpp"
-#include "common/model/wide_prior.hpp"
+#include "common/model/priors/expected_inertia.hpp"
+#include "common/model/priors/wide_prior.hpp"
 
 namespace fathom::joint {
 namespace {

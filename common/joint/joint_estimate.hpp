@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "common/identification/identifier.hpp"
 #include "common/joint/innovation_colour.hpp"
 #include "common/joint/joint_filter.hpp"

@@ -1,8 +1,8 @@
 // What each instrument tells the joint filter: innovations at a state, with their derivatives by it. Geometry as in the
-// estimator's complementary filter (common/estimation/camera_geometry.hpp). Variances are the caller's.
+// estimator's complementary filter (common/estimation/online/camera_geometry.hpp). Variances are the caller's.
 #pragma once
 
-#include "common/estimation/camera_geometry.hpp"
+#include "common/estimation/online/camera_geometry.hpp"
 #include "common/joint/joint_filter.hpp"
 
 namespace fathom::joint {

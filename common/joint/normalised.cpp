@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/model/state_matrix.hpp"
+#include "common/model/derivatives/state_matrix.hpp"
 
 namespace fathom::joint {
 

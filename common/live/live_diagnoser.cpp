@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
-#include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/smoothing/state_as_measured.hpp"
 #include "common/estimation/trial_columns.hpp"
 #include "common/live/ranking.hpp"
 #include "common/verdict/of_recordings.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/model/bounded.hpp"
+#include "common/model/priors/bounded.hpp"
 #include "common/model/sensors/kinematic_point.hpp"
 
 namespace fathom::model {

@@ -1,7 +1,7 @@
 #include "common/model/after_abort.hpp"
 
 #include "common/base/config.hpp"
-#include "common/model/bounded.hpp"
+#include "common/model/priors/bounded.hpp"
 
 namespace fathom::model {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/base/config.hpp"
-#include "common/model/bounded.hpp"
+#include "common/model/priors/bounded.hpp"
 
 namespace fathom::model {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/config.hpp"
-#include "common/model/bounded.hpp"
+#include "common/model/priors/bounded.hpp"
 
 namespace fathom::model {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/spatial.hpp"
-#include "common/model/bounded.hpp"
+#include "common/model/priors/bounded.hpp"
 
 namespace fathom::model {
 namespace {

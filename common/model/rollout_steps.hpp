@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/model/derivatives/sensitivity.hpp"
 #include "common/model/rollout.hpp"
-#include "common/model/sensitivity.hpp"
 
 namespace fathom::model {
 

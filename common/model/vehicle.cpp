@@ -10,10 +10,10 @@
 #include "common/base/error.hpp"
 #include "common/model/actuators.hpp"
 #include "common/model/after_abort.hpp"
-#include "common/model/bounded.hpp"
 #include "common/model/candidates/candidate.hpp"
+#include "common/model/priors/bounded.hpp"
+#include "common/model/priors/wide_prior.hpp"
 #include "common/model/vehicle_file.hpp"
-#include "common/model/wide_prior.hpp"
 
 namespace fathom::model {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/identification/parameter_map.hpp"
+#include "common/identification/trajectories/parameter_map.hpp"
 
 namespace fathom::planning {
 namespace {

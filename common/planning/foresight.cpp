@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/base/parallel.hpp"
-#include "common/identification/parameter_map.hpp"
+#include "common/identification/trajectories/parameter_map.hpp"
 #include "common/inference/fitted_models.hpp"
 #include "common/model/effect_size.hpp"
 #include "common/planning/energies.hpp"

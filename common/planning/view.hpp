@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/identification/trajectory_fit.hpp"
+#include "common/identification/trajectories/trajectory_fit.hpp"
 
 namespace fathom::planning {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "common/identification/fit_from_priors.hpp"
+#include "common/identification/trajectories/fit_from_priors.hpp"
 #include "common/preflight/thrust_evidence.hpp"
 #include "common/preflight/turned_axes.hpp"
 

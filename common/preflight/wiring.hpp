@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/identification/trajectory_fit.hpp"
+#include "common/identification/trajectories/trajectory_fit.hpp"
 #include "common/samples/diagnosis_result.hpp"
 
 namespace fathom::preflight {

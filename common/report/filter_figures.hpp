@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "common/estimation/aids_seen.hpp"
-#include "common/estimation/complementary_filter.hpp"
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/complementary_filter.hpp"
+#include "common/estimation/online/navigator.hpp"
+#include "common/estimation/smoothing/aids_seen.hpp"
 #include "common/report/plot.hpp"
 
 namespace fathom::report {

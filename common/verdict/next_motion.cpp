@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "common/model/candidates/column_effect.hpp"
 #include "common/model/effect.hpp"
 
 namespace fathom::verdict {
@@ -13,6 +14,7 @@ namespace {
 constexpr double kKnown = 0.1;  // standard deviation over size: better known than that, nothing is open
 
 std::string motion_for(const std::string& name) {
+  if (name.starts_with("column ")) return std::string{model::kShowsColumn};
   const model::Effect* effect = model::find_effect(name);
   return effect != nullptr ? std::string{effect->revealed_by()} : std::string{};
 }

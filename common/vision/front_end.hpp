@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/samples/vision.hpp"
-#include "common/vision/beam_witness.hpp"
-#include "common/vision/laser_dot.hpp"
-#include "common/vision/optical_flow.hpp"
+#include "common/vision/flow/optical_flow.hpp"
+#include "common/vision/laser/beam_witness.hpp"
+#include "common/vision/laser/laser_dot.hpp"
 #include "common/vision/picture_check.hpp"
 #include "common/vision/tag_detector.hpp"
 #include "common/vision/tag_locator.hpp"

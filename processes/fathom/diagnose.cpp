@@ -14,7 +14,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
-#include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/smoothing/state_as_measured.hpp"
 #include "common/inference/ablations.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/site.hpp"
@@ -24,8 +24,8 @@
 #include "common/report/table.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/verdict/of_recordings.hpp"
-#include "processes/fathom/command_units.hpp"
 #include "processes/fathom/commands.hpp"
+#include "processes/fathom/data/command_units.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/origin.hpp"
 #include "processes/fathom/parts.hpp"
@@ -184,9 +184,7 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
     notes.emplace_back("no --validate: the last 30 % of every run is kept from the fits and used to judge them");
   verdict::Explained explained = verdict::of_recordings(
       vehicle, std::move(asked),
-      {.inference = std::move(inference),
-       .learning = {.learn = !options.no_learning},
-       .site = site ? &*site : nullptr},
+      {.inference = std::move(inference), .learning = {.learn = !options.no_learning}, .site = site ? &*site : nullptr},
       progress, notes);
   if (room && explained.answer.rivals) {
     const model::Model best =

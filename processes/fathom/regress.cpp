@@ -4,7 +4,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/identification/residual_tracing.hpp"
+#include "common/identification/regression/residual_tracing.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"

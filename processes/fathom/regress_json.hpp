@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/identification/manoeuvre_regression.hpp"
+#include "common/identification/regression/manoeuvre_regression.hpp"
 
 namespace fathom::tool {
 

@@ -8,16 +8,16 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
-#include "common/estimation/state_reconstruction.hpp"
+#include "common/estimation/smoothing/state_reconstruction.hpp"
 #include "common/report/smoothed_page.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
 #include "common/wire/streams.hpp"
+#include "processes/fathom/bus/trial_files.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/inputs.hpp"
 #include "processes/fathom/recordings.hpp"
-#include "processes/fathom/trial_files.hpp"
 
 namespace fathom::tool {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/base/spatial.hpp"
 #include "common/devices/attitude.hpp"
 #include "common/devices/dialogue.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/protocols.hpp"
 #include "common/link/endpoint.hpp"
 #include "common/link/server.hpp"

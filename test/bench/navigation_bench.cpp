@@ -2,9 +2,9 @@
 // memory.
 #include <benchmark/benchmark.h>
 
-#include "common/estimation/complementary_filter.hpp"
-#include "common/estimation/navigation_filter.hpp"
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/complementary_filter.hpp"
+#include "common/estimation/online/navigation_filter.hpp"
+#include "common/estimation/online/navigator.hpp"
 
 using namespace fathom;
 using namespace fathom::estimation;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/protocols.hpp"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "common/estimation/trial_smoother.hpp"
-#include "common/identification/block_bootstrap.hpp"
-#include "common/identification/stepwise.hpp"
+#include "common/estimation/smoothing/trial_smoother.hpp"
+#include "common/identification/regression/block_bootstrap.hpp"
+#include "common/identification/regression/stepwise.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/protocols.hpp"
 #include "test/support/foreign_logs.hpp"
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <iterator>
 
-#include "common/estimation/kalman_estimator.hpp"
-#include "common/estimation/trial_instruments.hpp"
+#include "common/estimation/online/kalman_estimator.hpp"
+#include "common/estimation/smoothing/trial_instruments.hpp"
 #include "common/wire/log_reader.hpp"
 #include "common/wire/log_writer.hpp"
 #include "test/support/full_trial.hpp"

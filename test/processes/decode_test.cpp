@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "common/base/spatial.hpp"
 #include "common/devices/dialogue.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/link/server.hpp"
 #include "common/wire/log_reader.hpp"
 #include "test/support/bus.hpp"

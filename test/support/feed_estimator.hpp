@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/estimation/estimator.hpp"
+#include "common/estimation/online/estimator.hpp"
 #include "common/samples/recording.hpp"
 
 namespace fathom::test {

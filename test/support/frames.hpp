@@ -10,7 +10,7 @@
 
 #include "common/base/spatial.hpp"
 #include "common/devices/attitude.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "test/support/wire_data.hpp"
 
 namespace fathom::test {

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "common/base/error.hpp"
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "common/joint/live_identifier.hpp"
 #include "common/live/live_diagnoser.hpp"
 #include "common/model/regressor.hpp"

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "test/support/synthetic_recording.hpp"
 
 namespace fathom::test {

@@ -3,7 +3,7 @@
 // cells.
 #pragma once
 
-#include "common/estimation/kalman_settings.hpp"
+#include "common/estimation/online/kalman_settings.hpp"
 #include "common/model/manoeuvres.hpp"
 #include "common/samples/recording.hpp"
 

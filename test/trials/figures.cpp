@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "common/base/spatial.hpp"
-#include "common/estimation/trial_smoother.hpp"
+#include "common/estimation/smoothing/trial_smoother.hpp"
 #include "common/report/plot.hpp"
 #include "common/tables/writer.hpp"
 #include "test/trials/trials.hpp"

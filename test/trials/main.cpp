@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include "common/estimation/process_tuning.hpp"
+#include "common/estimation/smoothing/process_tuning.hpp"
 #include "common/wire/log_writer.hpp"
 #include "test/trials/trials.hpp"
 

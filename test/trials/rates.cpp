@@ -9,9 +9,9 @@
 #include <set>
 
 #include "common/base/spatial.hpp"
-#include "common/estimation/process_tuning.hpp"
-#include "common/estimation/trial_smoother.hpp"
-#include "common/identification/manoeuvre_regression.hpp"
+#include "common/estimation/smoothing/process_tuning.hpp"
+#include "common/estimation/smoothing/trial_smoother.hpp"
+#include "common/identification/regression/manoeuvre_regression.hpp"
 #include "test/trials/trials.hpp"
 
 namespace fathom::trials {

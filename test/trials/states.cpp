@@ -7,7 +7,7 @@
 #include <exception>
 #include <string>
 
-#include "common/estimation/state_reconstruction.hpp"
+#include "common/estimation/smoothing/state_reconstruction.hpp"
 #include "test/support/full_trial.hpp"
 
 namespace {

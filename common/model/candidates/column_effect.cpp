@@ -101,7 +101,7 @@ class ColumnEffect final : private Words, public Effect {
       : Words{std::move(words)},
         Effect{{.name = Words::name,
                 .sentence = Words::sentence,
-                .revealed_by = "a recording in which the column changes while all else is as it was",
+                .revealed_by = kShowsColumn,
                 .stage = Stage::kBody,
                 .amplitudes = kNumbers,
                 .knows_size = true,

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/model/dynamics.hpp"
@@ -12,6 +13,9 @@
 #include "common/samples/trial.hpp"
 
 namespace fathom::model {
+
+/// What shows such an effect best.
+inline constexpr std::string_view kShowsColumn = "a recording in which the column changes while all else is as it was";
 
 struct Candidates {
   std::vector<std::shared_ptr<const Effect>> effects;

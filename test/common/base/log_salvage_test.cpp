@@ -112,6 +112,20 @@ TEST_CASE("salvage: whatever stretch of a log is overwritten, only the events it
   }
 }
 
+TEST_CASE("salvage: whatever time an event claims, another recording begins only where time goes back") {
+  const auto at = [](std::uint64_t time) {
+    std::string bytes;
+    put(bytes, time, 8);
+    return event(7, "DEPTH", "abc").replace(12, 8, bytes);
+  };
+  constexpr std::uint64_t kFirst = std::uint64_t{1} << 63U, kLast = kFirst - 1;  // of all that 64 bits can say
+  CHECK(Kept{at(kFirst + 512) + at(kFirst + 1024)}.result.parts.size() == 1);
+  CHECK(Kept{at(kFirst) + at(kLast)}.result.parts.size() == 1);
+  CHECK(Kept{at(kLast) + at(kFirst)}.result.parts.size() == 2);
+  CHECK(Kept{at(1'700'000'000'000'000) + at(1'699'999'999'100'000)}.result.parts.size() == 1);  // a clock that was set
+  CHECK(Kept{at(1'700'000'000'000'000) + at(1'699'999'998'900'000)}.result.parts.size() == 2);
+}
+
 TEST_CASE("salvage: from file to file; nothing is overwritten and nothing empty is left") {
   const test::Scratch scratch;
   test::write_bytes(scratch.path("a"), kA + "xx" + kB);

@@ -10,7 +10,7 @@
 
 #include "common/consistency/consistency.hpp"
 #include "common/estimation/reconstruct.hpp"
-#include "common/identification/trajectory_fit.hpp"
+#include "common/identification/trajectories/trajectory_fit.hpp"
 #include "common/model/actuators.hpp"
 #include "common/model/dynamics.hpp"
 #include "common/tables/import.hpp"

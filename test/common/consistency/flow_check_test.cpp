@@ -9,7 +9,7 @@
 #include <map>
 
 #include "common/base/spatial.hpp"
-#include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/smoothing/state_as_measured.hpp"
 #include "test/support/synthetic_pictures.hpp"
 #include "test/support/timing.hpp"
 

@@ -9,7 +9,7 @@
 #include "common/consistency/consistency.hpp"
 #include "common/estimation/reconstruct.hpp"
 #include "common/estimation/split.hpp"
-#include "common/identification/fit_from_priors.hpp"
+#include "common/identification/trajectories/fit_from_priors.hpp"
 #include "common/residual/prediction.hpp"
 #include "test/support/beluga_csv.hpp"
 #include "test/support/virtual_dive.hpp"

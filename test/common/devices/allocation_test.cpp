@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "test/support/wire_data.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "test/support/wire_data.hpp"
 
 using namespace fathom;

@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
+#include "common/devices/inertial/sbg_ig500.hpp"
 #include "common/devices/protocols.hpp"
-#include "common/devices/sbg_ig500.hpp"
 
 using namespace fathom;
 using namespace fathom::devices;

@@ -1,12 +1,12 @@
 // The vehicle that is played: what is written as a condition, what is refused, and the rig's sentences by hand.
-#include "common/devices/emulated_vehicle.hpp"
+#include "common/devices/emulation/emulated_vehicle.hpp"
 
 #include <doctest/doctest.h>
 
 #include "common/base/error.hpp"
 #include "common/devices/ardusub_modes.hpp"
 #include "common/devices/dialogue.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "common/devices/checksum.hpp"
 #include "common/devices/dialogue.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/thruster_text.hpp"
 #include "test/support/wire_data.hpp"
 

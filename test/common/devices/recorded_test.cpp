@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "common/devices/pd0.hpp"
+#include "common/devices/velocity/pd0.hpp"
 #include "test/support/wire_data.hpp"
 
 using namespace fathom;

@@ -1,5 +1,5 @@
 // Doppler logs: beams, instrument, ship and earth, worked by hand and brought back to the body.
-#include "common/devices/janus.hpp"
+#include "common/devices/velocity/janus.hpp"
 #include "test/support/frames.hpp"
 
 using namespace fathom;

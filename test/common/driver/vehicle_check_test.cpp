@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/devices/checksum.hpp"
-#include "common/devices/emulated_vehicle.hpp"
-#include "common/devices/emulation.hpp"
+#include "common/devices/emulation/emulated_vehicle.hpp"
+#include "common/devices/emulation/emulation.hpp"
 #include "common/devices/mavlink.hpp"
 #include "common/devices/thruster_text.hpp"
 

@@ -1,12 +1,12 @@
 // What each aid says by itself: with exact measurements it is the motion itself, whatever the attitude and the mounts.
-#include "common/estimation/aids_seen.hpp"
+#include "common/estimation/smoothing/aids_seen.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "common/base/spatial.hpp"
-#include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/smoothing/state_as_measured.hpp"
 
 using namespace fathom;
 using namespace fathom::estimation;

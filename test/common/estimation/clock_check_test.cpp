@@ -1,12 +1,12 @@
 // Of sensors that disagree about the time, the one is named that all others disagree with.
-#include "common/estimation/clock_check.hpp"
+#include "common/estimation/online/clock_check.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <string>
 
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "test/common/estimation/survey_runs.hpp"
 
 using namespace fathom;

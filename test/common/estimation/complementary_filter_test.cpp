@@ -1,5 +1,5 @@
 // Gains against their defining equations, covariances against a simulated ensemble.
-#include "common/estimation/complementary_filter.hpp"
+#include "common/estimation/online/complementary_filter.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The estimator on motions known at every instant, and on the Beluga recordings against the offline reconstruction.
-#include "common/estimation/estimator.hpp"
+#include "common/estimation/online/estimator.hpp"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/estimation/navigation_filter.hpp"
+#include "common/estimation/online/navigation_filter.hpp"
 
 namespace fathom::estimation {
 namespace {

@@ -1,5 +1,5 @@
 // The filter and the smoother against textbook versions with full matrices, and over hours.
-#include "common/estimation/kalman_filter.hpp"
+#include "common/estimation/online/kalman_filter.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "common/estimation/smoother.hpp"
+#include "common/estimation/smoothing/smoother.hpp"
 #include "common/model/sensors/accelerometer.hpp"
 #include "common/model/sensors/gyro.hpp"
 #include "common/model/sensors/heading.hpp"

@@ -1,5 +1,5 @@
 // The filter's own arithmetic at a tilt; what it does with a trial's sensors is navigator_test.cpp's.
-#include "common/estimation/navigation_filter.hpp"
+#include "common/estimation/online/navigation_filter.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/estimation/complementary_filter.hpp"
+#include "common/estimation/online/complementary_filter.hpp"
 
 namespace fathom::estimation {
 namespace {

@@ -1,7 +1,7 @@
 // A velocity log that falls silent while the accelerometer's bias is hardly known: soon after the beginning, and again.
 #include <doctest/doctest.h>
 
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "test/support/synthetic_survey.hpp"
 
 namespace fathom {

@@ -1,5 +1,5 @@
 // The trial's estimator on motions known at every instant: shallow and deep, its stated errors, late samples.
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 
 #include <doctest/doctest.h>
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/estimation/camera_geometry.hpp"
-#include "common/estimation/navigation_filter.hpp"
+#include "common/estimation/online/camera_geometry.hpp"
+#include "common/estimation/online/navigation_filter.hpp"
 #include "common/model/sensors/accelerometer.hpp"
 #include "test/support/synthetic_recording.hpp"
 

@@ -7,8 +7,8 @@
 #include <complex>
 #include <numbers>
 
-#include "common/estimation/complementary_filter.hpp"
-#include "common/estimation/navigation_filter.hpp"
+#include "common/estimation/online/complementary_filter.hpp"
+#include "common/estimation/online/navigation_filter.hpp"
 
 namespace fathom {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "test/support/synthetic_survey.hpp"
 
 namespace fathom {

@@ -1,6 +1,6 @@
 // Simulated trials of the half-scale PAP-104 reconstructed: what the filter and the smoother reach, how consistent they
 // are, and what is said of bad input.
-#include "common/estimation/trial_smoother.hpp"
+#include "common/estimation/smoothing/trial_smoother.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,10 +9,10 @@
 #include <random>
 
 #include "common/base/error.hpp"
-#include "common/estimation/kalman_estimator.hpp"
-#include "common/estimation/noise_from_rest.hpp"
-#include "common/estimation/process_tuning.hpp"
-#include "common/estimation/transponder_check.hpp"
+#include "common/estimation/online/kalman_estimator.hpp"
+#include "common/estimation/smoothing/noise_from_rest.hpp"
+#include "common/estimation/smoothing/process_tuning.hpp"
+#include "common/estimation/smoothing/transponder_check.hpp"
 #include "test/support/trial_recording.hpp"
 
 namespace fathom::estimation {

@@ -1,5 +1,5 @@
 // The base model's fit leaves a wrong valley: a vehicle without inertia, whose rates follow its thrust at once.
-#include "common/identification/fit_from_priors.hpp"
+#include "common/identification/trajectories/fit_from_priors.hpp"
 
 #include <doctest/doctest.h>
 

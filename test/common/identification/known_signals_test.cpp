@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/identification/manoeuvre_regression.hpp"
+#include "common/identification/regression/manoeuvre_regression.hpp"
 #include "common/model/derivative_motion.hpp"
 #include "common/model/sensors/kinematic_point.hpp"
 #include "test/support/virtual_dive.hpp"

@@ -1,6 +1,6 @@
 // Derivatives from trials of the half-scale PAP-104: rates over seeds, the water's velocity, what was assumed varied,
 // and what is said of bad input.
-#include "common/identification/manoeuvre_regression.hpp"
+#include "common/identification/regression/manoeuvre_regression.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,8 +11,8 @@
 #include <random>
 
 #include "common/base/error.hpp"
-#include "common/estimation/process_tuning.hpp"
-#include "common/estimation/trial_smoother.hpp"
+#include "common/estimation/smoothing/process_tuning.hpp"
+#include "common/estimation/smoothing/trial_smoother.hpp"
 #include "test/support/timing.hpp"
 #include "test/support/trial_recording.hpp"
 #include "test/support/virtual_dive.hpp"

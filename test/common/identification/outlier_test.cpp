@@ -1,5 +1,5 @@
 // Huber's loss per axis: the weight pulls as the loss does, and a fault of one axis leaves the others alone.
-#include "common/identification/outlier.hpp"
+#include "common/identification/trajectories/outlier.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // A model's free numbers as one scaled vector: nothing is lost on the way there and back, and physics sets the bounds.
-#include "common/identification/parameter_map.hpp"
+#include "common/identification/trajectories/parameter_map.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,14 +1,14 @@
 // Bounds in the fit: the least-squares step inside them, steps that come near and never cross, and a fit that finds its
 // way although half of its numbers begin on a bound.
-#include "common/identification/pressed_bounds.hpp"
+#include "common/identification/trajectories/pressed_bounds.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <random>
 
-#include "common/identification/box_step.hpp"
-#include "common/identification/trajectory_fit.hpp"
+#include "common/identification/trajectories/box_step.hpp"
+#include "common/identification/trajectories/trajectory_fit.hpp"
 #include "test/support/virtual_dive.hpp"
 
 using namespace fathom;

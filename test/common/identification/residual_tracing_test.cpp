@@ -1,6 +1,6 @@
 // A residual that is "due primarily to the umbilical and chain forces" (Pereira and Duncan, sec. VI): it goes with them
 // when they are not known, and away when they are.
-#include "common/identification/residual_tracing.hpp"
+#include "common/identification/regression/residual_tracing.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Regression under AR(1): against the literal definition, against QR, and rates over seeds.
-#include "common/identification/stepwise.hpp"
+#include "common/identification/regression/stepwise.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "common/base/distributions.hpp"
-#include "common/identification/block_bootstrap.hpp"
+#include "common/identification/regression/block_bootstrap.hpp"
 
 namespace fathom::identification {
 namespace {

@@ -1,6 +1,6 @@
 // The output-error fit on simulated dives: the vehicle's numbers come back, and the stated standard deviations are
 // true.
-#include "common/identification/trajectory_fit.hpp"
+#include "common/identification/trajectories/trajectory_fit.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Windows keep clear of gaps, residual rows of invalid samples, and the derivatives are those of the residual.
-#include "common/identification/window_residual.hpp"
+#include "common/identification/trajectories/window_residual.hpp"
 
 #include <doctest/doctest.h>
 

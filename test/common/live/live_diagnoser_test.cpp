@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "common/estimation/state_as_measured.hpp"
+#include "common/estimation/smoothing/state_as_measured.hpp"
 #include "common/live/ranking.hpp"
 #include "common/verdict/of_recordings.hpp"
 #include "common/wire/log_reader.hpp"

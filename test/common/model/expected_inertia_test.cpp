@@ -1,5 +1,5 @@
 // What a vehicle is expected to weigh with its water, and beside the paper's vehicle.
-#include "common/model/expected_inertia.hpp"
+#include "common/model/priors/expected_inertia.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // The variational equation against central differences of rollouts: six axes, and fewer with the tilt as measured, with
 // effects that bend the water, the place, the time and the inertia.
-#include "common/model/sensitivity.hpp"
+#include "common/model/derivatives/sensitivity.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The analytic slope of the base force against central differences, over random motions.
-#include "common/model/state_matrix.hpp"
+#include "common/model/derivatives/state_matrix.hpp"
 
 #include <doctest/doctest.h>
 

@@ -12,7 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/model/driven_axes.hpp"
 #include "common/model/parameters.hpp"
-#include "common/model/physical_bounds.hpp"
+#include "common/model/priors/physical_bounds.hpp"
 #include "common/tables/import.hpp"
 #include "test/support/scratch.hpp"
 

@@ -1,6 +1,6 @@
 // What a live trial's log becomes: modes from EXCITATION, the last model, a table, JSON, and a page whose comparison
 // with the truth stands apart and is there only when the truth is.
-#include "common/report/live_trial.hpp"
+#include "common/report/live/live_trial.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/health_words.hpp"
-#include "common/estimation/navigator.hpp"
+#include "common/estimation/online/navigator.hpp"
 #include "test/support/schema.hpp"
 #include "test/support/scratch.hpp"
 
@@ -249,6 +249,8 @@ TEST_CASE("live trial: a log without STATE is refused; without supervisor or ide
     CHECK(result.parameters.empty() == ((lacking & 2) != 0));
     for (const std::string& text : {to_table(result), to_html(result, recording, vehicle(), site())})
       CHECK((text.find("no EXCITATION") != std::string::npos) == ((lacking & 1) != 0));
+    const bool recorded = to_html(result, recording, vehicle(), site()).find("A recorded run") != std::string::npos;
+    CHECK(recorded == ((lacking & 1) != 0));
   }
 }
 

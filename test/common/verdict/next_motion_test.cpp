@@ -45,3 +45,12 @@ TEST_CASE("next motion: thrusters that seem to be others are tried one by one fi
   result.effects = {{.name = "current", .variant = "", .parameters = {{"v_N", 0.1, 0.05, "m/s"}}}};
   CHECK(says(next_motion(result), "each thruster alone"));
 }
+
+TEST_CASE("next motion: a measured column is told from others where it alone changes") {
+  DiagnosisResult result;
+  result.effects = {{.name = "column wind_speed", .variant = "X"}};
+  result.effects[0].alternatives = {{.name = "column gusts", .log_odds = 1.0}};
+  CHECK(next_motion(result) ==
+        "To tell column wind_speed from column gusts: a recording in which the column changes while all else is as it "
+        "was.");
+}

@@ -1,5 +1,5 @@
 // A bright spot's middle against where it was drawn.
-#include "common/vision/bright_spot.hpp"
+#include "common/vision/laser/bright_spot.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // What is chosen to be followed, against OpenCV's own choice.
-#include "common/vision/features.hpp"
+#include "common/vision/flow/features.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "common/vision/jpeg.hpp"
-#include "common/vision/laser_dot.hpp"
+#include "common/vision/laser/laser_dot.hpp"
 #include "test/common/vision/scene.hpp"
 
 namespace fathom::vision::test_scene {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
+#include "common/vision/flow/light_change.hpp"
+#include "common/vision/flow/plane_flow.hpp"
+#include "common/vision/flow/reduced_view.hpp"
 #include "common/vision/jpeg.hpp"
-#include "common/vision/light_change.hpp"
-#include "common/vision/plane_flow.hpp"
-#include "common/vision/reduced_view.hpp"
 #include "test/common/vision/scene.hpp"
 
 namespace fathom::vision {

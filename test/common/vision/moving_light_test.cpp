@@ -7,8 +7,8 @@
 #include <random>
 #include <utility>
 
-#include "common/vision/fine_shift.hpp"
-#include "common/vision/light_change.hpp"
+#include "common/vision/flow/fine_shift.hpp"
+#include "common/vision/flow/light_change.hpp"
 #include "test/common/vision/scene.hpp"
 
 namespace fathom::vision {

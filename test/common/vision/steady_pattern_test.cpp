@@ -1,5 +1,5 @@
 // What stays in the picture while the floor moves, and only that.
-#include "common/vision/steady_pattern.hpp"
+#include "common/vision/flow/steady_pattern.hpp"
 
 #include <doctest/doctest.h>
 

@@ -7,8 +7,8 @@
 #include <array>
 
 #include "common/model/component_set.hpp"
+#include "common/model/priors/wide_prior.hpp"
 #include "common/model/vehicle.hpp"
-#include "common/model/wide_prior.hpp"
 
 namespace fathom::model::effects {
 namespace {

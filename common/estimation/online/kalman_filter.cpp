@@ -1,0 +1,227 @@
+#include "common/estimation/online/kalman_filter.hpp"
+
+#include <cmath>
+
+namespace fathom::estimation {
+namespace {
+
+namespace at = model::at;
+
+constexpr double kSteep = 1.0;  // rad of pitch beyond which the angles are counted anew
+constexpr double kPreciseBeyond =
+    1e8;  // variance before over noise: from here on the plain update loses too many digits
+
+/// Adds what white noise of density q does to a chain x' = rate, rate' = slope, slope' = noise in the slope's frame;
+/// X and V turn it into the frames of x and rate.
+template <int N>
+void add_chain(Eigen::Matrix<double, N, N>& P, int x, int rate, int slope, double q, double dt,
+               const Eigen::Matrix3d& X, const Eigen::Matrix3d& V) {
+  const double dt2 = dt * dt, dt3 = dt2 * dt;
+  P.template block<3, 3>(x, x) += (q * dt3 * dt2 / 20.0) * X * X.transpose();
+  P.template block<3, 3>(rate, x) += (q * dt2 * dt2 / 8.0) * V * X.transpose();
+  P.template block<3, 3>(slope, x) += (q * dt3 / 6.0) * X.transpose();
+  P.template block<3, 3>(rate, rate) += (q * dt3 / 3.0) * V * V.transpose();
+  P.template block<3, 3>(slope, rate) += (q * dt2 / 2.0) * V.transpose();
+  P.template block<3, 3>(slope, slope).diagonal().array() += q * dt;
+}
+
+/// Only the lower triangle has been kept up; the upper one follows.
+template <int N>
+void mirror(Eigen::Matrix<double, N, N>& P) {
+  for (int column = 1; column < N; ++column) {
+    for (int row = 0; row < column; ++row) P(row, column) = P(column, row);
+  }
+}
+
+}  // namespace
+
+Transition::Transition(const model::KinematicPoint& from, double step, KinematicModel model)
+    : dt{step}, coupled{model == KinematicModel::kCoupled}, R_WB{from.R_WB}, euler_rates{from.euler_from_rates} {
+  by_euler = from.turned_out(from.group(at::kAcceleration));
+  const Eigen::Vector3d turn = dt * from.group(at::kRates) + 0.5 * dt * dt * from.group(at::kRateSlopes);
+  const double sr = from.sin_roll, cr = from.cos_roll, cp = from.cos_pitch, tp = from.sin_pitch / cp;
+  const double across = sr * turn.y() + cr * turn.z(), along = cr * turn.y() - sr * turn.z();
+  euler_euler << 1.0 + along * tp, across / (cp * cp), 0.0,  //
+      -across, 1.0, 0.0,                                     //
+      along / cp, across * tp / cp, 1.0;
+}
+
+template <int N>
+void transport(const Transition& F, Eigen::Matrix<double, N, N>& P) {
+  const double dt = F.dt;
+  auto position = P.template middleCols<3>(at::kPosition);
+  auto velocity = P.template middleCols<3>(at::kVelocity);
+  auto euler = P.template middleCols<3>(at::kEuler);
+  auto acceleration = P.template middleCols<3>(at::kAcceleration);
+  auto rates = P.template middleCols<3>(at::kRates);
+  auto slopes = P.template middleCols<3>(at::kRateSlopes);
+  Eigen::Matrix<double, N, 3> part;
+  position += dt * velocity;
+  if (F.coupled) {
+    part.noalias() = acceleration * F.R_WB.transpose();
+    part.noalias() += euler * F.by_euler.transpose();
+    position += (0.5 * dt * dt) * part;
+    velocity += dt * part;
+  }
+  part.noalias() = euler * F.euler_euler.transpose();
+  part.noalias() += (dt * rates + (0.5 * dt * dt) * slopes) * F.euler_rates.transpose();
+  euler = part;
+  rates += dt * slopes;
+}
+
+template <int N>
+void transport_back(const Transition& F, Eigen::Matrix<double, N, N>& L) {
+  const double dt = F.dt;
+  auto position = L.template middleCols<3>(at::kPosition);
+  auto velocity = L.template middleCols<3>(at::kVelocity);
+  auto euler = L.template middleCols<3>(at::kEuler);
+  auto acceleration = L.template middleCols<3>(at::kAcceleration);
+  auto rates = L.template middleCols<3>(at::kRates);
+  auto slopes = L.template middleCols<3>(at::kRateSlopes);
+  Eigen::Matrix<double, N, 3> part;
+  part.noalias() = euler * F.euler_rates;
+  slopes += dt * rates + (0.5 * dt * dt) * part;
+  rates += dt * part;
+  part.noalias() = euler * F.euler_euler;
+  euler = part;
+  if (F.coupled) {
+    part = (0.5 * dt * dt) * position + dt * velocity;
+    euler.noalias() += part * F.by_euler;
+    acceleration.noalias() += part * F.R_WB;
+  }
+  velocity += dt * position;
+}
+
+template <int N>
+void transport_back(const Transition& F, Eigen::Matrix<double, N, 1>& l) {
+  const double dt = F.dt;
+  auto group = [&l](int begin) { return l.template segment<3>(begin); };
+  const Eigen::Vector3d turned = F.euler_rates.transpose() * group(at::kEuler);
+  group(at::kRateSlopes) += dt * group(at::kRates) + (0.5 * dt * dt) * turned;
+  group(at::kRates) += dt * turned;
+  const Eigen::Vector3d euler = F.euler_euler.transpose() * group(at::kEuler);
+  group(at::kEuler) = euler;
+  if (F.coupled) {
+    const Eigen::Vector3d part = (0.5 * dt * dt) * group(at::kPosition) + dt * group(at::kVelocity);
+    group(at::kEuler) += F.by_euler.transpose() * part;
+    group(at::kAcceleration) += F.R_WB.transpose() * part;
+  }
+  const Eigen::Vector3d step = dt * group(at::kPosition);
+  group(at::kVelocity) += step;
+}
+
+template <int N>
+void KalmanFilter<N>::start(const State& x, const State& sigma) {
+  x_ = x;
+  P_ = sigma.cwiseAbs2().asDiagonal();
+  reference_.setIdentity();
+  turned_.reset();
+  transition_.reset();
+}
+
+template <int N>
+model::KinematicPoint KalmanFilter<N>::point() const {
+  model::KinematicVector x = model::KinematicVector::Zero();
+  x.head<N>() = x_;
+  return model::KinematicPoint{x, reference_};
+}
+
+template <int N>
+void KalmanFilter<N>::predict(double dt, const ProcessNoise& noise, KinematicModel model) {
+  turned_.reset();
+  if (std::abs(x_[at::kEuler + 1]) > kSteep) {
+    const model::KinematicPoint steep = point();
+    turned_ = steep.rates_from_euler;  // at zero angles their changes are turns in B
+    reference_ = steep.R_WB;
+    x_.template segment<3>(at::kEuler).setZero();
+    const Eigen::Matrix<double, N, 3> columns = P_.template middleCols<3>(at::kEuler) * turned_->transpose();
+    P_.template middleCols<3>(at::kEuler) = columns;
+    const Eigen::Matrix<double, 3, N> rows = *turned_ * P_.template middleRows<3>(at::kEuler);
+    P_.template middleRows<3>(at::kEuler) = rows;
+  }
+  const model::KinematicPoint from = point();
+  const Transition F{from, dt, model};
+  const auto group = [this](int begin) { return x_.template segment<3>(begin); };
+  group(at::kPosition) += dt * group(at::kVelocity);
+  if (F.coupled) {
+    const Eigen::Vector3d a_W = F.R_WB * group(at::kAcceleration);
+    group(at::kPosition) += (0.5 * dt * dt) * a_W;
+    group(at::kVelocity) += dt * a_W;
+  }
+  group(at::kEuler) += F.euler_rates * (dt * group(at::kRates) + (0.5 * dt * dt) * group(at::kRateSlopes));
+  group(at::kRates) += dt * group(at::kRateSlopes);
+
+  transport<N>(F, P_);
+  P_.transposeInPlace();
+  transport<N>(F, P_);
+
+  const auto square = [](double value) { return value * value; };
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  static_assert(at::kPosition < at::kVelocity && at::kVelocity < at::kAcceleration && at::kEuler < at::kRates &&
+                at::kRates < at::kRateSlopes);  // the chains are added below the diagonal
+  if (F.coupled) {
+    add_chain<N>(P_, at::kPosition, at::kVelocity, at::kAcceleration, square(noise.jerk), dt, F.R_WB, F.R_WB);
+  } else {
+    const double q = square(noise.velocity);
+    P_.template block<3, 3>(at::kPosition, at::kPosition).diagonal().array() += q * dt * dt * dt / 3.0;
+    P_.template block<3, 3>(at::kVelocity, at::kPosition).diagonal().array() += q * dt * dt / 2.0;
+    P_.template block<3, 3>(at::kVelocity, at::kVelocity).diagonal().array() += q * dt;
+    P_.template block<3, 3>(at::kAcceleration, at::kAcceleration).diagonal().array() += square(noise.jerk) * dt;
+  }
+  add_chain<N>(P_, at::kEuler, at::kRates, at::kRateSlopes, square(noise.angular_jerk), dt, F.euler_rates, I);
+  if constexpr (N > model::kKinematicStates) {
+    P_.diagonal().template segment<3>(at::kBias).array() += square(noise.accelerometer_bias) * dt;
+    P_.diagonal().template segment<3>(at::kBias + 3).array() += square(noise.gyro_bias) * dt;
+  }
+  if constexpr (N > model::kInertialStates)
+    P_.diagonal().template segment<3>(at::kLogBias).array() += square(noise.log_bias) * dt;
+  mirror<N>(P_);
+  transition_ = F;
+}
+
+template <int N>
+typename KalmanFilter<N>::Outcome KalmanFilter<N>::update(const model::Observation& observation, double gate,
+                                                          State& moved) {
+  Outcome outcome;
+  const auto row = observation.row.template head<N>();
+  State w = State::Zero();
+  double explained = 0.0;
+  for (int i = 0; i < N / 3; ++i) {
+    if ((observation.groups >> static_cast<unsigned>(i) & 1U) == 0) continue;
+    w.noalias() += P_.template middleCols<3>(3 * i) * row.template segment<3>(3 * i);
+    explained += row.template segment<3>(3 * i).dot(moved.template segment<3>(3 * i));
+  }
+  const double prior = row.dot(w);
+  outcome.innovation = observation.innovation - explained;
+  outcome.variance = prior + observation.variance;
+  if (!std::isfinite(outcome.variance) || !(outcome.variance > 0.0)) return outcome;
+  if (outcome.innovation * outcome.innovation > gate * gate * outcome.variance) return outcome;
+  outcome.used = true;
+  outcome.gain = w * (1.0 / outcome.variance);
+  if (prior < kPreciseBeyond * observation.variance) {
+    const State scaled = w * (1.0 / std::sqrt(outcome.variance));
+    P_.noalias() -= scaled * scaled.transpose();
+  } else {  // Joseph: (I - k h') P (I - k h')' + k R k'
+    Covariance left = P_ - outcome.gain * w.transpose();
+    const State again = left * row;
+    left -= again * outcome.gain.transpose();
+    P_ = left + observation.variance * outcome.gain * outcome.gain.transpose();
+    mirror<N>(P_);
+  }
+  const State change = outcome.gain * outcome.innovation;
+  x_ += change;
+  moved += change;
+  return outcome;
+}
+
+template class KalmanFilter<model::kKinematicStates>;
+template class KalmanFilter<model::kInertialStates>;
+template class KalmanFilter<model::kMostStates>;
+template void transport_back<model::kKinematicStates>(const Transition&, Eigen::Matrix<double, 18, 18>&);
+template void transport_back<model::kInertialStates>(const Transition&, Eigen::Matrix<double, 24, 24>&);
+template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 27, 27>&);
+template void transport_back<model::kKinematicStates>(const Transition&, Eigen::Matrix<double, 18, 1>&);
+template void transport_back<model::kInertialStates>(const Transition&, Eigen::Matrix<double, 24, 1>&);
+template void transport_back<model::kMostStates>(const Transition&, Eigen::Matrix<double, 27, 1>&);
+
+}  // namespace fathom::estimation
