@@ -122,9 +122,9 @@ std::vector<std::size_t> in_time(const TopicRows& rows, std::uint32_t recording,
              return x == y || (std::isnan(x) && std::isnan(y));
            });
   };
-  const auto repeated = std::ranges::unique(sorted, same);
-  twice = repeated.size();
-  sorted.erase(repeated.begin(), repeated.end());
+  const auto repeated = std::unique(sorted.begin(), sorted.end(), same);
+  twice = static_cast<std::size_t>(sorted.end() - repeated);
+  sorted.erase(repeated, sorted.end());
   return sorted;
 }
 

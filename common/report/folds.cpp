@@ -68,8 +68,7 @@ std::string change(const Errors& before, const Errors& after) {
 
 std::vector<Fold> folds_of(std::vector<std::string> paths, int count) {
   std::ranges::sort(paths);  // a run that is named twice would judge a fit of itself
-  const auto twice = std::ranges::unique(paths);
-  paths.erase(twice.begin(), twice.end());
+  paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
   if (paths.size() < 2)
     throw InputError("--folds: at least two recordings are needed, " + std::to_string(paths.size()) +
                      " is given; without --folds the end of every recording judges");
