@@ -87,7 +87,7 @@ void Searching::judge_effects() {
   if (effects().empty()) return;
   const Seen seen = see(problem_, found_.best.fit, threads_);
   for (std::size_t e = 0; e < effects().size(); ++e) {
-    found_.size.push_back(size_of_effect(problem_, seen, e, threads_));
+    found_.size.push_back(size_of(seen, e, models_.best_of(names_without(e))));
     const Standing standing =
         models_.standing(found_.best, found_.base.score, std::string(effects()[e].effect->name()));
     found_.probability.push_back(standing.probability);

@@ -204,12 +204,24 @@ bool Searching::held(const std::vector<model::ActiveEffect>& effects, const mode
       effects, [&](const auto& other) { return other.effect == active.effect && other.variant == active.variant; });
 }
 
+double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {
+  double size = size_of_effect(problem_, seen, effect, threads_);
+  for (std::size_t i = 0; without != nullptr && without->fit.finite && i < without->fit.noise.size(); ++i) {
+    const double with_it = seen.fit.noise[i][likelihood::kForce], instead = without->fit.noise[i][likelihood::kForce];
+    if (i < static_cast<std::size_t>(problem_.simulated) && instead > with_it)
+      size = std::max(size, std::sqrt(instead * instead - with_it * with_it) / seen.applied[problem_.axes[i]]);
+  }
+  return size;
+}
+
 bool Searching::counts(const Fitted& fitted) {
   const Seen seen = see(problem_, fitted.fit, threads_);
   const auto& those = seen.fit.hypothesis.model.effects;
+  // Of two that came together it is not known which one the random force stood for.
+  const auto fresh = std::ranges::count_if(those, [&](const auto& active) { return !held(effects(), active); });
   for (std::size_t e = 0; e < those.size(); ++e) {
     if (held(effects(), those[e])) continue;
-    const double size = size_of_effect(problem_, seen, e, threads_);
+    const double size = size_of(seen, e, fresh == 1 && those.size() > effects().size() ? &found_.best : nullptr);
     const bool at_limit = stopped(those[e], *problem_.vehicle);
     if (!at_limit && size >= thresholds_.smallest_size) continue;
     failed_[std::string(those[e].effect->name())] =
@@ -331,15 +343,24 @@ void Searching::drop() {
   while (effects().size() > 1) {
     const Seen seen = see(problem_, found_.best.fit, threads_);
     std::vector<Start> small, weak;
+    std::vector<std::size_t> which;
     for (std::size_t e = 0; e < effects().size(); ++e) {
-      if (stopped(effects()[e], *problem_.vehicle) ||
-          size_of_effect(problem_, seen, e, threads_) < thresholds_.smallest_size) {
+      if (stopped(effects()[e], *problem_.vehicle) || size_of(seen, e, nullptr) < thresholds_.smallest_size) {
         small.push_back(without(found_.best, e));
+        which.push_back(e);
       } else if (guessed_loss(seen, e) < kDoubtful * thresholds_.name_odds) {
         weak.push_back(without(found_.best, e));
       }
     }
-    const std::vector<Fitted> fits = models_.fit_all(small.empty() ? weak : small);
+    std::vector<Fitted> fits = models_.fit_all(small);
+    for (std::size_t k = fits.size(); k-- > 0;) {
+      if (stopped(effects()[which[k]], *problem_.vehicle) ||
+          size_of(seen, which[k], &fits[k]) < thresholds_.smallest_size)
+        continue;
+      fits.erase(fits.begin() + static_cast<std::ptrdiff_t>(k));
+      small.erase(small.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    if (small.empty()) fits = models_.fit_all(weak);
     const auto best = std::ranges::max_element(fits, {}, &Fitted::score);
     if (best == fits.end() || !best->fit.finite) return;
     // What stands by less than a name needs is no name.
