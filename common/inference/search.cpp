@@ -206,10 +206,11 @@ bool Searching::held(const std::vector<model::ActiveEffect>& effects, const mode
 
 double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {
   double size = size_of_effect(problem_, seen, effect, threads_);
-  for (std::size_t i = 0; without != nullptr && without->fit.finite && i < without->fit.noise.size(); ++i) {
+  for (std::size_t i = 0; without != nullptr && without->fit.finite && i < problem_.axes.size(); ++i) {
     const double with_it = seen.fit.noise[i][likelihood::kForce], instead = without->fit.noise[i][likelihood::kForce];
-    if (i < static_cast<std::size_t>(problem_.simulated) && instead > with_it)
-      size = std::max(size, std::sqrt(instead * instead - with_it * with_it) / seen.applied[problem_.axes[i]]);
+    const double applied = seen.applied[problem_.axes[i]];
+    if (i < static_cast<std::size_t>(problem_.simulated) && instead > with_it && applied > 0.0)
+      size = std::max(size, std::sqrt(instead * instead - with_it * with_it) / applied);
   }
   return size;
 }
