@@ -20,15 +20,16 @@ struct Asked {
   model::Candidates candidates;  // which the conclusion points to
 };
 
-Asked asked_of(unsigned seed, double acceleration_per_wind) {
+Asked asked_of(unsigned seed, double acceleration_per_wind, double duration = 70.0) {
   static const model::Vehicle vehicle = [] {
     model::Vehicle one = test::vehicle_from_repository("bluerov2");
     model::add_candidate("wind_speed", one.candidates);
     return one;
   }();
-  auto dive = test::fly(vehicle, {.duration = 70.0, .seed = seed, .force = 0.03, .outside = [&](double t, const auto&) {
-                                    return Vector6d{acceleration_per_wind * (wind(t) - 5.0) * Vector6d::Unit(1)};
-                                  }});
+  auto dive =
+      test::fly(vehicle, {.duration = duration, .seed = seed, .force = 0.03, .outside = [&](double t, const auto&) {
+                            return Vector6d{acceleration_per_wind * (wind(t) - 5.0) * Vector6d::Unit(1)};
+                          }});
   for (const double t : dive.trial.t)
     dive.trial.columns.emplace_back(Eigen::Vector2d{wind(t + 0.5 * dive.trial.dt), 0.0});
   dive.trial.column_units = {"m/s"};
@@ -40,8 +41,8 @@ Asked asked_of(unsigned seed, double acceleration_per_wind) {
 }  // namespace
 
 TEST_CASE("candidates: a hidden force that follows a column is named, with its coefficient") {
-  constexpr double kPerWind = 0.03;  // m/s^2 per m/s
-  const Asked asked = asked_of(5, kPerWind);
+  constexpr double kPerWind = 0.03;                  // m/s^2 per m/s
+  const Asked asked = asked_of(5, kPerWind, 240.0);  // long enough for evidence that makes a claim
   const Found& found = asked.conclusion.found;
   CHECK(asked.conclusion.verdict == Verdict::effect);
   REQUIRE(found.best.names == std::vector<std::string>{"column wind_speed"});
