@@ -243,7 +243,7 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
   CHECK(ran.says("Verdict"));
   CHECK(ran.says("report.html"));
   const auto result = nlohmann::json::parse(test::read_bytes(scratch.path("out/result.json")));
-  CHECK(result.at("schema") == 1);
+  CHECK(result.at("schema") == 2);
   CHECK(result.at("vehicle") == "Sled");
   CHECK(result.at("train").at(0) == "run1");
   CHECK(result.at("validate").at(0) == "run2");
