@@ -163,7 +163,9 @@ class Reader {
     } else if (name == "lz4") {
       packing = Packing::kLz4;
     } else if (name != "none") {
-      return damage_.add("chunks packed by '" + name + "', which is not known here", at, record.length);
+      const std::string what = "chunks packed by '" + name + "', which is not known here";
+      if (cut) return damage_.add(what);  // its bytes are counted as cut off
+      return damage_.add(what, at, record.length);
     }
     Bytes records = record.data;
     if (packing != Packing::kNone) {

@@ -192,6 +192,11 @@ TEST_CASE("rosbag 1: messages of several chunks, the end cut off, a type by its 
   const auto cut = test::hear(log.bytes.substr(0, log.bytes.size() - 5));
   CHECK(cut.heard.of("/reading").column("value") == std::vector<double>{1.0, 2.0});
   CHECK(cut.damage.places("records cut off by the end of the file") == 1);
+  test::BagLog strange;  // cut off, and packed by what is not known: no byte that is not there is counted as lost
+  test::BagLog::record(strange.bytes, {{"op", "\x05"}, {"compression", "zip"}}, std::string(4000, 'x'));
+  const auto short_of = test::hear(strange.bytes.substr(0, 100));
+  CHECK(short_of.damage.places("chunks packed by 'zip', which is not known here") == 1);
+  CHECK(short_of.damage.bytes() <= 100);
   CHECK(test::complaint_of<InputError>([] { (void)test::hear("#ROSBAG V1.2\n"); }).find("another version") !=
         std::string::npos);
 }
