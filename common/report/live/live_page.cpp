@@ -36,10 +36,18 @@ std::string heading(const std::string& title, const std::string& paper) {
 /// A line per motion that is not settled, per effect that is suspected, per process that was not well.
 std::string findings(const LiveTrialResult& result) {
   std::string items;
-  for (const ModeVisit& visit : result.visits) {
-    if (!visit.left)
-      items += "<li><b>Not settled: " + escape(visit.mode) +
-               "</b> <span class=\"soft\">missing: " + escape(visit.missing) + "</span></li>\n";
+  for (auto visit = result.visits.begin(); visit != result.visits.end(); ++visit) {
+    const auto same = [&](const ModeVisit& other) { return other.mode == visit->mode; };
+    // What the last visit of a motion says is what counts; one that had only begun says nothing.
+    const bool later = std::any_of(visit + 1, result.visits.end(), [&](const ModeVisit& other) {
+      return same(other) && (other.left || !other.missing.empty());
+    });
+    const bool begun = visit->missing.empty() && std::any_of(result.visits.begin(), visit, same);
+    if (visit->left || later || begun) continue;
+    items += "<li><b>Not settled: " + escape(visit->mode) + "</b>" +
+             (visit->missing.empty() ? std::string{}
+                                     : " <span class=\"soft\">missing: " + escape(visit->missing) + "</span>") +
+             "</li>\n";
   }
   const bool named = result.ranking.verdict == "effect" || result.ranking.verdict == "ambiguous";
   for (const EffectEvidence& one : result.ranking.candidates) {

@@ -303,6 +303,12 @@ TEST_CASE("Live trial: the first screen says what is not settled, what is suspec
   for (const char* words : {"Not settled: surge", "residual on X has 5 times", "<b>tether tension</b>",
                             "not in the identifier&#39;s model", "Next.", "Fly on until", "The path from above"})
     CHECK_MESSAGE(first().find(words) != std::string::npos, words);
+  result.visits.push_back({.mode = "surge", .begun = 60.0, .ended = 70.0, .left = true});
+  page = to_html(result, recording, vehicle(), site());
+  CHECK(first().find("Not settled: surge") == std::string::npos);  // it was settled later
+  result.visits.push_back({.mode = "surge", .begun = 70.0, .ended = 70.1});
+  page = to_html(result, recording, vehicle(), site());
+  CHECK(first().find("Not settled") == std::string::npos);  // and had only begun again
   result.ranking.against = "current";
   result.ranking.segment = "full steps in surge";
   page = to_html(result, recording, vehicle(), site());
