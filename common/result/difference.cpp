@@ -133,9 +133,7 @@ std::string difference(const Stored& first, const Stored& second) {
     ++differ;
   }
   if (differ == 0) out.line("none");
-  const auto complete = [](const Stored& one) {
-    return one.result.verdict == "adequate" || one.result.verdict == "effect";
-  };
+  const auto complete = [](const DiagnosisResult& one) { return one.verdict == "adequate" || one.verdict == "effect"; };
   if (differ > 0 && !(complete(a) && complete(b)))
     out.line("intervals hold only if the model does, and something is unexplained: small differences prove nothing");
   const auto open = static_cast<std::size_t>(std::ranges::count(all, false, &Change::known));

@@ -68,10 +68,10 @@ constexpr std::size_t kDepthEvent = 28 + 5 + 24;  // header, "DEPTH", fingerprin
 TEST_CASE("log: every stream comes back, and writing it again gives the same bytes") {
   const test::Scratch scratch;
   const Recording recording = everything();
-  CHECK(wire::write_log(recording, scratch.path("a.lcmlog")) == 3 * 25);
+  CHECK(wire::write_log(recording, scratch.path("a.lcmlog")) == 3 * 26);
   const auto contents = wire::read_log(scratch.path("a.lcmlog"));
   CHECK(contents.recording.name == "a");
-  CHECK(contents.report.events == 3 * 25);
+  CHECK(contents.report.events == 3 * 26);
   CHECK(contents.report.warning.empty());
   CHECK(wire::complaints("a", contents.report).empty());
   CHECK(contents.recording.truth.size() == 3);
