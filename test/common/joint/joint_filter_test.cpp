@@ -185,7 +185,8 @@ TEST_CASE("joint filter: over seeds, the parameters' errors are as large as thei
       const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
       const Eigen::Vector3d f = a + w.cross(v) - Eigen::Vector3d{0.0, 0.0, 9.81} + bias +
                                 kForce * Eigen::Vector3d{normal(engine), normal(engine), normal(engine)};
-      feel_force(model, filter.state(), {.told = I, .carried = I, .tau = tau, .w_dot = none, .p_BI = none}, f, rows);
+      feel_force(model, filter.state(),
+                 {.told = I, .carried = I, .tau = tau, .w_dot = none, .p_BI = none, .gravity = 9.81}, f, rows);
       for (int i = 0; i < 3; ++i) {
         rows[static_cast<std::size_t>(i)].variance = kForce * kForce + noise.acceleration * noise.acceleration / kDt;
         rows[static_cast<std::size_t>(i)].shared[i] = noise.acceleration * noise.acceleration;
