@@ -53,8 +53,9 @@ void joint_step(benchmark::State& state) {
     filter.predict(0.01, I, I, I, tau);
     see_rates(filter.state(), {0.1, 0.1, 0.1}, rows);
     use(3, 1e-5);
-    const std::size_t felt = feel_force(filter.model(), filter.state(),
-                                        {.told = I, .carried = I, .tau = tau, .w_dot = none, .p_BI = p_BI}, none, rows);
+    const std::size_t felt =
+        feel_force(filter.model(), filter.state(),
+                   {.told = I, .carried = I, .tau = tau, .w_dot = none, .p_BI = p_BI, .gravity = 9.81}, none, rows);
     use(felt, 1e-3);
     if (n % 3 == 0) {
       see_point(filter.state(), I, {0.0, 0.0, 1.5}, {0.1, 0.0, 0.8}, rows);

@@ -71,7 +71,7 @@ TEST_CASE("joint rows: derivatives of all instruments are those of differences")
       std::array<JointRow, 3> rows;
       const Vector6d tau = (Vector6d{} << 8.0, -5.0, 3.0, 0.2, 0.1, 0.7).finished();
       const Eigen::Vector3d w_dot{0.1, 0.2, 0.0}, p_BI{0.03, 0.01, -0.02};
-      const Felt felt{.told = kTold, .carried = kCarried, .tau = tau, .w_dot = w_dot, .p_BI = p_BI};
+      const Felt felt{.told = kTold, .carried = kCarried, .tau = tau, .w_dot = w_dot, .p_BI = p_BI, .gravity = 9.81};
       CHECK(feel_force(filter.model(), at, felt, {0.1, 0.2, -9.7}, rows) == 3);
       return rows[i];
     });
@@ -147,7 +147,8 @@ TEST_CASE("joint rows: the noise of a tilt is in the gravity it turns, and in no
   const Eigen::Vector3d w_dot{0.1, 0.2, 0.0}, p_BI{0.03, 0.01, -0.02};
   const auto rows_of = [&](const Eigen::Matrix3d& told) {
     std::array<JointRow, 3> rows;
-    feel_force(filter.model(), x, {.told = told, .carried = kCarried, .tau = tau, .w_dot = w_dot, .p_BI = p_BI},
+    feel_force(filter.model(), x,
+               {.told = told, .carried = kCarried, .tau = tau, .w_dot = w_dot, .p_BI = p_BI, .gravity = 9.81},
                {0.1, 0.2, -9.7}, rows);
     return rows;
   };
