@@ -41,8 +41,8 @@ Asked asked_of(unsigned seed, double acceleration_per_wind, double duration = 70
 }  // namespace
 
 TEST_CASE("candidates: a hidden force that follows a column is named, with its coefficient") {
-  constexpr double kPerWind = 0.03;                  // m/s^2 per m/s
-  const Asked asked = asked_of(5, kPerWind, 240.0);  // long enough for evidence that makes a claim
+  constexpr double kPerWind = 0.06;                  // m/s^2 per m/s
+  const Asked asked = asked_of(5, kPerWind, 150.0);  // long enough for evidence that makes a claim
   const Found& found = asked.conclusion.found;
   CHECK(asked.conclusion.verdict == Verdict::effect);
   REQUIRE(found.best.names == std::vector<std::string>{"column wind_speed"});
