@@ -44,6 +44,10 @@ TEST_CASE("candidates: a hidden force that follows a column is named, with its c
   constexpr double kPerWind = 0.06;                  // m/s^2 per m/s
   const Asked asked = asked_of(5, kPerWind, 150.0);  // long enough for evidence that makes a claim
   const Found& found = asked.conclusion.found;
+  REQUIRE(!found.odds.empty());
+  CAPTURE(found.odds.front());
+  CAPTURE(found.probability.front());
+  CAPTURE(found.rival.front());
   CHECK(asked.conclusion.verdict == Verdict::effect);
   REQUIRE(found.best.names == std::vector<std::string>{"column wind_speed"});
   const likelihood::Fit& fit = found.best.fit;
