@@ -42,7 +42,7 @@ Asked asked_of(unsigned seed, double acceleration_per_wind, double duration = 70
 
 TEST_CASE("candidates: a hidden force that follows a column is named, with its coefficient") {
   constexpr double kPerWind = 0.06;                  // m/s^2 per m/s
-  const Asked asked = asked_of(5, kPerWind, 150.0);  // long enough for evidence that makes a claim
+  const Asked asked = asked_of(5, kPerWind, 280.0);  // long enough for evidence that makes a claim
   const Found& found = asked.conclusion.found;
   REQUIRE(!found.odds.empty());
   CAPTURE(found.odds.front());
