@@ -78,6 +78,17 @@ void Searching::takes_the_place(const std::vector<std::size_t>& gone, const Fitt
   judge_effects();
 }
 
+double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {
+  double size = size_of_effect(problem_, seen, effect, threads_);
+  for (std::size_t i = 0; without != nullptr && without->fit.finite && i < problem_.axes.size(); ++i) {
+    const double with_it = seen.fit.noise[i][likelihood::kForce], instead = without->fit.noise[i][likelihood::kForce];
+    const double applied = seen.applied[problem_.axes[i]];
+    if (i < static_cast<std::size_t>(problem_.simulated) && instead > with_it && applied > 0.0)
+      size = std::max(size, std::sqrt(instead * instead - with_it * with_it) / applied);
+  }
+  return size;
+}
+
 void Searching::judge_effects() {
   found_.odds.clear();
   found_.size.clear();

@@ -204,17 +204,6 @@ bool Searching::held(const std::vector<model::ActiveEffect>& effects, const mode
       effects, [&](const auto& other) { return other.effect == active.effect && other.variant == active.variant; });
 }
 
-double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {
-  double size = size_of_effect(problem_, seen, effect, threads_);
-  for (std::size_t i = 0; without != nullptr && without->fit.finite && i < problem_.axes.size(); ++i) {
-    const double with_it = seen.fit.noise[i][likelihood::kForce], instead = without->fit.noise[i][likelihood::kForce];
-    const double applied = seen.applied[problem_.axes[i]];
-    if (i < static_cast<std::size_t>(problem_.simulated) && instead > with_it && applied > 0.0)
-      size = std::max(size, std::sqrt(instead * instead - with_it * with_it) / applied);
-  }
-  return size;
-}
-
 bool Searching::counts(const Fitted& fitted) {
   const Seen seen = see(problem_, fitted.fit, threads_);
   const auto& those = seen.fit.hypothesis.model.effects;
