@@ -111,8 +111,7 @@ std::string candidate_section(const DiagnosisResult& result) {
   if (result.candidates.empty()) return html + "<p>No cause was tried.</p></section>\n";
   html +=
       "<p>Each known effect was asked. <b>It is this cause</b>: how likely the name is right, beside nothing and "
-      "beside "
-      "every other name; asked of what was kept alone.</p>\n<table>" +
+      "beside every other name; asked of what was kept alone.</p>\n<table>" +
       heading_cells({"Suspected cause", "it is this cause", "why"}, {});
   std::vector<const CandidateTried*> ranked;
   for (const auto& candidate : result.candidates) ranked.push_back(&candidate);
