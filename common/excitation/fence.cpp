@@ -13,6 +13,7 @@ constexpr double kReaction = 0.15;  // s from deciding to feeling the thrust
 constexpr double kSoften = 0.4;     // s in which outward speed shall be taken away
 constexpr double kCalm = 0.4;       // of the largest tilt: up to there nothing is done
 constexpr std::array kSides{"south", "north", "west", "east", "up", "down"};
+constexpr std::size_t kUp = 4;
 constexpr double kOutward = 0.2;  // share of an axis's push that leads outwards before its signal turns
 
 // 0 far inside, 1 where all that is left must go into braking.
@@ -109,9 +110,22 @@ double Fence::room(const Eigen::Vector3d& p_WB, std::size_t side) const {
   return side % 2 == 0 ? p_WB[axis] - settings_.low[axis] : settings_.high[axis] - p_WB[axis];
 }
 
+bool Fence::floats(const Eigen::Vector3d& p_WB) const {
+  return p_WB.z() < settings_.low.z() && p_WB.z() >= settings_.waterline - settings_.hard;
+}
+
+void Fence::begin(const Eigen::Vector3d& p_WB, bool dives) {
+  afloat_ = floats(p_WB) && dives;
+  lifted_ = std::min(p_WB.z(), settings_.low.z()) - settings_.hard;
+  if (floats(p_WB) && !dives) settings_.low.z() = p_WB.z() - settings_.band - settings_.hard;
+}
+
+void Fence::follow(const Eigen::Vector3d& p_WB) { afloat_ = afloat_ && p_WB.z() < settings_.low.z(); }
+
 std::string Fence::outside(const StateEstimate& state, double turned) const {
   for (std::size_t side = 0; side < kSides.size(); ++side) {
-    if (room(state.p_WB, side) < -settings_.hard) return std::string{"too far "} + kSides[side];
+    if (afloat_ && side == kUp ? state.p_WB.z() < lifted_ : room(state.p_WB, side) < -settings_.hard)
+      return std::string{"too far "} + kSides[side];
   }
   if (state.nu.head<3>().norm() > settings_.largest_speed) return "too fast";
   if (state.nu.tail<3>().norm() > settings_.largest_rate) return "turning too fast";

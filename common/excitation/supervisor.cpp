@@ -144,7 +144,7 @@ void Supervisor::say(const Vector6d& tau, const Vector6d& probe, bool bent) {
                                   .challenge = armed_challenge_,
                                   .sequence = ++commands_};
   const bool active = phase_ == Phase::kExcite;
-  Excitation said{.utime = state_.utime, .active = active, .reason = reason_, .probe = probe};
+  Excitation said{.utime = state_.utime, .active = active, .reason = doing(), .probe = probe};
   if (!refused_.empty()) said.reason += "; " + refused_;
   said.mode = armed_ ? mode().name : "";
   said.phase = name(phase_);
@@ -223,14 +223,9 @@ const Supervisor::Output& Supervisor::step(const StateEstimate& state) {
   }
   if (lost_since_ != 0) {  // back again: where a mode begins, not where it was cut
     lost_since_ = 0;
-    if (phase_ == Phase::kExcite || phase_ == Phase::kApproach) {
-      if (flight_) {
-        take_off();
-      } else {
-        begin();
-      }
-    }
+    resume();
   }
+  if (descend(dt)) return output_;
 
   const bool anywhere = settings_.optimal && !flight_ && fence_.holds(state.p_WB, state.q_WB * state.nu.head<3>());
   if (phase_ == Phase::kApproach && (anywhere || arrived() || now() - phase_since_ > settings_.approach_time)) {

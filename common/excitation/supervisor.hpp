@@ -115,6 +115,8 @@ class Supervisor {
 
   [[nodiscard]] Phase phase() const { return phase_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
+  /// The reason, and what a vehicle that still floats may do meanwhile.
+  [[nodiscard]] std::string doing() const;
   [[nodiscard]] const std::vector<Visit>& visits() const { return visits_; }
   [[nodiscard]] const Fence& fence() const { return fence_; }
 
@@ -147,6 +149,9 @@ class Supervisor {
   void fly(const Operator& order);
   void refuse(const std::string& why);
   void stay(const std::string& why);
+  /// From the surface into the room, `dt` [s] since the last; false: it is there, and what was ordered may go on.
+  [[nodiscard]] bool descend(double dt);
+  void resume();
   void take_off();
   void land(const std::string& how);
   void finish(const std::string& reason);
@@ -200,6 +205,7 @@ class Supervisor {
   StateEstimate state_;
   bool has_state_{false};
   double turned_{}, last_heading_{};
+  double descending_{};  // s
   std::optional<ModelEstimate> model_;
   bool model_is_new_{false};
   double since_model_{};  // s of valid states

@@ -55,7 +55,7 @@ Answer Supervisor::hear(const Operator& order) {
       answer.text = obey(order);
       answer.done = answer.text.empty();
       if (answer.done)
-        answer.text = order.order == orders::kPreflight ? place() : std::string{name(phase_)} + ": " + reason_;
+        answer.text = order.order == orders::kPreflight ? place() : std::string{name(phase_)} + ": " + doing();
     }
   }
   answer.utime = has_state_ ? state_.utime : order.utime;
@@ -153,10 +153,19 @@ std::string Supervisor::order(const Operator& order) {
 
 // By the site's bounds: those around the place of the last arming were that trial's alone.
 std::string Supervisor::against_the_place() const {
-  return state_.valid ? Fence{settings_.fence}.outside(state_, 0.0) : "the state is not valid";
+  if (!state_.valid) return "the state is not valid";
+  Fence site{settings_.fence};
+  site.begin(state_.p_WB, vehicle_.dof[2]);
+  return site.outside(state_, 0.0);
 }
 
-std::string Supervisor::place() const { return Fence{settings_.fence}.place(state_, settings_.surface); }
+std::string Supervisor::place() const {
+  const Fence site{settings_.fence};
+  const std::string floats = !site.floats(state_.p_WB) ? ""
+                             : vehicle_.dof[2]         ? "floats, goes down first: "
+                                                       : "floats: ";
+  return floats + site.place(state_, settings_.surface);
+}
 
 bool Supervisor::arm() {
   std::string why = against_the_place();
@@ -179,8 +188,11 @@ bool Supervisor::arm() {
     settings.high[i] = std::min(settings.high[i], state_.p_WB[i] + settings_.open_range);
   }
   fence_ = Fence{settings};
+  fence_.begin(state_.p_WB, vehicle_.dof[2]);
+  descending_ = 0.0;
   operator_is_lost_ = false;
   middle_ = fence_.middle();
+  if (!vehicle_.dof[2]) middle_.z() = state_.p_WB.z();  // at its own depth
   visits_.clear();
   frozen_.clear();
   hold_.reset();

@@ -65,6 +65,59 @@ void Supervisor::begin() {
   }
 }
 
+void Supervisor::resume() {
+  if (phase_ != Phase::kExcite && phase_ != Phase::kApproach) return;
+  if (flight_) {
+    take_off();
+  } else {
+    begin();
+  }
+}
+
+// Near the surface propellers draw air and people are: nothing but downward thrust until the vehicle is in its room. A
+// schedule and a flight go there by themselves; who steers does it with his own push, and what shall stay floats.
+bool Supervisor::descend(double dt) {
+  if (!fence_.afloat() || phase_ == Phase::kDone) return false;
+  fence_.follow(state_.p_WB);
+  if (!fence_.afloat()) {
+    resume();
+    if (phase_ == Phase::kHold) place_ = {state_.p_WB, turned_};
+    return false;
+  }
+  if (phase_ == Phase::kManual && seconds_between(manual_at_, state_.utime) > settings_.manual_life)
+    stay("who steers has let go: it stays");
+  Vector6d tau = Vector6d::Zero();
+  bool bent = false;
+  if (phase_ == Phase::kManual) {
+    const Eigen::Matrix3d R_WB = state_.q_WB.toRotationMatrix();
+    const double down = std::max(0.0, R_WB.row(2).dot(manual_.head<3>()));
+    tau.head<3>() = down * R_WB.row(2).transpose();
+  } else if (phase_ != Phase::kHold) {
+    descending_ += dt;
+    if (descending_ > settings_.approach_time) {
+      stop(Phase::kAborted, "did not come down from the surface in " +
+                                std::to_string(std::lround(settings_.approach_time)) +
+                                " s: is it too light, or is there air under its hull?");
+    } else {
+      const FenceSettings& room = fence_.settings();
+      const Place below{{state_.p_WB.x(), state_.p_WB.y(), room.low.z() + room.band}, turned_};
+      tau[2] = hold_.step(state_, turned_, below, {false, false, true, false, false, false}, dt)[2];
+      const Fence::Bent allowed =
+          fence_.bend(tau, state_, turned_, settings_.hold.mass, settings_.hold.inertia, settings_.largest);
+      tau = allowed.tau;
+      bent = allowed.bent;
+    }
+  }
+  say(tau.cwiseMax(-settings_.largest).cwiseMin(settings_.largest), Vector6d::Zero(), bent);
+  return true;
+}
+
+std::string Supervisor::doing() const {
+  if (!armed_ || !fence_.afloat() || phase_ == Phase::kDone) return reason_;
+  const bool by_itself = phase_ == Phase::kApproach || phase_ == Phase::kExcite;
+  return reason_ + (by_itself ? "; floats: goes down first" : "; floats: no thrust but downward");
+}
+
 bool Supervisor::excites(int axis) const {
   if (!vehicle_.dof[static_cast<std::size_t>(axis)] || settings_.largest[axis] <= 0.0) return false;
   return flight_ ? flight_->segment.moves(axis) : mode().axis < 0 || mode().axis == axis;

@@ -46,6 +46,7 @@ FenceSettings fence_from(const Config& config, const model::Vehicle& vehicle, co
   f.half_length = 0.5 * vehicle.hull.head<2>().maxCoeff();
   f.low = {site.south + across, site.west + across, site.surface + up};
   f.high = {site.north - across, site.east - across, site.floor - up};
+  f.waterline = site.surface;
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (!(f.low[i] < f.high[i])) config.fail("clearance", "no room is left between the site's walls for this hull");
   }

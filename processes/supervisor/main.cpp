@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
     supervisor::Strangers strangers{commander};
     std::string told;
     const auto tell = [&] {
-      const std::string now = std::string{name(supervisor.phase())} + ": " + supervisor.reason();
+      const std::string now = std::string{name(supervisor.phase())} + ": " + supervisor.doing();
       if (now == told) return;
       told = now;
       process.log_info(now);
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
       tell();
     });
     process.on_health([&]() -> runtime::Process::Condition {
-      std::string detail = std::string{name(supervisor.phase())} + ": " + supervisor.reason();
+      std::string detail = std::string{name(supervisor.phase())} + ": " + supervisor.doing();
       if (const std::string others = strangers.told(); !others.empty()) detail += "; " + others;
       return {.unhealthy = "", .detail = detail};
     });

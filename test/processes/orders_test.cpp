@@ -40,7 +40,7 @@ struct Vehicle {
   std::function<void()> meanwhile;  ///< every 5 ms
   std::string identifier{"running"};
   bool deaf_supervisor{false};  ///< one says HEALTH and hears nothing
-  double north{};               ///< m, where STATE sees it
+  double north{}, down{0.75};   ///< m, where STATE sees it
 
   Vehicle() { start_driver(); }
   void start_driver() {
@@ -76,7 +76,7 @@ struct Vehicle {
       }
       if (i % 10 == 0) {
         StateEstimate state{.utime = now(), .valid = true};
-        state.p_WB = {north, 0.0, 0.75};
+        state.p_WB = {north, 0.0, down};
         bus.publish("STATE", wire::encode(state));
       }
       if (meanwhile) meanwhile();
@@ -324,6 +324,26 @@ TEST_CASE(
   const auto inside = vehicle.tool("arm --operator " + kOperator);
   CHECK_MESSAGE(inside.code == 0, inside.text);
   CHECK_MESSAGE(inside.says("ok      place           at 0.00 m north, 0.00 m east, the hull's top "), inside.text);
+}
+
+TEST_CASE("preflight: a vehicle that floats is armed, and its thrusters push down alone before it is below") {
+  Vehicle vehicle;
+  vehicle.start_supervisor();
+  vehicle.down = 0.05;  // of a hull 0.25 m high
+  vehicle.run(1.0);
+  const auto afloat = vehicle.tool("arm --operator " + kOperator);
+  CHECK_MESSAGE(afloat.code == 0, afloat.text);
+  CHECK_MESSAGE(afloat.says("ok      place           floats, goes down first: at 0.00 m north"), afloat.text);
+  CHECK_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("floats: goes down first"); }),
+                vehicle.bus.said_of("supervisor"));
+  const auto push = [&](std::size_t axis) {
+    return vehicle.bus.commands.empty() ? 0.0 : vehicle.bus.commands.back().tau[axis];
+  };
+  CHECK(vehicle.until([&] { return push(2) > 1.0; }));
+  for (const std::size_t axis : {0U, 1U, 5U}) CHECK(std::abs(push(axis)) < 0.1);
+  vehicle.down = 0.9;
+  vehicle.north = 0.5;
+  CHECK_MESSAGE(vehicle.until([&] { return std::abs(push(0)) > 1.0; }), vehicle.bus.said_of("supervisor"));
 }
 
 TEST_CASE("orders: number and time come from the vehicle, whatever the operator's clock shows") {

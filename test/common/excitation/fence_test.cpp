@@ -149,6 +149,36 @@ TEST_CASE("fence: outside of the envelope it says why") {
   CHECK(fence.outside(tilted, 0.0) == "tilted too far");
 }
 
+TEST_CASE("fence: who begins afloat is outside only when lifted, until he has been below the upper bound") {
+  FenceSettings settings = tank();
+  const auto outside = [](const Fence& fence, double z) { return fence.outside(at({0.0, 0.0, z}), 0.0); };
+  Fence none{settings};
+  none.begin({0.0, 0.0, 0.1}, true);
+  CHECK(outside(none, 0.1) == "too far up");  // no water's surface is known
+  settings.waterline = 0.0;
+  Fence fence{settings};
+  fence.begin({0.0, 0.0, 0.05}, true);
+  CHECK(fence.afloat());
+  CHECK(outside(fence, 0.05).empty());
+  CHECK(outside(fence, -0.04).empty());
+  CHECK(outside(fence, -0.06) == "too far up");
+  CHECK(fence.outside(at({2.2, 0.0, 0.05}), 0.0) == "too far north");
+  fence.follow({0.0, 0.0, 0.29});
+  CHECK(fence.afloat());
+  fence.follow({0.0, 0.0, 0.31});
+  fence.follow({0.0, 0.0, 0.1});
+  CHECK_FALSE(fence.afloat());
+  CHECK(outside(fence, 0.1) == "too far up");
+  Fence carried{settings};
+  carried.begin({0.0, 0.0, -0.2}, true);
+  CHECK(outside(carried, -0.2) == "too far up");
+  Fence boat{settings};
+  boat.begin({0.0, 0.0, 0.05}, false);
+  CHECK_FALSE(boat.afloat());
+  CHECK_FALSE(boat.bend(largest(), at({0.0, 0.0, 0.05}), 0.0, 11.0, 0.2, largest()).bent);
+  CHECK(outside(boat, -0.6) == "too far up");
+}
+
 TEST_CASE("fence: where the vehicle is, is told with the water above it and the room to the nearest bound") {
   FenceSettings settings;
   settings.low = {-2.0, -1.0, 0.3};
