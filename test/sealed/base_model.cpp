@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "test/sealed/flow.hpp"
+
 namespace fathom::sealed {
 namespace {
 
@@ -18,15 +20,18 @@ struct Number {
 
 std::vector<Number> numbers_of(const Craft& craft) {
   std::vector<Number> list;
-  const auto driven = [&](int i) { return craft.actuated[static_cast<std::size_t>(i)]; };
+  const auto driven = [&](int i) { return craft.moves[static_cast<std::size_t>(i)]; };
   for (const auto kind : {Number::kMass, Number::kLinear, Number::kQuadratic}) {
     for (int i = 0; i < 6; ++i) {
-      if (driven(i)) list.push_back({kind, i});
+      const bool about = kind == Number::kMass && i == 3 && driven(4) && driven(5);  // (I_X - I_Y) p q
+      if (driven(i) || about) list.push_back({kind, i});
     }
   }
-  list.push_back({Number::kWeight, 2});
-  if (craft.states_moments && driven(3)) {
-    for (int i = 0; i < 3; ++i) list.push_back({Number::kMoment, i});
+  if (driven(2)) list.push_back({Number::kWeight, 2});
+  if (craft.states_moments && (driven(3) || driven(4))) {
+    for (int i = 0; i < 3; ++i) {
+      if (i != 1 || driven(3)) list.push_back({Number::kMoment, i});
+    }
   }
   return list;
 }
@@ -174,7 +179,7 @@ void base_rows(const Craft& craft, const Vector6& nu_dot, const Vector6& nu, con
     }
     Eigen::Index row = 0;
     for (int axis = 0; axis < 6; ++axis) {
-      if (craft.actuated[static_cast<std::size_t>(axis)]) rows(row++, static_cast<Eigen::Index>(j)) = column[axis];
+      if (craft.moves[static_cast<std::size_t>(axis)]) rows(row++, static_cast<Eigen::Index>(j)) = column[axis];
     }
   }
 }
@@ -182,11 +187,24 @@ void base_rows(const Craft& craft, const Vector6& nu_dot, const Vector6& nu, con
 BaseFit fit_base(const Craft& craft, std::span<const Dive> runs) {
   const auto count = static_cast<Eigen::Index>(numbers_of(craft).size());
   const auto allocation = craft.allocation();
+  const bool flows = craft.craft_class != CraftClass::kRov;
+  const auto pushed = [&](const Dive& run, std::size_t k) -> Vector6 {
+    if (!flows) return allocation * run.command(k);
+    return push_of(craft, acting_forces(craft, run.command(k), run.sensed.nu[k]),
+                   turn_of(run.sensed.euler[k]).row(2).transpose());
+  };
+  // What the flow does to such a craft is no effect: it is known here.
+  const auto known = [&](const Dive& run, std::size_t k) -> Vector6 {
+    Vector6 tau = pushed(run, k);
+    if (flows) tau += flow_wrench(craft, run.command(k), run.sensed.nu[k]);
+    return tau;
+  };
   std::vector<int> axes;
   for (int i = 0; i < 6; ++i) {
-    if (craft.actuated[static_cast<std::size_t>(i)]) axes.push_back(i);
+    if (craft.moves[static_cast<std::size_t>(i)]) axes.push_back(i);
   }
   BaseFit fit;
+  Vector6 scale = Vector6::Zero();  // N, N m, of each equation; of what is not driven all known forces
   double samples = 0.0;
   const auto every_sample = [&](const auto& use) {
     for (const Dive& run : runs) {
@@ -194,21 +212,26 @@ BaseFit fit_base(const Craft& craft, std::span<const Dive> runs) {
     }
   };
   every_sample([&](const Dive& run, std::size_t k) {
-    fit.applied += (allocation * run.command(k)).cwiseAbs2();
+    fit.applied += pushed(run, k).cwiseAbs2();
+    scale += known(run, k).cwiseAbs2();
     samples += 1.0;
   });
   fit.applied = (fit.applied / samples).cwiseSqrt();
+  scale = (scale / samples).cwiseSqrt();
+  for (const int axis : axes) {
+    if (craft.actuated[static_cast<std::size_t>(axis)]) scale[axis] = fit.applied[axis];
+  }
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(axes.size()), count);
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
   const auto equations = [&](const Dive& run, std::size_t k, const auto& use) {
     base_rows(craft, acceleration(run, k), run.sensed.nu[k], turn_of(run.sensed.euler[k]).row(2), rows);
-    const Vector6 tau = allocation * run.command(k);
+    const Vector6 tau = known(run, k);
     for (std::size_t a = 0; a < axes.size(); ++a) use(axes[a], rows.row(static_cast<Eigen::Index>(a)), tau[axes[a]]);
   };
   every_sample([&](const Dive& run, std::size_t k) {
     equations(run, k, [&](int axis, const auto& row, double tau) {
-      const double weight = 1.0 / (fit.applied[axis] * fit.applied[axis]);
+      const double weight = 1.0 / (scale[axis] * scale[axis]);
       normal += weight * row.transpose() * row;
       right += weight * tau * row.transpose();
     });

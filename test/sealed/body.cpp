@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "test/sealed/flow.hpp"
+
 namespace fathom::sealed {
 namespace {
 
@@ -60,7 +62,7 @@ void Commands::at(double t, Eigen::VectorXd& out) const {
 }
 
 Body::Body(const Craft& craft, const Mechanisms& mechanisms)
-    : hull(craft.hull), mechanisms_(mechanisms), allocation_(craft.allocation()) {
+    : hull(craft.hull), craft_(craft), mechanisms_(mechanisms), allocation_(craft.allocation()) {
   for (const auto& mechanism : mechanisms_) {
     place_.push_back(memory_);
     memory_ += mechanism->memory();
@@ -114,7 +116,9 @@ void Body::rate(double t, const State& state, const Commands& commands, State& o
     const auto [z, rate] = memory_of(i);
     mechanisms_[i]->thrust(at, z, rate, force_);
   }
-  at.force = &force_;
+  const bool flows = craft_.craft_class != CraftClass::kRov;
+  if (flows) acting_ = acting_forces(craft_, force_, at.nu_r);
+  at.force = flows ? &acting_ : &force_;
   for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
     const auto [z, rate] = memory_of(i);
     mechanisms_[i]->body(at, z, rate, terms);
@@ -132,13 +136,27 @@ void Body::rate(double t, const State& state, const Commands& commands, State& o
   added.diagonal() += hull.added;
   const Vector6 drag = terms.drag_factor.cwiseProduct(hull.linear + hull.quadratic.cwiseProduct(at.nu_r.cwiseAbs()));
   Vector6 right = allocation_ * force_ + terms.wrench;
+  if (flows) {
+    right = push_of(craft_, acting_, at.turn.row(2).transpose()) + flow_wrench(craft_, force_, at.nu_r) + terms.wrench;
+  }
   right -= coriolis(rigid, at.nu) * at.nu + coriolis(added, at.nu_r) * at.nu_r + drag.cwiseProduct(at.nu_r);
   right -= restoring(hull.net_weight + terms.net_weight, hull.first_moment + terms.first_moment, at.euler);
   right += added * stream_rate;
   right.head<3>() +=
       (hull.mass - hull.net_weight / kGravity) * surge;  // Froude and Krylov: the displaced water's share
   const Matrix6 mass = rigid + added;
-  out.segment<6>(kSpeed) = mass.ldlt().solve(right);
+  if (craft_.surfaced) {  // the surface bears what pushes up and down, rolls and pitches
+    Eigen::Matrix3d level;
+    constexpr std::array kFree{0, 1, 5};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j)
+        level(i, j) = mass(kFree[static_cast<std::size_t>(i)], kFree[static_cast<std::size_t>(j)]);
+    }
+    const Vector3d gained = level.ldlt().solve(Vector3d(right[0], right[1], right[5]));
+    out.segment<6>(kSpeed) << gained[0], gained[1], 0.0, 0.0, 0.0, gained[2];
+  } else {
+    out.segment<6>(kSpeed) = mass.ldlt().solve(right);
+  }
 
   out.segment<3>(kPose) = at.turn * at.nu.head<3>();
   const double sf = std::sin(at.euler[0]), cf = std::cos(at.euler[0]), tt = std::tan(at.euler[1]);

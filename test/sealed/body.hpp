@@ -35,7 +35,9 @@ class Body {
   [[nodiscard]] double energy(const State& state) const;
 
  private:
+  const Craft& craft_;
   const Mechanisms& mechanisms_;
+  Eigen::VectorXd acting_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> allocation_;
   double delay_{};
   Eigen::VectorXd own_delay_, late_;  // of single jets, beside the others; their forces

@@ -18,7 +18,7 @@ const std::vector<Entry>& catalogue() {
 }
 
 const Entry* find_entry(const std::string& name) {
-  for (const auto* list : {&catalogue(), &foreign(), &further(), &unlisted()}) {
+  for (const auto* list : {&catalogue(), &foreign(), &further(), &unlisted(), &surface_entries(), &surface_foreign()}) {
     for (const Entry& entry : *list) {
       if (entry.name == name) return &entry;
     }

@@ -110,7 +110,7 @@ Craft draw_craft(Family family, Random& random) {
   for (int k = 0; k < 3; ++k) craft.extent[k] *= random.uniform(0.85, 1.2);
   load_hull(slender, six, random, craft);
   place_jets(family, craft.extent, random, craft);
-  craft.actuated = {true, true, true, six, six, true};
+  craft.actuated = craft.moves = {true, true, true, six, six, true};
   if (six && random.chance(0.25)) {
     craft.states_moments = false;
     craft.hull.first_moment.setZero();

@@ -1,5 +1,8 @@
 #include "test/sealed/dive.hpp"
 
+#include <optional>
+
+#include "test/sealed/helmsman.hpp"
 #include "test/sealed/pilot.hpp"
 
 namespace fathom::sealed {
@@ -39,7 +42,13 @@ Dive dive(const Craft& craft, const Site& site, const Mechanisms& mechanisms, co
   Random paths(order.seed, order.purpose + ":paths"), noises(order.seed, order.purpose + ":noise");
   Random drive(order.seed, order.purpose + ":pilot"), instruments(order.seed, order.purpose + ":instruments");
   for (const auto& mechanism : mechanisms) mechanism->begin_file(from, to, paths);
-  Pilot pilot(craft, site, from, to, drive);
+  std::optional<Pilot> pilot;
+  std::optional<Helmsman> helmsman;
+  if (craft.craft_class == CraftClass::kRov) {
+    pilot.emplace(craft, site, from, to, drive);
+  } else {
+    helmsman.emplace(craft, site, from, to, drive);
+  }
   Body body(craft, mechanisms);
   State state = body.at_rest(site.centre, drive.uniform(-3.0, 3.0)), rate = state;
   rate.setZero();
@@ -56,9 +65,11 @@ Dive dive(const Craft& craft, const Site& site, const Mechanisms& mechanisms, co
     const double t = from + static_cast<double>(k) * run.dt;
     const Vector6 pose_noise = white(noise.position, noise.angle, noises);
     const Vector6 nu_noise = white(noise.velocity, noise.rate, noises);
-    run.commands.force.push_back(pilot.command(t + run.dt, run.dt, state.head<3>() + pose_noise.head<3>(),
-                                               state.segment<3>(3) + pose_noise.tail<3>(),
-                                               state.segment<6>(kSpeed) + nu_noise));
+    const Eigen::Vector3d position = state.head<3>() + pose_noise.head<3>();
+    const Eigen::Vector3d euler = state.segment<3>(3) + pose_noise.tail<3>();
+    const Vector6 nu = state.segment<6>(kSpeed) + nu_noise;
+    run.commands.force.push_back(pilot ? pilot->command(t + run.dt, run.dt, position, euler, nu)
+                                       : helmsman->command(t + run.dt, run.dt, position, euler, nu));
     all.push_back(state);
     if (k >= run.warm_up) {
       body.rate(t, state, run.commands, rate);

@@ -89,15 +89,20 @@ class Interference : public Sized {
 /// Air reaches the propellers now and then.
 class AirBursts : public Sized {
  public:
-  AirBursts(const std::string& name, const Craft&, const Site&, Random&) : Sized(name, 0.2, 1.0) {}
+  AirBursts(const std::string& name, const Craft& craft, const Site&, Random&)
+      : Sized(name, 0.2, 1.0), pushes_(propellers_of(craft)) {}
   void begin_file(double from, double to, Random& random) override { air_.draw(from, to, 9.0, 0.7, 3.0, random); }
   void thrust(const Instant& at, std::span<const double>, std::span<double>, Eigen::VectorXd& force) const override {
-    if (air_.at(at.t)) force *= 1.0 - size();
+    if (!air_.at(at.t)) return;
+    for (std::size_t i = 0; i < pushes_.size(); ++i) {
+      if (pushes_[i]) force[static_cast<Eigen::Index>(i)] *= 1.0 - size();
+    }
   }
   [[nodiscard]] Numbers parameters() const override { return {{"lost", size()}}; }
 
  private:
   Episodes air_;
+  std::vector<bool> pushes_;
 };
 
 /// The velocity log repeats itself now and then.

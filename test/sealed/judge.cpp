@@ -130,6 +130,10 @@ constexpr std::array kSameMeaning{SameMeaning{"current", "v_N", "v_N"},
                                   SameMeaning{"tether_tension", "anchor_E", "A_E"},
                                   SameMeaning{"tether_tension", "anchor_D", "A_D"},
                                   SameMeaning{"wave", "frequency", "frequency_Hz", 2.0 * std::numbers::pi},
+                                  SameMeaning{"wind", "W_N", "W_N"},
+                                  SameMeaning{"wind", "W_E", "W_E"},
+                                  SameMeaning{"steady_force", "F_N", "F_N"},
+                                  SameMeaning{"steady_force", "F_E", "F_E"},
                                   SameMeaning{"sensor_latency", "delay", "latency"},
                                   SameMeaning{"sensor_scale", "error", "scale"},
                                   SameMeaning{"lever_arm", "dvl.x", "l_x"},
@@ -209,7 +213,13 @@ Score judge(const Json& truth, const Json& result, const Json& run) {
     return score;
   }
   score.verdict = result.at("verdict");
-  const std::vector<Named> named = accepted(result);
+  std::vector<Named> named = accepted(result);
+  // What the craft's own flow does is no effect that was hidden, and no wrong name either.
+  const Names nature = truth.value("nature", Names{});
+  const std::size_t all = named.size();
+  std::erase_if(named, [&](const Named& one) { return contains(nature, one.set.front()); });
+  score.of_nature = static_cast<int>(all - named.size());
+  if (named.empty() && score.of_nature > 0 && score.verdict == "effect") score.verdict = "adequate";
   for (const Named& one : named) {
     score.found.push_back(one.set.front());
     const bool right = std::any_of(score.truth.begin(), score.truth.end(),
@@ -275,6 +285,7 @@ Json to_json(const Score& score) {
             {"megabytes", finite(score.megabytes)},
             {"deviations", score.deviations},
             {"over_bound", score.over_bound},
+            {"of_nature", score.of_nature},
             {"tilts", score.tilts},
             {"wrong_form", score.wrong_form}};
   json["claims"] = Json::array();

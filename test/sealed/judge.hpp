@@ -28,6 +28,7 @@ struct Score {
   std::string outcome;
   bool good{};             ///< the outcome that is wished
   int strangers{};         ///< accepted names that are not in the truth nor an alias of it
+  int of_nature{};         ///< accepted names of what the craft's own flow does, beside those of `found`
   bool in_sensor_check{};  ///< a fault of an instrument that the comparison of sensors reported by itself
   double before{kUnknown}, after{kUnknown}, floor{kUnknown}, base{kUnknown};  ///< normalised 5 s errors
   double before_far{kUnknown}, after_far{kUnknown};                           ///< the same at 10 s

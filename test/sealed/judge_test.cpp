@@ -55,6 +55,23 @@ TEST_CASE("judge: one effect") {
   CHECK(judge(truth, Json::object(), Json::object()).outcome == "failed");
 }
 
+TEST_CASE("judge: names of what a craft's own flow does are neither right nor wrong") {
+  Json truth = truth_of("clean", {});
+  truth["nature"] = {"body_lift"};
+  const Score silent = judged(truth, {effect("body_lift")});
+  CHECK(silent.outcome == "silent");
+  CHECK(silent.verdict == "adequate");
+  CHECK(silent.of_nature == 1);
+  CHECK(judged(truth, {effect("body_lift"), effect("current")}).outcome == "false alarm");
+  CHECK(judged(truth, {effect("body_lift")}, "unexplained").verdict == "unexplained");
+  Json single = truth_of("single", {"thruster_lag"});
+  single["nature"] = truth["nature"];
+  const Score named = judged(single, {effect("body_lift"), effect("thruster_lag")});
+  CHECK(named.outcome == "named");
+  CHECK(named.strangers == 0);
+  CHECK(named.found == Names{"thruster_lag"});
+}
+
 TEST_CASE("judge: pairs, silence and strangers") {
   const Json pair = truth_of("pair", {"current", "thruster_lag"});
   CHECK(judged(pair, {effect("thruster_lag"), effect("current")}).outcome == "whole");

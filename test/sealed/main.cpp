@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 struct Options {
-  std::string seeds{"0..122"}, only, size, out, tool, page, ablated;
+  std::string seeds{"0..122"}, only, size, craft_class{"rov"}, out, tool, page, ablated;
   int jobs{1};
   bool draw_only{}, score_only{}, learning{};
   std::uint64_t first{}, last{};
@@ -47,6 +47,9 @@ void parse_seeds(Options& options) {
 
 Wish wish_of(const Options& options) {
   Wish wish{.effect = options.only, .new_recording = options.learning};
+  for (std::size_t i = 0; i < kClassNames.size(); ++i) {
+    if (options.craft_class == kClassNames[i]) wish.craft_class = static_cast<CraftClass>(i);
+  }
   for (std::size_t i = 0; i < kSizeNames.size(); ++i) {
     if (options.size == kSizeNames[i]) wish.size = static_cast<Size>(i);
   }
@@ -74,6 +77,7 @@ std::vector<std::string> command(const Options& options, const std::string& way,
     words.push_back(where.data + "/train-" + std::to_string(i) + ".csv");
   }
   if (fs::exists(where.data + "/validate.csv")) words.insert(words.end(), {"--validate", where.data + "/validate.csv"});
+  if (fs::exists(where.data + "/map.yaml")) words.insert(words.end(), {"--map", where.data + "/map.yaml"});
   words.insert(words.end(), {"--out", where.found, "--threads",
                              std::to_string(std::max(1U, cores / static_cast<unsigned>(options.jobs)))});
   if (!options.ablated.empty()) words.insert(words.end(), {"--ablate", options.ablated});
@@ -186,6 +190,7 @@ std::string how_of(const Options& options) {
   std::string how = "./check --sealed --seeds " + options.seeds;
   if (!options.only.empty()) how += " --only " + options.only;
   if (!options.size.empty()) how += " --size " + options.size;
+  if (options.craft_class != kClassNames[0]) how += " --class " + options.craft_class;
   return how + (options.learning ? " --learning" : "");
 }
 
@@ -223,6 +228,8 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", options.seeds, "A..B or one number (default " + options.seeds + ")");
   app.add_option("--only", options.only, "an effect's name, or: single clean noise pair foreign unlisted");
   app.add_option("--size", options.size)->check(CLI::IsMember({"weak", "medium", "strong"}));
+  app.add_option("--class", options.craft_class, "of craft: rov, torpedo, boat, ship or glider; each into an --out")
+      ->check(CLI::IsMember(std::vector<std::string>(kClassNames.begin(), kClassNames.end())));
   app.add_option("--out", options.out, "folder of data, truth and answers")->required();
   app.add_option("--tool", options.tool, "the program fathom")->required();
   app.add_option("--page", options.page, "write the page here instead of into --out; its picture beside it");

@@ -96,6 +96,7 @@ struct Needs {
   bool tilting{false};    ///< six degrees of freedom
   bool moments{false};    ///< the owner does not let the first moment be identified
   bool clock{false};      ///< depends on the time of day
+  bool windage{false};    ///< something stands above the water
 };
 
 struct Entry {
@@ -112,6 +113,12 @@ struct Entry {
 [[nodiscard]] const std::vector<Entry>& further();
 /// Things that happen and that neither it nor what it learns from holds, for --learning: drawn by name, or in turn.
 [[nodiscard]] const std::vector<Entry>& unlisted();
+/// Effects of craft that are no ROVs, of which no ROV is drawn; and things of the kind that stand in no list.
+[[nodiscard]] const std::vector<Entry>& surface_entries();
+[[nodiscard]] const std::vector<Entry>& surface_foreign();
+/// What of the lists may happen to a craft of that class.
+[[nodiscard]] std::vector<const Entry*> catalogue_of(CraftClass craft_class);
+[[nodiscard]] std::vector<const Entry*> foreign_of(CraftClass craft_class);
 /// Coloured noise: not an effect, and never to be named.
 [[nodiscard]] const Entry& coloured_noise();
 [[nodiscard]] const Entry* find_entry(const std::string& name);

@@ -48,6 +48,13 @@ constexpr std::array<const char*, 6> kSpeedLetters{"u", "v", "w", "p", "q", "r"}
   return random.below(static_cast<int>(craft.jets.size()));
 }
 
+/// Whether it is a propeller, however it is told: no fin and no weight, which know neither deadbands nor batteries.
+[[nodiscard]] inline std::vector<bool> propellers_of(const Craft& craft) {
+  std::vector<bool> are;
+  for (const Jet& jet : craft.jets) are.push_back(jet.drive == Drive::kForce || jet.drive == Drive::kPropeller);
+  return are;
+}
+
 /// Moments at which something is wrong: episodes of random length at random distance.
 struct Episodes {
   std::vector<std::pair<double, double>> spans;

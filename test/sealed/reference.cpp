@@ -47,7 +47,7 @@ void predict(const Dive& run, std::size_t first, Body& body, bool with_memory, E
 double normalised(const Craft& craft, const Errors& errors) {
   double sum = 0.0, axes = 0.0;
   for (int i = 0; i < 6; ++i) {
-    if (!craft.actuated[static_cast<std::size_t>(i)]) continue;
+    if (!craft.moves[static_cast<std::size_t>(i)]) continue;
     const double mean = errors.sum[i] / errors.count, variance = errors.power[i] / errors.count - mean * mean;
     sum += std::sqrt(errors.square[i] / errors.count / variance);
     axes += 1.0;
@@ -71,7 +71,7 @@ Eigen::VectorXd bound(const SealedSet& set, double length, bool all_signals) {
     nudges.push_back({.number = j, .by = 1e-4 * std::max(std::abs(truth[j]), 0.1)});
   std::vector<Eigen::Index> signals;  // of the state that are compared
   for (int i = 0; i < 6; ++i) {
-    const bool driven = craft.actuated[static_cast<std::size_t>(i)];
+    const bool driven = craft.moves[static_cast<std::size_t>(i)];
     if (driven || all_signals) signals.push_back(kSpeed + i);
     if (all_signals) signals.push_back(kPose + i);
   }
@@ -119,7 +119,7 @@ Eigen::VectorXd bound(const SealedSet& set, double length, bool all_signals) {
           for (State& one : moved) {
             one.head<6>() = plain.head<6>();
             for (int i = 0; i < 6; ++i) {
-              if (!craft.actuated[static_cast<std::size_t>(i)]) one[kSpeed + i] = plain[kSpeed + i];
+              if (!craft.moves[static_cast<std::size_t>(i)]) one[kSpeed + i] = plain[kSpeed + i];
             }
           }
         }

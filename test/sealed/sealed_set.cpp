@@ -19,11 +19,11 @@ struct Turn {
 };
 
 /// Every effect once, and in between what must stay unnamed.
-std::vector<Turn> round_of() {
+std::vector<Turn> round_of(CraftClass craft_class) {
   std::vector<Turn> turns;
   int count = 0;
-  for (const Entry& entry : catalogue()) {
-    turns.push_back({Kind::kSingle, &entry});
+  for (const Entry* entry : catalogue_of(craft_class)) {
+    turns.push_back({Kind::kSingle, entry});
     if (++count % 5 == 0) turns.push_back({Kind::kPair, nullptr});
     if (count % 6 == 1) turns.push_back({Kind::kForeign, nullptr});
     if (count % 6 == 3) turns.push_back({Kind::kClean, nullptr});
@@ -107,7 +107,24 @@ double scale(SealedSet& set, std::size_t index, double target) {
   return best_share;
 }
 
+/// Open water, and the instruments of such craft: satellites for boats and ships, the others as ROVs.
+void draw_other(const Needs& needs, Random& random, SealedSet& set) {
+  const CraftClass craft_class = set.plan.craft_class;
+  do set.craft = draw_other_craft(craft_class, random);
+  while (needs.windage && !(set.craft.windage > 0.0));
+  const double room = craft_class == CraftClass::kTorpedo ? random.uniform(50.0, 80.0)
+                      : craft_class == CraftClass::kBoat  ? random.uniform(25.0, 45.0)
+                                                          : set.craft.extent.x() * random.uniform(18.0, 28.0);
+  set.site.half << room, room, random.uniform(2.5, 4.0);
+  set.site.centre << random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0),
+      set.craft.surfaced ? 0.0 : set.site.half.z() + random.uniform(3.0, 8.0);
+  if (!set.craft.surfaced) return;
+  set.noise.position = 0.015;
+  set.noise.velocity = 0.01;
+}
+
 void draw_vehicle(const Needs& needs, Random& random, SealedSet& set) {
+  if (set.plan.craft_class != CraftClass::kRov) return draw_other(needs, random, set);
   const auto family = static_cast<Family>(needs.tilting || random.chance(0.25) ? 4 + random.below(2) : random.below(4));
   set.craft = draw_craft(family, random);
   if (needs.moments) {
@@ -121,12 +138,14 @@ void draw_vehicle(const Needs& needs, Random& random, SealedSet& set) {
 }  // namespace
 
 Plan make_plan(std::uint64_t seed, const Wish& wish) {
-  static const std::vector<Turn> kRound = round_of();
-  const std::uint64_t round = seed / kRound.size();
-  const Turn& turn = kRound[seed % kRound.size()];
+  const std::vector<Turn> turns = round_of(wish.craft_class);
+  const std::uint64_t round = seed / turns.size();
+  const Turn& turn = turns[seed % turns.size()];
   Random random(seed, "plan");
-  Plan plan{
-      .seed = seed, .kind = turn.kind, .size = static_cast<Size>((seed % kRound.size() + round) % kShares.size())};
+  Plan plan{.seed = seed,
+            .kind = turn.kind,
+            .size = static_cast<Size>((seed % turns.size() + round) % kShares.size()),
+            .craft_class = wish.craft_class};
   const Entry* entry = turn.entry;
   if (wish.effect == "unlisted") {
     entry = &unlisted()[seed % unlisted().size()];
@@ -144,13 +163,14 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
       const auto in = [&](const std::vector<Entry>& list) {
         return std::ranges::any_of(list, [&](const Entry& e) { return &e == entry; });
       };
-      const bool listed = in(catalogue()) || in(further());
+      const bool listed = in(catalogue()) || in(further()) || in(surface_entries());
       plan.kind = listed ? Kind::kSingle : entry == &coloured_noise() ? Kind::kNoise : Kind::kForeign;
     }
   }
-  const auto any_of = [&](const std::vector<Entry>& list) {
-    return &list[static_cast<std::size_t>(random.below(static_cast<int>(list.size())))];
+  const auto any_of = [&](const std::vector<const Entry*>& list) {
+    return list[static_cast<std::size_t>(random.below(static_cast<int>(list.size())))];
   };
+  const std::vector<const Entry*> listed_here = catalogue_of(wish.craft_class);
   std::vector<const Entry*> chosen;
   switch (plan.kind) {
     case Kind::kClean:
@@ -159,14 +179,14 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
       chosen = {&coloured_noise()};
       break;
     case Kind::kSingle:
-      chosen = {entry != nullptr ? entry : any_of(catalogue())};
+      chosen = {entry != nullptr ? entry : any_of(listed_here)};
       break;
     case Kind::kForeign:
-      chosen = {entry != nullptr ? entry : any_of(foreign())};
+      chosen = {entry != nullptr ? entry : any_of(foreign_of(wish.craft_class))};
       break;
     case Kind::kPair:
-      chosen = {any_of(catalogue()), any_of(catalogue())};
-      while (!goes_together(*chosen[0], *chosen[1])) chosen[1] = any_of(catalogue());
+      chosen = {any_of(listed_here), any_of(listed_here)};
+      while (!goes_together(*chosen[0], *chosen[1])) chosen[1] = any_of(listed_here);
       if (!wish.size && plan.size == Size::kWeak) plan.size = Size::kMedium;
       break;
   }
@@ -181,7 +201,7 @@ Plan make_plan(std::uint64_t seed, const Wish& wish) {
   const double files = random.unit();
   plan.train_files = files < 0.25 && !clock ? 3 : 1;
   plan.validates = files < 0.8 || wish.new_recording;
-  plan.wrench = random.chance(0.25) && !thrusters;
+  plan.wrench = random.chance(0.25) && !thrusters && wish.craft_class == CraftClass::kRov;
   plan.voltage = random.chance(0.3);
   plan.priors = random.chance(0.5);
   Random habit{seed, "habit of the log"};
@@ -197,6 +217,7 @@ SealedSet make_set(const Plan& plan) {
     const Needs& one = find_entry(name)->needs;
     needs.tilting = needs.tilting || one.tilting;
     needs.moments = needs.moments || one.moments;
+    needs.windage = needs.windage || one.windage;
   }
   Random random(plan.seed, "vehicle");
   std::vector<Dive> clean;

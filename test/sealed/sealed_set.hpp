@@ -17,6 +17,7 @@ constexpr std::array<double, 3> kShares{0.05, 0.15, 0.40};  ///< of the applied 
 struct Wish {
   std::string effect;  ///< or "clean", "pair", "foreign", "single"; "unlisted": one of those in turn
   std::optional<Size> size;
+  CraftClass craft_class{};
   bool new_recording{false};  ///< a file for validation in any case
 };
 
@@ -24,6 +25,7 @@ struct Plan {
   std::uint64_t seed{};
   Kind kind{};
   Size size{};
+  CraftClass craft_class{};
   std::vector<std::string> names;
   bool one_clock{};  ///< time goes on from file to file; else every file (and what depends on time) begins at zero
   int train_files{1};

@@ -44,9 +44,13 @@ class Delay : public Sized {
 class DeadBand : public Sized {
  public:
   DeadBand(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.03 * largest_force(craft), 2.0 * largest_force(craft)), step_(random.chance(0.4)) {}
+      : Sized(name, 0.03 * largest_force(craft), 2.0 * largest_force(craft)),
+        step_(random.chance(0.4)),
+        pushes_(propellers_of(craft)) {}
   void thrust(const Instant&, std::span<const double>, std::span<double>, Eigen::VectorXd& force) const override {
-    for (double& f : force) {
+    for (std::size_t i = 0; i < pushes_.size(); ++i) {
+      if (!pushes_[i]) continue;
+      double& f = force[static_cast<Eigen::Index>(i)];
       const double over = std::abs(f) - size();
       f = over <= 0.0 ? 0.0 : (step_ ? f : std::copysign(over, f));
     }
@@ -56,6 +60,7 @@ class DeadBand : public Sized {
 
  private:
   bool step_;
+  std::vector<bool> pushes_;
 };
 
 /// Propellers are shaped to push forward.
@@ -139,14 +144,21 @@ class Misalignment : public Sized {
 class Sag : public Sized {
  public:
   Sag(const std::string& name, const Craft& craft, const Site&, Random& random)
-      : Sized(name, 0.8, 3.0), nominal_(craft.nominal_voltage), logged_(random.chance(0.6)) {
+      : Sized(name, 0.8, 3.0),
+        nominal_(craft.nominal_voltage),
+        logged_(random.chance(0.6)),
+        pushes_(propellers_of(craft)) {
     full_ = random.uniform(1.02, 1.1);
     fall_ = random.uniform(0.0005, 0.0011);  // of nominal, per second
     ripple_ = random.uniform(0.005, 0.03);
     period_ = random.uniform(11.0, 40.0);
   }
   void thrust(const Instant& at, std::span<const double>, std::span<double>, Eigen::VectorXd& force) const override {
-    force *= logged_ ? std::pow(voltage(at.t) / nominal_, size()) : std::max(1.0 - size() * at.t / 1000.0, 0.05);
+    const double factor =
+        logged_ ? std::pow(voltage(at.t) / nominal_, size()) : std::max(1.0 - size() * at.t / 1000.0, 0.05);
+    for (std::size_t i = 0; i < pushes_.size(); ++i) {
+      if (pushes_[i]) force[static_cast<Eigen::Index>(i)] *= factor;
+    }
   }
   [[nodiscard]] double voltage(double t) const override {
     if (!logged_) return 0.0;
@@ -158,6 +170,7 @@ class Sag : public Sized {
  private:
   double nominal_;
   bool logged_;
+  std::vector<bool> pushes_;
   double full_, fall_, ripple_, period_;
 };
 

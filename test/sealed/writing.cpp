@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "test/sealed/other_writing.hpp"
 #include "test/sealed/reference.hpp"
 
 namespace fathom::sealed {
@@ -33,6 +34,12 @@ void write_file(const std::string& path, const std::string& text) {
 
 double folded(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
+/// Whether a file has a column of voltage. Thrust that falls with time is that of a battery nobody watches.
+bool shows_voltage(const SealedSet& set, const Dive& run) {
+  const bool unwatched = std::ranges::find(set.plan.names, "battery_sag") != set.plan.names.end();
+  return !run.voltage.empty() || (set.plan.voltage && !unwatched);
+}
+
 Json numbers(const Vector6& values) { return Json(std::vector<double>(values.begin(), values.end())); }
 
 }  // namespace
@@ -47,14 +54,13 @@ Places places(const std::string& out, std::uint64_t seed, const std::string& way
 std::string to_csv(const SealedSet& set, const Dive& run) {
   const std::size_t jets = set.craft.jets.size();
   std::string text = "t,x,y,z,phi,theta,psi,u,v,w,p,q,r";
+  const bool commands = logs_commands(set.craft);
   if (set.plan.wrench) {
     text += ",X,Y,Z,K,M,N";
   } else {
-    for (std::size_t i = 1; i <= jets; ++i) add(text, ",f%zu", i);
+    for (std::size_t i = 1; i <= jets; ++i) add(text, commands ? ",c%zu" : ",f%zu", i);
   }
-  // Thrust that falls with time is that of a battery nobody watches.
-  const bool unwatched = std::ranges::find(set.plan.names, "battery_sag") != set.plan.names.end();
-  const bool voltage = !run.voltage.empty() || (set.plan.voltage && !unwatched);
+  const bool voltage = shows_voltage(set, run);
   text += voltage ? ",voltage\n" : "\n";
   const auto allocation = set.craft.allocation();
   Random volts(set.plan.seed, "voltage");
@@ -66,7 +72,13 @@ std::string to_csv(const SealedSet& set, const Dive& run) {
     add(text, "%.2f,%.5f,%.5f,%.5f,%.6f,%.6f,%.6f", t, p[0], p[1], p[2], folded(e[0]), folded(e[1]), folded(e[2]));
     for (const double x : nu) add(text, ",%.5f", x);
     const Eigen::VectorXd drive = set.plan.wrench ? Eigen::VectorXd(allocation * run.command(k)) : run.command(k);
-    for (const double x : drive) add(text, ",%.4f", x);
+    for (Eigen::Index i = 0; i < drive.size(); ++i) {
+      if (commands) {
+        add(text, ",%.7g", command_of(set.craft, set.craft.jets[static_cast<std::size_t>(i)], drive[i]));
+      } else {
+        add(text, ",%.4f", drive[i]);
+      }
+    }
     if (voltage) {
       const double idle = set.craft.nominal_voltage * (1.05 - 0.0002 * t);
       add(text, ",%.3f", (run.voltage.empty() ? idle : run.voltage[k]) + 0.01 * volts.normal());
@@ -82,16 +94,19 @@ std::string to_vehicle_file(const SealedSet& set) {
   Random owner(set.plan.seed, "owner");
   std::string text;
   add(text, "name: Vehicle %llu\n", static_cast<unsigned long long>(set.plan.seed));
-  text += craft.actuated[3] ? "dof: [surge, sway, heave, roll, pitch, yaw]\n" : "dof: [surge, sway, heave, yaw]\n";
+  const bool rov = craft.craft_class == CraftClass::kRov;
+  if (rov)
+    text += craft.actuated[3] ? "dof: [surge, sway, heave, roll, pitch, yaw]\n" : "dof: [surge, sway, heave, yaw]\n";
   add(text, "mass: %.4g kg\n", hull.mass * owner.uniform(0.98, 1.02));
   if (craft.actuated[3] || owner.chance(0.5)) {
     const double wrong = owner.uniform(0.85, 1.15);
     add(text, "inertia: %.3g %.3g %.3g kg m^2\n", hull.inertia[0] * wrong, hull.inertia[1] * wrong,
         hull.inertia[2] * wrong);
   }
-  add(text, "water_density: %.0f kg/m^3\n", craft.density < 1005.0 ? 998.0 : 1025.0);
+  add(text, "water_density: %.0f kg/m^3\n", owners_density(craft));
   add(text, "nominal_voltage: %.1f V\n", craft.nominal_voltage);
-  if (!set.plan.wrench) {
+  if (!rov) text += other_keys(craft);
+  if (!set.plan.wrench && rov) {
     text += "thrusters:\n";
     for (std::size_t i = 0; i < craft.jets.size(); ++i) {
       const Jet& jet = craft.jets[i];
@@ -146,6 +161,8 @@ std::string to_truth(const SealedSet& set) {
   }
   truth["class_reached"] = set.reached;
   truth["family"] = set.craft.family;
+  // Names by which a lifting hull's own flow may be told: neither an effect that was hidden nor a wrong one.
+  if (set.craft.craft_class != CraftClass::kRov) truth["nature"] = {"body_lift", "speed_drag", "turning_resistance"};
   truth["one_clock"] = plan.one_clock;
   truth["train_files"] = plan.train_files;
   truth["validates"] = plan.validates;
@@ -175,6 +192,8 @@ void write_set(const SealedSet& set, const Places& where) {
     write_file(where.data + "/train-" + std::to_string(i + 1) + ".csv", to_csv(set, set.train[i]));
   }
   if (set.validate) write_file(where.data + "/validate.csv", to_csv(set, *set.validate));
+  if (logs_commands(set.craft))
+    write_file(where.data + "/map.yaml", to_map(set.craft, shows_voltage(set, set.train.front())));
   write_file(where.truth, to_truth(set));
 }
 
