@@ -1,6 +1,4 @@
 // diagnoser: all that `fathom diagnose` reads in a log, the ranking of candidate causes out.
-#include <malloc.h>
-
 #include <fathom_lcm/ahrs_t.hpp>
 #include <fathom_lcm/battery_t.hpp>
 #include <fathom_lcm/depth_t.hpp>
@@ -17,6 +15,7 @@
 
 #include "common/live/live_diagnoser.hpp"
 #include "common/model/site.hpp"
+#include "common/runtime/large_blocks.hpp"
 #include "common/runtime/process.hpp"
 #include "common/wire/channels.hpp"
 #include "common/wire/decode.hpp"
@@ -52,7 +51,7 @@ void hear(runtime::Process& process, live::LiveDiagnoser& diagnoser, const std::
 
 int main(int argc, char** argv) {
   // A search needs tens of megabytes for a moment: large blocks go back to the system.
-  mallopt(M_MMAP_THRESHOLD, 128 * 1024);
+  runtime::give_back_large_blocks();
   const runtime::Program program{"diagnoser",
                                  "Ranks the effects that may explain what the model does not, and what to fly next."};
   return runtime::main(program, argc, argv, [](runtime::Process& process) {
