@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/model/parameters.hpp"
 #include "common/model/rollout.hpp"
 #include "common/residual/open_loop.hpp"
 
@@ -112,6 +113,8 @@ double length_of(const likelihood::Problem& problem) {
   return length;
 }
 
+constexpr double kNoThrust = 1e-9;  // of the allocation, 1 or m
+
 }  // namespace
 
 void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, Conclusion& conclusion) {
@@ -133,12 +136,18 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
   for (std::size_t axis = 0; axis < conclusion.followed.size(); ++axis) {
     const int of = problem.axes[axis];
     const bool skilled = std::ranges::find(conclusion.skilled, of) != conclusion.skilled.end();
+    // A boat's sway has no thrust that it could fail to follow.
+    if (problem.vehicle->has_thrusters() && problem.vehicle->allocation.row(of).isZero(kNoThrust)) continue;
     if (conclusion.followed[axis] < thresholds.following && !skilled)
       reasons.push_back({Cause::kNotFollowing, conclusion.followed[axis], thresholds.following,
                          model::kAxisNames[static_cast<std::size_t>(of)]});
   }
   for (const likelihood::Number& number : fit.numbers) {
     if (number.kind != NumberKind::kBase) continue;
+    // Of an axis that enters as measured only its part in the Coriolis forces is known: hardly anything.
+    const auto parameter = model::parameter_from_name(number.name);
+    const auto simulated = std::span{problem.axes}.first(static_cast<std::size_t>(problem.simulated));
+    if (parameter && std::ranges::find(simulated, model::axis(*parameter)) == simulated.end()) continue;
     const double size = std::abs(value(fit.hypothesis, number)) / (std::abs(number.mean) + number.sigma);
     const bool pinned = number.low > 0.0 && value(fit.hypothesis, number) <= number.low * (1.0 + 1e-9);
     if (size > thresholds.absurd || pinned)

@@ -230,7 +230,8 @@ double acting_force(const Vehicle& vehicle, const Motion& motion, Eigen::Index i
   const Fin& fin = *actuator.fin;
   const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(actuator.p_BJ);
   double square = v_r.x() * std::abs(v_r.x());  // (m/s)^2; going astern the fin pushes the other way
-  if (fin.behind >= 0) square += fin.slipstream * std::max(motion.force[fin.behind], 0.0);
+  // The jet's speed follows the thrust as it acts: of a propeller that advances less than at rest.
+  if (fin.behind >= 0) square += fin.slipstream * std::max(acting_force(vehicle, motion, fin.behind), 0.0);
   return told * square / (fin.reference_speed * fin.reference_speed);
 }
 

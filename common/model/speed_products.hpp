@@ -13,10 +13,13 @@
 namespace fathom::model {
 
 /// Whether its file says that the water's flow along it steers or carries the craft, or that it stands above the water:
-/// rudders, fins, propellers by shaft speed, weights that drive a glider, windage. An open frame has no hull that
-/// lifts, and each further question about it would only make the answers to the others less sure.
+/// rudders, fins, propellers by shaft speed, weights that drive a glider, windage, or, of a boat, that nothing pushes
+/// it sideways. An open frame has no hull that lifts, and each further question about it would only make the answers to
+/// the others less sure.
 [[nodiscard]] inline bool lives_by_flow(const Vehicle& vehicle) {
-  return vehicle.flow_matters || vehicle.weight_moves || vehicle.windage > 0.0;
+  const bool carried =
+      vehicle.dof[1] && !vehicle.dof[2] && vehicle.has_thrusters() && vehicle.allocation.row(1).isZero(1e-6);
+  return vehicle.flow_matters || vehicle.weight_moves || vehicle.windage > 0.0 || carried;
 }
 
 class SpeedProduct final : public Form {
@@ -24,7 +27,7 @@ class SpeedProduct final : public Form {
   enum class Sense { kWithSign, kEitherWay };
   /// w_row = c nu_r,first nu_r,second, a square where both are the same; either way: with the size of the first alone.
   SpeedProduct(Eigen::Index row, Eigen::Index first, Eigen::Index second, Sense sense = Sense::kWithSign)
-      : Form{{.unit = unit_of(row, first, second), .drawn = kDrawn}},
+      : Form{{.sought = {0}, .unit = unit_of(row, first, second), .drawn = kDrawn}},
         row_{row},
         first_{first},
         second_{second},
@@ -35,7 +38,9 @@ class SpeedProduct final : public Form {
   }
   Starts starts(const Scene& scene) const override {
     const double product = std::max(scene.nu_rms[first_], kLeastMotion) * std::max(scene.nu_rms[second_], kLeastMotion);
-    return {{kStartShare * std::max(scene.tau_rms[row_], 1e-3) / product}};
+    std::vector<double> start(parameters().size(), 0.0);
+    start.front() = kStartShare * std::max(scene.tau_rms[row_], 1e-3) / product;
+    return {start};
   }
   void load(const Motion& motion, EffectTheta theta, Load& load) const override {
     if (theta[0] == 0.0) return;

@@ -68,6 +68,27 @@ TEST_CASE("conclusion: an axis whose acceleration is a random force's leaves no 
   CHECK_FALSE(caused(conclusion, Cause::kNotFollowing, "X"));
 }
 
+TEST_CASE("conclusion: an axis that nothing pushes has no thrust that it could fail to follow") {
+  Nothing nothing;
+  nothing.conclusion.followed = {0.9, -0.1, 0.9, 0.9};
+  nothing.vehicle.allocation.row(1).setZero();  // a boat's sway
+  const Conclusion conclusion = nothing.concluded();
+  CHECK(conclusion.verdict == Verdict::adequate);
+  CHECK_FALSE(caused(conclusion, Cause::kNotFollowing, "Y"));
+}
+
+TEST_CASE("conclusion: an inertia of a motion that is not simulated may stop on its bound") {
+  Nothing nothing;  // pitch enters as measured
+  likelihood::Fit& fit = nothing.conclusion.found.best.fit;
+  const auto number = std::ranges::find(fit.numbers, "m_X", &likelihood::Number::name);
+  REQUIRE(number != fit.numbers.end());
+  at(fit.hypothesis, *number) = number->low;
+  number->name = "I_Y";  // it acts through (I_X - I_Y) p q alone
+  const Conclusion conclusion = nothing.concluded();
+  CHECK(conclusion.verdict == Verdict::adequate);
+  CHECK_FALSE(caused(conclusion, Cause::kAbsurdNumber, "I_Y"));
+}
+
 TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves no model") {
   for (const double mass : {2000.0, 0.0}) {
     Nothing nothing;

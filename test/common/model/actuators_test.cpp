@@ -83,6 +83,11 @@ TEST_CASE("actuators: at rest a rudder works in its propeller's slipstream, V^2 
   motion.force = Eigen::Vector2d(50.0, 30.0);
   const double jet = 2.0 * 50.0 / (1000.0 * std::numbers::pi * 0.1 * 0.1);
   CHECK(acting_force(craft, motion, 1) == doctest::Approx(30.0 * 0.5 * jet / 4.0).epsilon(kTypedRounding));
+  motion.nu[0] = 1.0;  // a propeller that advances gives less, and so does its jet
+  const double less = 2.0 * acting_force(craft, motion, 0) / (1000.0 * std::numbers::pi * 0.1 * 0.1);
+  CHECK(less < 0.9 * jet);
+  CHECK(acting_force(craft, motion, 1) == doctest::Approx(30.0 * (1.0 + 0.5 * less) / 4.0).epsilon(kTypedRounding));
+  motion.nu[0] = 0.0;
   motion.force[0] = -50.0;  // a propeller that goes astern sends its wash away from the rudder
   CHECK(acting_force(craft, motion, 1) == 0.0);
   const Model model = nominal_model(craft, false);

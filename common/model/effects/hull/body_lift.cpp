@@ -4,19 +4,114 @@
 //   sec. 4.3
 // and 4.5; Feldman 1979), each a form of its own: w_i = c u_r nu_r,j, which turns round when the craft goes astern, as
 // Munk's moment does, beside what the base model's added masses make of the same product; and w_i = c |u_r| nu_r,j,
-// which does not, as fins that lift either way. What fixed fins do at no deflection is among them. Ignores: stall.
+// which does not, as fins that lift either way. What fixed fins do at no deflection is among them. Hull and fins
+// together, each a surface at x that lifts with the water's angle there: Y = -|u| (S v + S_x r), N = -|u| (S_x v +
+// S_xx r), up and down Z = -|u| (H w - H_x q), M = |u| (H_x w - H_xx q), with S, S_x, S_xx and H, H_x, H_xx the sums of
+// 1/2 rho A C_L over all surfaces, times x and x^2 (strip theory of quasi-steady lift, Newman 1977, sec. 7.9). Where
+// fins turn, their wake leans their lift back: X = -D_S L alpha, alpha the fin's angle to the flow, D_S = 1 - C_L' / 2
+// pi of an elliptic wing (Prandtl's lifting line), some .5. Every craft that steers by its flow has that, and no free
+// force is told from others beside a base model that lacks it: so it is asked for before anything else. Ignores: stall.
 // Revealed by drifting and turning at several speeds ahead and astern, and at rest. Confused with linear drag across at
 // one speed, with masses that serve inertia and Coriolis moment at once, and with speed_drag.
+#include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "common/model/actuators.hpp"
 #include "common/model/speed_products.hpp"
 
 namespace fathom::model::effects {
 namespace {
 
-constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", .unit = "N/(m/s)^2", .sigma = 20.0}};
+// Results name both ways by their numbers: S sideways, H up and down.
+constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", .unit = "N/(m/s)^2", .sigma = 20.0},
+                                         EffectParameter{.name = "S", .unit = "N/(m/s)^2", .sigma = 60.0},
+                                         EffectParameter{.name = "S_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
+                                         EffectParameter{.name = "S_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
+                                         EffectParameter{.name = "D_S", .unit = "1/rad", .sigma = 0.5},
+                                         EffectParameter{.name = "H", .unit = "N/(m/s)^2", .sigma = 60.0},
+                                         EffectParameter{.name = "H_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
+                                         EffectParameter{.name = "H_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
+                                         EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5}};
+constexpr std::size_t kSideways = 1, kUpAndDown = 5;                  // where the numbers of each begin
+constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kDrag = 3;  // of these
+constexpr double kSlowest = 0.02;                                     // m/s, rad/s RMS: less shows no lift
 
 constexpr Eigen::Index kU = 0;
+
+/// All surfaces that stand one way: `across` 1 with yaw, or 2 with pitch. With fins that turn, lift costs resistance.
+class LiftingSurfaces final : public Form {
+ public:
+  LiftingSurfaces(Eigen::Index across, bool fins, const char* name)
+      : Form{{.sought = numbers_of(first_of(across), fins), .drawn = kDrawn}},
+        across_{across},
+        fins_{fins},
+        name_{name} {}
+  FormName name(const Scene& scene) const override {
+    const Vehicle& vehicle = *scene.vehicle;
+    const bool moves = scene.nu_rms[kU] > kSlowest && scene.nu_rms[across_] > 0.25 * kSlowest;
+    const bool turns = !scene.input_is_wrench &&
+                       std::ranges::any_of(vehicle.thrusters, [&](const Thruster& one) { return stands(one); });
+    return when(lives_by_flow(vehicle) && vehicle.dof[static_cast<std::size_t>(across_)] &&
+                    vehicle.dof[static_cast<std::size_t>(turning())] && moves && turns == fins_,
+                name_);
+  }
+  Starts starts(const Scene& scene) const override {
+    const double product = std::max(scene.nu_rms[kU] * scene.nu_rms[across_], 1e-4);
+    std::vector<double> start(parameters().size(), 0.0);
+    start[first_of(across_) + kLift] = 0.05 * std::max(scene.tau_rms[kU], 1e-3) / product;
+    return {start};
+  }
+  void load(const Motion& motion, EffectTheta all, Load& load) const override {
+    const EffectTheta theta = all.subspan(first_of(across_));
+    const Vector6d nu_r = motion.nu_r();
+    // A surface at x moves across by v + x r, or w - x q.
+    const double speed = std::abs(nu_r[kU]), side = across_ == 1 ? 1.0 : -1.0;
+    const double along = nu_r[across_], turn = side * nu_r[turning()];
+    load.wrench[across_] -= speed * (theta[kLift] * along + theta[kLiftX] * turn);
+    load.wrench[turning()] -= side * speed * (theta[kLiftX] * along + theta[kLiftXX] * turn);
+    if (theta[kDrag] == 0.0 || motion.vehicle == nullptr) return;
+    const auto& thrusters = motion.vehicle->thrusters;
+    if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return;
+    for (std::size_t i = 0; i < thrusters.size(); ++i) {
+      if (!stands(thrusters[i])) continue;
+      const double drag = theta[kDrag] * leaning(motion, static_cast<Eigen::Index>(i));
+      load.wrench[kU] -= drag;
+      load.wrench.tail<3>() -= thrusters[i].p_BJ.cross(Eigen::Vector3d(drag, 0.0, 0.0));
+    }
+  }
+
+ private:
+  static constexpr double kDrawn = 0.2;
+  static constexpr double kSmall = 1e-6;  // rad: less deflection says nothing of the speed past a fin
+  static constexpr std::size_t first_of(Eigen::Index across) { return across == 1 ? kSideways : kUpAndDown; }
+  static constexpr NumberSet numbers_of(std::size_t first, bool fins) {
+    NumberSet set{first + kLift, first + kLiftX, first + kLiftXX};
+    if (fins) set.add(first + kDrag);
+    return set;
+  }
+  [[nodiscard]] Eigen::Index turning() const { return across_ == 1 ? 5 : 4; }
+  [[nodiscard]] bool stands(const Thruster& one) const {
+    return one.fin.has_value() && std::abs(one.axis_B[across_]) > 0.7;
+  }
+  /// N: lift of a fin times its angle to the flow, as far as the stall.
+  [[nodiscard]] double leaning(const Motion& motion, Eigen::Index i) const {
+    const Thruster& one = motion.vehicle->thrusters[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
+    const double deflection = motion.force[i] / one.fin->slope, reference = one.fin->reference_speed;
+    const double square = std::abs(deflection) > kSmall
+                              ? acting_force(*motion.vehicle, motion, i) / motion.force[i] * reference * reference
+                              : v_r.x() * std::abs(v_r.x());
+    const double ahead = std::sqrt(std::abs(square)), across = one.axis_B.dot(v_r);
+    const double drift = std::atan2(across, std::max(ahead, kSlowest)) * (square < 0.0 ? -1.0 : 1.0);
+    const double angle = std::clamp(deflection - drift, -one.fin->stall, one.fin->stall);
+    return one.fin->slope * angle * angle * square / (reference * reference);
+  }
+
+  Eigen::Index across_;
+  bool fins_;
+  const char* name_;
+};
 
 Forms every_product() {
   using Sense = SpeedProduct::Sense;
@@ -25,6 +120,11 @@ Forms every_product() {
   Forms all;
   for (const Sense sense : {Sense::kWithSign, Sense::kEitherWay}) {
     for (const auto& [row, column] : kLoadedBy) all.push_back(std::make_unique<SpeedProduct>(row, kU, column, sense));
+  }
+  for (const bool fins : {false, true}) {
+    all.push_back(std::make_unique<LiftingSurfaces>(1, fins, fins ? "hull and fins, sideways" : "hull, sideways"));
+    all.push_back(
+        std::make_unique<LiftingSurfaces>(2, fins, fins ? "hull and fins, up and down" : "hull, up and down"));
   }
   return all;
 }
@@ -37,9 +137,10 @@ const Effect& body_lift() {
        .sentence = "The hull lifts: drifting and turning load it in proportion to its speed ahead.",
        .revealed_by = "drifting and turning at rest, at half and at full speed ahead",
        .stage = Stage::kBody,
-       .amplitudes = 1,
+       .amplitudes = static_cast<int>(kBodyLiftParameters.size()),
        .forms_coexist = true,
-       .feels_motion = false},
+       .feels_motion = false,
+       .asked_first = true},
       kBodyLiftParameters,
       every_product()};
   return kEffect;

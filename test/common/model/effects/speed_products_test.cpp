@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/model/dynamics.hpp"
@@ -92,6 +93,72 @@ TEST_CASE("body_lift: a product of the speed ahead, which turns round going aste
   CHECK(lift.unit(munk, 0) == "N m/(m/s)^2");
   CHECK(lift.unit(variant_of("body_lift", "Y_ur"), 0) == "N/(m/s)/(rad/s)");
   CHECK(lift.unit(variant_of("body_lift", "M_uq"), 0) == "N m/(m/s)/(rad/s)");
+}
+
+TEST_CASE("body_lift: surfaces that stand one way lift with the water's angle at each of them") {
+  model::Motion motion = moving();
+  // Two surfaces, at 0.5 m and -2 m, of 3 and 8 N/(m/s)^2.
+  const double sum = 3.0 + 8.0, at_x = 0.5 * 3.0 - 2.0 * 8.0, at_xx = 0.25 * 3.0 + 4.0 * 8.0;
+  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, sum, at_x, at_xx, 0.0};
+  const int sideways = variant_of("body_lift", "hull, sideways");
+  const int upright = variant_of("body_lift", "hull, up and down");
+  for (const double u : {0.8, -0.8}) {
+    motion.nu[0] = u;
+    Vector6d aside = Vector6d::Zero(), below = Vector6d::Zero();
+    for (const auto& [x, lift] : {std::pair{0.5, 3.0}, std::pair{-2.0, 8.0}}) {
+      const double y = -lift * 0.8 * (motion.nu[1] + x * motion.nu[5]);
+      const double z = -lift * 0.8 * (motion.nu[2] - x * motion.nu[4]);
+      aside[1] += y;
+      aside[5] += x * y;
+      below[2] += z;
+      below[4] -= x * z;
+    }
+    CHECK((wrench_of("body_lift", theta, sideways, motion) - aside).norm() < kProductRounding);
+    CHECK((wrench_of("body_lift", theta, upright, motion) - below).norm() < kProductRounding);
+    CHECK(motion.nu.dot(aside + below) < 0.0);
+  }
+  CHECK(model::find_effect("body_lift")->traits().asked_first);
+}
+
+TEST_CASE("body_lift: a fin's lift leans back by its angle to the flow, as far as the stall") {
+  model::Vehicle craft;
+  craft.dof = {true, true, false, false, false, true};
+  craft.thrusters.resize(1);
+  craft.thrusters[0].axis_B = Eigen::Vector3d::UnitY();
+  craft.thrusters[0].p_BJ = {-1.0, 0.0, 0.0};
+  craft.thrusters[0].fin = model::Fin{.slope = 40.0, .stall = 0.5, .reference_speed = 2.0};
+  craft.allocation.setZero(6, 1);
+  craft.allocation(1, 0) = 1.0;
+  craft.allocation(5, 0) = -1.0;
+  craft.flow_matters = true;
+  model::Scene scene{.vehicle = &craft};
+  scene.nu_rms.setConstant(0.3);
+  const auto names = model::find_effect("body_lift")->variants(scene);
+  const auto found = std::ranges::find(names, "hull and fins, sideways");
+  REQUIRE(found != names.end());
+  model::Motion motion{.vehicle = &craft};
+  motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;  // at the fin 0.2 m/s to port
+  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0};
+  for (const double deflection : {0.2, -0.3, 2.0}) {
+    motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
+    const double angle = std::min(deflection - std::atan(-0.2), 0.5);
+    CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion)[0] ==
+          doctest::Approx(-0.5 * 40.0 / 4.0 * angle * angle).epsilon(kProductRounding));
+  }
+}
+
+TEST_CASE("oblique flow: is asked of a boat that nothing pushes sideways, and of no frame with a thruster across") {
+  model::Vehicle boat;
+  boat.dof = {true, true, false, false, false, true};
+  boat.thrusters.resize(2);
+  boat.allocation.setZero(6, 2);
+  boat.allocation.row(0).setOnes();
+  boat.allocation.row(5) << 0.3, -0.3;
+  model::Scene scene{.vehicle = &boat};
+  scene.nu_rms << 0.8, 0.1, 0.0, 0.0, 0.0, 0.3;
+  CHECK_FALSE(model::find_effect("body_lift")->variants(scene).empty());
+  boat.allocation(1, 0) = 0.5;
+  CHECK(model::find_effect("body_lift")->variants(scene).empty());
 }
 
 TEST_CASE("turning_resistance: products of drift and turning load the way ahead") {
