@@ -62,12 +62,13 @@ struct ReducedBlock {
 /// One filtered run, kept so that other accelerations can be asked for their effect (scan).
 struct RunReference {
   int axes{}, numbers{};
-  std::vector<double> gains;                  ///< per block: E, G, Gamma, K_nu, K_d, K_c, L^-1, each axes x axes
-  Eigen::VectorXd rho, rho_colour;            ///< per axis, of a block
-  Eigen::MatrixXd innovation;                 ///< axes x blocks, whitened
-  Eigen::MatrixXd slope, information;         ///< axes x blocks, of the tail's score; zero where not scored
-  Eigen::MatrixXd nu_middle, nu_dot, nu_end;  ///< 6 x blocks: of the rollout, and as filtered
-  Eigen::MatrixXd trace;                      ///< 6 x samples, of the rollout
+  static constexpr std::size_t kMatrices = 6;
+  std::vector<double> gains;                    ///< per block: E, Gamma, K_nu, K_d, K_c, L^-1, each axes x axes
+  Eigen::VectorXd mean_force, rho, rho_colour;  ///< per axis, of a block
+  Eigen::MatrixXd innovation;                   ///< axes x blocks, whitened
+  Eigen::MatrixXd slope, information;           ///< axes x blocks, of the tail's score; zero where not scored
+  Eigen::MatrixXd nu_middle, nu_dot, nu_end;    ///< 6 x blocks: of the rollout, and as filtered
+  Eigen::MatrixXd trace;                        ///< 6 x samples, of the rollout
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J;  ///< (axes x blocks) x numbers, whitened
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> B;  ///< the same, accelerations
 };

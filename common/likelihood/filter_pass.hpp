@@ -8,7 +8,7 @@
 #include "common/likelihood/covariance.hpp"
 #include "common/likelihood/filter.hpp"
 #include "common/likelihood/gathered_rows.hpp"
-#include "common/likelihood/sensitivity.hpp"
+#include "common/likelihood/response_state.hpp"
 #include "common/likelihood/transition.hpp"
 
 namespace fathom::likelihood {
@@ -18,7 +18,6 @@ class RunPass {
  public:
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
-  using Wide = typename Response<N>::Wide;
 
   RunPass(const Problem& problem, const Hypothesis& hypothesis, const std::vector<Number>& numbers, const Noise& noise,
           std::size_t run_index, const PassOptions& options, RunReference* reference)
@@ -46,6 +45,11 @@ class RunPass {
         sensor_numbers_.push_back(j);
     }
     bias_ = hypothesis.runs[run_index].velocity_bias;
+    response_step_.H = H_;
+    response_step_.shows_nu_alone = H_.isIdentity(0.0);
+    response_step_.mean_force = block_noise_.mean_force;
+    response_step_.rho = block_noise_.rho;
+    response_step_.rho_colour = block_noise_.rho_colour;
   }
 
   PassResult run() {
@@ -78,8 +82,6 @@ class RunPass {
       columns_.setZero(6, p);
       nu_columns_.setZero(6, p);
       wrenches_.setZero(6, p);
-      B_.setZero(N, p);
-      J_.setZero(N, p);
     }
     if (options_.reduced)
       result.reduced.assign(1, std::vector<std::vector<ReducedBlock>>(N, std::vector<ReducedBlock>(blocks)));
@@ -93,7 +95,8 @@ class RunPass {
     const auto n = static_cast<Eigen::Index>(blocks);
     reference_->axes = N;
     reference_->numbers = static_cast<int>(p);
-    reference_->gains.assign(blocks * 7 * N * N, 0.0);
+    reference_->gains.assign(blocks * RunReference::kMatrices * N * N, 0.0);
+    reference_->mean_force = block_noise_.mean_force;
     reference_->rho = block_noise_.rho;
     reference_->rho_colour = block_noise_.rho_colour;
     reference_->innovation.setZero(N, n);
@@ -205,9 +208,7 @@ class RunPass {
       update = measured && into <= options_.horizon->lead;
       score = score && into > options_.horizon->lead;
     }
-    const CovarianceGain<N> K = covariance_.gain(whiten);
-
-    if (options_.derivatives) sensitivities(b, middle, nu_dot, transition, G, lag);
+    const CovarianceGain<N> K = update ? covariance_.gain(whiten) : CovarianceGain<N>{};
     Vector score_slope = Vector::Zero(), score_information = Vector::Zero();
     for (int i = 0; i < N; ++i) {
       if (block.n[axis(i)] == 0.0) continue;
@@ -223,27 +224,27 @@ class RunPass {
       if (update && tail.follows) scales_[a].see(innovation[i] * innovation[i], block.dt);
     }
     if (options_.derivatives) {
-      Wide& J = response_.shown();
-      times<N, false>((-L_inverse).eval(), J, J_);
+      sensitivities(b, middle, nu_dot, transition, K, L_inverse, lag);
       if (score) {
-        result.gradient.noalias() -= J_.transpose().lazyProduct(score_slope);
+        const auto J = response_.whitened();
+        result.gradient.noalias() -= J.transpose().lazyProduct(score_slope);
         for (int i = 0; i < N; ++i) {
-          if (score_information[i] > 0.0) rows_.add(J_.row(i), score_information[i]);
+          if (score_information[i] > 0.0) rows_.add(J.row(i), score_information[i]);
           if (rows_.full()) rows_.add_to(result.information);
         }
       }
     }
     if (options_.reduced) reduce(b, block, E, transition, d_start, shown, lag, result, score);
     if (reference_ != nullptr) {
-      keep(b, E, G, transition.Gamma, update ? K : CovarianceGain<N>{}, L_inverse);
+      keep(b, E, transition.Gamma, K, L_inverse);
       reference_->innovation.col(at) = innovation;
       reference_->slope.col(at) = score_slope;
       reference_->information.col(at) = score_information;
       reference_->nu_middle.col(at) = middle;
       reference_->nu_dot.col(at) = nu_dot;
       if (options_.derivatives) {
-        reference_->J.middleRows(N * at, N) = J_;
-        reference_->B.middleRows(N * at, N) = B_;
+        reference_->J.middleRows(N * at, N) = response_.whitened();
+        reference_->B.middleRows(N * at, N) = response_.acceleration().leftCols(rows_.width());
       }
     }
     if (update) {
@@ -251,7 +252,6 @@ class RunPass {
       d_ += K.d * e;
       c_ += K.c * e;
       covariance_.update(K, L);
-      if (options_.derivatives) response_.update(K.nu, K.d, K.c);
     }
     if (options_.reduced) {
       for (int i = 0; i < N; ++i) {
@@ -270,16 +270,27 @@ class RunPass {
   }
 
   void sensitivities(std::size_t b, const Vector6d& middle, const Vector6d& nu_dot, const Transition<N>& transition,
-                     const Matrix& G, const Vector& lag) {
+                     const CovarianceGain<N>& K, const Matrix& L_inverse, const Vector& lag) {
     plant_.columns(b, middle, nu_dot, columns_);
     if (plant_.remembers()) columns_ += plant_.inverse_inertia(middle, nu_dot) * wrenches_;
-    for (int i = 0; i < N; ++i) B_.row(i) = columns_.row(axis(i));
-    response_.predict(transition.E, G, transition.Gamma, block_noise_.rho, block_noise_.rho_colour, H_, B_);
-    Wide& shown = response_.show(lag, H_);
+    for (int i = 0; i < N; ++i) response_.acceleration().row(i).head(columns_.cols()) = columns_.row(axis(i));
     for (std::size_t j = 0; j < numbers_.size(); ++j) {
       if (numbers_[j].kind != NumberKind::kVelocityBias || numbers_[j].run != static_cast<int>(run_index_)) continue;
-      for (int i = 0; i < N; ++i) shown(i, static_cast<Eigen::Index>(j)) += axis(i) == numbers_[j].index ? 1.0 : 0.0;
+      for (int i = 0; i < N; ++i)
+        response_.added()(i, static_cast<Eigen::Index>(j)) = axis(i) == numbers_[j].index ? 1.0 : 0.0;
     }
+    sensor_sensitivities();
+    response_step_.E = transition.E;
+    response_step_.Gamma = transition.Gamma;
+    response_step_.K_nu = K.nu;
+    response_step_.K_d = K.d;
+    response_step_.K_c = K.c;
+    response_step_.L_inverse = L_inverse;
+    response_step_.lag = lag;
+    response_.step(response_step_);
+  }
+
+  void sensor_sensitivities() {
     if (sensor_numbers_.empty()) return;
     const Vector6d now = sensor_.mean(run_.block_size(), plant_.model());
     for (const std::size_t j : sensor_numbers_) {
@@ -287,7 +298,7 @@ class RunPass {
       moved.effects[static_cast<std::size_t>(numbers_[j].index)]
           .theta[static_cast<std::size_t>(numbers_[j].component)] += numbers_[j].step;
       const Vector6d change = (sensor_.mean(run_.block_size(), moved) - now) / numbers_[j].step;
-      for (int i = 0; i < N; ++i) shown(i, static_cast<Eigen::Index>(j)) += change[axis(i)];
+      for (int i = 0; i < N; ++i) response_.added()(i, static_cast<Eigen::Index>(j)) = change[axis(i)];
     }
   }
 
@@ -314,10 +325,9 @@ class RunPass {
     }
   }
 
-  void keep(std::size_t b, const Matrix& E, const Matrix& G, const Matrix& Gamma, const CovarianceGain<N>& K,
-            const Matrix& L_inverse) {
-    double* to = reference_->gains.data() + b * 7 * N * N;
-    for (const Matrix* matrix : {&E, &G, &Gamma, &K.nu, &K.d, &K.c, &L_inverse}) {
+  void keep(std::size_t b, const Matrix& E, const Matrix& Gamma, const CovarianceGain<N>& K, const Matrix& L_inverse) {
+    double* to = reference_->gains.data() + b * RunReference::kMatrices * N * N;
+    for (const Matrix* matrix : {&E, &Gamma, &K.nu, &K.d, &K.c, &L_inverse}) {
       Eigen::Map<Matrix>{to} = *matrix;
       to += N * N;
     }
@@ -335,7 +345,8 @@ class RunPass {
   RunReference* reference_;
   Plant plant_;
   SensorStage sensor_;
-  Response<N> response_;
+  ResponseState<N> response_;
+  ResponseStep<N> response_step_;
   GatheredRows rows_;
   std::array<int, static_cast<std::size_t>(N)> axes_{};
   Matrix H_{Matrix::Identity()};
@@ -350,7 +361,6 @@ class RunPass {
   Vector6d nu_{Vector6d::Zero()};
   Vector d_{Vector::Zero()}, c_{Vector::Zero()};
   Columns columns_, nu_columns_, wrenches_;
-  Wide B_, J_;
 };
 
 }  // namespace fathom::likelihood

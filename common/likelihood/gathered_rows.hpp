@@ -2,7 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+
+#include "common/likelihood/response_step.hpp"
 
 namespace fathom::likelihood {
 
@@ -20,15 +23,27 @@ class GatheredRows {
   }
   [[nodiscard]] bool full() const { return count_ == kMost; }
   [[nodiscard]] bool empty() const { return count_ == 0; }
-  [[nodiscard]] auto rows() const { return rows_.topRows(count_); }
+  [[nodiscard]] Eigen::Index count() const { return count_; }
+  [[nodiscard]] Eigen::Index width() const { return rows_.cols(); }
   void clear() { count_ = 0; }
+  [[nodiscard]] RowColumns columns(Eigen::Index first, Eigen::Index count) const {
+    return {rows_.data() + first, count, rows_.cols()};
+  }
+  /// Adds R'R of these columns to the lower triangle of a square that begins at `sum`.
+  void add_square(Eigen::Index first, Eigen::Index count, double* sum, Eigen::Index stride) const {
+    for (Eigen::Index at = 0; at < count; at += kTile)
+      add_products(columns(first + at, std::min(kTile, count - at)), columns(first + at, count - at), count_,
+                   sum + at * stride + at, stride);
+  }
   /// Adds R'R to the lower triangle of `sum`, and begins anew.
   void add_to(Eigen::MatrixXd& sum) {
-    if (count_ > 0) sum.selfadjointView<Eigen::Lower>().rankUpdate(rows().transpose());
+    add_square(0, rows_.cols(), sum.data(), sum.rows());
     clear();
   }
 
  private:
+  static constexpr Eigen::Index kTile = 8;
+
   Rows rows_;
   Eigen::Index count_{};
 };

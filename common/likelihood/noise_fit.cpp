@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/likelihood/processor.hpp"
+
 namespace fathom::likelihood {
 namespace {
 
@@ -29,12 +31,12 @@ struct Scored {
 /// Sum of logarithms as logarithms of products.
 class LogSum {
  public:
-  void times(const Lanes& factor, std::array<double, kLanes>& sum, double weight) {
+  [[gnu::always_inline]] void times(const Lanes& factor, std::array<double, kLanes>& sum, double weight) {
     product_ *= factor;
     if (++count_ < kTogether) return;
     flush(sum, weight);
   }
-  void flush(std::array<double, kLanes>& sum, double weight) {
+  [[gnu::always_inline]] void flush(std::array<double, kLanes>& sum, double weight) {
     for (std::size_t l = 0; l < kLanes; ++l) sum[l] += weight * std::log(product_[l]);
     product_ = 1.0 - Lanes{};
     count_ = 0;
@@ -63,7 +65,8 @@ struct LaneNoise {
 };
 
 /// Expected information of the numbers, from lane 0 and the six lanes behind it.
-void add_information(const Lanes& e, const Lanes& S, double of_location, double of_scale, Information& information) {
+[[gnu::always_inline]] inline void add_information(const Lanes& e, const Lanes& S, double of_location, double of_scale,
+                                                   Information& information) {
   std::array<double, kNoiseNumbers> de{}, dS{};
   for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
     de[j] = (e[j + 1] - e[0]) / kStep;
@@ -76,8 +79,8 @@ void add_information(const Lanes& e, const Lanes& S, double of_location, double 
 }
 
 /// The filter of filter_pass.hpp for one axis.
-void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, const Tail& tail, bool with_information,
-               Scored& scored) {
+[[gnu::always_inline]] inline void add_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs,
+                                             const Tail& tail, bool with_information, Scored& scored) {
   if (blocks.empty()) return;
   const double dt = blocks.front().dt;
   const LaneNoise noise{logs, dt};
@@ -150,6 +153,21 @@ void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, co
     scored.log_likelihood[l] -= 0.5 * squares[l];
     if (!(least[l] > 0.0)) scored.log_likelihood[l] = -std::numeric_limits<double>::infinity();
   }
+}
+
+#if defined(FATHOM_AVX2)
+FATHOM_AVX2 void add_lanes_avx2(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, const Tail& tail,
+                                bool with_information, Scored& scored) {
+  add_lanes(blocks, logs, tail, with_information, scored);
+}
+#endif
+
+void run_lanes(const std::vector<ReducedBlock>& blocks, const LaneLogs& logs, const Tail& tail, bool with_information,
+               Scored& scored) {
+#if defined(FATHOM_AVX2)
+  if (has_avx2()) return add_lanes_avx2(blocks, logs, tail, with_information, scored);
+#endif
+  add_lanes(blocks, logs, tail, with_information, scored);
 }
 
 Scored score(std::span<const std::vector<ReducedBlock>* const> runs, const LaneLogs& logs, const Tail& tail,

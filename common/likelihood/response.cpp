@@ -1,7 +1,7 @@
 #include "common/likelihood/response.hpp"
 
 #include "common/likelihood/gathered_rows.hpp"
-#include "common/likelihood/sensitivity.hpp"
+#include "common/likelihood/response_state.hpp"
 
 namespace fathom::likelihood {
 namespace {
@@ -9,19 +9,18 @@ namespace {
 template <int N>
 struct Gains {
   using Matrix = Eigen::Matrix<double, N, N>;
-  Eigen::Map<const Matrix> E, G, Gamma, K_n, K_d, K_c, L_inverse;
+  Eigen::Map<const Matrix> E, Gamma, K_n, K_d, K_c, L_inverse;
   Gains(const RunReference& reference, std::size_t block)
       : E{at(reference, block, 0)},
-        G{at(reference, block, 1)},
-        Gamma{at(reference, block, 2)},
-        K_n{at(reference, block, 3)},
-        K_d{at(reference, block, 4)},
-        K_c{at(reference, block, 5)},
-        L_inverse{at(reference, block, 6)} {}
+        Gamma{at(reference, block, 1)},
+        K_n{at(reference, block, 2)},
+        K_d{at(reference, block, 3)},
+        K_c{at(reference, block, 4)},
+        L_inverse{at(reference, block, 5)} {}
 
  private:
   static const double* at(const RunReference& reference, std::size_t block, std::size_t which) {
-    return reference.gains.data() + (block * 7 + which) * N * N;
+    return reference.gains.data() + (block * RunReference::kMatrices + which) * N * N;
   }
 };
 
@@ -39,14 +38,14 @@ class Products {
   }
   void flush() {
     if (of_columns_.empty()) return;
-    const auto rows = of_columns_.rows();
-    sums_.with_numbers.noalias() += of_numbers_.rows().transpose() * rows;
+    const Eigen::Index n = sums_.with_numbers.rows(), m = sums_.gram.rows();
+    add_products(of_columns_.columns(0, m), of_numbers_.columns(0, n), of_columns_.count(), sums_.with_numbers.data(),
+                 n);
     of_numbers_.clear();
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const auto first = static_cast<Eigen::Index>(groups_[g]);
-      const auto end = g + 1 < groups_.size() ? static_cast<Eigen::Index>(groups_[g + 1]) : rows.cols();
-      const auto group = rows.middleCols(first, end - first);
-      sums_.gram.block(first, first, end - first, end - first).noalias() += group.transpose() * group;
+      const auto end = g + 1 < groups_.size() ? static_cast<Eigen::Index>(groups_[g + 1]) : m;
+      of_columns_.add_square(first, end - first, sums_.gram.data() + first * m + first, m);
     }
     if (groups_.empty()) {
       of_columns_.add_to(sums_.gram);
@@ -64,34 +63,34 @@ class Products {
 template <int N>
 void respond_with(const Problem& problem, const RunReference& reference, std::size_t run, std::size_t columns,
                   std::span<const std::size_t> groups, const ColumnSource& source, ResponseSums& sums) {
-  using Vector = Eigen::Matrix<double, N, 1>;
   const auto m = static_cast<Eigen::Index>(columns);
-  Response<N> response{m};
-  RowMatrix acceleration = RowMatrix::Zero(N, m), shown = RowMatrix::Zero(N, m);
-  typename Response<N>::Wide pushed = Response<N>::Wide::Zero(N, m), W = pushed;
-  const Vector rho = reference.rho, rho_colour = reference.rho_colour;
-  const Eigen::Matrix<double, N, N> H = Eigen::Matrix<double, N, N>::Identity();
+  ResponseState<N> state{m};
+  ResponseStep<N> step;
+  step.mean_force = reference.mean_force;
+  step.rho = reference.rho;
+  step.rho_colour = reference.rho_colour;
   Products products{groups, reference.numbers, m, sums};
   const auto& blocks = problem.runs[run].blocks();
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const auto at = static_cast<Eigen::Index>(b);
     const Gains<N> gains{reference, b};
-    shown.setZero();
-    source(b, acceleration, shown);
-    pushed = acceleration;
-    response.predict(gains.E, gains.G, gains.Gamma, rho, rho_colour, H, pushed);
-    Vector lag;
-    for (int i = 0; i < N; ++i) lag[i] = blocks[b].lag[problem.axes[static_cast<std::size_t>(i)]];
-    response.show(lag, H) += shown;
-    if (reference.information.col(at).maxCoeff() > 0.0) {
-      times<N, false>((-gains.L_inverse).eval(), response.shown(), W);
-      sums.gradient.noalias() -= W.transpose().lazyProduct(reference.slope.col(at));
-      for (int i = 0; i < N; ++i) {
-        if (reference.information(i, at) > 0.0)
-          products.add(reference.J.row(N * at + i), W.row(i), reference.information(i, at));
-      }
+    step.E = gains.E;
+    step.Gamma = gains.Gamma;
+    step.K_nu = gains.K_n;
+    step.K_d = gains.K_d;
+    step.K_c = gains.K_c;
+    step.L_inverse = gains.L_inverse;
+    for (int i = 0; i < N; ++i) step.lag[i] = blocks[b].lag[problem.axes[static_cast<std::size_t>(i)]];
+    state.added().setZero();
+    source(b, state.acceleration(), state.added());
+    state.step(step);
+    if (!(reference.information.col(at).maxCoeff() > 0.0)) continue;
+    const auto W = state.whitened();
+    sums.gradient.noalias() -= W.transpose().lazyProduct(reference.slope.col(at));
+    for (int i = 0; i < N; ++i) {
+      if (reference.information(i, at) > 0.0)
+        products.add(reference.J.row(N * at + i), W.row(i), reference.information(i, at));
     }
-    response.update(gains.K_n, gains.K_d, gains.K_c);
   }
   products.flush();
 }
@@ -100,7 +99,7 @@ template <int N>
 Eigen::MatrixXd adjoint_with(const Problem& problem, const RunReference& reference, std::size_t run) {
   using Vector = Eigen::Matrix<double, N, 1>;
   const auto& blocks = problem.runs[run].blocks();
-  const Vector rho = reference.rho, rho_colour = reference.rho_colour;
+  const Vector mean_force = reference.mean_force, rho = reference.rho, rho_colour = reference.rho_colour;
   Eigen::MatrixXd g = Eigen::MatrixXd::Zero(N, static_cast<Eigen::Index>(blocks.size()));
   // Adjoints of nu, d, c after the block's update, and of nu + c before the next one's prediction.
   Vector nu = Vector::Zero(), d = nu, c = nu;
@@ -117,7 +116,7 @@ Eigen::MatrixXd adjoint_with(const Problem& problem, const RunReference& referen
     g.col(at) = gains.Gamma.transpose() * nu_minus;
     const Vector before = lag.cwiseProduct(of_shown);
     nu = gains.E.transpose() * nu_minus + before;
-    d = gains.G.transpose() * nu_minus + rho.cwiseProduct(d);
+    d = mean_force.cwiseProduct(g.col(at)) + rho.cwiseProduct(d);
     c = rho_colour.cwiseProduct(c_minus) + before;
   }
   return g;
