@@ -1,5 +1,6 @@
 #include "common/report/correction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -86,6 +87,19 @@ std::string correction_words(const DiagnosisResult& result) {
   const CorrectionGiven& given = *result.correction;
   if (given.adopted) return given.words;
   return "What no listed effect explains could not be made a part of the model: " + given.refused + ".";
+}
+
+std::string correction_line(const CorrectionGiven& given) {
+  std::vector<std::string> kinds;  // the strongest first, as they were found
+  for (const CorrectionTerm& term : given.terms) {
+    if (std::ranges::find(kinds, term.group) == kinds.end()) kinds.push_back(term.group);
+  }
+  std::string with = given.formula ? given.formula->equation : kinds.empty() ? "" : kinds.front();
+  if (!given.formula && kinds.size() > 1) with += " and " + std::to_string(kinds.size() - 1) + " more";
+  return "<b>A correction, not a cause: a learned force, " + percent(given.size) + " of the applied force</b>" +
+         (with.empty() ? "" : " (" + escape(with) + ")") + "; where its weights were not fitted, the error is " +
+         percent(1.0 - given.held_out) + " lower<details><summary>what it is, and what is left</summary>" +
+         escape(given.words) + "</details>";
 }
 
 std::string correction_section(const DiagnosisResult& result, Album* album) {

@@ -14,6 +14,9 @@ class Album;
 [[nodiscard]] nlohmann::ordered_json correction_json(const CorrectionGiven& given);
 /// HTML; empty where nothing unlisted was there to be learned.
 [[nodiscard]] std::string correction_section(const DiagnosisResult& result, Album* album = nullptr);
+/// One line of the first screen of an adopted one, HTML: how large, along what, what it gains. The whole sentence folds
+/// out.
+[[nodiscard]] std::string correction_line(const CorrectionGiven& given);
 /// Plain words for the terminal; empty likewise.
 [[nodiscard]] std::string correction_words(const DiagnosisResult& result);
 

@@ -10,6 +10,7 @@
 
 #include "common/model/effect.hpp"
 #include "common/model/parameters.hpp"
+#include "common/report/correction.hpp"
 #include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
@@ -224,7 +225,7 @@ std::string causes(const DiagnosisResult& result) {
     items += "<li><span class=\"soft\">Stand-ins that were tried and not taken, since the error does not fall: " +
              escape(refused) + "</span></li>\n";
   if (result.correction && result.correction->adopted)
-    items += "<li>A correction, not a cause: " + escape(result.correction->words) + "</li>\n";
+    items += "<li>" + correction_line(*result.correction) + "</li>\n";
   return items.empty() ? "" : "<ul class=\"causes\">" + items + "</ul>\n";
 }
 

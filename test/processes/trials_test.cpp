@@ -45,10 +45,15 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: from a log to derivat
   CHECK(result.smoothed.size() == trial.flight.size());
   CHECK(result.loads.size() == trial.recording.loads.size());
 
-  const auto regressed =
-      shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + " --vehicle " + kVehicle + " --write " +
-            scratch.path("found.yaml") + " --json " + scratch.path("found.json"));
+  const auto regressed = shell(program("fathom") + " regress " + scratch.path("smooth.lcmlog") + " --vehicle " +
+                               kVehicle + " --write " + scratch.path("found.yaml") + " --json " +
+                               scratch.path("found.json") + " --page " + scratch.path("found.html"));
   REQUIRE_MESSAGE(regressed.code == 0, regressed.text);
+  std::ifstream file{scratch.path("found.html")};
+  const std::string page{std::istreambuf_iterator<char>{file}, {}};
+  CHECK(page.find("selected derivatives are larger than their errors") != std::string::npos);
+  CHECK(page.find("X, surge") != std::string::npos);
+  CHECK(page.find("</html>") != std::string::npos);
   std::ifstream told{scratch.path("found.json")};
   const auto json = nlohmann::json::parse(told);
   CHECK(json.at("axes").size() == 6);

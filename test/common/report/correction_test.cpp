@@ -86,3 +86,16 @@ TEST_CASE("correction: it stands apart from causes, and a refused one says why")
   result.correction.reset();
   CHECK(report::correction_section(result).empty());
 }
+
+TEST_CASE("correction: the first screen has a line of it; the whole sentence folds out") {
+  CorrectionGiven given = *diagnosed().correction;
+  given.size = 0.123;
+  given.held_out = 0.75;
+  const std::string line = report::correction_line(given);
+  const std::string seen = line.substr(0, line.find("<details>"));
+  CHECK(seen.find("12 %") != std::string::npos);
+  CHECK(seen.find("velocity and 2 more") != std::string::npos);
+  CHECK(seen.find("25 % lower") != std::string::npos);
+  CHECK(seen.find(given.words) == std::string::npos);
+  CHECK(line.find(given.words) != std::string::npos);
+}

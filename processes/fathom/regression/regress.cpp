@@ -9,7 +9,8 @@
 #include "common/tables/writer.hpp"
 #include "processes/fathom/commands.hpp"
 #include "processes/fathom/recordings.hpp"
-#include "processes/fathom/regress_json.hpp"
+#include "processes/fathom/regression/regress_json.hpp"
+#include "processes/fathom/regression/regress_page.hpp"
 
 namespace fathom::tool {
 namespace {
@@ -20,7 +21,7 @@ using identification::StepwiseResult;
 constexpr std::array<const char*, 6> kTitles{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 struct RegressOptions {
-  std::string vehicle, write, json;
+  std::string vehicle, write, json, page;
   std::vector<std::string> runs;
   std::vector<double> current;
   double rate{10.0};
@@ -158,6 +159,7 @@ void run_regress(const RegressOptions& options) {
   if (options.trace) print_trace(identification::trace_pulls(vehicle, runs, settings));
   if (!options.write.empty()) tables::write_file(options.write, coefficients_of(axes));
   if (!options.json.empty()) tables::write_file(options.json, regression_json(axes, runs, vehicle, settings));
+  if (!options.page.empty()) tables::write_file(options.page, regress_page(axes, runs, vehicle, settings));
 }
 
 }  // namespace
@@ -183,6 +185,8 @@ void add_regress(runtime::CommandLine& app) {
   command->add_option("--thrust-gain", options->thrust_gain, "the same of a thruster's force without a cell")
       ->positive();
   command->add_option("--json", options->json, "write all that is told to this file");
+  command->add_option("--page", options->page,
+                      "HTML file to write: derivatives with their intervals, and how well they explain");
   command->add_option("--write", options->write, "write the derivatives of all runs together to this YAML file");
   command->callback([options] { run_regress(*options); });
 }

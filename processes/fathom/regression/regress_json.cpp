@@ -1,4 +1,4 @@
-#include "processes/fathom/regress_json.hpp"
+#include "processes/fathom/regression/regress_json.hpp"
 
 #include <nlohmann/json.hpp>
 
