@@ -32,19 +32,17 @@ Found Searching::run(const Before* before) {
   found_.best = found_.base;
   if (!found_.base.fit.finite) return std::move(found_);
   if (before != nullptr) take_up(before->sets);
-  const auto room = [&] { return thresholds_.most_effects - static_cast<int>(effects().size()); };
-  while (room() > 0 && goes_on()) {
-    expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
-    if (!add_some()) break;
-    drop();
-  }
-  expect_rounds(0);
-  leave_out();
-  judge_effects();
+  add_all();
   // What gives way to something unlisted need not be told from other names.
   progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
   found_.free_force = free_force_beside(found_.best);
   if (!sought_) give_way();
+  if (!sought_ && add_unasked()) {
+    drop();
+    add_all();
+    found_.free_force = free_force_beside(found_.best);
+    give_way();
+  }
   progress_.expect(kFreeForceFit.phase, 0);
   if (!sought_ && swap()) {
     drop();
@@ -57,6 +55,17 @@ Found Searching::run(const Before* before) {
   found_.near = models_.near(found_.best, kHardlyLess, kMostNear);
   found_.fits = models_.size();
   return std::move(found_);
+}
+
+void Searching::add_all() {
+  while (room() > 0 && goes_on()) {
+    expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
+    if (!add_some()) break;
+    drop();
+  }
+  expect_rounds(0);
+  leave_out();
+  judge_effects();
 }
 
 likelihood::Fit Searching::fit_base() const {
@@ -105,7 +114,7 @@ model::ActiveEffect Searching::effect_of(std::size_t law, const std::vector<doub
   return active;
 }
 
-std::vector<Proposal> Searching::proposals(const Fitted& from, double least, bool with_pairs) {
+std::vector<Proposal> Searching::proposals(const Fitted& from, double least, bool with_pairs, bool unasked) {
   std::vector<Proposal> proposals;
   promised_.clear();
   const auto take = [&](const Scan& scan, const likelihood::Noise& noise) {
@@ -115,7 +124,8 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
     for (const Promise& promise : scan.promises) {
       note(promise);
       const bool first = asked_first(laws_[promise.law]);
-      if (promise.score < least || (!first && promise.score < kFarBehind * best)) continue;
+      if (promise.score < least || (!first && !unasked && promise.score < kFarBehind * best)) continue;
+      if (unasked && fitted_beside(from, laws_[promise.law].name)) continue;
       if (of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
       if (!first && singles++ >= (sought_ ? 1 : thresholds_.fits_per_round)) continue;
       proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first, {}});

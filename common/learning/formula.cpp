@@ -252,7 +252,7 @@ FormulaGiven given_of(const FormulaFound& found) {
     given.words += ", " + found.form.symbol + text(" = %.3g ± %.2g", found.inner, 1.96 * found.inner_sigma) +
                    (found.form.unit.empty() ? "" : " " + found.form.unit);
   }
-  given.words += " (SI, 95 %). No listed effect has this form.";
+  given.words += " (SI, 95 %).";
   return given;
 }
 
