@@ -9,8 +9,6 @@ namespace fathom::inference {
 namespace {
 
 constexpr double kPlain = 100.0;  // nats that a name is worth beyond all doubt: how much more is not asked
-// Of the free force's worth: a law that does as much promises at least that, for promises are wrong by a factor of two.
-constexpr double kOfItsWorth = 0.5;
 
 }  // namespace
 
@@ -78,26 +76,6 @@ void Searching::takes_the_place(const std::vector<std::size_t>& gone, const Fitt
   in_place_.clear();
   leave_out();
   judge_effects();
-}
-
-bool Searching::fitted_beside(const Fitted& from, const std::string& name) const {
-  std::vector<std::string> names = from.names;
-  names.insert(std::ranges::upper_bound(names, name), name);
-  return models_.best_of(names) != nullptr;
-}
-
-bool Searching::add_unasked() {
-  const double instead = worth(*found_.free_force);
-  if (room() <= 0 || !goes_on() || instead < thresholds_.free_force_odds) return false;
-  expect_rounds(1);
-  const double from = found_.best.score;
-  const std::vector<Proposal> unasked =
-      proposals(found_.best, std::max(thresholds_.score_worth, kOfItsWorth * instead), false, true);
-  std::vector<Fitted> fits =
-      models_.race(starts(found_.best.fit.hypothesis, unasked), {.from = from, .to_beat = from + instead});
-  std::erase_if(fits, [&](const Fitted& fitted) { return fitted.score < from + instead; });
-  expect_rounds(0);
-  return take_best(std::move(fits));
 }
 
 double Searching::size_of(const Seen& seen, std::size_t effect, const Fitted* without) const {

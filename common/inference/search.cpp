@@ -9,12 +9,10 @@
 namespace fathom::inference {
 namespace {
 
-constexpr std::size_t kOtherForms = 4;     // of one effect, tried in its place
 constexpr double kLouder = 5.0;            // by which the second scan's random force is smaller
-constexpr std::size_t kTimesAgain = 3;     // maxima of one effect from which it is fitted once more
 constexpr std::array kLeaning{1.0, 10.0};  // times the noise's prior mean, where the base model's fits begin
-// Of the best promise: what promises less has never been the true one. Promises are linear, so that a law's own is
-// wrong by a factor of two where its numbers are far from its grid.
+// Of the best promise, and then of what was really gained: what promises less has never been the true one. Promises are
+// linear, so that a law's own is wrong by a factor of two where its numbers are far from its grid.
 constexpr double kFarBehind = 0.2;
 // Sets found on stretches that are asked of whole runs too: nats, and how many.
 constexpr double kHardlyLess = 30.0;
@@ -32,17 +30,19 @@ Found Searching::run(const Before* before) {
   found_.best = found_.base;
   if (!found_.base.fit.finite) return std::move(found_);
   if (before != nullptr) take_up(before->sets);
-  add_all();
+  const auto room = [&] { return thresholds_.most_effects - static_cast<int>(effects().size()); };
+  while (room() > 0 && goes_on()) {
+    expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
+    if (!add_some()) break;
+    drop();
+  }
+  expect_rounds(0);
+  leave_out();
+  judge_effects();
   // What gives way to something unlisted need not be told from other names.
   progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
   found_.free_force = free_force_beside(found_.best);
   if (!sought_) give_way();
-  if (!sought_ && add_unasked()) {
-    drop();
-    add_all();
-    found_.free_force = free_force_beside(found_.best);
-    give_way();
-  }
   progress_.expect(kFreeForceFit.phase, 0);
   if (!sought_ && swap()) {
     drop();
@@ -55,17 +55,6 @@ Found Searching::run(const Before* before) {
   found_.near = models_.near(found_.best, kHardlyLess, kMostNear);
   found_.fits = models_.size();
   return std::move(found_);
-}
-
-void Searching::add_all() {
-  while (room() > 0 && goes_on()) {
-    expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
-    if (!add_some()) break;
-    drop();
-  }
-  expect_rounds(0);
-  leave_out();
-  judge_effects();
 }
 
 likelihood::Fit Searching::fit_base() const {
@@ -114,9 +103,10 @@ model::ActiveEffect Searching::effect_of(std::size_t law, const std::vector<doub
   return active;
 }
 
-std::vector<Proposal> Searching::proposals(const Fitted& from, double least, bool with_pairs, bool unasked) {
+std::vector<Proposal> Searching::proposals(const Fitted& from, double least, bool with_pairs) {
   std::vector<Proposal> proposals;
   promised_.clear();
+  behind_.clear();
   const auto take = [&](const Scan& scan, const likelihood::Noise& noise) {
     const double best = scan.promises.empty() ? 0.0 : scan.promises.front().score;
     int singles = 0;
@@ -124,9 +114,11 @@ std::vector<Proposal> Searching::proposals(const Fitted& from, double least, boo
     for (const Promise& promise : scan.promises) {
       note(promise);
       const bool first = asked_first(laws_[promise.law]);
-      if (promise.score < least || (!first && !unasked && promise.score < kFarBehind * best)) continue;
-      if (unasked && fitted_beside(from, laws_[promise.law].name)) continue;
-      if (of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
+      if (promise.score < least || of_name[laws_[promise.law].name]++ > 0) continue;  // the best form of each
+      if (!first && promise.score < kFarBehind * best) {
+        behind_.emplace_back(promise.score, Proposal{{effect_of(promise.law, promise.theta)}, noise, false, {}});
+        continue;
+      }
       if (!first && singles++ >= (sought_ ? 1 : thresholds_.fits_per_round)) continue;
       proposals.push_back({{effect_of(promise.law, promise.theta)}, noise, first, {}});
       for (const std::vector<double>& theta : sought_ ? std::vector<std::vector<double>>{} : promise.also)
@@ -206,7 +198,26 @@ bool Searching::add_some() {
   std::erase_if(all, [](const Proposal& proposal) { return proposal.first; });
   const likelihood::Hypothesis from = found_.best.fit.hypothesis;
   if (take_best(models_.race(starts(from, first), {.from = found_.best.score}))) return true;
-  return take_best(models_.race(starts(from, all), {.from = found_.best.score}));
+  std::vector<Fitted> fits = models_.race(starts(from, all), {.from = found_.best.score});
+  double gained = 0.0;
+  for (const Fitted& fitted : fits) gained = std::max(gained, fitted.score - found_.best.score);
+  for (Fitted& fitted : models_.race(starts(from, hidden(all, gained)), {.from = found_.best.score}))
+    fits.push_back(std::move(fitted));
+  return take_best(std::move(fits));
+}
+
+std::vector<Proposal> Searching::hidden(const std::vector<Proposal>& asked, double gained) const {
+  std::vector<std::pair<double, Proposal>> order = behind_;
+  std::ranges::stable_sort(order, std::greater{}, &std::pair<double, Proposal>::first);
+  std::vector<Proposal> found;
+  for (auto& [promised, proposal] : order) {
+    const auto same = [&](const Proposal& other) {
+      return other.added.size() == 1 && other.added.front().effect == proposal.added.front().effect;
+    };
+    if (promised < kFarBehind * gained || found.size() == static_cast<std::size_t>(thresholds_.fits_per_round)) break;
+    if (std::ranges::none_of(asked, same) && std::ranges::none_of(found, same)) found.push_back(std::move(proposal));
+  }
+  return found;
 }
 
 bool Searching::held(const std::vector<model::ActiveEffect>& effects, const model::ActiveEffect& active) {
@@ -232,42 +243,6 @@ bool Searching::counts(const Fitted& fitted) {
   return true;
 }
 
-void Searching::simplify(const std::vector<model::ActiveEffect>& before) {
-  const std::vector<model::ActiveEffect> now = effects();
-  for (const model::ActiveEffect& active : now) {
-    if (held(before, active) || !held(effects(), active)) continue;
-    std::vector<std::size_t> forms;
-    double promised = 0.0;
-    for (const auto& [law, promise] : promised_) {
-      if (laws_[law].seed.effect != active.effect) continue;
-      promised = std::max(promised, promise.score);
-      if (!held(now, laws_[law].seed)) forms.push_back(law);
-    }
-    std::erase_if(forms, [&](std::size_t law) { return promised_.at(law).score < 0.5 * promised; });
-    std::ranges::sort(forms, std::greater{}, [&](std::size_t law) { return promised_.at(law).score; });
-    forms.resize(std::min(forms.size(), kOtherForms));
-    std::vector<Proposal> others;
-    for (const std::size_t law : forms) {
-      // From its own best and from the numbers that it shares with what was found.
-      others.push_back({{effect_of(law, promised_.at(law).theta)}, found_.best.fit.noise});
-      others.push_back({{laws_[law].seed}, found_.best.fit.noise});
-      std::vector<double>& theta = others.back().added.front().theta;
-      for (std::size_t c = 0; c < active.theta.size(); ++c) {
-        if (moves(laws_[law].seed, c) && moves(active, c)) theta[c] = active.theta[c];
-        if (!moves(laws_[law].seed, c)) theta[c] = 0.0;
-      }
-    }
-    likelihood::Hypothesis rest = found_.best.fit.hypothesis;
-    std::erase_if(rest.model.effects,
-                  [&](const auto& other) { return other.effect == active.effect && other.variant == active.variant; });
-    for (const Fitted& other : models_.race(starts(rest, others), better())) {
-      if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
-    }
-  }
-}
-
-Odds Searching::better() const { return {.from = found_.base.score, .to_beat = found_.best.score, .near = 0.0}; }
-
 void Searching::quiet(likelihood::Fit& fit) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(problem_.simulated); ++i)
     fit.noise[i].log[likelihood::kForce] -= std::log(kLouder);
@@ -283,39 +258,6 @@ bool Searching::quieten(const Seen& seen, likelihood::Fit& fit) const {
   }
   if (large) quiet(fit);
   return large;
-}
-
-void Searching::seek_again(const std::vector<model::ActiveEffect>& before) {
-  const std::vector<model::ActiveEffect> now = effects();
-  for (const model::ActiveEffect& active : now) {
-    const auto place = std::ranges::find_if(
-        effects(), [&](const auto& other) { return other.effect == active.effect && other.variant == active.variant; });
-    const auto law = std::ranges::find_if(
-        laws_, [&](const Law& one) { return one.seed.effect == active.effect && one.seed.variant == active.variant; });
-    if (held(before, active) || place == effects().end() || law == laws_.end() || !shaped(*law) || !goes_on()) continue;
-    const Start rest = without(found_.best, static_cast<std::size_t>(place - effects().begin()));
-    // As the noise is beside it.
-    likelihood::Fit fit =
-        likelihood::fit(problem_, rest.hypothesis, rest.noise,
-                        {.noise_rounds = 1, .steps = 2, .enough = 1.0, .fit_noise = false, .threads = threads_});
-    std::vector<Proposal> again;
-    if (!fit.finite) continue;
-    const auto look = [&](const Seen& seen) {
-      for (std::vector<double>& theta : starts_of(problem_, seen, *law, kTimesAgain, thresholds_, threads_)) {
-        again.push_back({{law->seed}, found_.best.fit.noise, false, {}});
-        again.back().added.front().theta = std::move(theta);
-      }
-    };
-    const Seen seen = see(problem_, fit, threads_);
-    look(seen);
-    // A moment, a place or a frequency that is a little off leaves a random force that hides it: seen with less of it
-    // too.
-    quiet(fit);
-    look(see(problem_, fit, threads_));
-    for (const Fitted& other : models_.race(starts(fit.hypothesis, again), better())) {
-      if (other.fit.finite && other.score > found_.best.score && counts(other)) found_.best = other;
-    }
-  }
 }
 
 double Searching::guessed_loss(const Seen& seen, std::size_t effect) const {

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/inference/search.hpp"
@@ -56,22 +57,16 @@ class Searching {
   [[nodiscard]] const std::vector<model::ActiveEffect>& effects() const;
   [[nodiscard]] model::ActiveEffect effect_of(std::size_t law, const std::vector<double>& theta) const;
   /// What promises most beside a model: the best laws and pairs, seen at its noise and, where a random force may have
-  /// swallowed something slow, at a fifth of it. `least`: what a promise must come to, in nats. `unasked`: only of
-  /// names that have not been fitted beside it, however far their promise is behind.
-  std::vector<Proposal> proposals(const Fitted& from, double least, bool with_pairs, bool unasked = false);
-  [[nodiscard]] bool fitted_beside(const Fitted& from, const std::string& name) const;
+  /// swallowed something slow, at a fifth of it. `least`: what a promise must come to, in nats.
+  std::vector<Proposal> proposals(const Fitted& from, double least, bool with_pairs);
   static std::vector<Start> starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals);
   [[nodiscard]] static Start without(const Fitted& from, std::size_t effect);
   /// Takes the best of these where it is a name's worth better; else false.
   bool take_best(std::vector<Fitted> fits);
   bool add_some();
-  /// Names as long as one is worth it; then each is judged.
-  void add_all();
-  [[nodiscard]] int room() const { return thresholds_.most_effects - static_cast<int>(effects().size()); }
-  /// Before something unlisted is said: laws that promise about as much as the free force and have not been fitted
-  /// beside what is left, since what promised five times as much, a stand-in, was fitted in their place. Whether one
-  /// does better than the free force.
-  bool add_unasked();
+  /// Of the last look, what promised so much less than the best that it was not asked, though by what those that were
+  /// asked have really gained it should have been: a promise that is not kept hides nothing. One form of each name.
+  [[nodiscard]] std::vector<Proposal> hidden(const std::vector<Proposal>& asked, double gained) const;
   static bool held(const std::vector<model::ActiveEffect>& effects, const model::ActiveEffect& active);
   /// Every effect that the best model does not hold yet has the smallest practical size and numbers of its own; else
   /// it is noted why not.
@@ -129,10 +124,11 @@ class Searching {
   Found found_;
   bool sought_{};  // on stretches already: forms, times and places, and what could stand in another's place
   std::map<std::string, Promise> noted_;
-  std::map<std::size_t, Promise> promised_;  // by law, in the last look
-  std::map<std::string, Refusal> failed_;    // what evidence alone would have named
-  std::map<std::string, Refusal> gave_way_;  // to a free force in its place
-  std::map<std::string, double> in_place_;   // nats by which a name is worth more than that
+  std::map<std::size_t, Promise> promised_;          // by law, in the last look
+  std::vector<std::pair<double, Proposal>> behind_;  // promised, in the last look: too little beside the best
+  std::map<std::string, Refusal> failed_;            // what evidence alone would have named
+  std::map<std::string, Refusal> gave_way_;          // to a free force in its place
+  std::map<std::string, double> in_place_;           // nats by which a name is worth more than that
 };
 
 }  // namespace fathom::inference
