@@ -74,7 +74,7 @@ template <int N, int kWidth>
   }
 }
 
-/// kTile columns of a with two lanes of b, the sums kept in registers over all rows.
+/// kTile columns of a with one lane of b, the sums kept in registers over all rows.
 template <int kWidth>
 [[gnu::always_inline]] inline void add_product_lanes(const RowColumns& a, const RowColumns& b, Eigen::Index rows,
                                                      double* sum, Eigen::Index sum_stride) {

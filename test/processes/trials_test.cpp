@@ -58,6 +58,8 @@ TEST_CASE("fathom smooth, regress and compare --manoeuvre: from a log to derivat
   const auto json = nlohmann::json::parse(told);
   CHECK(json.at("axes").size() == 6);
   CHECK(json.at("axes")[0].at("together").at("terms").size() > 0);
+  const auto& known = json.at("axes")[0].at("reference")[0];  // X_uu: -0.012, 4.2 %
+  CHECK(known.at("std").get<double>() == doctest::Approx(0.042 * 0.012));
   CHECK(json.at("axes")[0].at("manoeuvres")[0].at("name") == "smooth");
   CHECK_MESSAGE(regressed.says("X_uu"), regressed.text);
   CHECK_MESSAGE(regressed.says("forces from load cells"), regressed.text);
@@ -203,6 +205,7 @@ TEST_CASE("scripts/pap104: three manoeuvres flown, smoothed, drawn and regressed
   const std::string report = text("report.html");
   CHECK(report.find("X (surge): dimensionless") != std::string::npos);
   CHECK(report.find("circle.html") != std::string::npos);
+  CHECK(text("derivatives.html").find("-0.0120 ± 0.00099") != std::string::npos);  // reference of X_uu, 4.2 %
 }
 
 TEST_CASE("fathom smooth: a table with a column map, from motion capture and gyro") {

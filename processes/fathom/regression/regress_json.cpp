@@ -62,7 +62,7 @@ std::string regression_json(const std::vector<identification::AxisRegression>& a
       for (std::size_t j = 0; j < axis.candidates.terms.size(); ++j) {
         if (axis.candidates.terms[j] == known.term)
           one["reference"].push_back(
-              {{"name", axis.candidates.names[j]}, {"value", known.value}, {"relative_error", known.error}});
+              {{"name", axis.candidates.names[j]}, {"value", known.value}, {"std", known.error}});
       }
     }
     all["axes"].push_back(one);

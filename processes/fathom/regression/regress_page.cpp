@@ -32,7 +32,7 @@ const std::string& name_of(const AxisRegression& axis, int column) {
   return axis.candidates.names[static_cast<std::size_t>(column)];
 }
 
-/// Value and relative error of the vehicle file's reference; nothing where it has none.
+/// Value and standard error of the vehicle file's reference; nothing where it has none.
 std::optional<std::pair<double, double>> reference_of(const AxisRegression& axis, int column,
                                                       const model::Vehicle& vehicle) {
   for (const auto& known : vehicle.hydrodynamics->reference) {
@@ -53,7 +53,7 @@ std::string row_of(const AxisRegression& axis, const SelectedTerm& term, bool st
   std::vector<report::Whisker> bars{{term.value - half, term.value, term.value + half, report::kAfterColour}};
   double low = std::min(0.0, term.value - half), high = std::max(0.0, term.value + half);
   if (known) {
-    const double spread = kNormal95 * known->second * std::abs(known->first);
+    const double spread = kNormal95 * known->second;
     bars.push_back({known->first - spread, known->first, known->first + spread, report::kMeasuredColour});
     low = std::min(low, known->first - spread);
     high = std::max(high, known->first + spread);
@@ -62,7 +62,7 @@ std::string row_of(const AxisRegression& axis, const SelectedTerm& term, bool st
   for (const int column : term.equivalents) as_well += (as_well.empty() ? "" : ", ") + name_of(axis, column);
   const std::string name = escape(name_of(axis, term.column));
   return "<tr>" + cell(strongest ? "<b>" + name + "</b>" : name) + cell(plus_minus(term.value, term.total()), "n") +
-         cell(known ? plus_minus(known->first, known->second * std::abs(known->first)) : "-", "n") +
+         cell(known ? plus_minus(known->first, known->second) : "-", "n") +
          cell(report::whiskers(bars, low, high, 0.0)) + cell(term.stands() ? "larger" : "within them") +
          cell(escape(as_well)) + "</tr>\n";
 }
