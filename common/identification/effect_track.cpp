@@ -14,7 +14,11 @@ constexpr std::size_t kPastLength = 100;  // of those: 2 s, longer than the long
 EffectTrack::EffectTrack(const model::Model& base, model::ActiveEffect effect,
                          std::span<const model::BaseParameter> parameters, Utime origin, std::size_t capacity,
                          double max_gap)
-    : wrench_{base, std::move(effect), parameters}, vehicle_{base.vehicle}, origin_{origin}, max_gap_{max_gap} {
+    : wrench_{base, std::move(effect), parameters},
+      sought_{this->effect().effect->sought(this->effect().variant)},
+      vehicle_{base.vehicle},
+      origin_{origin},
+      max_gap_{max_gap} {
   base_.resize(static_cast<Eigen::Index>(parameters.size()));
   for (Eigen::Index i = 0; i < base_.size(); ++i) {
     base_[i] = base.theta[model::index(parameters[static_cast<std::size_t>(i)])];
@@ -75,20 +79,22 @@ bool EffectTrack::extend(RowBlock& block, std::span<const double> average, std::
     filtered_ -= derivative[i] * momenta_[at];
   }
   const std::vector<double>& theta = effect().theta;
+  const auto all = static_cast<Eigen::Index>(theta.size()), numbers = static_cast<Eigen::Index>(sought_.size());
   for (int k = 0; k < block.count; ++k) {
     Row& row = block.rows[static_cast<std::size_t>(k)];
     const Eigen::Index base = row.h.size();
-    const auto numbers = static_cast<Eigen::Index>(theta.size());
     row.h.conservativeResize(base + numbers);
     row.y += filtered_(row.axis, 0);
     for (Eigen::Index i = 0; wrench_.felt() && i < base; ++i) {
-      const double change = filtered_(row.axis, 1 + numbers + i);
+      const double change = filtered_(row.axis, 1 + all + i);
       row.h[i] -= change;
       row.y -= change * base_[i];
     }
     for (Eigen::Index i = 0; i < numbers; ++i) {
-      row.h[base + i] = -filtered_(row.axis, i + 1);
-      row.y -= filtered_(row.axis, i + 1) * theta[static_cast<std::size_t>(i)];
+      const std::size_t place = sought_[static_cast<std::size_t>(i)];
+      const double change = filtered_(row.axis, static_cast<Eigen::Index>(place) + 1);
+      row.h[base + i] = -change;
+      row.y -= change * theta[place];
     }
   }
   return true;

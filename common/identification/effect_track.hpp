@@ -31,6 +31,8 @@ class EffectTrack {
               Utime origin, std::size_t capacity, double max_gap);
 
   [[nodiscard]] const model::ActiveEffect& effect() const { return wrench_.effect(); }
+  /// Places of its numbers that have columns, in their order.
+  [[nodiscard]] const std::vector<std::size_t>& sought() const { return sought_; }
   /// Call with each sample that the regressor kept, and with each that is not valid.
   void step(const EffectSample& sample);
   /// Appends the effect's columns to the rows of the window that ends at the last sample, in units of its numbers, and
@@ -42,6 +44,7 @@ class EffectTrack {
   void remember(const EffectSample& sample);
 
   model::EffectWrench wrench_;
+  std::vector<std::size_t> sought_;
   ParameterVector base_;  ///< parameters at which it is linearised
   const model::Vehicle* vehicle_;
   Utime origin_;

@@ -275,14 +275,16 @@ RecursiveSettings Identifier::estimator_settings(const model::ActiveEffect* effe
   if (effect == nullptr) return s;
   const Eigen::Index base = s.mean.size();
   const auto parameters = model::parameters_of(*effect->effect, effect->variant, *vehicle_);
-  s.mean.conservativeResize(base + static_cast<Eigen::Index>(parameters.size()));
+  const std::vector<std::size_t> sought = effect->effect->sought(effect->variant);
+  s.mean.conservativeResize(base + static_cast<Eigen::Index>(sought.size()));
   s.sigma.conservativeResize(s.mean.size());
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Eigen::Index k = base + static_cast<Eigen::Index>(i);
+  Eigen::Index k = base;
+  for (const std::size_t i : sought) {
     s.mean(k) = effect->theta[i];
     s.sigma(k) = parameters[i].sigma;
     s.signs[static_cast<std::size_t>(k)] =
         static_cast<std::int8_t>(parameters[i].low == 0.0 ? 1 : (parameters[i].high == 0.0 ? -1 : 0));
+    ++k;
   }
   return s;
 }

@@ -67,19 +67,18 @@ void Identifier::weigh(Utime utime) {
 void Identifier::adopt(const EffectEvidence& found) {
   if (resumed_) return;  // what was learnt before the restart is not kept as motion, so it cannot be learnt anew
   const model::Effect* effect = model::find_effect(found.name);
-  if (effect == nullptr || effect->measures() || found.numbers.size() != effect->parameters().size() ||
-      parameters_.size() + found.numbers.size() > static_cast<std::size_t>(kMaxParameters)) {
+  if (effect == nullptr || effect->measures() || found.numbers.size() != effect->parameters().size()) {
     ++rejected_["effect not adoptable"];
     return;
   }
   const bool wrench = input_ == InputKind::kWrench;
   const std::vector<std::string> variants = effect->variants(model::open_scene(*vehicle_, wrench));
   const auto variant = std::find(variants.begin(), variants.end(), found.variant);
-  if (variant == variants.end()) {
+  const auto number = static_cast<int>(variant - variants.begin());
+  if (variant == variants.end() || parameters_.size() + effect->sought(number).size() > kMaxParameters) {
     ++rejected_["effect not adoptable"];
     return;
   }
-  const auto number = static_cast<int>(variant - variants.begin());
   const bool known = track_ && track_->effect().effect == effect;
   if (known && (track_->effect().variant == number || stands_for_ == number)) {
     if (moved() >= kMoved) (void)relearn();
@@ -172,9 +171,9 @@ double Identifier::moved() const {
   const RecursiveReport report = estimator_.report();
   const auto base = static_cast<Eigen::Index>(parameters_.size());
   double moved = 0.0;
-  for (std::size_t i = 0; i < track_->effect().theta.size(); ++i) {
+  for (std::size_t i = 0; i < track_->sought().size(); ++i) {
     const Eigen::Index k = base + static_cast<Eigen::Index>(i);
-    const double from = stuck_at_.empty() ? track_->effect().theta[i] : stuck_at_[i];
+    const double from = stuck_at_.empty() ? track_->effect().theta[track_->sought()[i]] : stuck_at_[i];
     moved = std::max(moved, std::abs(report.estimate(k) - from) / report.sigma(k));
   }
   return moved;
@@ -186,13 +185,16 @@ double Identifier::moved() const {
 bool Identifier::relearn() {
   const auto base = static_cast<Eigen::Index>(parameters_.size());
   const model::ActiveEffect at = track_->effect();
+  const std::vector<std::size_t> sought = track_->sought();
   const ParameterVector estimate = estimator_.projected();
   const ParameterVector linearised_at = linearised_at_;
   const double cost = cost_with(at, linearised_at);
   for (const double share : kShares) {
     model::ActiveEffect next = at;
-    for (std::size_t i = 0; i < next.theta.size(); ++i)
-      next.theta[i] += share * (estimate(base + static_cast<Eigen::Index>(i)) - at.theta[i]);
+    for (std::size_t i = 0; i < sought.size(); ++i) {
+      double& number = next.theta[sought[i]];
+      number += share * (estimate(base + static_cast<Eigen::Index>(i)) - number);
+    }
     keep_inside(next, *vehicle_);
     if (cost_with(next, estimate.head(base)) > cost - kGain) continue;
     follow(std::move(next), estimate.head(base));
@@ -201,7 +203,7 @@ bool Identifier::relearn() {
   }
   follow(at, linearised_at);
   learn_anew();
-  stuck_at_.assign(estimate.data() + base, estimate.data() + base + static_cast<Eigen::Index>(at.theta.size()));
+  stuck_at_.assign(estimate.data() + base, estimate.data() + base + static_cast<Eigen::Index>(sought.size()));
   return false;
 }
 
@@ -224,11 +226,13 @@ bool Identifier::explains() const {
   }
   if (track_) {
     const model::ActiveEffect& effect = track_->effect();
-    const auto count = static_cast<Eigen::Index>(effect.theta.size());
-    const ParameterVector numbers = report.estimate.tail(count), doubt = report.sigma.tail(count);
-    for (const ParameterVector& each : {numbers, ParameterVector{numbers - doubt}, ParameterVector{numbers + doubt}}) {
-      if (model::stopped_at_limit(*effect.effect, effect.variant, {each.data(), effect.theta.size()}, *vehicle_))
-        return false;
+    for (const double doubts : {0.0, -1.0, 1.0}) {
+      std::vector<double> numbers = effect.theta;
+      for (std::size_t i = 0; i < track_->sought().size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
+        numbers[track_->sought()[i]] = report.estimate(k) + doubts * report.sigma(k);
+      }
+      if (model::stopped_at_limit(*effect.effect, effect.variant, numbers, *vehicle_)) return false;
     }
   }
   return std::all_of(recent_.begin(), recent_.end(),
@@ -248,7 +252,8 @@ bool Identifier::vanishes() const {
   const model::ActiveEffect& effect = track_->effect();
   const auto sizes =
       effect.effect->amplitudes() > 0 ? static_cast<std::size_t>(effect.effect->amplitudes()) : effect.theta.size();
-  for (std::size_t i = 0; i < sizes; ++i) {
+  for (std::size_t i = 0; i < track_->sought().size(); ++i) {
+    if (track_->sought()[i] >= sizes) continue;
     const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
     if (std::abs(report.estimate(k)) > kPresent * report.sigma(k)) return false;
   }
@@ -268,7 +273,8 @@ void Identifier::learn_anew(Held held) {
   RecursiveSettings settings = estimator_settings(adopted());
   const auto base = static_cast<Eigen::Index>(parameters_.size());
   for (Eigen::Index k = base; held != Held::kNothing && k < settings.sigma.size(); ++k) {
-    const bool moment = track_->effect().effect->parameters()[static_cast<std::size_t>(k - base)].name == model::kOnset;
+    const std::size_t place = track_->sought()[static_cast<std::size_t>(k - base)];
+    const bool moment = track_->effect().effect->parameters()[place].name == model::kOnset;
     if (held == Held::kEffect || moment) settings.sigma[k] *= kHeld;
   }
   estimator_ = RecursiveEstimator{std::move(settings)};
@@ -305,10 +311,12 @@ void Identifier::add_effect(ModelEstimate& estimate, const RecursiveReport& repo
   const auto parameters = effect.effect->parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (!effect.effect->is_told(effect.variant, i)) continue;
-    const auto k = static_cast<Eigen::Index>(parameters_.size() + i);
+    const auto sought = std::ranges::find(track_->sought(), i);
+    const bool given = sought == track_->sought().end();
+    const auto k = static_cast<Eigen::Index>(parameters_.size()) + (sought - track_->sought().begin());
     estimate.effect_numbers.push_back({.name = name + "." + std::string{parameters[i].name},
-                                       .value = report.estimate(k),
-                                       .std = std::hypot(report.sigma(k), parameters[i].form_sigma),
+                                       .value = given ? effect.theta[i] : report.estimate(k),
+                                       .std = given ? 0.0 : std::hypot(report.sigma(k), parameters[i].form_sigma),
                                        .unit = std::string{effect.effect->unit(effect.variant, i)}});
   }
 }

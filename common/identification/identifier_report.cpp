@@ -19,7 +19,7 @@ constexpr double kFewest = 5.0;        // residuals before anything is said of t
 constexpr double kEnough = 20.0;       // before the model is said to lack something
 constexpr double kLargestRatio = 2.0;  // of the residual's power to that of the stated noise, as for leaving a mode
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 8";
+constexpr char kHeader[] = "fathom identifier 9";
 
 double take(std::istringstream& text) {
   const std::optional<double> number = take_number(text);
@@ -219,7 +219,8 @@ void Identifier::decide(Utime first) {
 void Identifier::take_effect(const model::Effect& effect, std::istringstream& text) {
   model::ActiveEffect active{.effect = &effect};
   std::string input;
-  if (!(text >> active.variant >> origin_ >> input) || active.variant < 0)
+  if (!(text >> active.variant >> origin_ >> input) || active.variant < 0 ||
+      active.variant >= effect.form_count())
     throw InputError("identifier: the saved effect is damaged");
   input_ = input == "wrench" ? InputKind::kWrench : InputKind::kForce;
   for (std::size_t i = 0; i < effect.parameters().size(); ++i) active.theta.push_back(take(text));

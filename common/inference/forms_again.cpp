@@ -33,7 +33,7 @@ void Searching::simplify(const std::vector<model::ActiveEffect>& before) {
       std::vector<double>& theta = others.back().added.front().theta;
       for (std::size_t c = 0; c < active.theta.size(); ++c) {
         if (moves(laws_[law].seed, c) && moves(active, c)) theta[c] = active.theta[c];
-        if (!moves(laws_[law].seed, c)) theta[c] = 0.0;
+        if (!active.effect->is_told(laws_[law].seed.variant, c)) theta[c] = 0.0;
       }
     }
     likelihood::Hypothesis rest = found_.best.fit.hypothesis;

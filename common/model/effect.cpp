@@ -69,11 +69,14 @@ std::string_view Effect::unit(int variant, std::size_t number) const {
   return number < leading && of_form.unit ? *of_form.unit : parameters_[number].unit;
 }
 
-int Effect::numbers(int variant) const {
-  int count = 0;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) count += takes_part(variant, i) ? 1 : 0;
-  return count;
+std::vector<std::size_t> Effect::sought(int variant) const {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (takes_part(variant, i)) places.push_back(i);
+  return places;
 }
+
+int Effect::numbers(int variant) const { return static_cast<int>(sought(variant).size()); }
 
 Starts Form::starts(const Scene&) const {
   std::vector<double> start;

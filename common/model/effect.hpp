@@ -62,6 +62,7 @@ class Effect {
   [[nodiscard]] bool remembers_motion() const { return traits_.remembers_motion; }
   [[nodiscard]] bool measures() const { return traits_.stage == Stage::kSensor; }
 
+  [[nodiscard]] int form_count() const { return static_cast<int>(forms_.size()); }
   [[nodiscard]] const Form& form(int variant) const { return *forms_[static_cast<std::size_t>(variant)]; }
   /// Names of the forms on this data, by variant; "-": cannot act or be seen here. Empty: none can.
   [[nodiscard]] std::vector<std::string> variants(const Scene& scene) const;
@@ -81,7 +82,8 @@ class Effect {
   [[nodiscard]] bool is_told(int variant, std::size_t number) const {
     return takes_part(variant, number) || is_given(variant, number);
   }
-  /// How many numbers a fit seeks in that form.
+  /// Places of the numbers that a fit seeks in that form, and how many they are.
+  [[nodiscard]] std::vector<std::size_t> sought(int variant) const;
   [[nodiscard]] int numbers(int variant) const;
   [[nodiscard]] bool multiplies_drag(int variant) const { return form(variant).traits().multiplies_drag; }
 

@@ -52,6 +52,11 @@ void EffectWrench::step(const Motion& motion, const ActuatorForces& middle, doub
   Load load;
   for (std::size_t i = 0; i < probes_.size(); ++i) {
     Probe& probe = probes_[i];
+    if (i > 0 && !effect_.effect->takes_part(effect_.variant, i - 1)) {
+      wrench.col(static_cast<Eigen::Index>(i)).setZero();
+      momentum.col(static_cast<Eigen::Index>(i)).setZero();
+      continue;
+    }
     if (!probe.memory.empty()) {
       if (settled_) {
         effect_.effect->advance(halfway, probe.theta, effect_.variant, dt, probe.memory);

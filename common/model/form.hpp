@@ -30,7 +30,6 @@ struct EffectParameter {
   double high{std::numeric_limits<double>::infinity()};
   double form_sigma{0.0};     ///< what the effect's assumed form alone leaves open, however good the data
   bool after_command{false};  ///< a time after the command: how commands are held is hardly told apart from it
-  bool of_run{false};         ///< may be another in another run: a phase, a moment, where the water goes
   bool blurred{false};        ///< below its lower limit no data would tell: one that lies on it may be true
   DrawnWithin drawn_within{DrawnWithin::kSigma};
 };

@@ -17,11 +17,12 @@ constexpr double kOnsetFormSigma = kOnsetDuration / 3.4641;
 /// Such a moment, as a number of an effect.
 inline constexpr EffectParameter kOnsetParameter{kOnset, "s", 1000.0, 0.0, 1e6, kOnsetFormSigma, false, true};
 
-/// Share of the change at `t`: 0 before `onset`, 1 after it, with two continuous derivatives.
-inline double onset_share(double t, double onset) {
-  const double s = std::clamp((t - onset) / kOnsetDuration + 0.5, 0.0, 1.0);
+/// Share of a change at `t` that takes `duration` about `onset`: 0 before, 1 after, with two continuous derivatives.
+inline double share_over(double t, double onset, double duration) {
+  const double s = std::clamp((t - onset) / std::max(duration, kOnsetDuration) + 0.5, 0.0, 1.0);
   return s * s * s * (s * (6.0 * s - 15.0) + 10.0);
 }
+inline double onset_share(double t, double onset) { return share_over(t, onset, kOnsetDuration); }
 
 /// Moments spread over the data, none so close to an end that hardly anything would come before or after.
 inline std::vector<double> onset_starts(double t_low, double t_high, int count) {

@@ -19,7 +19,7 @@ Scene open_scene(const Vehicle& vehicle, bool wrench) {
   scene.voltage = true;
   scene.mean_voltage = vehicle.nominal_voltage > 0.0 ? vehicle.nominal_voltage : 1.0;
   scene.voltage_range = 1.0;
-  scene.duration = scene.t_high = 1.0;
+  scene.duration = scene.t_high = 3600.0;  // s
   scene.nu_rms.setOnes();
   scene.tau_rms.setOnes();
   scene.force_rms = ActuatorForces::Ones(wrench ? 6 : vehicle.allocation.cols());
@@ -30,6 +30,7 @@ Scene open_scene(const Vehicle& vehicle, bool wrench) {
 
 Scene scene_of(const Vehicle& vehicle, std::span<const Trial> trials) {
   Scene scene{.vehicle = &vehicle};
+  scene.runs = std::max(static_cast<int>(trials.size()), 1);
   double count = 0.0;
   double voltage_sum = 0.0, voltage_count = 0.0, voltage_low = 1e9, voltage_high = -1e9;
   double tilt_square = 0.0, tilt_count = 0.0;

@@ -28,6 +28,7 @@ struct Scene {
   [[nodiscard]] bool rates_checked() const { return rates && attitude; }
   bool input_is_wrench{false};  ///< inputs are the six axes of the wrench, not single thrusters
   bool voltage{false};
+  int runs{1};               ///< whose clocks need not be the same
   double duration{};         ///< s, longest run
   double t_low{}, t_high{};  ///< s, times within the runs that the data covers; equal: not known beforehand
   double mean_voltage{};     ///< V

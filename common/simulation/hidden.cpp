@@ -19,6 +19,7 @@ constexpr double kBoundaryDrag = 0.5;   // m^2, or plain at the boundary itself
 constexpr double kTiltShare = 0.3;      // of the righting moment that an unknown one may have
 constexpr double kMassShare = 0.15;     // of the vehicle's mass that a payload may have
 constexpr double kFlown = 200.0;        // s: a trial's limit may be far behind its end, and nothing would happen in it
+constexpr double kTurnTakes = 30.0;     // s, of a stream
 constexpr double kTypicalSpeed = 0.3;   // m/s, rad/s
 constexpr double kTypicalThrust = 0.4;  // of the largest
 
@@ -106,11 +107,14 @@ double drawn(const model::ActiveEffect& active, const model::EffectParameter& pa
   if (name == "anchor_E") return anchor.y();
   if (name == "anchor_D") return anchor.z();
   if (name == "slack_length") return (0.6 + 0.2 * share) * (anchor - occasion.start).norm();
+  if (name == "from") return 0.0;
+  if (name == "until") return std::min(occasion.duration, kFlown);
   if (name == "onset") return (0.5 * share) * std::min(occasion.duration, kFlown);
   if (name == "bottom_depth" || name == "at_depth") return site.floor;
   if (name == "bearing") return traits.stage == model::Stage::kWater ? 2.0 * std::numbers::pi * side : wall_bearing;
   if (name == "distance" || name == "at_distance") return wall_distance;
   if (name == "frequency") return scene.tones_horizontal.front().omega;
+  if (name == "duration") return kTurnTakes * share;
   // What a boundary adds is a share of the hull's own drag, and never takes drag away.
   if (name == "strength" && active.effect->multiplies_drag(active.variant)) return kBoundaryDrag * share;
   double size = share * parameter.sigma * active.effect->form(active.variant).traits().drawn;

@@ -218,11 +218,67 @@ class Suction : public Sized {
   double distance_, unit_;
 };
 
+/// The tide turns within half a minute: the stream comes from the other side.
+class TideTurns : public Sized {
+ public:
+  TideTurns(const std::string& name, const Craft&, const Site&, Random& random)
+      : Sized(name.substr(0, name.find(':')), 0.05, 0.6),
+        heading_(random.uniform(-std::numbers::pi, std::numbers::pi)),
+        at_(random.uniform(80.0, 250.0)) {}
+  void water(double t, const Vector3d&, Water& water) const override {
+    water.velocity += size() * std::tanh((t - at_) / 15.0) * Vector3d(std::cos(heading_), std::sin(heading_), 0.0);
+  }
+  [[nodiscard]] Numbers parameters() const override {
+    return {{"v", size()}, {"heading", heading_}, {"turns_at", at_}};
+  }
+
+ private:
+  double heading_, at_;
+};
+
+/// The stream is faster above than below.
+class ShearedStream : public Sized {
+ public:
+  ShearedStream(const std::string& name, const Craft&, const Site& site, Random& random)
+      : Sized(name.substr(0, name.find(':')), 0.05, 0.8),
+        heading_(random.uniform(-std::numbers::pi, std::numbers::pi)),
+        middle_(site.centre.z()),
+        half_(site.half.z()) {}
+  void water(double, const Vector3d& position, Water& water) const override {
+    const double share = std::clamp((middle_ - position.z()) / half_, -1.5, 1.5);
+    water.velocity += size() * share * Vector3d(std::cos(heading_), std::sin(heading_), 0.0);
+  }
+  [[nodiscard]] Numbers parameters() const override { return {{"v_above", size()}, {"heading", heading_}}; }
+
+ private:
+  double heading_, middle_, half_;
+};
+
+/// The stream turns round the compass within minutes.
+class TurningStream : public Sized {
+ public:
+  TurningStream(const std::string& name, const Craft&, const Site&, Random& random)
+      : Sized(name.substr(0, name.find(':')), 0.05, 0.6),
+        rate_(random.sign() * 2.0 * std::numbers::pi / random.uniform(250.0, 700.0)),
+        phase_(random.uniform(-std::numbers::pi, std::numbers::pi)) {}
+  void water(double t, const Vector3d&, Water& water) const override {
+    const double angle = rate_ * t + phase_;
+    water.velocity += size() * Vector3d(std::cos(angle), std::sin(angle), 0.0);
+  }
+  [[nodiscard]] Numbers parameters() const override { return {{"v", size()}, {"rate", rate_}}; }
+
+ private:
+  double rate_, phase_;
+};
+
 }  // namespace
 
 const std::vector<Entry>& further() {
-  const Needs single{.thrusters = true};
+  const Needs single{.thrusters = true}, clock{.clock = true};
   static const std::vector<Entry> list{{"centre_of_mass", {}, make<CentreOfMass>},
+                                       {"current:tide", clock, make<TideTurns>},
+                                       {"current:turning", clock, make<TurningStream>},
+                                       {"current:sheared", {}, make<ShearedStream>},
                                        {"centre_of_mass:tilting", {.tilting = true}, make<CentreOfMass>},
                                        {"tether_tension:astern", {}, make<TetherAstern>},
                                        {"tether_tension:astern tilting", {.tilting = true}, make<TetherAstern>},

@@ -14,8 +14,8 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kSteadyForceParameters{
-    EffectParameter{.name = "F_N", .unit = "N", .sigma = 5.0, .low = -1e5, .high = 1e5, .of_run = true},
-    EffectParameter{.name = "F_E", .unit = "N", .sigma = 5.0, .low = -1e5, .high = 1e5, .of_run = true}};
+    EffectParameter{.name = "F_N", .unit = "N", .sigma = 5.0, .low = -1e5, .high = 1e5},
+    EffectParameter{.name = "F_E", .unit = "N", .sigma = 5.0, .low = -1e5, .high = 1e5}};
 
 class FixedInWorld final : public Form {
  public:

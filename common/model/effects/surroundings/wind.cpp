@@ -17,8 +17,8 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kWindParameters{
-    EffectParameter{.name = "W_N", .unit = "m/s", .sigma = 5.0, .low = -40.0, .high = 40.0, .of_run = true},
-    EffectParameter{.name = "W_E", .unit = "m/s", .sigma = 5.0, .low = -40.0, .high = 40.0, .of_run = true},
+    EffectParameter{.name = "W_N", .unit = "m/s", .sigma = 5.0, .low = -40.0, .high = 40.0},
+    EffectParameter{.name = "W_E", .unit = "m/s", .sigma = 5.0, .low = -40.0, .high = 40.0},
     EffectParameter{.name = "arm", .unit = "m", .sigma = 0.3, .low = -50.0, .high = 50.0}};
 constexpr std::size_t kArm = 2;
 constexpr double kAirDensity = 1.23;                     // kg/m^3

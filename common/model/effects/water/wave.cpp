@@ -19,8 +19,8 @@ namespace fathom::model::effects {
 namespace {
 
 constexpr std::array kWaveParameters{
-    EffectParameter{.name = "cosine", .unit = "N", .sigma = 5.0, .low = -1e4, .high = 1e4, .of_run = true},
-    EffectParameter{.name = "sine", .unit = "N", .sigma = 5.0, .low = -1e4, .high = 1e4, .of_run = true},
+    EffectParameter{.name = "cosine", .unit = "N", .sigma = 5.0, .low = -1e4, .high = 1e4},
+    EffectParameter{.name = "sine", .unit = "N", .sigma = 5.0, .low = -1e4, .high = 1e4},
     EffectParameter{"bearing", "rad", 3.0}, EffectParameter{"frequency", "rad/s", 3.0, 0.0, 20.0}};
 constexpr std::size_t kWaveBearing = 2, kFrequency = 3;
 constexpr double kGravity = 9.81;          // m/s^2
