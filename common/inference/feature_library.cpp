@@ -199,7 +199,7 @@ class Library {
         add({});
       }
       begin(std::string("oscillation toward ") + kWorldNames[w], kWorldAxis + w, true);
-      for (const double omega : strongest_tones(problem_, adjoint_, w)) {
+      for (const double omega : strongest_tones(problem_, adjoint_, w, kLowestTone)) {
         add({{.quantity = Quantity::kToneCosine, .a = omega}});
         add({{.quantity = Quantity::kToneSine, .a = omega}});
       }
@@ -247,7 +247,7 @@ class Library {
 }  // namespace
 
 std::vector<double> strongest_tones(const likelihood::Problem& problem, const std::vector<Eigen::MatrixXd>& slope,
-                                    int w) {
+                                    int w, double lowest) {
   std::size_t longest = 0;
   for (std::size_t r = 0; r < problem.runs.size(); ++r) {
     if (problem.runs[r].blocks().size() > problem.runs[longest].blocks().size()) longest = r;
@@ -266,7 +266,7 @@ std::vector<double> strongest_tones(const likelihood::Problem& problem, const st
   const double length = run.last_time() - run.first_time(), dt = blocks.front().dt;
   const double spacing = 0.5 * 2.0 * std::numbers::pi / std::max(length, 1.0);
   std::vector<std::pair<double, double>> power;  // and frequency
-  for (double omega = kLowestTone; omega < kHighestTone; omega += spacing) {
+  for (double omega = lowest; omega < kHighestTone; omega += spacing) {
     std::complex<double> sum{}, at{1.0, 0.0};
     const std::complex<double> turn{std::cos(omega * dt), std::sin(omega * dt)};
     for (const double x : series) {

@@ -9,10 +9,10 @@ namespace fathom::inference {
 [[nodiscard]] likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen,
                                                     const model::Scene& scene);
 
-/// Two strongest lines of the likelihood's slope with a force toward world axis `w`, rad/s. `slope`:
-/// likelihood::adjoint per run.
+/// Two strongest lines, from `lowest` [rad/s] on, of the likelihood's slope with a force toward world axis `w`.
+/// `slope`: likelihood::adjoint per run.
 [[nodiscard]] std::vector<double> strongest_tones(const likelihood::Problem& problem,
-                                                  const std::vector<Eigen::MatrixXd>& slope, int w);
+                                                  const std::vector<Eigen::MatrixXd>& slope, int w, double lowest);
 
 /// Features as accelerations at the seen model's states. `groups`: indices into the library.
 class FeatureColumns {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "common/inference/feature_library.hpp"
 #include "common/learning/terms.hpp"
@@ -14,6 +15,7 @@ using likelihood::Feature;
 using likelihood::Quantity;
 
 constexpr double kMomentLasts = 0.3;     // s
+constexpr double kFewestPeriods = 3.0;   // of a swing within the recordings: less is drift
 constexpr double kMomentFromEnd = 0.05;  // of the recording: nearer to its ends nothing has a before
 
 class Library {
@@ -52,7 +54,8 @@ class Library {
                                    .closed = term.closed && modulator.closed};
     for (const std::vector<Factor>& own : term.columns) {
       for (const std::vector<Factor>& by : modulator.columns) {
-        Feature feature{.axis = term.axis, .count = static_cast<int>(own.size() + by.size())};
+        const int axis = term.own_lines ? model::kThrusterLine + own.front().index : term.axis;
+        Feature feature{.axis = axis, .count = static_cast<int>(own.size() + by.size())};
         std::ranges::copy(by, std::ranges::copy(own, feature.factors.begin()).out);
         force_.features.push_back(feature);
         ++group.count;
@@ -109,12 +112,13 @@ class Library {
   }
 
   void swings() {
+    const double lowest = kFewestPeriods * 2.0 * std::numbers::pi / std::max(problem_.t_high - problem_.t_low, 1.0);
     for (int w = 0; w < 3; ++w) {
       if (std::ranges::find(problem_.axes.begin(), problem_.axes.begin() + problem_.simulated, w) ==
           problem_.axes.begin() + problem_.simulated)
         continue;
       const int axis = likelihood::kWorldAxis + w;
-      for (const double omega : inference::strongest_tones(problem_, adjoint_, w)) {
+      for (const double omega : inference::strongest_tones(problem_, adjoint_, w, lowest)) {
         multiply({.words = "a swing toward " + model::direction_words(axis), .axis = axis, .columns = {{}}},
                  {.columns = {{{.quantity = Quantity::kToneCosine, .a = omega}},
                               {{.quantity = Quantity::kToneSine, .a = omega}}}},

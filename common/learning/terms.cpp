@@ -152,6 +152,16 @@ class Terms {
   void together() {
     all.push_back({"the hull's drag", model::kHullDrag, {{}}, kDragTerm, true});
     all.push_back({"the whole thrust", model::kAllThrust, {{}}, kThrustTerm, true});
+    Columns worn;
+    for (int j = 0; j < thrusters_; ++j) {
+      for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank)
+        worn.push_back({f(j), {.quantity = Quantity::kRecentUse, .index = j, .bank = bank}});
+    }
+    if (thrusters_ > 0)
+      all.push_back({.words = "thrusters, by what each has done lately",
+                     .axis = model::kAllThrust,
+                     .columns = worn,
+                     .own_lines = true});
     for (int j = 0; j < thrusters_; ++j) {
       const std::string name = "thruster " + std::to_string(j + 1);
       const int axis = model::kThrusterLine + j;

@@ -30,6 +30,7 @@ struct Term {
   TermKind kind{kPlainTerm};
   bool held{};  ///< base numbers hold it: only its modulations are new
   bool closed{true};
+  bool own_lines{false};  ///< each column acts along the line of the thruster that its first factor reads
 };
 
 /// What a term may go with besides.

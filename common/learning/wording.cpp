@@ -29,6 +29,7 @@ constexpr Hint kHints[]{
     {"thrust", "growing with time", "motors that warm, or a supply that sags"},
     {"thrust", "from a moment on", "damage, a reset or a changed setting at that moment"},
     {"thrust", "by", "flow into the thrusters that goes with the motion, or a supply that is shared"},
+    {"thrusters", "done lately", "motors or drivers that warm with their work, or air that they draw"},
     {"thruster", "by thruster", "the wash of one thruster in another"},
     {"thruster off its line", "", "a thruster that is turned, or whose wash meets the hull"},
     {"thruster", "", "that thruster and its driver"},

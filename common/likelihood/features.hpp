@@ -11,6 +11,7 @@ using model::FeatureGroup;
 using model::FeatureState;
 using model::FreeForce;
 using model::kThrustMemories;
+using model::kUseMemories;
 using model::kVelocityMemories;
 using model::kWorldAxis;
 using model::Quantity;

@@ -85,6 +85,7 @@ void Plant::begin(const Vector6d& nu) {
   for (auto& slow : features_.slow_nu) slow = nu;
   const Vector6d tau = model_.allocation * forces_.col(0);
   for (auto& slow : features_.slow_tau) slow = tau;
+  for (auto& use : features_.use) use = forces_.col(0).cwiseAbs();
 }
 
 void Plant::at_substep(std::size_t interval, int substep) {
@@ -284,6 +285,9 @@ void Plant::end_block(std::size_t block, const Vector6d& nu) {
     features_.slow_tau[b] += -std::expm1(-here.dt / kThrustMemories[b]) * (tau - features_.slow_tau[b]);
   for (std::size_t b = 0; b < kVelocityMemories.size(); ++b)
     features_.slow_nu[b] += -std::expm1(-here.dt / kVelocityMemories[b]) * (nu - features_.slow_nu[b]);
+  for (std::size_t b = 0; b < kUseMemories.size(); ++b)
+    features_.use[b] += -std::expm1(-here.dt / kUseMemories[b]) *
+                        (mean_.col(static_cast<Eigen::Index>(block)).cwiseAbs() - features_.use[b]);
 }
 
 void Plant::remember_columns(std::size_t block, const Columns& nu_columns, Columns& wrenches) {

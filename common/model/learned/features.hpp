@@ -19,6 +19,7 @@ namespace fathom::model {
 /// Time constants of the low passes that features may run over, s.
 constexpr std::array kThrustMemories{0.05, 0.15, 0.4, 1.2};
 constexpr std::array kVelocityMemories{0.4, 1.5, 4.0};
+constexpr std::array kUseMemories{10.0, 40.0};  // of how much an actuator has done: motors and windings warm
 
 /// What features read at one instant.
 struct FeatureState {
@@ -31,9 +32,10 @@ struct FeatureState {
   model::ActuatorForces force{};   ///< N
   std::array<Vector6d, kThrustMemories.size()> slow_tau{};
   std::array<Vector6d, kVelocityMemories.size()> slow_nu{};
-  Vector6d drag{Vector6d::Zero()};    ///< N, N m: the hull's own by the base numbers
-  const Allocation* allocation{};     ///< tau = B f
-  std::span<const double> columns{};  ///< as Motion::columns
+  std::array<model::ActuatorForces, kUseMemories.size()> use{};  ///< N: size of each actuator's force, lately
+  Vector6d drag{Vector6d::Zero()};                               ///< N, N m: the hull's own by the base numbers
+  const Allocation* allocation{};                                ///< tau = B f
+  std::span<const double> columns{};                             ///< as Motion::columns
 };
 
 /// Largest sizes that a recording has shown of what features read.

@@ -10,6 +10,14 @@ namespace {
 
 constexpr double kLeastVisited = 1e-6;
 constexpr Eigen::Index kTaps = kThrustMemories.size(), kSlow = kVelocityMemories.size();
+constexpr std::size_t kOfAxes = 6 * static_cast<std::size_t>(kTaps + kSlow);
+constexpr int kPast = 40;         // instants at which what actuators have done is looked up
+constexpr double kPastReach = 4;  // memories back
+
+/// Behind the taps: per actuator and memory of its use.
+Eigen::Map<Eigen::VectorXd> use_in(std::span<double> z, Eigen::Index actuators, std::size_t bank) {
+  return {z.data() + kOfAxes + bank * static_cast<std::size_t>(actuators), actuators};
+}
 
 double clipped(double x, double visited) {
   const double most = kVisitedReach * std::max(visited, kLeastVisited);
@@ -64,6 +72,10 @@ Vector6d LearnedForm::sum(const FeatureState& state, Part part) const {
   clip(inside.tau, visited_.tau);
   for (auto& slow : inside.slow_tau) clip(slow, visited_.tau);
   for (auto& slow : inside.slow_nu) clip(slow, visited_.nu);
+  for (ActuatorForces& use : inside.use) {
+    for (Eigen::Index i = 0; i < use.size(); ++i)
+      use[i] = clipped(use[i], i < visited_.force.size() ? visited_.force[i] : 0.0);
+  }
   for (Eigen::Index i = 0; i < inside.force.size(); ++i)
     inside.force[i] = clipped(inside.force[i], i < visited_.force.size() ? visited_.force[i] : 0.0);
   Vector6d wrench = Vector6d::Zero();
@@ -80,6 +92,10 @@ void LearnedForm::feel(Motion& motion, EffectTheta, std::span<const double> z) c
   const Eigen::Map<const Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
   for (Eigen::Index b = 0; b < kTaps; ++b) state.slow_tau[static_cast<std::size_t>(b)] = memory.col(b);
   for (Eigen::Index b = 0; b < kSlow; ++b) state.slow_nu[static_cast<std::size_t>(b)] = memory.col(kTaps + b);
+  const Eigen::Index actuators = allocation_.cols();
+  for (std::size_t b = 0; b < kUseMemories.size(); ++b)
+    state.use[b] =
+        Eigen::Map<const Eigen::VectorXd>{z.data() + kOfAxes + b * static_cast<std::size_t>(actuators), actuators};
   motion.w_memory += sum(state, Part::kRemembers);
 }
 
@@ -94,13 +110,29 @@ void LearnedForm::load(const Motion& motion, EffectTheta, Load& load) const {
   load.wrench += moving;
 }
 
-int LearnedForm::state_size(int) const { return remembers_ ? 6 * static_cast<int>(kTaps + kSlow) : 0; }
+int LearnedForm::state_size(int) const {
+  if (!remembers_) return 0;
+  return static_cast<int>(kOfAxes + kUseMemories.size() * static_cast<std::size_t>(allocation_.cols()));
+}
 
 void LearnedForm::settle(const Motion& motion, EffectTheta, std::span<double> z) const {
   if (!remembers_) return;
   Eigen::Map<Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};
   memory.leftCols<kTaps>().colwise() = Vector6d{allocation_ * motion.force};
   memory.rightCols<kSlow>().colwise() = motion.nu;
+  // What was done before is on record, as it was commanded; no run-in is as long as these memories.
+  ActuatorForces then = motion.force;
+  for (std::size_t b = 0; b < kUseMemories.size(); ++b) {
+    auto use = use_in(z, allocation_.cols(), b);
+    use = motion.force.cwiseAbs();
+    if (motion.input == nullptr) continue;
+    const double dt = kPastReach * kUseMemories[b] / kPast, share = -std::expm1(-dt / kUseMemories[b]);
+    for (int k = kPast; k > 0; --k) {
+      motion.input->at(motion.t - (k - 0.5) * dt, then);
+      if (k == kPast) use = then.cwiseAbs();
+      use += share * (then.cwiseAbs() - use);
+    }
+  }
 }
 
 void LearnedForm::advance(const Motion& motion, EffectTheta, double dt, std::span<double> z) const {
@@ -112,6 +144,10 @@ void LearnedForm::advance(const Motion& motion, EffectTheta, double dt, std::spa
   for (Eigen::Index b = 0; b < kSlow; ++b)
     memory.col(kTaps + b) +=
         -std::expm1(-dt / kVelocityMemories[static_cast<std::size_t>(b)]) * (motion.nu - memory.col(kTaps + b));
+  for (std::size_t b = 0; b < kUseMemories.size(); ++b) {
+    auto use = use_in(z, allocation_.cols(), b);
+    use += -std::expm1(-dt / kUseMemories[b]) * (motion.force.cwiseAbs() - use);
+  }
 }
 
 double LearnedForm::run_in(EffectTheta) const {

@@ -67,4 +67,26 @@ constinit const FactorKind factor_thruster_size{
     .words = [](const Factor& f) { return "|" + thruster(f) + "|"; },
     .within = of_thruster};
 
+constinit const FactorKind factor_recent_use{
+    .word = "recent_use",
+    .sentence = "how much one thruster has pushed lately, either way",
+    .unit = "N",
+    .indexed = Indexed::kThrusters,
+    .banks = static_cast<int>(kUseMemories.size()),
+    .value =
+        [](const Factor& f, const FeatureState& s) {
+          const ActuatorForces& use = s.use[static_cast<std::size_t>(f.bank)];
+          return f.index < use.size() ? use[f.index] : 0.0;
+        },
+    .words =
+        [](const Factor& f) {
+          return "|" + thruster(f) + "| of the last " + brief_number(kUseMemories[static_cast<std::size_t>(f.bank)]) +
+                 " s";
+        },
+    .within =
+        [](const Factor& f, const FeatureState& s, const Visited& visited) {
+          const ActuatorForces& use = s.use[static_cast<std::size_t>(f.bank)];
+          return f.index < use.size() ? fade_beyond(use[f.index], visited.force[f.index]) : 1.0;
+        }};
+
 }  // namespace fathom::model
