@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
@@ -183,7 +184,7 @@ model::Visited visited_by(const Problem& problem, const likelihood::Hypothesis& 
 }
 
 Learned learn(const Problem& problem, std::span<const Trial> of, const inference::Conclusion& conclusion,
-              const Settings& settings, int threads) {
+              const Settings& settings, bool judged_here, int threads) {
   Learned learned;
   CorrectionGiven& given = learned.given;
   const Limits& limits = settings.limits;
@@ -191,11 +192,13 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     return learned;
   const Fit& base = conclusion.found.best.fit;
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
-  std::optional<inference::FreeForceFound> free = conclusion.found.free_force;
+  std::optional<inference::FreeForceFound> free = conclusion.found.free_force, lasting;
   // A screen of all products of an hour costs minutes: long recordings are learned by the search's broad groups alone.
   if (!conclusion.found.cut_short && !inference::stretches_of(problem, {})) {
-    inference::FreeForceFound sought = seek_force(problem, base, scene, limits, threads);
-    if (sought.fit.finite && !(free && free->fit.finite && free->log_odds > sought.log_odds)) free = std::move(sought);
+    Sought sought = seek_force(problem, base, scene, limits, threads);
+    if (sought.all.fit.finite && !(free && free->fit.finite && free->log_odds > sought.all.log_odds))
+      free = std::move(sought.all);
+    if (sought.lasting.fit.finite) lasting = std::move(sought.lasting);
   }
   if (!free || !free->fit.finite) return learned;
   given.asked = true;
@@ -238,9 +241,9 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     given.adopted = true;
     learned.fit = std::move(chosen);
     learned.here = here;
-    const model::FreeForce lasting = model::lasting_of(learned.fit.hypothesis.force);
-    given.carried = !lasting.empty() && passes(carried, limits.carried, limits);
-    if (given.carried) learned.elsewhere = made(learned.fit, lasting, visited);
+    const model::FreeForce lasts = model::lasting_of(learned.fit.hypothesis.force);
+    given.carried = !lasts.empty() && passes(carried, limits.carried, limits);
+    if (given.carried) learned.elsewhere = made(learned.fit, lasts, visited);
     // A recording that goes on where these have ended finds what has begun and what has grown.
     learned.until = problem.t_high;
     const model::FreeForce standing = model::as_it_stands(learned.fit.hypothesis.force, learned.until);
@@ -252,7 +255,20 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   std::optional<FormulaFound> formula = find_formula(problem, base, scene, *free, threads);
   if (formula && (formula->over_learned < -limits.form || formula->over_base < limits.odds)) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
-  if (!formula && !adopt(free->fit)) return learned;
+  if (!formula) (void)adopt(free->fit);
+  // What holds on this recording alone helps no other: what lasts, found and fitted without it, may.
+  if (lasting && !judged_here && !given.carried && !given.goes_on) {
+    Learned alone = std::exchange(learned, {});
+    given = {.asked = true, .log_odds = lasting->log_odds, .size = lasting->size.share};
+    if (lasting->log_odds >= limits.odds && lasting->size.share >= limits.size && adopt(lasting->fit) &&
+        given.carried) {
+      free = std::move(lasting);
+      formula.reset();
+    } else {
+      learned = std::move(alone);
+    }
+  }
+  if (!given.adopted) return learned;
   if (!formula) formula = as_formula(*free);
   if (formula) given.formula = given_of(*formula);
   const Fit& with = formula ? formula->fit : free->fit;

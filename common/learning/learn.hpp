@@ -26,9 +26,10 @@ struct Learned {
   double until{};                                        ///< s: the end of the recordings on that clock
 };
 
-/// `of`: the trials of `problem`.
+/// `of`: the trials of `problem`. `judged_here`: on stretches of them, so that what holds there alone helps.
 [[nodiscard]] Learned learn(const likelihood::Problem& problem, std::span<const Trial> of,
-                            const inference::Conclusion& conclusion, const Settings& settings, int threads);
+                            const inference::Conclusion& conclusion, const Settings& settings, bool judged_here,
+                            int threads);
 
 /// likelihood::model_of(), with `force` where there is one, which must outlive it.
 [[nodiscard]] model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step,

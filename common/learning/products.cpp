@@ -20,8 +20,12 @@ constexpr double kMomentFromEnd = 0.05;  // of the recording: nearer to its ends
 
 class Library {
  public:
-  Library(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene)
-      : problem_{problem}, seen_{seen}, scene_{scene}, terms_{terms_of(problem, seen, scene)} {
+  Library(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene, bool of_recording)
+      : problem_{problem},
+        seen_{seen},
+        scene_{scene},
+        of_recording_{of_recording},
+        terms_{terms_of(problem, seen, scene)} {
     for (std::size_t r = 0; r < problem.runs.size(); ++r) adjoint_.push_back(adjoint(problem, seen.reference[r], r));
   }
 
@@ -32,13 +36,14 @@ class Library {
       const Term& term = terms_[k];
       if (!term.held) multiply(term, {.columns = {{}}});
       for (const Modulator& modulator : modulators) {
+        if (modulator.of_recording && !of_recording_) continue;
         if ((modulator.of & term.kind) != 0) multiply(term, modulator);
       }
       if (term.kind == kPlainTerm) continue;
       const Factor step{.quantity = Quantity::kAfter, .a = moments[k], .b = kMomentLasts};
       multiply(term, {.words = ", from a moment on", .columns = {{step}}}, true);
     }
-    if (scene_.attitude) swings();
+    if (scene_.attitude && of_recording_) swings();
     scale();
     force_.weights.assign(force_.features.size(), 0.0);
     return std::move(force_);
@@ -173,6 +178,7 @@ class Library {
   const likelihood::Problem& problem_;
   const inference::Seen& seen_;
   const model::Scene& scene_;
+  bool of_recording_;
   std::vector<Term> terms_;
   std::vector<Eigen::MatrixXd> adjoint_;
   likelihood::FreeForce force_;
@@ -181,8 +187,8 @@ class Library {
 }  // namespace
 
 likelihood::FreeForce products_of(const likelihood::Problem& problem, const inference::Seen& seen,
-                                  const model::Scene& scene) {
-  return Library{problem, seen, scene}.make();
+                                  const model::Scene& scene, bool of_recording) {
+  return Library{problem, seen, scene, of_recording}.make();
 }
 
 }  // namespace fathom::learning

@@ -6,8 +6,9 @@
 
 namespace fathom::learning {
 
-/// Of a seen model. What its base numbers hold enters modulated only.
+/// Of a seen model. What its base numbers hold enters modulated only. `of_recording`: with tables over time and swings,
+/// which tell of no other recording.
 [[nodiscard]] likelihood::FreeForce products_of(const likelihood::Problem& problem, const inference::Seen& seen,
-                                                const model::Scene& scene);
+                                                const model::Scene& scene, bool of_recording);
 
 }  // namespace fathom::learning

@@ -43,24 +43,30 @@ class Seeker {
          const Limits& limits, int threads)
       : problem_{problem}, scene_{scene}, limits_{limits}, threads_{threads}, seen_{seen(base)} {}
 
-  FreeForceFound run() {
-    FreeForceFound found;
+  Sought run() {
+    Sought sought;
+    FreeForceFound& found = sought.all;
     double evidence = seen_.fit.log_evidence;  // prices paid
     for (int round = 0; round < limits_.rounds; ++round) {
+      // A table over time explains anything: what lasts has the first go, and explains what it can.
+      const bool of_recording = round > 0, first = !found.fit.finite;
       std::optional<Seen> again;
-      if (round > 0) again = seen(found.fit);
+      if (!first) again = seen(found.fit);
       const Seen& now = again ? *again : seen_;
-      const Picked picked = pick(now, round == 0);
-      if (picked.force.empty()) break;
-      if (round == 0) found.at_fixed_noise = picked.log_odds;
+      const Picked picked = pick(now, first, of_recording);
+      if (picked.force.empty()) {
+        if (of_recording) break;
+        continue;
+      }
+      if (first) found.at_fixed_noise = picked.log_odds;
       // What the random force has swallowed shows where it is smaller.
       std::optional<Picked> quiet;
-      if (round == 0 && swallows(now)) {
+      if (first && swallows(now)) {
         likelihood::Fit quick = now.fit;
         quick.noise = quickened(now);
-        quiet = pick(seen(std::move(quick)), true);
+        quiet = pick(seen(std::move(quick)), true, of_recording);
       }
-      const bool settled = round > 0 || found.at_fixed_noise >= kSettled * thresholds_.free_force_odds;
+      const bool settled = !first || found.at_fixed_noise >= kSettled * thresholds_.free_force_odds;
       std::vector<likelihood::Fit> fits(quiet || !settled ? 2 : 1);
       for_each_index(fits.size(), threads_, [&](std::size_t start) {
         likelihood::Noise noise = now.fit.noise;
@@ -78,14 +84,20 @@ class Seeker {
       }
       // What the screen promises and no fit keeps is not found.
       const double gained = best == nullptr ? 0.0 : worth(*best) - evidence;
-      if (gained < thresholds_.group_gain) break;
+      if (gained < thresholds_.group_gain) {
+        if (of_recording) break;
+        continue;
+      }
       found.fit = *best;
       evidence = worth(*best);
+      if (!of_recording) sought.lasting = found;
     }
-    if (!found.fit.finite) return found;
-    prune(found.fit);
-    conclude(found);
-    return found;
+    for (FreeForceFound* each : {&sought.all, &sought.lasting}) {
+      if (!each->fit.finite) continue;
+      prune(each->fit);
+      conclude(*each);
+    }
+    return sought;
   }
 
  private:
@@ -96,8 +108,8 @@ class Seeker {
   }
 
   /// Groups that are worth more than they cost, one after the other, those that have become superfluous taken back.
-  [[nodiscard]] Picked pick(const Seen& seen, bool at_least_one) {
-    const likelihood::FreeForce library = products_of(problem_, seen, scene_);
+  [[nodiscard]] Picked pick(const Seen& seen, bool at_least_one, bool of_recording) {
+    const likelihood::FreeForce library = products_of(problem_, seen, scene_, of_recording);
     const std::size_t all = library.groups.size();
     groups_ = std::max(groups_, all);
     std::vector<double> alone(all);
@@ -310,8 +322,8 @@ class Seeker {
 
 }  // namespace
 
-FreeForceFound seek_force(const likelihood::Problem& problem, const likelihood::Fit& base, const model::Scene& scene,
-                          const Limits& limits, int threads) {
+Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base, const model::Scene& scene,
+                  const Limits& limits, int threads) {
   return Seeker{problem, base, scene, limits, threads}.run();
 }
 

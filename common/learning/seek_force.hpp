@@ -9,8 +9,13 @@
 
 namespace fathom::learning {
 
+struct Sought {
+  inference::FreeForceFound all;
+  inference::FreeForceFound lasting;  ///< before tables over the recording's time were asked for what it leaves
+};
+
 /// Beside `base`; groups in the order of what each is worth beside the others. No fit: nothing is worth its price.
-[[nodiscard]] inference::FreeForceFound seek_force(const likelihood::Problem& problem, const likelihood::Fit& base,
-                                                   const model::Scene& scene, const Limits& limits, int threads);
+[[nodiscard]] Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base,
+                                const model::Scene& scene, const Limits& limits, int threads);
 
 }  // namespace fathom::learning

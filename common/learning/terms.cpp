@@ -192,8 +192,9 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
   const double half = std::max(0.5 * (problem.t_high - problem.t_low), 1.0);
   const Factor ramp = of(Quantity::kRamp, 0, 0.5 * (problem.t_low + problem.t_high), half);
   all.push_back({", growing with time", {{ramp}}, still | base | kThrusterTerm});
-  all.push_back({", changing with time", steps_in_time(problem, kTimeSteps), kConstantTerm, false});
-  all.push_back({", changing with time", steps_in_time(problem, kFewSteps), kStreamTerm | base | kThrusterTerm, false});
+  all.push_back({", changing with time", steps_in_time(problem, kTimeSteps), kConstantTerm, false, true});
+  all.push_back(
+      {", changing with time", steps_in_time(problem, kFewSteps), kStreamTerm | base | kThrusterTerm, false, true});
   const Eigen::Vector3d middle = 0.5 * (scene.p_low + scene.p_high), room = 0.5 * (scene.p_high - scene.p_low);
   const Factor depth = of(Quantity::kDepth, 0, middle.z(), room.z());
   const bool dives = scene.position && 2.0 * room.z() > kSmallestRange;

@@ -56,13 +56,17 @@ std::vector<NamedValue> numbers_of(const likelihood::Fit& fit, const Eigen::Vect
   return values;
 }
 
+/// Whether all that judges are stretches of the runs that were fitted.
+bool judged_here(std::span<const Trial> train, std::span<const Trial> validate) {
+  return !validate.empty() && std::ranges::all_of(validate, [&](const Trial& judging) {
+    return std::ranges::any_of(train, [&](const Trial& fitted) { return same_run(judging, fitted); });
+  });
+}
+
 /// The learned force for runs that judge: whole on stretches of the runs that it was learned from, else what lasts.
 const model::LearnedForce* force_for(const learning::Learned& learned, std::span<const Trial> train,
                                      std::span<const Trial> validate) {
-  const bool here = std::ranges::all_of(validate, [&](const Trial& judging) {
-    return std::ranges::any_of(train, [&](const Trial& fitted) { return same_run(judging, fitted); });
-  });
-  if (here) return learned.here.get();
+  if (validate.empty() || judged_here(train, validate)) return learned.here.get();
   const bool later = std::ranges::all_of(
       validate, [&](const Trial& judging) { return judging.size() > 0 && judging.t.front() >= learned.until; });
   return later ? learned.later.get() : learned.elsewhere.get();
@@ -326,7 +330,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   learning::Learned learned;
   if (learning.learn && conclusion.verdict == Verdict::unexplained) {
     progress.begin(kLearning.phase, kLearning.what);
-    learned = learning::learn(problem, train, conclusion, learning, settings.threads);
+    learned = learning::learn(problem, train, conclusion, learning, judged_here(train, validate), settings.threads);
     result.correction = learned.given;
   }
   progress.expect(kLearning.phase, 0);

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 
@@ -67,6 +68,27 @@ TEST_CASE("search: one effect beside a random force is named") {
       inferred({.duration = 90.0, .seed = 4, .force = 0.05, .effects = {test::active("current", {0.1, 0.05})}});
   CHECK(current.verdict == Verdict::effect);
   CHECK(current.found.best.names == std::vector<std::string>{"current"});
+}
+
+TEST_CASE("search: a stream that turns within the run is a current, with its moment and how long it takes") {
+  std::vector<double> turns(model::find_effect("current")->parameters().size(), 0.0);
+  const auto place = [](std::string_view name) {
+    const auto all = model::find_effect("current")->parameters();
+    return static_cast<std::size_t>(std::ranges::find(all, name, &model::EffectParameter::name) - all.begin());
+  };
+  turns[place("v_N")] = 0.1;
+  turns[place("v_N_2")] = -0.1;
+  turns[place("v_E_2")] = 0.05;
+  turns[place("onset")] = 60.0;
+  turns[place("duration")] = 30.0;
+  const Conclusion found =
+      inferred({.duration = 120.0, .seed = 5, .force = 0.05, .effects = {test::active("current", turns, 2)}});
+  CHECK(found.verdict == Verdict::effect);
+  REQUIRE(found.found.best.names == std::vector<std::string>{"current"});
+  const model::ActiveEffect& current = found.found.best.fit.hypothesis.model.effects.front();
+  CHECK(current.variant_name == "turning");
+  CHECK(current.theta[place("v_N_2")] == doctest::Approx(-0.1).epsilon(0.1));
+  CHECK(current.theta[place("onset")] == doctest::Approx(60.0).epsilon(0.03));
 }
 
 TEST_CASE("free force: it finds what no list holds, says what it goes with, and nothing where nothing is") {

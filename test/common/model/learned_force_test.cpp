@@ -87,6 +87,39 @@ TEST_CASE("learned force: low passes settle, and follow as their time constants 
   CHECK(force.run_in({}) >= 4.0 * kVelocityMemories[bank]);
 }
 
+TEST_CASE("learned force: what a thruster has done lately is looked up in its commands, and followed from there") {
+  const Bench bench;
+  const int bank = 1;
+  const Factor f{.quantity = Quantity::kThruster, .index = 2},
+      use{.quantity = Quantity::kRecentUse, .index = 2, .bank = bank};
+  const LearnedForce force = bench.made(one(along(kThrusterLine + 2, {f, use}), -0.02));
+  std::vector<double> z(static_cast<std::size_t>(force.state_size(bench.vehicle, 6)));
+  // At rest for long, then 4 N astern for thirty seconds.
+  const double dt = 0.1, pushed = 30.0, rested = 300.0;
+  std::vector<Eigen::VectorXd> commands;
+  for (double t = 0.0; t < rested + pushed; t += dt)
+    commands.emplace_back(t < rested ? Eigen::VectorXd::Zero(6) : Eigen::VectorXd{-4.0 * Eigen::VectorXd::Unit(6, 2)});
+  const InputSignal input{0.0, dt, commands};
+  Motion motion{.t = rested + pushed, .force = -4.0 * Eigen::VectorXd::Unit(6, 2)};
+  motion.input = &input;
+  force.settle(motion, {}, 0, z);
+  force.feel(motion, {}, 0, z);
+  const auto after = [&](double seconds) { return 4.0 * -std::expm1(-seconds / kUseMemories[bank]); };
+  const auto wrench = [&](double lately) { return Vector6d{0.02 * 4.0 * lately * bench.vehicle.allocation.col(2)}; };
+  constexpr double kLookedUp = 0.05;  // commands are looked up at forty instants
+  CHECK((motion.w_memory - wrench(after(pushed))).norm() < kLookedUp * wrench(after(pushed)).norm());
+  for (int k = 0; k < 100; ++k) force.advance(motion, {}, 0, dt, z);
+  motion.w_memory.setZero();
+  force.feel(motion, {}, 0, z);
+  CHECK((motion.w_memory - wrench(after(pushed + 10.0))).norm() < kLookedUp * wrench(after(pushed)).norm());
+  // Where nobody knows what was commanded it is as if it had always been so.
+  motion.input = nullptr;
+  force.settle(motion, {}, 0, z);
+  motion.w_memory.setZero();
+  force.feel(motion, {}, 0, z);
+  CHECK((motion.w_memory - wrench(4.0)).norm() < 1e-9);
+}
+
 TEST_CASE("learned force: what depends on time is not carried") {
   FreeForce force;
   force.features = {along(0, {kU, kV}), along(1, {{.quantity = Quantity::kAfter, .a = 3.0}}), along(2, {kV})};
