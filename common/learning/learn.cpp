@@ -7,6 +7,7 @@
 
 #include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
+#include "common/learning/left_out.hpp"
 #include "common/learning/seek_force.hpp"
 #include "common/learning/wording.hpp"
 #include "common/model/rollout.hpp"
@@ -18,72 +19,6 @@ using likelihood::Fit;
 using likelihood::Problem;
 
 constexpr double kVisitedShare = 0.998;  // of the samples: what is larger may be a spike
-
-/// A stretch of a run that is left out together with others of its fold.
-struct Stretch {
-  std::size_t run{};
-  double from{}, to{};  // s
-  int fold{};
-};
-
-/// Stretches side by side, dealt out to the folds in turn; shorter ones where the recording is short.
-std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving) {
-  double whole = 0.0;
-  for (const likelihood::RunData& run : problem.runs) whole += run.last_time() - run.first_time();
-  const double length = std::min(leaving.stretch, whole / leaving.folds);
-  std::vector<Stretch> stretches;
-  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
-    const likelihood::RunData& run = problem.runs[r];
-    const double span = run.last_time() - run.first_time();
-    const int count = std::max(1, static_cast<int>(std::lround(span / length)));
-    for (int i = 0; i < count; ++i) {
-      stretches.push_back({r, run.first_time() + span * i / count, run.first_time() + span * (i + 1) / count,
-                           static_cast<int>(stretches.size()) % leaving.folds});
-    }
-    stretches.back().to = run.last_time() + run.dt();
-  }
-  return stretches;
-}
-
-struct Judged {
-  residual::Compared whole, carried;
-};
-
-std::shared_ptr<const model::LearnedForce> made(const Fit& fit, const model::FreeForce& force,
-                                                const model::Visited& visited) {
-  return std::make_shared<const model::LearnedForce>(force, visited, fit.hypothesis.model.allocation);
-}
-
-/// Weights and all other numbers fitted to the rest, predictions compared where nothing was fitted.
-Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, const Fit& base, const Fit& with,
-                         const model::Visited& visited, const Leaving& leaving, int threads) {
-  const std::vector<Stretch> stretches = stretches_of(problem, leaving);
-  const model::Model plain = as_model(base.hypothesis, problem.input_step);
-  Judged judged;
-  for (int fold = 0; fold < leaving.folds; ++fold) {
-    Problem rest = problem;
-    std::vector<model::Window> windows;
-    for (const Stretch& stretch : stretches) {
-      if (stretch.fold != fold) continue;
-      rest.runs[stretch.run].leave_out(stretch.from, stretch.to);
-      const auto within = windows_within(trials[stretch.run], stretch.from, stretch.to, leaving.predicted);
-      windows.insert(windows.end(), within.begin(), within.end());
-    }
-    if (windows.empty()) continue;
-    const Fit fitted =
-        likelihood::fit(rest, with.hypothesis, with.noise,
-                        {.noise_rounds = 1, .steps = 2, .enough = 0.3, .fit_noise = false, .threads = threads});
-    if (!fitted.finite) continue;
-    const auto compare_with = [&](const model::FreeForce& force, residual::Compared& compared) {
-      const auto learned = made(fitted, force, visited);
-      compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), windows, leaving.predicted,
-              compared);
-    };
-    compare_with(fitted.hypothesis.force, judged.whole);
-    compare_with(model::lasting_of(fitted.hypothesis.force), judged.carried);
-  }
-  return judged;
-}
 
 bool passes(const residual::Ratio& ratio, double most, const Limits& limits) {
   return ratio.windows >= limits.fewest_windows && ratio.value <= most &&
@@ -247,7 +182,8 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     // A recording that goes on where these have ended finds what has begun and what has grown.
     learned.until = problem.t_high;
     const model::FreeForce standing = model::as_it_stands(learned.fit.hypothesis.force, learned.until);
-    given.goes_on = standing.features.size() > model::without_time(learned.fit.hypothesis.force).features.size();
+    given.goes_on = standing.features.size() > model::without_time(learned.fit.hypothesis.force).features.size() &&
+                    passes(ratio_of(judged.standing), limits.carried, limits);
     learned.later = given.goes_on ? made(learned.fit, standing, visited) : learned.elsewhere;
     return true;
   };

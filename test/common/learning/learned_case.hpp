@@ -44,7 +44,9 @@ struct LearnedCase {
     conclusion.found.free_force = inference::find_free_force(
         problem, inference::see(problem, conclusion.found.best.fit, 2), model::scene_of(bluerov(), {&trial, 1}), {}, 2);
   }
-  [[nodiscard]] learning::Learned learned() const { return learning::learn(problem, {&trial, 1}, conclusion, {}, 2); }
+  [[nodiscard]] learning::Learned learned(bool judged_here = true) const {
+    return learning::learn(problem, {&trial, 1}, conclusion, {}, judged_here, 2);
+  }
 
   VirtualDive dive;
   Trial trial, rest;

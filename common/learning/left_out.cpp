@@ -1,0 +1,102 @@
+#include "common/learning/left_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/learning/learn.hpp"
+#include "common/model/rollout.hpp"
+
+namespace fathom::learning {
+namespace {
+
+using likelihood::Fit;
+using likelihood::Problem;
+
+constexpr double kLastPart = 0.25;  // of the recordings, on which what stands at their end is judged
+
+/// A stretch of a run that is left out together with others of its fold.
+struct Stretch {
+  std::size_t run{};
+  double from{}, to{};  // s
+  int fold{};
+};
+
+/// Stretches side by side, dealt out to the folds in turn; shorter ones where the recording is short.
+std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving) {
+  double whole = 0.0;
+  for (const likelihood::RunData& run : problem.runs) whole += run.last_time() - run.first_time();
+  const double length = std::min(leaving.stretch, whole / leaving.folds);
+  std::vector<Stretch> stretches;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    const likelihood::RunData& run = problem.runs[r];
+    const double span = run.last_time() - run.first_time();
+    const int count = std::max(1, static_cast<int>(std::lround(span / length)));
+    for (int i = 0; i < count; ++i) {
+      stretches.push_back({r, run.first_time() + span * i / count, run.first_time() + span * (i + 1) / count,
+                           static_cast<int>(stretches.size()) % leaving.folds});
+    }
+    stretches.back().to = run.last_time() + run.dt();
+  }
+  return stretches;
+}
+
+/// From when on a force must be as it stands at the end: a quarter of the recordings, none of it before what set in.
+double stands_from(const Problem& problem, const model::FreeForce& force) {
+  double from = problem.t_high - kLastPart * (problem.t_high - problem.t_low);
+  for (const model::FeatureGroup& group : force.groups) {
+    for (int j = group.first; j < group.first + group.count && group.closed; ++j) {
+      const model::Feature& feature = force.features[static_cast<std::size_t>(j)];
+      for (int i = 0; i < feature.count; ++i) {
+        const model::Factor& factor = feature.factors[static_cast<std::size_t>(i)];
+        if (factor.quantity == model::Quantity::kAfter) from = std::max(from, factor.a + 0.5 * factor.b);
+      }
+    }
+  }
+  return from;
+}
+
+}  // namespace
+
+Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, const Fit& base, const Fit& with,
+                         const model::Visited& visited, const Leaving& leaving, int threads) {
+  const std::vector<Stretch> stretches = stretches_of(problem, leaving);
+  const model::Model plain = as_model(base.hypothesis, problem.input_step);
+  const double late = stands_from(problem, with.hypothesis.force);
+  Judged judged;
+  for (int fold = 0; fold < leaving.folds; ++fold) {
+    Problem rest = problem;
+    std::vector<model::Window> windows, late_windows;
+    for (const Stretch& stretch : stretches) {
+      if (stretch.fold != fold) continue;
+      rest.runs[stretch.run].leave_out(stretch.from, stretch.to);
+      const auto take = [&](double from, std::vector<model::Window>& into) {
+        const auto within = windows_within(trials[stretch.run], from, stretch.to, leaving.predicted);
+        into.insert(into.end(), within.begin(), within.end());
+      };
+      take(stretch.from, windows);
+      if (stretch.to > late) take(std::max(stretch.from, late), late_windows);
+    }
+    if (windows.empty()) continue;
+    const Fit fitted =
+        likelihood::fit(rest, with.hypothesis, with.noise,
+                        {.noise_rounds = 1, .steps = 2, .enough = 0.3, .fit_noise = false, .threads = threads});
+    if (!fitted.finite) continue;
+    const auto compare_with = [&](const model::FreeForce& force, std::span<const model::Window> on,
+                                  residual::Compared& compared) {
+      const auto learned = made(fitted, force, visited);
+      compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), on, leaving.predicted, compared);
+    };
+    compare_with(fitted.hypothesis.force, windows, judged.whole);
+    compare_with(model::lasting_of(fitted.hypothesis.force), windows, judged.carried);
+    if (!late_windows.empty())
+      compare_with(model::as_it_stands(fitted.hypothesis.force, problem.t_high), late_windows, judged.standing);
+  }
+  return judged;
+}
+
+std::shared_ptr<const model::LearnedForce> made(const Fit& fit, const model::FreeForce& force,
+                                                const model::Visited& visited) {
+  return std::make_shared<const model::LearnedForce>(force, visited, fit.hypothesis.model.allocation);
+}
+
+}  // namespace fathom::learning
