@@ -12,7 +12,7 @@ namespace {
 using likelihood::Fit;
 using likelihood::Problem;
 
-constexpr double kLastPart = 0.25;  // of the recordings, on which what stands at their end is judged
+constexpr double kLastPart = 0.25;  // of the recordings, over which what grows hardly changes
 
 /// A stretch of a run that is left out together with others of its fold.
 struct Stretch {
@@ -40,15 +40,18 @@ std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving
   return stretches;
 }
 
-/// From when on a force must be as it stands at the end: a quarter of the recordings, none of it before what set in.
+/// From when on a force must be as it stands at the end: from the last moment at which something set in, and where it
+/// grows on a last part alone.
 double stands_from(const Problem& problem, const model::FreeForce& force) {
-  double from = problem.t_high - kLastPart * (problem.t_high - problem.t_low);
+  double from = problem.t_low;
   for (const model::FeatureGroup& group : force.groups) {
     for (int j = group.first; j < group.first + group.count && group.closed; ++j) {
       const model::Feature& feature = force.features[static_cast<std::size_t>(j)];
       for (int i = 0; i < feature.count; ++i) {
         const model::Factor& factor = feature.factors[static_cast<std::size_t>(i)];
         if (factor.quantity == model::Quantity::kAfter) from = std::max(from, factor.a + 0.5 * factor.b);
+        if (factor.quantity == model::Quantity::kRamp)
+          from = std::max(from, problem.t_high - kLastPart * (problem.t_high - problem.t_low));
       }
     }
   }

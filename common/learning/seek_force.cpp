@@ -7,6 +7,7 @@
 
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
+#include "common/learning/moments.hpp"
 #include "common/learning/products.hpp"
 
 namespace fathom::learning {
@@ -18,6 +19,7 @@ using inference::GroupEvidence;
 using inference::Seen;
 
 constexpr std::size_t kShortlist = 24;  // groups whose products with all others are worked out
+constexpr std::size_t kProfiled = 4;    // of those that begin at a moment: its place is sought more closely
 constexpr double kFactor = 4.0;         // by which the second start's random force is smaller
 constexpr double kSettled = 4.0;        // times the odds that are needed: no second start could change the verdict
 
@@ -109,7 +111,7 @@ class Seeker {
 
   /// Groups that are worth more than they cost, one after the other, those that have become superfluous taken back.
   [[nodiscard]] Picked pick(const Seen& seen, bool at_least_one, bool of_recording) {
-    const likelihood::FreeForce library = products_of(problem_, seen, scene_, of_recording);
+    likelihood::FreeForce library = products_of(problem_, seen, scene_, of_recording);
     const std::size_t all = library.groups.size();
     groups_ = std::max(groups_, all);
     std::vector<double> alone(all);
@@ -129,7 +131,18 @@ class Seeker {
       if (!held(seen, library.groups[g])) shortlist.push_back(g);
     }
     if (shortlist.empty()) return {};
-    std::ranges::sort(shortlist, std::greater{}, [&](std::size_t g) { return alone[g]; });
+    const auto best_first = [&] {
+      std::ranges::stable_sort(shortlist, std::greater{}, [&](std::size_t g) { return alone[g]; });
+    };
+    best_first();
+    std::vector<std::size_t> begun;
+    for (const std::size_t g : shortlist) {
+      if (begun.size() == kProfiled) break;
+      if (library.groups[g].searched) begun.push_back(g);
+    }
+    for (const auto& [g, evidence] : profile_moments(problem_, seen, begun, library, threads_))
+      alone[g] = evidence - price(library.groups[g], all);
+    best_first();
     shortlist.resize(std::min(shortlist.size(), kShortlist));
     const inference::Screen whole = inference::screen(problem_, seen, library, shortlist, true);
     const auto price_of = [&](std::size_t k) { return price(library.groups[whole.groups[k]], all); };

@@ -36,7 +36,7 @@ TEST_CASE("ranking: an accepted effect comes first with the model's own numbers,
   CHECK(ranking.verdict == "effect");
   REQUIRE(ranking.candidates.size() == 3);
   CHECK(ranking.candidates[0].name == "current");
-  CHECK(ranking.candidates[0].numbers == std::vector{0.1, -0.2});
+  CHECK(ranking.candidates[0].numbers == test::active("current", {0.1, -0.2}).theta);
   CHECK(ranking.candidates[0].log_odds == 50.0);
   CHECK(ranking.candidates[0].error_reduction == 0.8);
   CHECK(ranking.candidates[1].name == "payload_change");
