@@ -123,8 +123,9 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   Learned learned;
   CorrectionGiven& given = learned.given;
   const Limits& limits = settings.limits;
-  if (!settings.learn || !conclusion.found.best.fit.finite || conclusion.verdict != inference::Verdict::unexplained)
-    return learned;
+  const bool lacking =
+      conclusion.verdict == inference::Verdict::unexplained || conclusion.verdict == inference::Verdict::no_model;
+  if (!settings.learn || !conclusion.found.best.fit.finite || !lacking) return learned;
   const Fit& base = conclusion.found.best.fit;
   const model::Scene scene = model::scene_of(*problem.vehicle, of);
   std::optional<inference::FreeForceFound> free = conclusion.found.free_force, lasting;

@@ -40,9 +40,10 @@ std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving
   return stretches;
 }
 
-/// From when on a force must be as it stands at the end: from the last moment at which something set in, and where it
-/// grows on a last part alone.
+/// From when on a force must be as it stands at the end: from the last moment at which something set in; where it
+/// grows, or where that moment is near the end, on a last part.
 double stands_from(const Problem& problem, const model::FreeForce& force) {
+  const double last_part = problem.t_high - kLastPart * (problem.t_high - problem.t_low);
   double from = problem.t_low;
   for (const model::FeatureGroup& group : force.groups) {
     for (int j = group.first; j < group.first + group.count && group.closed; ++j) {
@@ -50,12 +51,11 @@ double stands_from(const Problem& problem, const model::FreeForce& force) {
       for (int i = 0; i < feature.count; ++i) {
         const model::Factor& factor = feature.factors[static_cast<std::size_t>(i)];
         if (factor.quantity == model::Quantity::kAfter) from = std::max(from, factor.a + 0.5 * factor.b);
-        if (factor.quantity == model::Quantity::kRamp)
-          from = std::max(from, problem.t_high - kLastPart * (problem.t_high - problem.t_low));
+        if (factor.quantity == model::Quantity::kRamp) return last_part;
       }
     }
   }
-  return from;
+  return std::min(from, last_part);
 }
 
 }  // namespace

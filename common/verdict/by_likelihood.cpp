@@ -323,12 +323,16 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     conclusion.reasons.clear();
     conclude(problem, settings.thresholds, conclusion);
   }
-  if (conclusion.verdict == Verdict::unexplained) seek_wiring(vehicle, train, result, conclusion);
+  if (conclusion.verdict == Verdict::unexplained || conclusion.verdict == Verdict::no_model)
+    seek_wiring(vehicle, train, result, conclusion);
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
   if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
     gain = held_back(vehicle, unseen, input_step, conclusion);
   learning::Learned learned;
-  if (learning.learn && conclusion.verdict == Verdict::unexplained) {
+  // A model that does not follow its thrust may be opposed by a force that nothing lists; an exchanged thruster is
+  // none.
+  const bool opposed = conclusion.verdict == Verdict::no_model && conclusion.reported.finite && !result.wiring;
+  if (learning.learn && (conclusion.verdict == Verdict::unexplained || opposed)) {
     progress.begin(kLearning.phase, kLearning.what);
     learned = learning::learn(problem, train, conclusion, learning, judged_here(train, validate), settings.threads);
     result.correction = learned.given;
@@ -346,12 +350,17 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     if (force != nullptr) tell_of_spread(learned, *force, input_step, unseen, *result.correction);
   }
   if (conclusion.verdict == Verdict::no_model) {
-    if (!result.wiring) seek_wiring(vehicle, train, result, conclusion);
-    seek_reason(vehicle, train, settings.thresholds, conclusion);
-    if (result.correction && result.correction->adopted) {
-      result.correction->adopted = result.correction->carried = false;
-      result.correction->refused =
-          "on runs that no fit has seen the model with it predicts worse than that nothing changes";
+    const bool corrected = result.correction && result.correction->adopted;
+    if (corrected && result.improvement.low > 0.0) {
+      // What the force does on such an axis is known, of its numbers and of its thrust nothing is.
+      conclusion.reasons.push_back(
+          {inference::Cause::kFreeForce, result.correction->log_odds, learning.limits.odds, std::string{kLearned}});
+    } else {
+      seek_reason(vehicle, train, settings.thresholds, conclusion);
+      if (corrected) {
+        result.correction->adopted = result.correction->carried = false;
+        result.correction->refused = "on runs that no fit has seen it does not surely lower the error";
+      }
     }
   }
   begins_later(report, conclusion);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,9 @@
 #include "common/samples/verdict_given.hpp"
 
 namespace fathom::verdict {
+
+/// In place of an axis: a model's lack that a learned force has taken the place of.
+inline constexpr std::string_view kLearned = "what was learned";
 
 struct Answer {
   DiagnosisReport report;
