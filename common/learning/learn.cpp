@@ -182,7 +182,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     if (given.carried) learned.elsewhere = made(learned.fit, lasts, visited);
     // A recording that goes on where these have ended finds what has begun and what has grown.
     learned.until = problem.t_high;
-    const model::FreeForce standing = model::as_it_stands(learned.fit.hypothesis.force, learned.until);
+    const model::FreeForce standing = standing_of(problem, learned.fit.hypothesis.force);
     given.goes_on = standing.features.size() > model::without_time(learned.fit.hypothesis.force).features.size() &&
                     passes(ratio_of(judged.standing), limits.carried, limits);
     learned.later = given.goes_on ? made(learned.fit, standing, visited) : learned.elsewhere;

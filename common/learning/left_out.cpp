@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/learning/learn.hpp"
 #include "common/model/rollout.hpp"
@@ -40,22 +41,33 @@ std::vector<Stretch> stretches_of(const Problem& problem, const Leaving& leaving
   return stretches;
 }
 
-/// From when on a force must be as it stands at the end: from the last moment at which something set in; where it
-/// grows, or where that moment is near the end, on a last part.
-double stands_from(const Problem& problem, const model::FreeForce& force) {
-  const double last_part = problem.t_high - kLastPart * (problem.t_high - problem.t_low);
-  double from = problem.t_low;
-  for (const model::FeatureGroup& group : force.groups) {
-    for (int j = group.first; j < group.first + group.count && group.closed; ++j) {
-      const model::Feature& feature = force.features[static_cast<std::size_t>(j)];
-      for (int i = 0; i < feature.count; ++i) {
-        const model::Factor& factor = feature.factors[static_cast<std::size_t>(i)];
-        if (factor.quantity == model::Quantity::kAfter) from = std::max(from, factor.a + 0.5 * factor.b);
-        if (factor.quantity == model::Quantity::kRamp) return last_part;
-      }
+double last_part_of(const Problem& problem) { return problem.t_high - kLastPart * (problem.t_high - problem.t_low); }
+
+/// The latest moment of a group, if it is a law.
+double begins(const model::FreeForce& force, const model::FeatureGroup& group) {
+  double moment = std::numeric_limits<double>::lowest();
+  for (int j = group.first; j < group.first + group.count && group.closed; ++j) {
+    const model::Feature& feature = force.features[static_cast<std::size_t>(j)];
+    for (int i = 0; i < feature.count; ++i) {
+      const model::Factor& factor = feature.factors[static_cast<std::size_t>(i)];
+      if (factor.quantity == model::Quantity::kAfter) moment = std::max(moment, factor.a + 0.5 * factor.b);
     }
   }
-  return std::min(from, last_part);
+  return moment;
+}
+
+/// From when on what is told of later runs must hold: from the last moment at which something set in; where it grows,
+/// on a last part.
+double stands_from(const Problem& problem, const model::FreeForce& force) {
+  double from = problem.t_low;
+  for (const model::FeatureGroup& group : force.groups) {
+    if (begins(force, group) <= last_part_of(problem)) from = std::max(from, begins(force, group));
+  }
+  const bool grows = std::ranges::any_of(force.features, [](const model::Feature& feature) {
+    return std::any_of(feature.factors.begin(), feature.factors.begin() + feature.count,
+                       [](const model::Factor& factor) { return factor.quantity == model::Quantity::kRamp; });
+  });
+  return grows ? last_part_of(problem) : from;
 }
 
 }  // namespace
@@ -92,9 +104,22 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
     compare_with(fitted.hypothesis.force, windows, judged.whole);
     compare_with(model::lasting_of(fitted.hypothesis.force), windows, judged.carried);
     if (!late_windows.empty())
-      compare_with(model::as_it_stands(fitted.hypothesis.force, problem.t_high), late_windows, judged.standing);
+      compare_with(standing_of(problem, fitted.hypothesis.force), late_windows, judged.standing);
   }
   return judged;
+}
+
+model::FreeForce standing_of(const Problem& problem, const model::FreeForce& force) {
+  model::FreeForce judged;
+  for (model::FeatureGroup group : force.groups) {
+    if (begins(force, group) > last_part_of(problem)) continue;
+    const auto from = static_cast<std::ptrdiff_t>(group.first), to = from + group.count;
+    group.first = static_cast<int>(judged.features.size());
+    judged.features.insert(judged.features.end(), force.features.begin() + from, force.features.begin() + to);
+    judged.weights.insert(judged.weights.end(), force.weights.begin() + from, force.weights.begin() + to);
+    judged.groups.push_back(std::move(group));
+  }
+  return model::as_it_stands(judged, problem.t_high);
 }
 
 std::shared_ptr<const model::LearnedForce> made(const Fit& fit, const model::FreeForce& force,

@@ -20,6 +20,10 @@ struct Judged {
                                        const likelihood::Fit& base, const likelihood::Fit& with,
                                        const model::Visited& visited, const Leaving& leaving, int threads);
 
+/// What later runs on the same clock are told: the force as it stands at the end, without what set in so late that
+/// nothing judges it.
+[[nodiscard]] model::FreeForce standing_of(const likelihood::Problem& problem, const model::FreeForce& force);
+
 /// A force of a fit as part of a model.
 [[nodiscard]] std::shared_ptr<const model::LearnedForce> made(const likelihood::Fit& fit, const model::FreeForce& force,
                                                               const model::Visited& visited);

@@ -7,6 +7,7 @@
 
 #include "common/base/statistics.hpp"
 #include "common/identification/sparse.hpp"
+#include "common/learning/left_out.hpp"
 #include "common/learning/spread.hpp"
 #include "common/learning/wording.hpp"
 #include "common/likelihood/between_runs.hpp"
@@ -226,11 +227,12 @@ void judge_predictions(const model::Vehicle& vehicle, const model::Model& before
 }
 
 /// What the learned force leaves open on runs that judge.
-void tell_of_spread(const learning::Learned& learned, const model::LearnedForce& force, double input_step,
-                    std::span<const Trial> unseen, CorrectionGiven& given) {
+void tell_of_spread(const likelihood::Problem& problem, const learning::Learned& learned,
+                    const model::LearnedForce& force, double input_step, std::span<const Trial> unseen,
+                    CorrectionGiven& given) {
   const learning::Telling tell = [&](const model::FreeForce& all) {
     if (&force == learned.here.get()) return all;
-    return &force == learned.elsewhere.get() ? model::lasting_of(all) : model::as_it_stands(all, learned.until);
+    return &force == learned.elsewhere.get() ? model::lasting_of(all) : learning::standing_of(problem, all);
   };
   const model::Model model = learning::as_model(learned.fit.hypothesis, input_step, &force);
   const std::vector<model::Window> windows = residual::prediction_windows(unseen, residual::lead_of(model));
@@ -347,7 +349,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     const model::Model before = likelihood::model_of(conclusion.reported_base.hypothesis, input_step);
     const model::Model after = learning::as_model(best.hypothesis, input_step, force);
     judge_predictions(vehicle, before, after, unseen, train, report, answer.given, conclusion);
-    if (force != nullptr) tell_of_spread(learned, *force, input_step, unseen, *result.correction);
+    if (force != nullptr) tell_of_spread(problem, learned, *force, input_step, unseen, *result.correction);
   }
   if (conclusion.verdict == Verdict::no_model) {
     const bool corrected = result.correction && result.correction->adopted;
