@@ -219,8 +219,7 @@ void Identifier::decide(Utime first) {
 void Identifier::take_effect(const model::Effect& effect, std::istringstream& text) {
   model::ActiveEffect active{.effect = &effect};
   std::string input;
-  if (!(text >> active.variant >> origin_ >> input) || active.variant < 0 ||
-      active.variant >= effect.form_count())
+  if (!(text >> active.variant >> origin_ >> input) || active.variant < 0 || active.variant >= effect.form_count())
     throw InputError("identifier: the saved effect is damaged");
   input_ = input == "wrench" ? InputKind::kWrench : InputKind::kForce;
   for (std::size_t i = 0; i < effect.parameters().size(); ++i) active.theta.push_back(take(text));
