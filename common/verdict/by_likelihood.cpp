@@ -5,14 +5,12 @@
 #include <limits>
 #include <set>
 
-#include "common/base/statistics.hpp"
 #include "common/identification/sparse.hpp"
 #include "common/learning/left_out.hpp"
 #include "common/learning/spread.hpp"
 #include "common/learning/wording.hpp"
 #include "common/likelihood/between_runs.hpp"
 #include "common/preflight/applicability.hpp"
-#include "common/preflight/wiring.hpp"
 #include "common/residual/force_residual.hpp"
 #include "common/residual/prediction.hpp"
 #include "common/residual/traces.hpp"
@@ -22,6 +20,7 @@
 #include "common/verdict/followed_axes.hpp"
 #include "common/verdict/next_motion.hpp"
 #include "common/verdict/skill.hpp"
+#include "common/verdict/why_no_model.hpp"
 
 namespace fathom::verdict {
 namespace {
@@ -264,38 +263,6 @@ void begins_later(const DiagnosisReport& report, Conclusion& conclusion) {
   if (conclusion.verdict == Verdict::adequate) conclusion.verdict = Verdict::unexplained;
 }
 
-/// Thrusters that are others than the file says leave much that no list explains: the file is asked first.
-void seek_wiring(const model::Vehicle& vehicle, std::span<const Trial> train, DiagnosisResult& result,
-                 Conclusion& conclusion) {
-  result.wiring = preflight::wiring_fault(vehicle, train, {});
-  if (!result.wiring || result.wiring->readings.empty()) return;
-  conclusion.verdict = Verdict::no_model;
-  conclusion.reasons.push_back(
-      {inference::Cause::kWiring, result.wiring->error_reduction, 0.5, result.wiring->readings.front()});
-}
-
-/// The likeliest reason beside the wiring for a model that does not follow its thrust, measured.
-void seek_reason(const model::Vehicle& vehicle, std::span<const Trial> train, const inference::Thresholds& thresholds,
-                 Conclusion& conclusion) {
-  using inference::Cause;
-  const std::array<PlainAxis, 6> plain = plain_fit(vehicle, train);
-  std::vector<double> ratios;
-  for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (!plain[axis].known) continue;
-    if (plain[axis].t_of_input < thresholds.idle_input)
-      conclusion.reasons.push_back(
-          {Cause::kInputIdle, plain[axis].t_of_input, thresholds.idle_input, model::kAxisNames[axis]});
-    for (const likelihood::Number& number : conclusion.found.base.fit.numbers) {
-      if (number.kind == NumberKind::kBase && number.index == static_cast<int>(axis) && number.mean > 0.0)
-        ratios.push_back(value(conclusion.found.base.fit.hypothesis, number) / number.mean);
-    }
-  }
-  if (ratios.empty()) return;
-  const double ratio = median(ratios);
-  if (std::max(ratio, 1.0 / std::max(ratio, 1e-9)) > thresholds.foreign_unit)
-    conclusion.reasons.push_back({Cause::kForceUnit, ratio, thresholds.foreign_unit, ""});
-}
-
 }  // namespace
 
 Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std::span<const Trial> validate,
@@ -325,8 +292,8 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     conclusion.reasons.clear();
     conclude(problem, settings.thresholds, conclusion);
   }
-  if (conclusion.verdict == Verdict::unexplained || conclusion.verdict == Verdict::no_model)
-    seek_wiring(vehicle, train, result, conclusion);
+  const bool wiring_sought = conclusion.verdict == Verdict::unexplained || conclusion.verdict == Verdict::no_model;
+  if (wiring_sought) seek_wiring(vehicle, train, result, conclusion);
   Interval gain{kNotAsked, kNotAsked, kNotAsked};
   if (conclusion.reported.finite && !conclusion.found.best.names.empty() && !names_claim(conclusion.verdict))
     gain = held_back(vehicle, unseen, input_step, conclusion);
@@ -352,17 +319,16 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
     if (force != nullptr) tell_of_spread(problem, learned, *force, input_step, unseen, *result.correction);
   }
   if (conclusion.verdict == Verdict::no_model) {
+    if (!wiring_sought) seek_wiring(vehicle, train, result, conclusion);
+    seek_reason(vehicle, train, settings.thresholds, conclusion);
     const bool corrected = result.correction && result.correction->adopted;
-    if (corrected && result.improvement.low > 0.0) {
+    if (corrected && force != nullptr && result.improvement.low > 0.0) {
       // What the force does on such an axis is known, of its numbers and of its thrust nothing is.
       conclusion.reasons.push_back(
           {inference::Cause::kFreeForce, result.correction->log_odds, learning.limits.odds, std::string{kLearned}});
-    } else {
-      seek_reason(vehicle, train, settings.thresholds, conclusion);
-      if (corrected) {
-        result.correction->adopted = result.correction->carried = false;
-        result.correction->refused = "on runs that no fit has seen it does not surely lower the error";
-      }
+    } else if (corrected) {
+      result.correction->adopted = result.correction->carried = false;
+      result.correction->refused = "on runs that no fit has seen it does not surely lower the error";
     }
   }
   begins_later(report, conclusion);

@@ -107,9 +107,11 @@ std::string reasons_of_no_model(const Conclusion& conclusion) {
     axes += (axes.empty() ? "" : ", ") + one.of;
   }
   if (!reversed.empty()) return "likeliest because the recorded thrust pushes the other way along " + reversed + ". ";
-  if (!idle.empty()) return "likeliest because the recorded thrust does not act along " + idle + ". ";
-  if (std::ranges::any_of(conclusion.reasons, [](const Reason& one) { return one.of == kLearned; }))
-    return "likeliest because of the force that was learned. ";
+  const bool learned = std::ranges::any_of(conclusion.reasons, [](const Reason& one) { return one.of == kLearned; });
+  if (!idle.empty())
+    return "likeliest because the recorded thrust does not act along " + idle +
+           (learned ? ", or because the force that was learned opposes it: these runs do not tell. " : ". ");
+  if (learned) return "likeliest because of the force that was learned. ";
   if (const auto& free = conclusion.found.free_force; free && free->log_odds > inference::Thresholds{}.free_force_odds)
     return "wiring, force unit and inputs are in order: terms of the hull are missing. ";
   return "wiring, force unit and inputs are in order as far as this data tells. ";
