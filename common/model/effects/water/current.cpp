@@ -31,7 +31,9 @@ constexpr std::array kCurrentParameters{
     velocity("v_N_2"), velocity("v_E_2"), velocity("v_N_3"), velocity("v_E_3"), velocity("v_N_4"), velocity("v_E_4"),
     velocity("v_N_5"), velocity("v_E_5"), velocity("v_N_6"), velocity("v_E_6"), velocity("v_N_7"), velocity("v_E_7"),
     EffectParameter{"at_depth", "m", 100.0}, EffectParameter{"from", "s", 1e3}, EffectParameter{"until", "s", 1e3},
-    kOnsetParameter, EffectParameter{"duration", "s", 30.0, kOnsetDuration, 600.0}};
+    kOnsetParameter,
+    EffectParameter{
+        .name = "duration", .unit = "s", .sigma = 30.0, .low = kOnsetDuration, .high = 600.0, .blurred = true}};
 constexpr std::size_t kNorth = 0, kEast = 1, kShearNorth = 2, kShearEast = 3, kNext = 4;
 constexpr std::size_t kAmplitudes = kNext + 2 * (kMoments - 1);
 constexpr std::size_t kAtDepth = kAmplitudes, kFrom = kAtDepth + 1, kUntil = kFrom + 1, kTurn = kUntil + 1,

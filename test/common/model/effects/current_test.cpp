@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "common/model/dynamics.hpp"
+#include "common/model/effect_size.hpp"
+#include "common/model/onset.hpp"
 #include "common/model/open_scene.hpp"
 #include "test/support/virtual_dive.hpp"
 
@@ -63,6 +65,14 @@ TEST_CASE("current: what changes goes along straight lines between seven moments
   agree(water(changing, 30.0, 1.0), 0.3, 0.0);
   agree(water(changing, 120.0, 1.0), 0.0, 0.1);
   agree(water(changing, 900.0, 1.0), 0.0, 0.2);
+}
+
+TEST_CASE("current: a stream may set in at once: what is quicker than any data tells is no limit that was met") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  model::ActiveEffect turn = form(kTurning, {{"v_N_2", 0.2}, {"onset", 100.0}, {"duration", model::kOnsetDuration}});
+  CHECK_FALSE(model::stopped_at_limit(*turn.effect, kTurning, turn.theta, vehicle));
+  turn = form(kTurning, {{"v_N_2", 3.0}, {"onset", 100.0}, {"duration", 1.0}});
+  CHECK(model::stopped_at_limit(*turn.effect, kTurning, turn.theta, vehicle));
 }
 
 TEST_CASE("current: moments are asked of one run alone, depths where they were visited") {
