@@ -17,11 +17,17 @@ bool moves(const model::ActiveEffect& active, std::size_t number) {
   return active.effect->takes_part(active.variant, number);
 }
 
-bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle) {
-  return model::stopped_at_limit(*active.effect, active.variant, active.theta, vehicle);
+bool stopped(const model::ActiveEffect& active, const model::Scene& scene) {
+  return model::stopped_at_limit(*active.effect, active.variant, active.theta, *scene.vehicle) ||
+         !active.effect->possible(active.theta, active.variant, scene);
 }
 
 bool asked_first(const Law& law) { return law.seed.effect->traits().asked_first; }
+
+std::size_t claims(const std::vector<model::ActiveEffect>& effects) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(effects, [](const auto& active) { return !active.effect->traits().own_flow; }));
+}
 
 bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {
   return a.effect == b.effect && (!a.effect->variants_matter() || a.effect->rules_out(a.variant, b.variant));

@@ -24,11 +24,15 @@ struct Law {
 [[nodiscard]] std::vector<std::string> listed_names();
 /// Whether a fit moves that number in this form.
 [[nodiscard]] bool moves(const model::ActiveEffect& active, std::size_t number);
-/// Whether a search for its numbers was stopped by a limit that says nothing: it has found no effect.
-[[nodiscard]] bool stopped(const model::ActiveEffect& active, const model::Vehicle& vehicle);
+/// Whether a search for its numbers was stopped by a limit that says nothing, or has come to numbers that nothing can
+/// have here: it has found no effect.
+[[nodiscard]] bool stopped(const model::ActiveEffect& active, const model::Scene& scene);
 /// Whether it is asked before all others: where a sensor sits is the recording's business, and a force would stand in
 /// for it.
 [[nodiscard]] bool asked_first(const Law& law);
+/// How many of them say that something is missing: what a craft that lives by its flow has by nature says no such
+/// thing.
+[[nodiscard]] std::size_t claims(const std::vector<model::ActiveEffect>& effects);
 /// Whether two effects cannot stand in one model: forms that act in place of each other, or laws of one thing.
 [[nodiscard]] bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b);
 

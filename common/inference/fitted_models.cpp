@@ -13,6 +13,7 @@ namespace fathom::inference {
 namespace {
 
 constexpr std::array kCountPrior{0.5, 0.3, 0.13, 0.05, 0.02};  // of 0 to 4 effects
+constexpr double kOwnFlowPrior = 0.5;                          // of a form of what craft that live by their flow have
 constexpr double kNever = -1e300;                              // score of what could not be fitted
 
 // A round of the numbers and the noise tells a candidate's rank; only what may still win goes on. What has not gained
@@ -41,13 +42,17 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
 
 double log_prior_of_set(const std::vector<model::ActiveEffect>& effects, const std::vector<Law>& laws) {
   std::map<std::string, int> forms;
-  for (const Law& law : laws) forms[law.name] = law.forms;
-  const std::size_t n = effects.size();
+  std::size_t names = 0;  // that a craft may lack
+  for (const Law& law : laws) {
+    if (forms.emplace(law.name, law.forms).second && !law.seed.effect->traits().own_flow) ++names;
+  }
+  const std::size_t n = claims(effects), own = effects.size() - n;
   double log_prior = std::log(kCountPrior[std::min(n, kCountPrior.size() - 1)]);
   // One of (names over n) sets.
   for (std::size_t k = 0; k < n; ++k)
-    log_prior -= std::log(std::max(1.0, static_cast<double>(forms.size() - std::min(k, forms.size() - 1))) /
-                          static_cast<double>(k + 1));
+    log_prior -=
+        std::log(std::max(1.0, static_cast<double>(names) - static_cast<double>(k)) / static_cast<double>(k + 1));
+  log_prior += static_cast<double>(own) * std::log(kOwnFlowPrior);
   for (const model::ActiveEffect& active : effects) {
     const auto found = forms.find(std::string(active.effect->name()));
     log_prior -= std::log(static_cast<double>(found != forms.end() ? found->second : 1));

@@ -33,7 +33,8 @@ struct Start {
   likelihood::Noise noise;
 };
 
-/// Log prior of a set: of their number, and uniform over sets and over the forms of each.
+/// Log prior of a set: of their number, and uniform over sets and over the forms of each. What a craft that lives by
+/// its flow has by nature is as likely as not, and not counted.
 [[nodiscard]] double log_prior_of_set(const std::vector<model::ActiveEffect>& effects, const std::vector<Law>& laws);
 
 /// A name in the best model, against all other sets of names that were fitted.

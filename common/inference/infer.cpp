@@ -174,7 +174,8 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
                        model::kAxisNames[static_cast<std::size_t>(force.axis)]});
     unexplained = true;
   }
-  if (const auto names = static_cast<int>(found.best.names.size()); names >= thresholds.most_effects) {
+  const auto names = static_cast<int>(claims(found.best.fit.hypothesis.model.effects));
+  if (names >= thresholds.most_effects) {
     reasons.push_back(
         {Cause::kManyNames, static_cast<double>(names), static_cast<double>(thresholds.most_effects), ""});
     unexplained = true;
@@ -226,6 +227,12 @@ Conclusion infer(const model::Vehicle& vehicle, std::span<const Trial> trials, c
       const int of = problem.axes[axis];
       conclusion.random.push_back({of, noise[likelihood::kForce], noise[likelihood::kForceMemory],
                                    noise[likelihood::kForce] / std::max(seen.applied[of], 1e-9)});
+    }
+    for (const model::ActiveEffect& active : found.best.fit.hypothesis.model.effects) {
+      const model::Unlisted other = active.effect->looks_like(active.theta, active.variant, scene);
+      if (!other.what.empty())
+        conclusion.look_alikes.push_back(
+            {std::string{active.effect->name()}, std::string{other.what}, std::string{other.told_by}});
     }
     const auto reported = [&](const likelihood::Fit& fit, double& gain) {
       progress.begin(kHorizonFit.phase, kHorizonFit.what);

@@ -25,6 +25,13 @@ struct RandomForce {
   double share{};   ///< of the applied acceleration
 };
 
+/// What no list holds and would move the vehicle as a named effect does with the numbers that were found.
+struct LookAlike {
+  std::string of;       ///< name of the effect
+  std::string what;     ///< for people
+  std::string told_by;  ///< the motion that would tell the two apart
+};
+
 struct Conclusion {
   Verdict verdict{Verdict::not_judged};
   std::vector<Reason> reasons;
@@ -35,6 +42,7 @@ struct Conclusion {
   /// nothing changes and than by an equation of the axis alone: what the model lacks within a second, as of a thrust
   /// that comes late or a vehicle that shakes, is no reason to withhold its numbers there.
   std::vector<int> skilled;
+  std::vector<LookAlike> look_alikes;
   /// Share by which numbers of the multi-horizon score surely lower the open-loop error of the fitted runs; 0: not.
   double disagreement{};
   /// Numbers for reports and exports, all of one fit, of the base model and of the best: those of the likelihood, which

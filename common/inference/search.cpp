@@ -30,7 +30,10 @@ Found Searching::run(const Before* before) {
   found_.best = found_.base;
   if (!found_.base.fit.finite) return std::move(found_);
   if (before != nullptr) take_up(before->sets);
-  const auto room = [&] { return thresholds_.most_effects - static_cast<int>(effects().size()); };
+  const auto room = [&] {
+    const auto all = static_cast<int>(effects().size()), claimed = static_cast<int>(claims(effects()));
+    return std::min(thresholds_.most_effects - claimed, thresholds_.most_effects + thresholds_.most_own_flow - all);
+  };
   while (room() > 0 && goes_on()) {
     expect_rounds(std::min(2, room()));  // this one, and one that finds nothing
     if (!add_some()) break;
@@ -192,7 +195,7 @@ bool Searching::take_best(std::vector<Fitted> fits) {
 }
 
 bool Searching::add_some() {
-  const bool pairs = !sought_ && found_.best.names.size() + 2 <= static_cast<std::size_t>(thresholds_.most_effects);
+  const bool pairs = !sought_ && claims(effects()) + 2 <= static_cast<std::size_t>(thresholds_.most_effects);
   std::vector<Proposal> all = proposals(found_.best, thresholds_.score_worth, pairs), first;
   std::ranges::copy_if(all, std::back_inserter(first), &Proposal::first);
   std::erase_if(all, [](const Proposal& proposal) { return proposal.first; });
@@ -233,7 +236,7 @@ bool Searching::counts(const Fitted& fitted) {
   for (std::size_t e = 0; e < those.size(); ++e) {
     if (held(effects(), those[e])) continue;
     const double size = size_of(seen, e, fresh == 1 && those.size() > effects().size() ? &found_.best : nullptr);
-    const bool at_limit = stopped(those[e], *problem_.vehicle);
+    const bool at_limit = stopped(those[e], scene_);
     if (!at_limit && size >= thresholds_.smallest_size) continue;
     failed_[std::string(those[e].effect->name())] =
         at_limit ? Refusal{Rule::kBound, fitted.score - found_.best.score, thresholds_.name_odds}
@@ -287,7 +290,7 @@ void Searching::drop() {
     std::vector<Start> small, weak;
     std::vector<std::size_t> which;
     for (std::size_t e = 0; e < effects().size(); ++e) {
-      if (stopped(effects()[e], *problem_.vehicle) || size_of(seen, e, nullptr) < thresholds_.smallest_size) {
+      if (stopped(effects()[e], scene_) || size_of(seen, e, nullptr) < thresholds_.smallest_size) {
         small.push_back(without(found_.best, e));
         which.push_back(e);
       } else if (guessed_loss(seen, e) < kDoubtful * thresholds_.name_odds) {
@@ -296,8 +299,7 @@ void Searching::drop() {
     }
     std::vector<Fitted> fits = models_.fit_all(small);
     for (std::size_t k = fits.size(); k-- > 0;) {
-      if (stopped(effects()[which[k]], *problem_.vehicle) ||
-          size_of(seen, which[k], &fits[k]) < thresholds_.smallest_size)
+      if (stopped(effects()[which[k]], scene_) || size_of(seen, which[k], &fits[k]) < thresholds_.smallest_size)
         continue;
       fits.erase(fits.begin() + static_cast<std::ptrdiff_t>(k));
       small.erase(small.begin() + static_cast<std::ptrdiff_t>(k));

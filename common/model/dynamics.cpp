@@ -13,10 +13,9 @@ namespace {
 constexpr double kUnknownRigidShare =
     0.5;  // of the lumped mass, when the vehicle file does not say: added mass of a blunt hull
 
-/// Where the effect stands in the chain. Those that act last on the thrust stand behind all others that change it.
+/// Where the effect stands in the chain.
 std::ptrdiff_t rank(const ActiveEffect& active) {
   const auto all = all_effects();
-  if (active.last) return std::ranges::find_if(all, [](const Effect* e) { return !changes_thrust(*e); }) - all.begin();
   const std::ptrdiff_t place = std::ranges::find(all, active.effect) - all.begin();
   return changes_thrust(*active.effect) ? place : place + 1;
 }

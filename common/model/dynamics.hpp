@@ -24,7 +24,7 @@ struct Model {
   Allocation allocation{};  ///< 6 x actuators; identity when the input is a wrench
   BaseTheta theta{BaseTheta::Zero()};
   std::vector<ActiveEffect> effects{};
-  double input_hold{0.0};    ///< InputTiming::hold; from -1/2 to 1/2 it belongs to the recording, not to the vehicle
+  double input_hold{0.0};      ///< InputTiming::hold; from -1/2 to 1/2 it belongs to the recording, not to the vehicle
   bool motion_matters{false};  ///< wrenches of some actuators depend on flow or attitude (actuators.hpp)
 
   /// Puts an effect where the registry's order wants it.

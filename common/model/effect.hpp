@@ -32,12 +32,13 @@ struct Traits {
   bool forms_coexist{false};  ///< several forms can act at once: results must say which one a number belongs to
   bool knows_size{false};     ///< its numbers' sigmas are already those of the data at hand
   bool feels_motion{true};    ///< false: feel() changes the thrust by command, time and voltage alone, or nothing
-  bool order_matters{false};  ///< the thrust is not the same where a gain, or a lag, comes before or after it
   bool feels_place{false};    ///< the wrench depends on where the vehicle is (not only on how it moves)
   /// The memory depends on how the vehicle has moved (not only on commands). advance() and feel() must then be linear
   /// in the relative velocity and the memory, and alter w_memory alone, so that derivatives go the same way.
   bool remembers_motion{false};
-  bool asked_first{false};   ///< the recording's business rather than the vehicle's: a force would stand in for it
+  bool asked_first{false};  ///< the recording's business rather than the vehicle's: a force would stand in for it
+  /// A craft that lives by its flow has it by its nature: it takes no place among the names of what is missing.
+  bool own_flow{false};
   bool takes_energy{false};  ///< with positive amplitudes only; negative ones are fitted but belong to no water
 };
 
@@ -57,7 +58,6 @@ class Effect {
   [[nodiscard]] bool variants_matter() const { return traits_.forms_coexist; }
   [[nodiscard]] bool knows_size() const { return traits_.knows_size; }
   [[nodiscard]] bool feels_motion() const { return traits_.feels_motion; }
-  [[nodiscard]] bool order_matters() const { return traits_.order_matters; }
   [[nodiscard]] bool feels_place() const { return traits_.feels_place; }
   [[nodiscard]] bool remembers_motion() const { return traits_.remembers_motion; }
   [[nodiscard]] bool measures() const { return traits_.stage == Stage::kSensor; }
@@ -89,15 +89,14 @@ class Effect {
 
   // The form's own, by its variant.
   [[nodiscard]] Starts starts(const Scene& scene, int variant) const { return form(variant).starts(scene); }
-  [[nodiscard]] Starts far_starts(const Scene& scene, int variant) const { return form(variant).far_starts(scene); }
   [[nodiscard]] double left_open(EffectTheta theta, int variant, std::size_t number) const {
     return form(variant).left_open(theta, number);
   }
   [[nodiscard]] Unlisted looks_like(EffectTheta theta, int variant, const Scene& scene) const {
     return form(variant).looks_like(theta, scene);
   }
-  [[nodiscard]] bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta, int variant) const {
-    return form(variant).possible(p_WB, theta);
+  [[nodiscard]] bool possible(EffectTheta theta, int variant, const Scene& scene) const {
+    return form(variant).possible(theta, scene);
   }
   void feel(Motion& motion, EffectTheta theta, int variant, std::span<const double> z) const {
     form(variant).feel(motion, theta, z);
@@ -141,7 +140,6 @@ struct ActiveEffect {
   int variant{};
   std::string variant_name;
   std::vector<double> theta;
-  bool last{false};  ///< acts on the thrust that the others leave, not on the command
 };
 
 }  // namespace fathom::model

@@ -89,17 +89,13 @@ class Form {
   [[nodiscard]] virtual FormName name(const Scene&) const { return ""; }
   /// Where a search begins. Default: one start with every parameter at a tenth of its sigma.
   [[nodiscard]] virtual Starts starts(const Scene&) const;
-  /// Sizes at which the effect reshapes the whole model, so that it can only be recognised with the base parameters
-  /// fitted anew (its small sizes may even look harmful). Tried by full fits; none by default.
-  [[nodiscard]] virtual Starts far_starts(const Scene&) const { return {}; }
   /// Standard deviation of the number that the form as it is computed leaves open, however good the data: within the
   /// width over which it rounds off an edge, say.
   [[nodiscard]] virtual double left_open(EffectTheta, std::size_t /*number*/) const { return 0.0; }
   /// What is known to look the same with these numbers, however good the data of this scene.
   [[nodiscard]] virtual Unlisted looks_like(EffectTheta, const Scene&) const { return {}; }
-  /// False where the vehicle cannot have been, were these numbers true: inside a wall, say; everywhere for numbers that
-  /// nothing can have.
-  [[nodiscard]] virtual bool possible(const Eigen::Vector3d& /*p_WB*/, EffectTheta) const { return true; }
+  /// False for numbers that nothing can have: a floor that drives off, a wall through which the vehicle has gone.
+  [[nodiscard]] virtual bool possible(EffectTheta, const Scene&) const { return true; }
 
   /// Alters what is felt (forces that reach the water, the water's motion). `z` is the effect's memory.
   virtual void feel(Motion&, EffectTheta, std::span<const double> /*z*/) const {}

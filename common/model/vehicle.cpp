@@ -12,6 +12,7 @@
 #include "common/model/after_abort.hpp"
 #include "common/model/candidates/candidate.hpp"
 #include "common/model/priors/bounded.hpp"
+#include "common/model/priors/proportions.hpp"
 #include "common/model/priors/wide_prior.hpp"
 #include "common/model/vehicle_file.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 constexpr std::array<const char*, 6> kMotionNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kUnitTolerance = 0.01;      // an axis typed with three digits is still a unit vector
 constexpr double kTriangleTolerance = 1e-9;  // a flat plate meets the triangle inequality exactly
-constexpr double kWithWater = 6.0;           // times the rigid body, as LeavingSettings::heaviest_share
 constexpr double kControlTolerance = 1e-6;   // of a unit wrench, in the units of the allocation
 constexpr double kAgreementTolerance =
     0.02;  // allocation typed with two digits against the one computed from positions
@@ -174,20 +174,6 @@ void check_authority(const Config& config, const std::string& key, const Vehicle
   config.fail(key, "the " + key + " push along none of the axes in 'dof'; correct their geometry");
 }
 
-// All mass in the hull's corners is the most that a rigid body can have; some more for the water that turns with it.
-void check_moment(const Config& section, const std::string& key, BaseParameter parameter, double mean,
-                  const Vehicle& vehicle) {
-  const int turn = index(parameter) - index(BaseParameter::I_X);
-  if (turn < 0 || turn > 2) return;
-  if (vehicle.mass <= 0.0 || vehicle.hull.minCoeff() <= 0.0) return;
-  Eigen::Vector3d corner = 0.5 * vehicle.hull;
-  corner[turn] = 0.0;
-  const double largest = kWithWater * vehicle.mass * corner.squaredNorm();
-  if (mean <= largest) return;
-  section.fail("mean", "'" + key + "' of " + number(mean) + " kg m^2 is impossible: with this 'mass' and 'hull', " +
-                           "water included, it is at most " + number(largest) + " kg m^2; correct one of the three");
-}
-
 Prior read_prior(const Config& config, const std::string& key, BaseParameter parameter, const Vehicle& vehicle) {
   const std::string wanted{unit(parameter)};
   const Config section = config.section(key);
@@ -196,7 +182,8 @@ Prior read_prior(const Config& config, const std::string& key, BaseParameter par
   if (sign_constraint(parameter) > 0 && prior.mean <= 0.0) {
     section.fail("mean", "'" + key + "' must be positive");
   }
-  check_moment(section, key, parameter, prior.mean, vehicle);
+  const int turn = index(parameter) - index(BaseParameter::I_X);
+  if (turn >= 0 && turn <= 2) check_moment(section, "mean", key, turn, prior.mean, vehicle);
   if (sign_constraint(parameter) < 0 && prior.mean > 0.0) {
     section.fail("mean", "'" + key + "' must not be positive: drag opposes motion (Fossen's sign)");
   }
@@ -283,6 +270,7 @@ Vehicle vehicle_from(const Config& config) {
     check_authority(config, "actuators", vehicle);
   }
   if (vehicle.has_thrusters() && config.has("thrust_curve")) vehicle.curve = read_curve(config.section("thrust_curve"));
+  check_proportions(config, vehicle);
   read_parameters(config, vehicle);
   if (config.has("sensors")) {
     const Config sensors = config.section("sensors");

@@ -257,7 +257,8 @@ void adopt_sensor_faults(Answer& answer) {
                                 inference::Thresholds{}.name_odds, effect->name});
   }
   result.effects.insert(result.effects.begin(), found.begin(), found.end());
-  if (answer.verdict != inference::Verdict::adequate && answer.verdict != inference::Verdict::not_judged) return;
+  // A model that was not judged stays so: the sensors are told beside it.
+  if (answer.verdict != inference::Verdict::adequate) return;
   answer.verdict = inference::Verdict::effect;
   result.verdict = word(answer.verdict);
 }

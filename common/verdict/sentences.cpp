@@ -117,6 +117,15 @@ std::string reasons_of_no_model(const Conclusion& conclusion) {
   return "wiring, force unit and inputs are in order as far as this data tells. ";
 }
 
+/// What is in no list and fits as well, however good the data of these runs.
+std::string look_alikes(const Conclusion& conclusion) {
+  std::string words;
+  for (const inference::LookAlike& one : conclusion.look_alikes)
+    words += "What is called " + title(one.of) + " may be " + one.what +
+             " as well, which no list holds: what tells is " + one.told_by + ". ";
+  return words;
+}
+
 }  // namespace
 
 std::string sentence(const inference::Refusal& refusal) {
@@ -143,7 +152,7 @@ std::string paragraph(const Conclusion& conclusion) {
       words = "Nothing of practical size is missing that this data can show. ";
       break;
     case Verdict::effect:
-      words = "Found: " + names(conclusion) + ". ";
+      words = "Found: " + names(conclusion) + ". " + look_alikes(conclusion);
       break;
     case Verdict::ambiguous: {
       words = reason(conclusion, Cause::kWeakEvidence) != nullptr
@@ -153,6 +162,7 @@ std::string paragraph(const Conclusion& conclusion) {
       for (const std::string& rival : conclusion.found.rival) {
         if (!rival.empty()) words += "It may be " + title(rival) + " as well. ";
       }
+      words += look_alikes(conclusion);
       break;
     }
     case Verdict::unexplained:

@@ -194,7 +194,12 @@ verdict::Answer diagnose(const DiagnoseOptions& options, std::vector<std::string
   return std::move(explained.answer);
 }
 
-DiagnosisResult run_once(const DiagnoseOptions& options) {
+struct Done {
+  DiagnosisResult result;
+  bool ran{true};  ///< false: the filter did not run through the data, and the page says so
+};
+
+Done run_once(const DiagnoseOptions& options) {
   std::vector<std::string> notes;
   verdict::Answer answer;
   ResultOrigin origin;
@@ -211,17 +216,28 @@ DiagnosisResult run_once(const DiagnoseOptions& options) {
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   std::printf("%s\nresult %s\nreport %s\ntook   %.1f s\n", report::to_table(answer.report.result).c_str(),
               written.json.c_str(), written.html.c_str(), elapsed);
-  return std::move(answer.report.result);
+  const bool ran = std::ranges::none_of(answer.given.causes, [](const auto& cause) {
+    return cause.cause == inference::word(inference::Cause::kNotFinite);
+  });
+  return {std::move(answer.report.result), ran};
+}
+
+void refuse_unless(bool ran) {
+  if (!ran)
+    throw InputError(
+        "nothing was judged: the filter did not run through this data; compare the units and sizes in the vehicle file "
+        "(mass, thrust, hull) with the craft, and try 'fathom check' on the recordings");
 }
 
 void run_diagnose(const DiagnoseOptions& options) {
   if (options.folds == 0) {
-    static_cast<void>(run_once(options));
+    refuse_unless(run_once(options).ran);
     return;
   }
   if (!options.validate.empty())
     throw InputError("--folds holds recordings out by itself; give all of them to --train, and no --validate");
   std::vector<DiagnosisResult> results;
+  bool ran = true;
   for (const report::Fold& fold : report::folds_of(paths_of(options.train), options.folds)) {
     DiagnoseOptions one = options;
     one.train = fold.fitted;
@@ -229,9 +245,12 @@ void run_diagnose(const DiagnoseOptions& options) {
     one.out = options.out + "/fold-" + std::to_string(results.size() + 1);
     std::printf("fold %zu: %zu recordings fitted, %zu held out\n", results.size() + 1, fold.fitted.size(),
                 fold.held_out.size());
-    results.push_back(run_once(one));
+    Done done = run_once(one);
+    ran = ran && done.ran;
+    results.push_back(std::move(done.result));
   }
   std::printf("\n%s", report::fold_table(results).c_str());
+  refuse_unless(ran);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ TEST_CASE("effect: what an author leaves out does nothing, and a search begins a
   CHECK(plain.variants({}) == std::vector<std::string>{""});
   CHECK_FALSE(plain.variants_matter());
   CHECK(plain.starts({}, 0) == std::vector<std::vector<double>>{{0.4, 0.05}});
-  CHECK(plain.far_starts({}, 0).empty());
+  CHECK(plain.possible(std::vector{1.0, 1.0}, 0, {}));
   CHECK_FALSE(plain.feels_place());
   CHECK(plain.state_size({}, 8) == 0);
   model::Motion motion;

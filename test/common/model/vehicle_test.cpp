@@ -95,6 +95,27 @@ TEST_CASE("vehicle: what no vehicle has is refused, with the line, the bound and
         std::string::npos);
 }
 
+TEST_CASE("vehicle: numbers that are possible each and not together are refused at the mass or the inertia") {
+  const auto said = [](const std::string& mass, const std::string& lines) {
+    return complaint("name: Box\nwater_density: 1000 kg/m^3\nmass: " + mass + "\ndof: [surge]\n" + lines);
+  };
+  const std::string hull = "hull: 0.9 0.7 0.35 m\n";  // 0.2205 m^3: 0.441 kg at 2 kg/m^3, 4410 kg at 2e4
+  CHECK(said("13 g", hull) ==
+        "vehicle_test.yaml:3: 'mass' of 0.013 kg is no more than the air in this 'hull' weighs: at least 0.441 kg; are "
+        "the units of both right?");
+  CHECK(said("0.45 kg", hull) == "no complaint");
+  CHECK(said("4500 kg", hull).find("all tungsten: at most 4.41e+03 kg") != std::string::npos);
+  CHECK(said("4400 kg", hull) == "no complaint");
+  // Without a hull the thrust alone tells: three thrusters of 50 N are 150 N, 300 m/s^2 of half a kilogram.
+  const std::string thrust = kThrusters + "largest_thrust: 50 N\n";
+  CHECK(said("13 g", thrust).find("too little for 150 N of thrust") != std::string::npos);
+  CHECK(said("0.49 kg", thrust).find("at least 0.5 kg") != std::string::npos);
+  CHECK(said("0.51 kg", thrust) == "no complaint");
+  // 24 kg in the corners of 0.9 m by 0.7 m, six times: 46.8 kg m^2.
+  CHECK(said("24 kg", hull + "inertia: 40 40 46 kg m^2\n").starts_with("vehicle_test.yaml:6: 'inertia' of 40 kg m^2"));
+  CHECK(said("24 kg", hull + "inertia: 20 20 39 kg m^2\n") == "no complaint");
+}
+
 TEST_CASE("physical bounds: every row has a reason, a span and a value that it refuses") {
   namespace model = fathom::model;
   for (const model::PhysicalBound& row : model::physical_bounds()) {

@@ -54,3 +54,12 @@ TEST_CASE("sensors in the answer: what forces left unexplained stays so, and not
   CHECK(sound.report.result.effects.empty());
   CHECK(sound.given.causes.empty());
 }
+
+TEST_CASE("sensors in the answer: a model that was not judged is no effect of the sensors; they are told beside it") {
+  verdict::Answer answer = with_a_late_sensor(inference::Verdict::not_judged);
+  verdict::adopt_sensor_faults(answer);
+  CHECK(answer.verdict == inference::Verdict::not_judged);
+  CHECK(answer.report.result.verdict == "not_judged");
+  REQUIRE(answer.report.result.effects.size() == 1);
+  CHECK(answer.report.result.paragraph.starts_with("The sensors contradict each other (sensor_latency)"));
+}

@@ -13,3 +13,16 @@ TEST_CASE("sentences: a refusal says what was reached and what was needed") {
   CHECK(verdict::sentence({Rule::kScore, 1.04, 8.0}) == "promises 1.0 nats, 8 needed to be fitted");
   CHECK(verdict::sentence({Rule::kBound, 12.0, 10.0}) == "fits only with a number at its limit");
 }
+
+TEST_CASE(
+    "sentences: a named effect's look-alike that no list holds is told beside it, with what tells the two apart") {
+  inference::Conclusion conclusion;
+  conclusion.verdict = inference::Verdict::effect;
+  CHECK(verdict::paragraph(conclusion).find("as well") == std::string::npos);
+  conclusion.look_alikes.push_back({"bottom_effect", "a layer of denser water below", "going deeper"});
+  const std::string told = verdict::paragraph(conclusion);
+  CHECK(told.find("may be a layer of denser water below as well, which no list holds") != std::string::npos);
+  CHECK(told.find("what tells is going deeper. ") != std::string::npos);
+  conclusion.verdict = inference::Verdict::adequate;
+  CHECK(verdict::paragraph(conclusion).find("denser") == std::string::npos);
+}

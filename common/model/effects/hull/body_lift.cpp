@@ -8,11 +8,15 @@
 // together, each a surface at x that lifts with the water's angle there: Y = -|u| (S v + S_x r), N = -|u| (S_x v +
 // S_xx r), up and down Z = -|u| (H w - H_x q), M = |u| (H_x w - H_xx q), with S, S_x, S_xx and H, H_x, H_xx the sums of
 // 1/2 rho A C_L over all surfaces, times x and x^2 (strip theory of quasi-steady lift, Newman 1977, sec. 7.9). Where
-// fins turn, their wake leans their lift back: X = -D_S L alpha, alpha the fin's angle to the flow, D_S = 1 - C_L' / 2
-// pi of an elliptic wing (Prandtl's lifting line), some .5. Every craft that steers by its flow has that, and no free
-// force is told from others beside a base model that lacks it: so it is asked for before anything else. Ignores: stall.
+// A surface that meets the water at an angle is drawn ahead by the suction at its nose, less what its wake takes:
+// X = E_S (S v^2 + 2 S_x v r + S_xx r^2) u / |(u, v)|, E_S = 1 - C_L' / (pi AR) of an elliptic wing (Prandtl's lifting
+// line; Fossen 2021, sec. 9.7), some .5; up and down E_H with H, w and -q. A fin that turns by delta leans its lift
+// back with it: X = -D_S L delta, L its lift at that deflection in straight flow, D_S = 1 - E_S. Every craft that
+// steers by its flow has that, and no free force is told from others beside a base model that lacks it: so it is asked
+// for before anything else. Ignores: stall of the hull, the product of deflection and drift, (1 - 2 D_S) of either.
 // Revealed by drifting and turning at several speeds ahead and astern, and at rest. Confused with linear drag across at
-// one speed, with masses that serve inertia and Coriolis moment at once, and with speed_drag.
+// one speed, with masses that serve inertia and Coriolis moment at once, with speed_drag, and E_S with
+// turning_resistance.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,14 +32,16 @@ constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", 
                                          EffectParameter{.name = "S", .unit = "N/(m/s)^2", .sigma = 60.0},
                                          EffectParameter{.name = "S_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "S_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
+                                         EffectParameter{.name = "E_S", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_S", .unit = "1/rad", .sigma = 0.5},
                                          EffectParameter{.name = "H", .unit = "N/(m/s)^2", .sigma = 60.0},
                                          EffectParameter{.name = "H_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "H_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
+                                         EffectParameter{.name = "E_H", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5}};
-constexpr std::size_t kSideways = 1, kUpAndDown = 5;                  // where the numbers of each begin
-constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kDrag = 3;  // of these
-constexpr double kSlowest = 0.02;                                     // m/s, rad/s RMS: less shows no lift
+constexpr std::size_t kSideways = 1, kUpAndDown = 6;                                // where the numbers of each begin
+constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4;  // of these
+constexpr double kSlowest = 0.02;  // m/s, rad/s RMS: less shows no lift
 
 constexpr Eigen::Index kU = 0;
 
@@ -70,6 +76,12 @@ class LiftingSurfaces final : public Form {
     const double along = nu_r[across_], turn = side * nu_r[turning()];
     load.wrench[across_] -= speed * (theta[kLift] * along + theta[kLiftX] * turn);
     load.wrench[turning()] -= side * speed * (theta[kLiftX] * along + theta[kLiftXX] * turn);
+    const double past = std::hypot(nu_r[kU], along);
+    if (theta[kSuction] != 0.0 && past > 0.0) {
+      const double square =
+          theta[kLift] * along * along + 2.0 * theta[kLiftX] * along * turn + theta[kLiftXX] * turn * turn;
+      load.wrench[kU] += theta[kSuction] * square * nu_r[kU] / past;
+    }
     if (theta[kDrag] == 0.0 || motion.vehicle == nullptr) return;
     const auto& thrusters = motion.vehicle->thrusters;
     if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return;
@@ -83,10 +95,9 @@ class LiftingSurfaces final : public Form {
 
  private:
   static constexpr double kDrawn = 0.2;
-  static constexpr double kSmall = 1e-6;  // rad: less deflection says nothing of the speed past a fin
   static constexpr std::size_t first_of(Eigen::Index across) { return across == 1 ? kSideways : kUpAndDown; }
   static constexpr NumberSet numbers_of(std::size_t first, bool fins) {
-    NumberSet set{first + kLift, first + kLiftX, first + kLiftXX};
+    NumberSet set{first + kLift, first + kLiftX, first + kLiftXX, first + kSuction};
     if (fins) set.add(first + kDrag);
     return set;
   }
@@ -94,18 +105,11 @@ class LiftingSurfaces final : public Form {
   [[nodiscard]] bool stands(const Thruster& one) const {
     return one.fin.has_value() && std::abs(one.axis_B[across_]) > 0.7;
   }
-  /// N: lift of a fin times its angle to the flow, as far as the stall.
-  [[nodiscard]] double leaning(const Motion& motion, Eigen::Index i) const {
-    const Thruster& one = motion.vehicle->thrusters[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
-    const double deflection = motion.force[i] / one.fin->slope, reference = one.fin->reference_speed;
-    const double square = std::abs(deflection) > kSmall
-                              ? acting_force(*motion.vehicle, motion, i) / motion.force[i] * reference * reference
-                              : v_r.x() * std::abs(v_r.x());
-    const double ahead = std::sqrt(std::abs(square)), across = one.axis_B.dot(v_r);
-    const double drift = std::atan2(across, std::max(ahead, kSlowest)) * (square < 0.0 ? -1.0 : 1.0);
-    const double angle = std::clamp(deflection - drift, -one.fin->stall, one.fin->stall);
-    return one.fin->slope * angle * angle * square / (reference * reference);
+  /// N: lift of a fin at its deflection in straight flow, times the deflection.
+  [[nodiscard]] static double leaning(const Motion& motion, Eigen::Index i) {
+    const Fin& fin = *motion.vehicle->thrusters[static_cast<std::size_t>(i)].fin;
+    const double deflection = motion.force[i] / fin.slope;
+    return acting_force(*motion.vehicle, motion, i) * std::clamp(deflection, -fin.stall, fin.stall);
   }
 
   Eigen::Index across_;
@@ -140,7 +144,8 @@ const Effect& body_lift() {
        .amplitudes = static_cast<int>(kBodyLiftParameters.size()),
        .forms_coexist = true,
        .feels_motion = false,
-       .asked_first = true},
+       .asked_first = true,
+       .own_flow = true},
       kBodyLiftParameters,
       every_product()};
   return kEffect;

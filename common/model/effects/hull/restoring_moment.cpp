@@ -18,23 +18,13 @@ constexpr EffectParameter component(std::string_view name) {
   return {.name = name, .unit = "N m", .sigma = 5.0, .drawn_within = DrawnWithin::kRightingMoment};
 }
 constexpr std::array kRestoringMomentParameters{component("G_x"), component("G_y"), component("G_z")};
-constexpr std::array kFarStarts{1.0 / 3.0, 1.0};  // of the G_z that a prior allows: of a vehicle that rights itself
-constexpr double kSmallestTilt = 0.01;            // rad: less and yaw feels nothing
+constexpr double kSmallestTilt = 0.01;  // rad: less and yaw feels nothing
 
 class CentresApart final : public OneOfMany {
  public:
   explicit CentresApart(int set) : OneOfMany{{.sought = numbers_of(set)}}, set_{set} {}
   FormName name(const Scene& scene) const override {
     return when(set_ != 0 && set_ == asked_on(scene), names_of(kRestoringMomentParameters, set_));
-  }
-
-  /// Beside a pendulum that it does not know, a base model takes the inertia away, and no small pendulum helps.
-  Starts far_starts(const Scene& scene) const override {
-    if (!in_set(set_, 2)) return {};
-    Starts starts;
-    for (const double share : kFarStarts)
-      starts.push_back({0.0, 0.0, share * wide_prior(BaseParameter::G_z, *scene.vehicle).sigma});
-    return starts;
   }
 
   void load(const Motion& motion, EffectTheta theta, Load& load) const override {

@@ -58,7 +58,8 @@ const Effect& speed_drag() {
        .stage = Stage::kBody,
        .amplitudes = 1,
        .forms_coexist = true,
-       .feels_motion = false},
+       .feels_motion = false,
+       .own_flow = true},
       kSpeedDragParameters,
       forms(DragByWholeSpeed{0, "X_|V|u"}, DragByWholeSpeed{1, "Y_|V|v"}, DragByWholeSpeed{2, "Z_|V|w"},
             DragByWholeSpeed{3, "K_|V|p"}, DragByWholeSpeed{4, "M_|V|q"}, DragByWholeSpeed{5, "N_|V|r"})};

@@ -22,7 +22,8 @@ const Effect& turning_resistance() {
                                .stage = Stage::kBody,
                                .amplitudes = 1,
                                .forms_coexist = true,
-                               .feels_motion = false},
+                               .feels_motion = false,
+                               .own_flow = true},
                               kTurningResistanceParameters,
                               forms(SpeedProduct{0, 1, 5}, SpeedProduct{0, 1, 1}, SpeedProduct{0, 5, 5},
                                     SpeedProduct{0, 2, 4}, SpeedProduct{0, 2, 2}, SpeedProduct{0, 4, 4})};

@@ -41,10 +41,10 @@ class NearBottom final : public Form {
     if (!scene.position || scene.p_high.z() - scene.p_low.z() <= kBottomEffectSmallestRange) return {};
     return when(law_.shows(dof[2], dof[0] || dof[1] || dof[2], dof[0] || dof[1]), law_.name);
   }
-  /// A floor that takes drag away or drives off is none.
-  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta) const override {
+  /// A floor that takes drag away or drives off is none, nor one above the middle of the water worked in.
+  bool possible(EffectTheta theta, const Scene& scene) const override {
     if (law_.one_sided() && theta[0] < 0.0) return false;
-    return law_.exponential() || theta[kBottomDepth] > p_WB.z();
+    return law_.exponential() || theta[kBottomDepth] > 0.5 * (scene.p_low.z() + scene.p_high.z());
   }
   /// The upper edge of a layer of denser water lifts exponentially too, until the vehicle has gone through it.
   Unlisted looks_like(EffectTheta theta, const Scene&) const override {

@@ -47,10 +47,10 @@ class NearWall final : public Form {
     const bool pushed = dof[0] || dof[1], moves = pushed || dof[2];
     return when(law_.shows(pushed, moves, (dof[0] && dof[1]) || (pushed && dof[2])), law_.name);
   }
-  /// A wall that takes drag away or drives off is none.
-  bool possible(const Eigen::Vector3d& p_WB, EffectTheta theta) const override {
+  /// A wall that takes drag away or drives off is none, nor one behind which the middle of the water worked in lies.
+  bool possible(EffectTheta theta, const Scene& scene) const override {
     if (law_.one_sided() && theta[0] < 0.0) return false;
-    return law_.exponential() || theta[kDistance] > toward(theta).dot(p_WB);
+    return law_.exponential() || theta[kDistance] > toward(theta).dot(0.5 * (scene.p_low + scene.p_high));
   }
   Starts starts(const Scene& scene) const override {
     const Eigen::Vector2d middle = 0.5 * (scene.p_high + scene.p_low).head<2>();

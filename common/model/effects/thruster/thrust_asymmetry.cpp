@@ -27,8 +27,7 @@ const Effect& thrust_asymmetry() {
                                .sentence = "Thrusters push differently in reverse than ahead.",
                                .revealed_by = "equal thrust in both directions, for several seconds each",
                                .stage = Stage::kThrust,
-                               .feels_motion = false,
-                               .order_matters = true},
+                               .feels_motion = false},
                               kThrustAsymmetryParameters,
                               forms(WeakerAstern{})};
   return kEffect;

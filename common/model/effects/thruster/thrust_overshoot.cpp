@@ -21,7 +21,6 @@ class FadingThrust : public Form {
  public:
   FormName name(const Scene&) const override { return "all"; }
   Starts starts(const Scene&) const final { return {{0.1, 0.3}, {0.1, 1.0}, {0.1, 3.0}}; }
-  Starts far_starts(const Scene&) const final { return {{0.6, 0.8}}; }
   int state_size(int actuators) const final { return actuators; }
   double run_in(EffectTheta theta) const final { return run_in_for(theta[1]); }
 

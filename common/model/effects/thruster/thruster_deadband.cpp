@@ -97,8 +97,7 @@ const Effect& thruster_deadband() {
                                .sentence = "Small commands produce no thrust.",
                                .revealed_by = "small thrust commands that change sign",
                                .stage = Stage::kCommand,
-                               .feels_motion = false,
-                               .order_matters = true},
+                               .feels_motion = false},
                               kThrusterDeadbandParameters,
                               forms(Offset{}, Step{}, Rounded{})};
   return kEffect;

@@ -21,9 +21,6 @@ class OneOff final : public OfThruster {
     if (scene.input_is_wrench || thrusters.size() <= 1 || !exists(scene)) return {};
     return thrusters[place()].name;
   }
-  /// One that gives nothing: beside what it was thought to give, masses and drag have gone so far astray that no slope
-  /// leads here.
-  Starts far_starts(const Scene&) const override { return {{-1.0}}; }
 
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
     if (thruster_ < motion.force.size()) motion.force[thruster_] *= 1.0 + theta[0];

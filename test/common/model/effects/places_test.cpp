@@ -78,6 +78,19 @@ TEST_CASE("bottom_effect: one floor obeys one law, and its exponential push is t
   CHECK(bottom.looks_like(std::vector{kStep, 5.0, 0.0, 0.0}, kForce, {}).what.empty());
 }
 
+TEST_CASE("bottom and wall: what takes drag away, or lies behind the vehicle, is no boundary") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("seabotix_lbv150");
+  const model::Scene scene = scene_in_a_tank(vehicle);  // middle at the origin, 1 m deep
+  const model::Effect& bottom = *model::find_effect("bottom_effect");
+  const model::Effect& wall = *model::find_effect("wall_effect");
+  CHECK(bottom.possible(std::vector{-8.0, 2.0, 0.0, 0.0}, 0, scene));  // a push either way
+  CHECK(bottom.possible(std::vector{2.0, 2.0, 0.0, 0.0}, 1, scene));
+  CHECK_FALSE(bottom.possible(std::vector{-2.0, 2.0, 0.0, 0.0}, 1, scene));  // more drag, of one sign
+  CHECK_FALSE(bottom.possible(std::vector{2.0, 0.9, 0.0, 0.0}, 1, scene));
+  CHECK(wall.possible(std::vector{8.0, 0.0, 2.1, 0.0, 0.0}, 0, scene));
+  CHECK_FALSE(wall.possible(std::vector{8.0, 0.0, -0.1, 0.0, 0.0}, 0, scene));
+}
+
 TEST_CASE("bottom and wall: a hull is drawn toward what it passes by, with the square of its speed along it alone") {
   constexpr int kSuction = 4;
   model::Motion motion;

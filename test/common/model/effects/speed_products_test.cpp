@@ -99,7 +99,7 @@ TEST_CASE("body_lift: surfaces that stand one way lift with the water's angle at
   model::Motion motion = moving();
   // Two surfaces, at 0.5 m and -2 m, of 3 and 8 N/(m/s)^2.
   const double sum = 3.0 + 8.0, at_x = 0.5 * 3.0 - 2.0 * 8.0, at_xx = 0.25 * 3.0 + 4.0 * 8.0;
-  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, sum, at_x, at_xx, 0.0};
+  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0};
   const int sideways = variant_of("body_lift", "hull, sideways");
   const int upright = variant_of("body_lift", "hull, up and down");
   for (const double u : {0.8, -0.8}) {
@@ -120,7 +120,20 @@ TEST_CASE("body_lift: surfaces that stand one way lift with the water's angle at
   CHECK(model::find_effect("body_lift")->traits().asked_first);
 }
 
-TEST_CASE("body_lift: a fin's lift leans back by its angle to the flow, as far as the stall") {
+TEST_CASE("body_lift: a surface at an angle is drawn towards where it goes, in proportion to the square of the angle") {
+  model::Motion motion = moving();
+  const int sideways = variant_of("body_lift", "hull, sideways");
+  // One surface of 8 N/(m/s)^2 at -2 m, half of whose suction is left.
+  const std::vector<double> theta{0.0, 8.0, -16.0, 32.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  for (const double u : {0.8, -0.8}) {
+    motion.nu[0] = u;
+    const double across = motion.nu[1] - 2.0 * motion.nu[5];
+    const double ahead = 0.5 * 8.0 * across * across * u / std::hypot(u, motion.nu[1]);
+    CHECK(wrench_of("body_lift", theta, sideways, motion)[0] == doctest::Approx(ahead).epsilon(kProductRounding));
+  }
+}
+
+TEST_CASE("body_lift: a fin's lift leans back with its deflection, as far as the stall") {
   model::Vehicle craft;
   craft.dof = {true, true, false, false, false, true};
   craft.thrusters.resize(1);
@@ -137,14 +150,59 @@ TEST_CASE("body_lift: a fin's lift leans back by its angle to the flow, as far a
   const auto found = std::ranges::find(names, "hull and fins, sideways");
   REQUIRE(found != names.end());
   model::Motion motion{.vehicle = &craft};
-  motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;  // at the fin 0.2 m/s to port
-  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0};
+  motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;
+  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (const double deflection : {0.2, -0.3, 2.0}) {
     motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
-    const double angle = std::min(deflection - std::atan(-0.2), 0.5);
+    // At half of the reference speed a quarter of the force that is told.
     CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion)[0] ==
-          doctest::Approx(-0.5 * 40.0 / 4.0 * angle * angle).epsilon(kProductRounding));
+          doctest::Approx(-0.5 * 10.0 * deflection * std::min(deflection, 0.5)).epsilon(kProductRounding));
   }
+}
+
+TEST_CASE("cross_flow: is what many strips do, less what a hull does that only drifts or only turns") {
+  model::Vehicle torpedo;
+  torpedo.dof = {true, true, true, false, true, true};
+  torpedo.flow_matters = true;
+  torpedo.hull << 1.6, 0.2, 0.2;
+  model::Scene scene{.vehicle = &torpedo};
+  scene.nu_rms << 1.0, 0.1, 0.1, 0.0, 0.2, 0.3;
+  const model::Effect& effect = *model::find_effect("cross_flow");
+  REQUIRE(effect.variants(scene)[0] == "sideways");
+  REQUIRE(effect.variants(scene)[1] == "up and down");
+  CHECK(effect.variants(scene)[2] == "-");
+  CHECK(effect.starts(scene, 0).front()[1] == 1.6);
+  const double c = 70.0, length = 1.6;
+  const auto square = [](double s) { return s * std::abs(s); };
+  for (const double r : {0.0, 0.05, -0.4, 1.5}) {
+    model::Motion motion{.vehicle = &torpedo};
+    motion.nu << 1.2, 0.2, -0.1, 0.0, r, r;
+    Vector6d aside = Vector6d::Zero(), below = Vector6d::Zero();
+    constexpr int kStrips = 4000;
+    for (int i = 0; i < kStrips; ++i) {
+      const double x = length * ((i + 0.5) / kStrips - 0.5);
+      const double y = -c / kStrips * square(motion.nu[1] + x * r), z = -c / kStrips * square(motion.nu[2] - x * r);
+      aside[1] += y;
+      aside[5] += x * y;
+      below[2] += z;
+      below[4] -= x * z;
+    }
+    const double turning = c * length * length * length / 32.0;
+    aside[1] += c * square(motion.nu[1]);
+    aside[5] += turning * square(r);
+    below[2] += c * square(motion.nu[2]);
+    below[4] += turning * square(r);
+    // Eight points miss the kink where a strip stands still: a hundredth of what is there.
+    const double size = c * (0.05 + 0.32 * r * r);
+    CHECK((wrench_of("cross_flow", {c, length}, 0, motion) - aside).norm() < 0.01 * size);
+    CHECK((wrench_of("cross_flow", {c, length}, 1, motion) - below).norm() < 0.01 * size);
+  }
+  torpedo.hull.setZero();
+  CHECK(effect.variants(scene)[0] == "-");
+  CHECK(effect.variants(scene)[2] == "sideways, of a length");
+  CHECK(effect.starts(scene, 2).size() == 3);
+  CHECK(effect.rules_out(0, 2));
+  CHECK_FALSE(effect.rules_out(0, 1));
 }
 
 TEST_CASE("oblique flow: is asked of a boat that nothing pushes sideways, and of no frame with a thruster across") {
