@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/model/driven_axes.hpp"
 #include "common/model/parameters.hpp"
 #include "common/model/rollout.hpp"
 #include "common/residual/open_loop.hpp"
@@ -113,8 +114,6 @@ double length_of(const likelihood::Problem& problem) {
   return length;
 }
 
-constexpr double kNoThrust = 1e-9;  // of the allocation, 1 or m
-
 }  // namespace
 
 void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, Conclusion& conclusion) {
@@ -137,7 +136,7 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     const int of = problem.axes[axis];
     const bool skilled = std::ranges::find(conclusion.skilled, of) != conclusion.skilled.end();
     // A boat's sway has no thrust that it could fail to follow.
-    if (problem.vehicle->has_thrusters() && problem.vehicle->allocation.row(of).isZero(kNoThrust)) continue;
+    if (!model::pushed_along(*problem.vehicle, of)) continue;
     if (conclusion.followed[axis] < thresholds.following && !skilled)
       reasons.push_back({Cause::kNotFollowing, conclusion.followed[axis], thresholds.following,
                          model::kAxisNames[static_cast<std::size_t>(of)]});
@@ -187,10 +186,14 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     return;
   }
   if (!found.best.names.empty()) {
-    const double beside_others = *std::ranges::min_element(found.probability);
-    double least = 1.0;
-    for (std::size_t e = 0; e < found.probability.size(); ++e)
+    // Beside names of what is missing, what the craft's flow does by nature need not be sure.
+    const auto& effects = fit.hypothesis.model.effects;
+    double least = 1.0, beside_others = 1.0;
+    for (std::size_t e = 0; e < found.probability.size(); ++e) {
+      if (names > 0 && effects[e].effect->traits().own_flow) continue;
       least = std::min(least, found.probability[e] * found.reliability[e]);
+      beside_others = std::min(beside_others, found.probability[e]);
+    }
     const bool sure = least >= thresholds.name_probability;
     const Cause cause = sure                                          ? Cause::kNamed
                         : beside_others < thresholds.name_probability ? Cause::kRivals

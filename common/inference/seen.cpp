@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/inference/scan.hpp"
+#include "common/model/driven_axes.hpp"
 
 namespace fathom::inference {
 
@@ -15,7 +16,7 @@ Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   likelihood::refer(problem, seen.fit, seen.reference, threads);
   const Eigen::Index p = seen.fit.information.rows();
   seen.covariance = seen.fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
-  Vector6d square = Vector6d::Zero();
+  Vector6d square = Vector6d::Zero(), moved = Vector6d::Zero();
   double count = 0.0;
   const std::vector<likelihood::Number> none;
   for (std::size_t r = 0; r < problem.runs.size(); ++r) {
@@ -27,13 +28,18 @@ Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
       const auto at = static_cast<Eigen::Index>(b);
       plant.at_middle(b);
       const Vector6d nu = seen.reference[r].nu_middle.col(at);
-      const Matrix6d M = plant.inverse_inertia(nu, plant.acceleration(nu));
+      const Vector6d acceleration = plant.acceleration(nu);
+      const Matrix6d M = plant.inverse_inertia(nu, acceleration);
       inverse.col(at) = M.reshaped();
       square += (M * (plant.model().allocation * plant.mean_forces().col(at))).cwiseAbs2();
+      moved += acceleration.cwiseAbs2();
       count += 1.0;
       plant.end_block(b, seen.reference[r].nu_end.col(at));
     }
     seen.inverse.push_back(std::move(inverse));
+  }
+  for (int axis = 0; axis < 6; ++axis) {
+    if (!model::pushed_along(*problem.vehicle, axis)) square[axis] = moved[axis];
   }
   if (count > 0.0) seen.applied = (square / count).cwiseSqrt();
   return seen;

@@ -28,6 +28,11 @@ std::array<bool, 6> driven_axes(const Vehicle& vehicle) {
   return driven;
 }
 
+bool pushed_along(const Vehicle& vehicle, Eigen::Index axis) {
+  constexpr double kNoThrust = 1e-9;  // of the allocation, 1 or m
+  return !vehicle.has_thrusters() || !vehicle.allocation.row(axis).isZero(kNoThrust);
+}
+
 std::string undriven_note(const Vehicle& vehicle) {
   const std::array<bool, 6> driven = driven_axes(vehicle);
   std::string axes;

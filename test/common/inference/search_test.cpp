@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <map>
+#include <string>
 
 #include "common/inference/infer.hpp"
 #include "common/model/rollout.hpp"
@@ -13,8 +15,10 @@ using namespace fathom::inference;
 
 namespace {
 
-Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::string>& without = {}) {
-  static const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::string>& without = {},
+                    const char* craft = "bluerov2") {
+  static std::map<std::string, model::Vehicle> vehicles;  // a conclusion refers to its vehicle
+  const model::Vehicle& vehicle = vehicles.try_emplace(craft, test::vehicle_from_repository(craft)).first->second;
   const auto dive = test::fly(vehicle, settings);
   const auto begin = std::chrono::steady_clock::now();
   const Conclusion conclusion =
@@ -89,6 +93,31 @@ TEST_CASE("search: a stream that turns within the run is a current, with its mom
   CHECK(current.variant_name == "turning");
   CHECK(current.theta[place("v_N_2")] == doctest::Approx(-0.1).epsilon(0.1));
   CHECK(current.theta[place("onset")] == doctest::Approx(60.0).epsilon(0.03));
+}
+
+TEST_CASE("search: what a boat's flow does by nature is found whole, and takes no place among the names") {
+  const model::Vehicle boat = test::vehicle_from_repository("blueboat");
+  model::Scene scene{.vehicle = &boat};
+  scene.nu_rms.setConstant(0.3);
+  const model::Effect& lift = *model::find_effect("body_lift");
+  const auto forms = lift.variants(scene);
+  const auto sideways = static_cast<int>(std::ranges::find(forms, "hull, sideways") - forms.begin());
+  std::vector<double> surfaces(lift.parameters().size(), 0.0);
+  // Two hulls of low aspect, their lift aft of the middle; half of the suction is left.
+  surfaces[1] = 31.0, surfaces[2] = -8.0, surfaces[3] = 4.6, surfaces[4] = 0.5;
+  const Conclusion found = inferred(
+      {.duration = 240.0,
+       .seed = 6,
+       .force = 0.01,
+       .effects = {test::active("body_lift", surfaces, sideways), test::active("cross_flow", {96.0, 1.195}, 0)}},
+      {}, "blueboat");
+  CHECK(found.verdict == Verdict::effect);
+  REQUIRE(found.found.best.names == std::vector<std::string>{"body_lift", "cross_flow"});
+  const auto& effects = found.found.best.fit.hypothesis.model.effects;
+  CHECK(claims(effects) == 0);
+  CHECK(effects[0].theta[1] == doctest::Approx(31.0).epsilon(0.1));
+  CHECK(effects[0].theta[4] == doctest::Approx(0.5).epsilon(0.2));
+  CHECK(effects[1].theta[0] == doctest::Approx(96.0).epsilon(0.2));
 }
 
 TEST_CASE("free force: it finds what no list holds, says what it goes with, and nothing where nothing is") {

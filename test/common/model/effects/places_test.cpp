@@ -103,7 +103,7 @@ TEST_CASE("bottom and wall: a hull is drawn toward what it passes by, with the s
   CHECK((floor.wrench.head<3>() - Eigen::Vector3d(0.0, 0.0, 2.0 * 0.25 * 16.0)).norm() < kPlacesRounding);
   motion.v_WF_B << 0.3, 0.4, 0.0;  // drifting with the water
   CHECK(load_of("bottom_effect", {2.0, 5.0, 0.0, 0.0}, kSuction, motion).wrench.isZero(kPlacesRounding));
-  CHECK_FALSE(model::find_effect("bottom_effect")->possible(motion.p_WB, std::vector{-2.0, 5.0, 0.0, 0.0}, kSuction));
+  CHECK_FALSE(model::find_effect("bottom_effect")->possible(std::vector{-2.0, 5.0, 0.0, 0.0}, kSuction, {}));
 }
 
 TEST_CASE("wall_effect: pushes away from the wall, whatever the heading") {
