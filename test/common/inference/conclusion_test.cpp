@@ -104,14 +104,30 @@ TEST_CASE("conclusion: a number that no vehicle has, or one on its bound, leaves
 
 TEST_CASE("conclusion: as many names as the search allows are no claim") {
   Nothing nothing;
-  nothing.conclusion.found.best.names = {"a", "b", "c", "d"};
-  nothing.conclusion.found.probability = nothing.conclusion.found.reliability = {1.0, 1.0, 1.0, 1.0};
-  const Conclusion conclusion = nothing.concluded();
+  const auto hold = [&](std::initializer_list<const char*> names) {
+    Found& found = nothing.conclusion.found;
+    found.best.names = {names.begin(), names.end()};
+    found.best.fit.hypothesis.model.effects.clear();
+    for (const char* name : names)
+      found.best.fit.hypothesis.model.effects.push_back({.effect = model::find_effect(name), .variant_name = ""});
+    found.probability = found.reliability = std::vector<double>(names.size(), 1.0);
+    nothing.conclusion.reasons.clear();
+    return nothing.concluded();
+  };
+  const Conclusion conclusion = hold({"current", "cubic_drag", "thruster_lag", "wave"});
   CHECK(conclusion.verdict == Verdict::unexplained);
   CHECK(caused(conclusion, Cause::kManyNames, ""));
+  CHECK(hold({"current", "cubic_drag", "thruster_lag"}).verdict == Verdict::effect);
+  // What a hull does in oblique flow by its nature is none of them, and need not be sure beside them.
+  CHECK(hold({"body_lift", "cross_flow", "cubic_drag", "thruster_lag", "wave"}).verdict == Verdict::effect);
+  static_cast<void>(hold({"body_lift", "current"}));
+  nothing.conclusion.found.reliability = {0.7, 1.0};
   nothing.conclusion.reasons.clear();
-  nothing.conclusion.found.best.names.pop_back();
   CHECK(nothing.concluded().verdict == Verdict::effect);
+  static_cast<void>(hold({"body_lift"}));
+  nothing.conclusion.found.reliability = {0.7};
+  nothing.conclusion.reasons.clear();
+  CHECK(nothing.concluded().verdict == Verdict::ambiguous);
 }
 
 TEST_CASE("conclusion: a name of little evidence is no claim, however far behind the others are") {

@@ -109,7 +109,7 @@ TEST_CASE("search: what a boat's flow does by nature is found whole, and takes n
       {.duration = 240.0,
        .seed = 6,
        .force = 0.01,
-       .effects = {test::active("body_lift", surfaces, sideways), test::active("cross_flow", {96.0, 1.195}, 0)}},
+       .effects = {test::active("body_lift", surfaces, sideways), test::active("cross_flow", {96.0, 0.0, 1.195}, 0)}},
       {}, "blueboat");
   CHECK(found.verdict == Verdict::effect);
   REQUIRE(found.found.best.names == std::vector<std::string>{"body_lift", "cross_flow"});

@@ -4,9 +4,11 @@
 //   Z and M by w_r - x q likewise, c = 1/2 rho C_d times the area that is crossed.
 // The base model has what strips do where the hull only drifts or only turns, Y_v|v| and N_r|r|; here is what they do
 // where it does both: the same integrals less c v_r|v_r| and c L^3 / 32 r|r|, so that base numbers keep their meaning.
-// L is the hull's length where the vehicle's file has one, else a number to be found. Ignores: strips that differ
-// (N_v|v|, Y_r|r|: cross_coupling), drag that depends on Reynolds' number. Revealed by drifting and turning at once,
-// one way and the other, and each alone. Confused with body_lift where the speed ahead hardly changes.
+// Strips that differ fore and aft, c (1 + d x / (L/2)) with f = c d, add Y = -f mean of x / (L/2) (v_r + x r)|v_r + x
+// r| and N likewise, N_v|v| and Y_r|r| among it. L is the hull's length where the vehicle's file has one, else a number
+// to be found. Ignores: drag that depends on Reynolds' number. Revealed by drifting and turning at once, one way and
+// the other, and each alone. Confused with body_lift where the speed ahead hardly changes, f with what stall leaves of
+// it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,7 @@ namespace {
 
 constexpr std::array kCrossFlowParameters{
     EffectParameter{.name = "drag", .unit = "N/(m/s)^2", .sigma = 150.0, .low = 0.0},
+    EffectParameter{.name = "fore", .unit = "N/(m/s)^2", .sigma = 75.0},
     EffectParameter{.name = "length", .unit = "m", .sigma = 2.0, .low = 0.1, .high = 20.0}};
 constexpr double kSlowest = 0.01;  // m/s RMS of the middle, and of the ends by turning: less shows no product
 // Gauss and Legendre's rule of eight points: nodes and half the weights, on one side of the middle.
@@ -31,7 +34,7 @@ double squared(double speed) { return speed * std::abs(speed); }
 class Strips final : public Form {
  public:
   Strips(Eigen::Index across, bool stated, const char* name)
-      : Form{stated ? FormTraits{.sought = {0}, .given = {1}, .obeys = static_cast<int>(across)}
+      : Form{stated ? FormTraits{.sought = {0, 1}, .given = {2}, .obeys = static_cast<int>(across)}
                     : FormTraits{.obeys = static_cast<int>(across)}},
         across_{across},
         stated_{stated},
@@ -47,24 +50,25 @@ class Strips final : public Form {
   Starts starts(const Scene& scene) const override {
     const double c = 0.1 * kCrossFlowParameters[0].sigma * size_factor(*scene.vehicle, kCrossFlowParameters[0].unit);
     const double middle = length(*scene.vehicle);
-    if (stated_) return {{c, middle}};
-    return {{c, 0.5 * middle}, {c, middle}, {c, 2.0 * middle}};
+    if (stated_) return {{c, 0.0, middle}};
+    return {{c, 0.0, 0.5 * middle}, {c, 0.0, middle}, {c, 0.0, 2.0 * middle}};
   }
   void load(const Motion& motion, EffectTheta theta, Load& load) const override {
-    const double c = theta[0], half = 0.5 * theta[1];
-    if (c == 0.0) return;
+    const double c = theta[0], f = theta[1], half = 0.5 * theta[2];
+    if (c == 0.0 && f == 0.0) return;
     const Vector6d nu_r = motion.nu_r();
     const double side = across_ == 1 ? 1.0 : -1.0;
     const double along = nu_r[across_], turn = side * nu_r[turning()];
-    double force = -squared(along), moment = -0.25 * half * half * half * squared(turn);
+    double force = -c * squared(along), moment = -c * 0.25 * half * half * half * squared(turn);
     for (std::size_t i = 0; i < kNodes.size(); ++i) {
-      const double x = half * kNodes[i];
-      const double fore = kShares[i] * squared(along + x * turn), aft = kShares[i] * squared(along - x * turn);
-      force += fore + aft;
-      moment += x * (fore - aft);
+      for (const double node : {kNodes[i], -kNodes[i]}) {
+        const double drag = kShares[i] * (c + f * node) * squared(along + half * node * turn);
+        force += drag;
+        moment += half * node * drag;
+      }
     }
-    load.wrench[across_] -= c * force;
-    load.wrench[turning()] -= side * c * moment;
+    load.wrench[across_] -= force;
+    load.wrench[turning()] -= side * moment;
   }
 
  private:
@@ -87,7 +91,7 @@ const Effect& cross_flow() {
        .sentence = "Where the hull drifts and turns at once, each part of it is dragged by its own speed across.",
        .revealed_by = "drifting and turning at once, one way and the other, and each alone",
        .stage = Stage::kBody,
-       .amplitudes = 1,
+       .amplitudes = 2,
        .forms_coexist = true,
        .feels_motion = false,
        .asked_first = true,

@@ -171,8 +171,8 @@ TEST_CASE("cross_flow: is what many strips do, less what a hull does that only d
   REQUIRE(effect.variants(scene)[0] == "sideways");
   REQUIRE(effect.variants(scene)[1] == "up and down");
   CHECK(effect.variants(scene)[2] == "-");
-  CHECK(effect.starts(scene, 0).front()[1] == 1.6);
-  const double c = 70.0, length = 1.6;
+  CHECK(effect.starts(scene, 0).front()[2] == 1.6);
+  const double c = 70.0, f = -20.0, length = 1.6;
   const auto square = [](double s) { return s * std::abs(s); };
   for (const double r : {0.0, 0.05, -0.4, 1.5}) {
     model::Motion motion{.vehicle = &torpedo};
@@ -181,7 +181,8 @@ TEST_CASE("cross_flow: is what many strips do, less what a hull does that only d
     constexpr int kStrips = 4000;
     for (int i = 0; i < kStrips; ++i) {
       const double x = length * ((i + 0.5) / kStrips - 0.5);
-      const double y = -c / kStrips * square(motion.nu[1] + x * r), z = -c / kStrips * square(motion.nu[2] - x * r);
+      const double strip = (c + f * x / (0.5 * length)) / kStrips;
+      const double y = -strip * square(motion.nu[1] + x * r), z = -strip * square(motion.nu[2] - x * r);
       aside[1] += y;
       aside[5] += x * y;
       below[2] += z;
@@ -194,8 +195,8 @@ TEST_CASE("cross_flow: is what many strips do, less what a hull does that only d
     below[4] += turning * square(r);
     // Eight points miss the kink where a strip stands still: a hundredth of what is there.
     const double size = c * (0.05 + 0.32 * r * r);
-    CHECK((wrench_of("cross_flow", {c, length}, 0, motion) - aside).norm() < 0.01 * size);
-    CHECK((wrench_of("cross_flow", {c, length}, 1, motion) - below).norm() < 0.01 * size);
+    CHECK((wrench_of("cross_flow", {c, f, length}, 0, motion) - aside).norm() < 0.01 * size);
+    CHECK((wrench_of("cross_flow", {c, f, length}, 1, motion) - below).norm() < 0.01 * size);
   }
   torpedo.hull.setZero();
   CHECK(effect.variants(scene)[0] == "-");
