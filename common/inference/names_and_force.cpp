@@ -1,6 +1,7 @@
 // What the names of a search are worth: against other names, and against the free force in their place.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "common/inference/searching.hpp"
@@ -119,7 +120,7 @@ void Searching::note(const Promise& promise) {
 Refusal Searching::refusal(const std::string& name, double promised) const {
   const Fitted* best = models_.best_with(name);
   if (best == nullptr) return {Rule::kScore, promised, thresholds_.score_worth};
-  const double odds = best->score - found_.best.score;
+  const double odds = best->fit.finite ? best->score - found_.best.score : -std::numeric_limits<double>::infinity();
   if (const auto gave_way = gave_way_.find(name); gave_way != gave_way_.end()) return gave_way->second;
   if (!std::ranges::includes(best->names, found_.best.names))
     return {Rule::kProbability, 1.0 / (1.0 + std::exp(-odds)), thresholds_.name_probability};

@@ -147,7 +147,7 @@ void list_refused(const inference::Found& found, DiagnosisResult& result, Verdic
     CandidateTried candidate{.name = refused.name, .variant = refused.form, .log_odds = kNotAsked};
     for (const inference::Refusal& refusal : refused.refusals) {
       given.refusals[refused.name].push_back({std::string(word(refusal.rule)), refusal.value, refusal.needed});
-      if (refusal.rule == inference::Rule::kOdds) candidate.log_odds = refusal.value;
+      if (refusal.rule == inference::Rule::kOdds && std::isfinite(refusal.value)) candidate.log_odds = refusal.value;
       candidate.reason += (candidate.reason.empty() ? "" : "; ") + sentence(refusal);
     }
     result.candidates.push_back(std::move(candidate));

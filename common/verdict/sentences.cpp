@@ -132,6 +132,7 @@ std::string sentence(const inference::Refusal& refusal) {
   using inference::Rule;
   switch (refusal.rule) {
     case Rule::kOdds:
+      if (std::isinf(refusal.value)) return "no fit with it came to an end";
       return text("log odds %.1f, %.0f needed", refusal.value, refusal.needed);
     case Rule::kSize:
       return text("%.2g %% of the applied force, %.0f %% needed", 100.0 * refusal.value, 100.0 * refusal.needed);

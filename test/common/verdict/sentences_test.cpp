@@ -1,6 +1,8 @@
 // Words of a refusal: what was reached and what was needed.
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "common/verdict/by_likelihood.hpp"
 
 using namespace fathom;
@@ -8,6 +10,8 @@ using inference::Rule;
 
 TEST_CASE("sentences: a refusal says what was reached and what was needed") {
   CHECK(verdict::sentence({Rule::kOdds, 3.21, 10.0}) == "log odds 3.2, 10 needed");
+  CHECK(verdict::sentence({Rule::kOdds, -std::numeric_limits<double>::infinity(), 10.0}) ==
+        "no fit with it came to an end");
   CHECK(verdict::sentence({Rule::kSize, 0.0043, 0.01}) == "0.43 % of the applied force, 1 % needed");
   CHECK(verdict::sentence({Rule::kProbability, 0.4, 0.9}) == "probability 0.4 beside other names, 0.9 needed");
   CHECK(verdict::sentence({Rule::kScore, 1.04, 8.0}) == "promises 1.0 nats, 8 needed to be fitted");

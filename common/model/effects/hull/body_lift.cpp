@@ -11,12 +11,13 @@
 // A surface that meets the water at an angle is drawn ahead by the suction at its nose, less what its wake takes:
 // X = E_S (S v^2 + 2 S_x v r + S_xx r^2) u / |(u, v)|, E_S = 1 - C_L' / (pi AR) of an elliptic wing (Prandtl's lifting
 // line; Fossen 2021, sec. 9.7), some .5; up and down E_H with H, w and -q. A fin that turns by delta leans its lift
-// back with it: X = -D_S L delta, L its lift at that deflection in straight flow, D_S = 1 - E_S. Every craft that
-// steers by its flow has that, and no free force is told from others beside a base model that lacks it: so it is asked
-// for before anything else. Ignores: stall of the hull, the product of deflection and drift, (1 - 2 D_S) of either.
-// Revealed by drifting and turning at several speeds ahead and astern, and at rest. Confused with linear drag across at
-// one speed, with masses that serve inertia and Coriolis moment at once, with speed_drag, and E_S with
-// turning_resistance.
+// back with it: X = -D_S L delta, L its lift at that deflection in straight flow, D_S = 1 - E_S. In a propeller's wash
+// it meets the drift with more speed than the hull's, which adds W_S (some 1) times what its slope and the wash make of
+// it. Every craft that steers by its flow has that, and no free force is told from others beside a base model that
+// lacks it: so it is asked for before anything else. Ignores: stall of the hull, the product of deflection and drift,
+// (1 - 2 D_S) of either. Revealed by drifting and turning at several speeds ahead and astern, and at rest. Confused
+// with linear drag across at one speed, with masses that serve inertia and Coriolis moment at once, with speed_drag,
+// and E_S with turning_resistance.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,21 +35,25 @@ constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", 
                                          EffectParameter{.name = "S_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "E_S", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_S", .unit = "1/rad", .sigma = 0.5},
+                                         EffectParameter{.name = "W_S", .unit = "", .sigma = 1.0},
                                          EffectParameter{.name = "H", .unit = "N/(m/s)^2", .sigma = 60.0},
                                          EffectParameter{.name = "H_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "H_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "E_H", .unit = "", .sigma = 0.5},
-                                         EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5}};
-constexpr std::size_t kSideways = 1, kUpAndDown = 6;                                // where the numbers of each begin
-constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4;  // of these
+                                         EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5},
+                                         EffectParameter{.name = "W_H", .unit = "", .sigma = 1.0}};
+constexpr std::size_t kSideways = 1, kUpAndDown = 7;  // where the numbers of each begin
+constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4, kWash = 5;  // of these
 constexpr double kSlowest = 0.02;  // m/s, rad/s RMS: less shows no lift
 
 constexpr Eigen::Index kU = 0;
 
+enum class Turning { kNothing, kFins, kFinsInWash };
+
 /// All surfaces that stand one way: `across` 1 with yaw, or 2 with pitch. With fins that turn, lift costs resistance.
 class LiftingSurfaces final : public Form {
  public:
-  LiftingSurfaces(Eigen::Index across, bool fins, const char* name)
+  LiftingSurfaces(Eigen::Index across, Turning fins, const char* name)
       : Form{{.sought = numbers_of(first_of(across), fins), .drawn = kDrawn}},
         across_{across},
         fins_{fins},
@@ -56,10 +61,8 @@ class LiftingSurfaces final : public Form {
   FormName name(const Scene& scene) const override {
     const Vehicle& vehicle = *scene.vehicle;
     const bool moves = scene.nu_rms[kU] > kSlowest && scene.nu_rms[across_] > 0.25 * kSlowest;
-    const bool turns = !scene.input_is_wrench &&
-                       std::ranges::any_of(vehicle.thrusters, [&](const Thruster& one) { return stands(one); });
     return when(lives_by_flow(vehicle) && vehicle.dof[static_cast<std::size_t>(across_)] &&
-                    vehicle.dof[static_cast<std::size_t>(turning())] && moves && turns == fins_,
+                    vehicle.dof[static_cast<std::size_t>(turning())] && moves && turning_in(scene) == fins_,
                 name_);
   }
   Starts starts(const Scene& scene) const override {
@@ -82,28 +85,50 @@ class LiftingSurfaces final : public Form {
           theta[kLift] * along * along + 2.0 * theta[kLiftX] * along * turn + theta[kLiftXX] * turn * turn;
       load.wrench[kU] += theta[kSuction] * square * nu_r[kU] / past;
     }
-    if (theta[kDrag] == 0.0 || motion.vehicle == nullptr) return;
+    if ((theta[kDrag] == 0.0 && theta[kWash] == 0.0) || motion.vehicle == nullptr) return;
     const auto& thrusters = motion.vehicle->thrusters;
     if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return;
     for (std::size_t i = 0; i < thrusters.size(); ++i) {
       if (!stands(thrusters[i])) continue;
-      const double drag = theta[kDrag] * leaning(motion, static_cast<Eigen::Index>(i));
-      load.wrench[kU] -= drag;
-      load.wrench.tail<3>() -= thrusters[i].p_BJ.cross(Eigen::Vector3d(drag, 0.0, 0.0));
+      const auto place = static_cast<Eigen::Index>(i);
+      const Eigen::Vector3d force_B = -theta[kDrag] * leaning(motion, place) * Eigen::Vector3d::UnitX() -
+                                      theta[kWash] * washed(motion, place) * thrusters[i].axis_B;
+      load.wrench.head<3>() += force_B;
+      load.wrench.tail<3>() += thrusters[i].p_BJ.cross(force_B);
     }
   }
 
  private:
   static constexpr double kDrawn = 0.2;
   static constexpr std::size_t first_of(Eigen::Index across) { return across == 1 ? kSideways : kUpAndDown; }
-  static constexpr NumberSet numbers_of(std::size_t first, bool fins) {
+  static constexpr NumberSet numbers_of(std::size_t first, Turning fins) {
     NumberSet set{first + kLift, first + kLiftX, first + kLiftXX, first + kSuction};
-    if (fins) set.add(first + kDrag);
+    if (fins != Turning::kNothing) set.add(first + kDrag);
+    if (fins == Turning::kFinsInWash) set.add(first + kWash);
     return set;
   }
   [[nodiscard]] Eigen::Index turning() const { return across_ == 1 ? 5 : 4; }
   [[nodiscard]] bool stands(const Thruster& one) const {
     return one.fin.has_value() && std::abs(one.axis_B[across_]) > 0.7;
+  }
+  [[nodiscard]] Turning turning_in(const Scene& scene) const {
+    Turning found = Turning::kNothing;
+    for (const Thruster& one : scene.vehicle->thrusters) {
+      if (scene.input_is_wrench || !stands(one)) continue;
+      if (one.fin->behind >= 0) return Turning::kFinsInWash;
+      found = Turning::kFins;
+    }
+    return found;
+  }
+  /// N: what a propeller's wash adds to the lift by which a fin resists being carried across.
+  [[nodiscard]] static double washed(const Motion& motion, Eigen::Index i) {
+    const Thruster& one = motion.vehicle->thrusters[static_cast<std::size_t>(i)];
+    const Fin& fin = *one.fin;
+    if (fin.behind < 0) return 0.0;
+    const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
+    const double wash = fin.slipstream * std::max(acting_force(*motion.vehicle, motion, fin.behind), 0.0);
+    const double past = std::sqrt(std::abs(v_r.x() * std::abs(v_r.x()) + wash));
+    return fin.slope * one.axis_B.dot(v_r) * (past - std::abs(v_r.x())) / (fin.reference_speed * fin.reference_speed);
   }
   /// N: lift of a fin at its deflection in straight flow, times the deflection.
   [[nodiscard]] static double leaning(const Motion& motion, Eigen::Index i) {
@@ -113,7 +138,7 @@ class LiftingSurfaces final : public Form {
   }
 
   Eigen::Index across_;
-  bool fins_;
+  Turning fins_;
   const char* name_;
 };
 
@@ -125,11 +150,13 @@ Forms every_product() {
   for (const Sense sense : {Sense::kWithSign, Sense::kEitherWay}) {
     for (const auto& [row, column] : kLoadedBy) all.push_back(std::make_unique<SpeedProduct>(row, kU, column, sense));
   }
-  for (const bool fins : {false, true}) {
-    all.push_back(std::make_unique<LiftingSurfaces>(1, fins, fins ? "hull and fins, sideways" : "hull, sideways"));
-    all.push_back(
-        std::make_unique<LiftingSurfaces>(2, fins, fins ? "hull and fins, up and down" : "hull, up and down"));
-  }
+  const auto both = [&](Turning fins, const char* aside, const char* below) {
+    all.push_back(std::make_unique<LiftingSurfaces>(1, fins, aside));
+    all.push_back(std::make_unique<LiftingSurfaces>(2, fins, below));
+  };
+  both(Turning::kNothing, "hull, sideways", "hull, up and down");
+  both(Turning::kFins, "hull and fins, sideways", "hull and fins, up and down");
+  both(Turning::kFinsInWash, "hull and fins in a wash, sideways", "hull and fins in a wash, up and down");
   return all;
 }
 

@@ -99,7 +99,7 @@ TEST_CASE("body_lift: surfaces that stand one way lift with the water's angle at
   model::Motion motion = moving();
   // Two surfaces, at 0.5 m and -2 m, of 3 and 8 N/(m/s)^2.
   const double sum = 3.0 + 8.0, at_x = 0.5 * 3.0 - 2.0 * 8.0, at_xx = 0.25 * 3.0 + 4.0 * 8.0;
-  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0};
+  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0};
   const int sideways = variant_of("body_lift", "hull, sideways");
   const int upright = variant_of("body_lift", "hull, up and down");
   for (const double u : {0.8, -0.8}) {
@@ -124,7 +124,7 @@ TEST_CASE("body_lift: a surface at an angle is drawn towards where it goes, in p
   model::Motion motion = moving();
   const int sideways = variant_of("body_lift", "hull, sideways");
   // One surface of 8 N/(m/s)^2 at -2 m, half of whose suction is left.
-  const std::vector<double> theta{0.0, 8.0, -16.0, 32.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> theta{0.0, 8.0, -16.0, 32.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (const double u : {0.8, -0.8}) {
     motion.nu[0] = u;
     const double across = motion.nu[1] - 2.0 * motion.nu[5];
@@ -151,13 +151,46 @@ TEST_CASE("body_lift: a fin's lift leans back with its deflection, as far as the
   REQUIRE(found != names.end());
   model::Motion motion{.vehicle = &craft};
   motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;
-  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (const double deflection : {0.2, -0.3, 2.0}) {
     motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
     // At half of the reference speed a quarter of the force that is told.
     CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion)[0] ==
           doctest::Approx(-0.5 * 10.0 * deflection * std::min(deflection, 0.5)).epsilon(kProductRounding));
   }
+}
+
+TEST_CASE("body_lift: a fin in a propeller's wash resists being carried across, at rest too") {
+  model::Vehicle craft;
+  craft.dof = {true, true, false, false, false, true};
+  craft.thrusters.resize(2);
+  craft.thrusters[1].axis_B = Eigen::Vector3d::UnitY();
+  craft.thrusters[1].p_BJ = {-1.0, 0.0, 0.0};
+  craft.thrusters[1].fin =
+      model::Fin{.slope = 40.0, .stall = 0.5, .reference_speed = 2.0, .behind = 0, .slipstream = 0.1};
+  craft.allocation.setZero(6, 2);
+  craft.allocation.col(0)[0] = craft.allocation.col(1)[1] = 1.0;
+  craft.allocation.col(1)[5] = -1.0;
+  craft.flow_matters = true;
+  model::Scene scene{.vehicle = &craft};
+  scene.nu_rms.setConstant(0.3);
+  const auto names = model::find_effect("body_lift")->variants(scene);
+  const auto found = std::ranges::find(names, "hull and fins in a wash, sideways");
+  REQUIRE(found != names.end());
+  CHECK(std::ranges::find(names, "hull and fins, sideways") == names.end());
+  model::Motion motion{.vehicle = &craft};
+  std::vector<double> theta(13, 0.0);
+  theta[6] = 0.9;  // W_S
+  motion.force = Eigen::Vector2d(25.0, 0.0);
+  for (const double u : {0.0, 0.8}) {
+    motion.nu << u, 0.1, 0.0, 0.0, 0.0, 0.3;  // at the fin 0.2 m/s to port
+    const Vector6d wrench = wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion);
+    const double aside = 0.9 * 40.0 / 4.0 * 0.2 * (std::sqrt(u * u + 2.5) - u);
+    CHECK(wrench[1] == doctest::Approx(aside).epsilon(kProductRounding));
+    CHECK(wrench[5] == doctest::Approx(-aside).epsilon(kProductRounding));
+  }
+  motion.force = Eigen::Vector2d(-25.0, 0.0);  // astern there is no wash on it
+  CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion).isZero(kProductRounding));
 }
 
 TEST_CASE("cross_flow: is what many strips do, less what a hull does that only drifts or only turns") {
