@@ -19,7 +19,7 @@ constexpr double kFewest = 5.0;        // residuals before anything is said of t
 constexpr double kEnough = 20.0;       // before the model is said to lack something
 constexpr double kLargestRatio = 2.0;  // of the residual's power to that of the stated noise, as for leaving a mode
 constexpr double kLargestCorrelation = 0.98;  // beyond this the factor says more about the sample than the noise
-constexpr char kHeader[] = "fathom identifier 9";
+constexpr char kHeader[] = "fathom identifier 10";
 
 double take(std::istringstream& text) {
   const std::optional<double> number = take_number(text);
