@@ -26,8 +26,8 @@ namespace py = pybind11;
 using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Numbers = std::vector<std::pair<std::string, double>>;
 
-/// An effect of a result: name, form, numbers, whether it acts last.
-using EffectGiven = std::tuple<std::string, std::string, Numbers, bool>;
+/// An effect of a result: name, form, numbers.
+using EffectGiven = std::tuple<std::string, std::string, Numbers>;
 
 class Flyer {
  public:
@@ -159,7 +159,7 @@ class Flyer {
 
  private:
   void add(const EffectGiven& given) {
-    const auto& [name, form, numbers, last] = given;
+    const auto& [name, form, numbers] = given;
     const std::string words = form.empty() ? name : name + " (" + form + ")";
     const model::Effect* effect = model::find_effect(name);
     if (effect == nullptr) {
@@ -186,8 +186,7 @@ class Flyer {
     model::ActiveEffect active{.effect = effect,
                                .variant = static_cast<int>(found - forms.begin()),
                                .variant_name = form,
-                               .theta = std::vector<double>(effect->parameters().size(), 0.0),
-                               .last = last};
+                               .theta = std::vector<double>(effect->parameters().size(), 0.0)};
     for (const auto& [number, value] : numbers) {
       const auto parameter = std::ranges::find(effect->parameters(), number, &model::EffectParameter::name);
       if (parameter == effect->parameters().end()) throw InputError(name + ": has no number " + number);

@@ -191,7 +191,9 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     double least = 1.0, beside_others = 1.0;
     for (std::size_t e = 0; e < found.probability.size(); ++e) {
       if (names > 0 && effects[e].effect->traits().own_flow) continue;
-      least = std::min(least, found.probability[e] * found.reliability[e]);
+      // How often names of their evidence are right was learned of what is missing, not of what is there by nature.
+      const double reliable = effects.size() > e && effects[e].effect->traits().own_flow ? 1.0 : found.reliability[e];
+      least = std::min(least, found.probability[e] * reliable);
       beside_others = std::min(beside_others, found.probability[e]);
     }
     const bool sure = least >= thresholds.name_probability;

@@ -43,7 +43,7 @@ class Model:
             for one in data.get("effects", []):
                 if one["accepted"]:
                     numbers = [(name, number["value"]) for name, number in one["parameters"].items()]
-                    effects.append((one["name"], one["variant"], numbers, bool(one.get("acts_last"))))
+                    effects.append((one["name"], one["variant"], numbers))
         self._flyer = Flyer(os.fspath(vehicle), wrench, path, effects)
         self.name = self._flyer.name
         self.parameters = self._flyer.parameters

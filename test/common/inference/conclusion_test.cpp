@@ -127,6 +127,9 @@ TEST_CASE("conclusion: as many names as the search allows are no claim") {
   static_cast<void>(hold({"body_lift"}));
   nothing.conclusion.found.reliability = {0.7};
   nothing.conclusion.reasons.clear();
+  CHECK(nothing.concluded().verdict == Verdict::effect);
+  nothing.conclusion.found.probability = {0.7};  // another name fits as well
+  nothing.conclusion.reasons.clear();
   CHECK(nothing.concluded().verdict == Verdict::ambiguous);
 }
 

@@ -7,17 +7,17 @@
 // which does not, as fins that lift either way. What fixed fins do at no deflection is among them. Hull and fins
 // together, each a surface at x that lifts with the water's angle there: Y = -|u| (S v + S_x r), N = -|u| (S_x v +
 // S_xx r), up and down Z = -|u| (H w - H_x q), M = |u| (H_x w - H_xx q), with S, S_x, S_xx and H, H_x, H_xx the sums of
-// 1/2 rho A C_L over all surfaces, times x and x^2 (strip theory of quasi-steady lift, Newman 1977, sec. 7.9). Where
-// A surface that meets the water at an angle is drawn ahead by the suction at its nose, less what its wake takes:
-// X = E_S (S v^2 + 2 S_x v r + S_xx r^2) u / |(u, v)|, E_S = 1 - C_L' / (pi AR) of an elliptic wing (Prandtl's lifting
-// line; Fossen 2021, sec. 9.7), some .5; up and down E_H with H, w and -q. A fin that turns by delta leans its lift
-// back with it: X = -D_S L delta, L its lift at that deflection in straight flow, D_S = 1 - E_S. In a propeller's wash
-// it meets the drift with more speed than the hull's, which adds W_S (some 1) times what its slope and the wash make of
-// it. Every craft that steers by its flow has that, and no free force is told from others beside a base model that
-// lacks it: so it is asked for before anything else. Ignores: stall of the hull, the product of deflection and drift,
-// (1 - 2 D_S) of either. Revealed by drifting and turning at several speeds ahead and astern, and at rest. Confused
-// with linear drag across at one speed, with masses that serve inertia and Coriolis moment at once, with speed_drag,
-// and E_S with turning_resistance.
+// 1/2 rho A C_L over all surfaces, times x and x^2 (strip theory of quasi-steady lift, Newman 1977, sec. 7.9). A
+// surface at an angle is drawn ahead by the suction at its nose, less what its wake takes: X = E_S (S v^2 + 2 S_x v r +
+// S_xx r^2) u / |(u, v)|, E_S = 1 - C_L' / (pi AR) of an elliptic wing (Prandtl's lifting line; Fossen 2021, sec. 9.7),
+// some .5; up and down E_H with H, w and -q. A fin that turns by delta leans its lift back with it: X = -D_S L delta, L
+// its lift at that deflection in straight flow, D_S = 1 - E_S. In a propeller's wash it meets the drift with more speed
+// than the hull's, which adds W_S (some 1) times what its slope and the wash make of it; beyond the stall, by its whole
+// angle to the flow, B_S (some 1) times what lies beyond is gone. Every craft that steers by its flow has that, and no
+// free force is told from others beside a base model that lacks it: so it is asked for before anything else. Ignores:
+// stall of the hull, the product of deflection and drift, (1 - 2 D_S) of either. Revealed by drifting and turning at
+// several speeds ahead and astern, and at rest. Confused with linear drag across at one speed, with masses that serve
+// inertia and Coriolis moment at once, with speed_drag, and E_S with turning_resistance.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,14 +36,16 @@ constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", 
                                          EffectParameter{.name = "E_S", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_S", .unit = "1/rad", .sigma = 0.5},
                                          EffectParameter{.name = "W_S", .unit = "", .sigma = 1.0},
+                                         EffectParameter{.name = "B_S", .unit = "", .sigma = 1.0},
                                          EffectParameter{.name = "H", .unit = "N/(m/s)^2", .sigma = 60.0},
                                          EffectParameter{.name = "H_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "H_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "E_H", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5},
-                                         EffectParameter{.name = "W_H", .unit = "", .sigma = 1.0}};
-constexpr std::size_t kSideways = 1, kUpAndDown = 7;  // where the numbers of each begin
-constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4, kWash = 5;  // of these
+                                         EffectParameter{.name = "W_H", .unit = "", .sigma = 1.0},
+                                         EffectParameter{.name = "B_H", .unit = "", .sigma = 1.0}};
+constexpr std::size_t kSideways = 1, kUpAndDown = 8;  // where the numbers of each begin
+constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4, kWash = 5, kStall = 6;
 constexpr double kSlowest = 0.02;  // m/s, rad/s RMS: less shows no lift
 
 constexpr Eigen::Index kU = 0;
@@ -85,14 +87,16 @@ class LiftingSurfaces final : public Form {
           theta[kLift] * along * along + 2.0 * theta[kLiftX] * along * turn + theta[kLiftXX] * turn * turn;
       load.wrench[kU] += theta[kSuction] * square * nu_r[kU] / past;
     }
-    if ((theta[kDrag] == 0.0 && theta[kWash] == 0.0) || motion.vehicle == nullptr) return;
+    const bool fins = theta[kDrag] != 0.0 || theta[kWash] != 0.0 || theta[kStall] != 0.0;
+    if (!fins || motion.vehicle == nullptr) return;
     const auto& thrusters = motion.vehicle->thrusters;
     if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return;
     for (std::size_t i = 0; i < thrusters.size(); ++i) {
       if (!stands(thrusters[i])) continue;
       const auto place = static_cast<Eigen::Index>(i);
-      const Eigen::Vector3d force_B = -theta[kDrag] * leaning(motion, place) * Eigen::Vector3d::UnitX() -
-                                      theta[kWash] * washed(motion, place) * thrusters[i].axis_B;
+      const Eigen::Vector3d force_B =
+          -theta[kDrag] * leaning(motion, place) * Eigen::Vector3d::UnitX() -
+          (theta[kWash] * washed(motion, place) + theta[kStall] * stalled(motion, place)) * thrusters[i].axis_B;
       load.wrench.head<3>() += force_B;
       load.wrench.tail<3>() += thrusters[i].p_BJ.cross(force_B);
     }
@@ -103,7 +107,7 @@ class LiftingSurfaces final : public Form {
   static constexpr std::size_t first_of(Eigen::Index across) { return across == 1 ? kSideways : kUpAndDown; }
   static constexpr NumberSet numbers_of(std::size_t first, Turning fins) {
     NumberSet set{first + kLift, first + kLiftX, first + kLiftXX, first + kSuction};
-    if (fins != Turning::kNothing) set.add(first + kDrag);
+    if (fins != Turning::kNothing) set.add(first + kDrag), set.add(first + kStall);
     if (fins == Turning::kFinsInWash) set.add(first + kWash);
     return set;
   }
@@ -129,6 +133,18 @@ class LiftingSurfaces final : public Form {
     const double wash = fin.slipstream * std::max(acting_force(*motion.vehicle, motion, fin.behind), 0.0);
     const double past = std::sqrt(std::abs(v_r.x() * std::abs(v_r.x()) + wash));
     return fin.slope * one.axis_B.dot(v_r) * (past - std::abs(v_r.x())) / (fin.reference_speed * fin.reference_speed);
+  }
+  /// N: lift that a fin at this angle to the flow does not have any more.
+  [[nodiscard]] static double stalled(const Motion& motion, Eigen::Index i) {
+    const Thruster& one = motion.vehicle->thrusters[static_cast<std::size_t>(i)];
+    const Fin& fin = *one.fin;
+    const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
+    double square = v_r.x() * std::abs(v_r.x());
+    if (fin.behind >= 0) square += fin.slipstream * std::max(acting_force(*motion.vehicle, motion, fin.behind), 0.0);
+    const double drift = std::atan2(one.axis_B.dot(v_r), std::max(std::sqrt(std::abs(square)), kSlowest));
+    const double angle = motion.force[i] / fin.slope - std::copysign(drift, drift * square);
+    const double beyond = angle - std::clamp(angle, -fin.stall, fin.stall);
+    return fin.slope * beyond * square / (fin.reference_speed * fin.reference_speed);
   }
   /// N: lift of a fin at its deflection in straight flow, times the deflection.
   [[nodiscard]] static double leaning(const Motion& motion, Eigen::Index i) {

@@ -99,7 +99,7 @@ TEST_CASE("body_lift: surfaces that stand one way lift with the water's angle at
   model::Motion motion = moving();
   // Two surfaces, at 0.5 m and -2 m, of 3 and 8 N/(m/s)^2.
   const double sum = 3.0 + 8.0, at_x = 0.5 * 3.0 - 2.0 * 8.0, at_xx = 0.25 * 3.0 + 4.0 * 8.0;
-  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0};
+  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, 0.0};
   const int sideways = variant_of("body_lift", "hull, sideways");
   const int upright = variant_of("body_lift", "hull, up and down");
   for (const double u : {0.8, -0.8}) {
@@ -124,7 +124,7 @@ TEST_CASE("body_lift: a surface at an angle is drawn towards where it goes, in p
   model::Motion motion = moving();
   const int sideways = variant_of("body_lift", "hull, sideways");
   // One surface of 8 N/(m/s)^2 at -2 m, half of whose suction is left.
-  const std::vector<double> theta{0.0, 8.0, -16.0, 32.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> theta{0.0, 8.0, -16.0, 32.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (const double u : {0.8, -0.8}) {
     motion.nu[0] = u;
     const double across = motion.nu[1] - 2.0 * motion.nu[5];
@@ -151,12 +151,21 @@ TEST_CASE("body_lift: a fin's lift leans back with its deflection, as far as the
   REQUIRE(found != names.end());
   model::Motion motion{.vehicle = &craft};
   motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;
-  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   for (const double deflection : {0.2, -0.3, 2.0}) {
     motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
     // At half of the reference speed a quarter of the force that is told.
     CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion)[0] ==
           doctest::Approx(-0.5 * 10.0 * deflection * std::min(deflection, 0.5)).epsilon(kProductRounding));
+  }
+  // Beyond the stall by its whole angle, of which the drift is a part, it lifts no more.
+  std::vector<double> stall(theta.size(), 0.0);
+  stall[7] = 1.0;  // B_S
+  for (const double deflection : {0.2, 0.4, -0.3}) {
+    motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
+    const double beyond = std::max(deflection + std::atan(0.2) - 0.5, 0.0);
+    CHECK(wrench_of("body_lift", stall, static_cast<int>(found - names.begin()), motion)[1] ==
+          doctest::Approx(-10.0 * beyond).epsilon(kProductRounding));
   }
 }
 
@@ -179,7 +188,7 @@ TEST_CASE("body_lift: a fin in a propeller's wash resists being carried across, 
   REQUIRE(found != names.end());
   CHECK(std::ranges::find(names, "hull and fins, sideways") == names.end());
   model::Motion motion{.vehicle = &craft};
-  std::vector<double> theta(13, 0.0);
+  std::vector<double> theta(15, 0.0);
   theta[6] = 0.9;  // W_S
   motion.force = Eigen::Vector2d(25.0, 0.0);
   for (const double u : {0.0, 0.8}) {
