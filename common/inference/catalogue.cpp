@@ -1,6 +1,7 @@
 #include "common/inference/catalogue.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/model/effect_size.hpp"
 #include "common/model/onset.hpp"
@@ -24,9 +25,10 @@ bool stopped(const model::ActiveEffect& active, const model::Scene& scene) {
 
 bool asked_first(const Law& law) { return law.seed.effect->traits().asked_first; }
 
+bool by_nature(const model::ActiveEffect& active) { return active.effect->traits().own_flow; }
+
 std::size_t claims(const std::vector<model::ActiveEffect>& effects) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(effects, [](const auto& active) { return !active.effect->traits().own_flow; }));
+  return static_cast<std::size_t>(std::ranges::count_if(effects, std::not_fn(by_nature)));
 }
 
 bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {

@@ -30,6 +30,8 @@ struct Law {
 /// Whether it is asked before all others: where a sensor sits is the recording's business, and a force would stand in
 /// for it.
 [[nodiscard]] bool asked_first(const Law& law);
+/// What a craft that lives by its flow has anyhow: however small it is beside the applied force, it is no false claim.
+[[nodiscard]] bool by_nature(const model::ActiveEffect& active);
 /// How many of them say that something is missing: what a craft that lives by its flow has by nature says no such
 /// thing.
 [[nodiscard]] std::size_t claims(const std::vector<model::ActiveEffect>& effects);

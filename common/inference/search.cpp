@@ -237,7 +237,7 @@ bool Searching::counts(const Fitted& fitted) {
     if (held(effects(), those[e])) continue;
     const double size = size_of(seen, e, fresh == 1 && those.size() > effects().size() ? &found_.best : nullptr);
     const bool at_limit = stopped(those[e], scene_);
-    if (!at_limit && size >= thresholds_.smallest_size) continue;
+    if (!at_limit && (size >= thresholds_.smallest_size || by_nature(those[e]))) continue;
     failed_[std::string(those[e].effect->name())] =
         at_limit ? Refusal{Rule::kBound, fitted.score - found_.best.score, thresholds_.name_odds}
                  : Refusal{Rule::kSize, size, thresholds_.smallest_size};
@@ -290,7 +290,8 @@ void Searching::drop() {
     std::vector<Start> small, weak;
     std::vector<std::size_t> which;
     for (std::size_t e = 0; e < effects().size(); ++e) {
-      if (stopped(effects()[e], scene_) || size_of(seen, e, nullptr) < thresholds_.smallest_size) {
+      if (stopped(effects()[e], scene_) ||
+          (!by_nature(effects()[e]) && size_of(seen, e, nullptr) < thresholds_.smallest_size)) {
         small.push_back(without(found_.best, e));
         which.push_back(e);
       } else if (guessed_loss(seen, e) < kDoubtful * thresholds_.name_odds) {
