@@ -162,7 +162,8 @@ std::string to_truth(const SealedSet& set) {
   truth["class_reached"] = set.reached;
   truth["family"] = set.craft.family;
   // Names by which a lifting hull's own flow may be told: neither an effect that was hidden nor a wrong one.
-  if (set.craft.craft_class != CraftClass::kRov) truth["nature"] = {"body_lift", "cross_flow", "speed_drag", "turning_resistance"};
+  if (set.craft.craft_class != CraftClass::kRov)
+    truth["nature"] = {"body_lift", "cross_flow", "speed_drag", "turning_resistance"};
   truth["one_clock"] = plan.one_clock;
   truth["train_files"] = plan.train_files;
   truth["validates"] = plan.validates;
