@@ -1,7 +1,6 @@
 #include "common/inference/catalogue.hpp"
 
 #include <algorithm>
-#include <functional>
 
 #include "common/model/effect_size.hpp"
 #include "common/model/onset.hpp"
@@ -27,8 +26,14 @@ bool asked_first(const Law& law) { return law.seed.effect->traits().asked_first;
 
 bool by_nature(const model::ActiveEffect& active) { return active.effect->traits().own_flow; }
 
+bool by_nature(const std::string& name) {
+  const model::Effect* effect = model::find_effect(name);
+  return effect != nullptr && effect->traits().own_flow;
+}
+
 std::size_t claims(const std::vector<model::ActiveEffect>& effects) {
-  return static_cast<std::size_t>(std::ranges::count_if(effects, std::not_fn(by_nature)));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(effects, [](const auto& active) { return !by_nature(active); }));
 }
 
 bool exclude(const model::ActiveEffect& a, const model::ActiveEffect& b) {

@@ -32,6 +32,8 @@ struct Law {
 [[nodiscard]] bool asked_first(const Law& law);
 /// What a craft that lives by its flow has anyhow: however small it is beside the applied force, it is no false claim.
 [[nodiscard]] bool by_nature(const model::ActiveEffect& active);
+/// The same of a listed effect's name.
+[[nodiscard]] bool by_nature(const std::string& name);
 /// How many of them say that something is missing: what a craft that lives by its flow has by nature says no such
 /// thing.
 [[nodiscard]] std::size_t claims(const std::vector<model::ActiveEffect>& effects);

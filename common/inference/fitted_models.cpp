@@ -44,7 +44,7 @@ double log_prior_of_set(const std::vector<model::ActiveEffect>& effects, const s
   std::map<std::string, int> forms;
   std::size_t names = 0;  // that a craft may lack
   for (const Law& law : laws) {
-    if (forms.emplace(law.name, law.forms).second && !law.seed.effect->traits().own_flow) ++names;
+    if (forms.emplace(law.name, law.forms).second && !by_nature(law.seed)) ++names;
   }
   const std::size_t n = claims(effects), own = effects.size() - n;
   double log_prior = std::log(kCountPrior[std::min(n, kCountPrior.size() - 1)]);

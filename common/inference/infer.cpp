@@ -186,14 +186,14 @@ void conclude(const likelihood::Problem& problem, const Thresholds& thresholds, 
     return;
   }
   if (!found.best.names.empty()) {
-    // Beside names of what is missing, what the craft's flow does by nature need not be sure.
+    // Of what the craft's flow does by nature neither the terms need be told apart nor, beside a name of what is
+    // missing, that they act; how often names of their evidence are right was learned of what is missing.
     const auto& effects = fit.hypothesis.model.effects;
     double least = 1.0, beside_others = 1.0;
     for (std::size_t e = 0; e < found.probability.size(); ++e) {
-      if (names > 0 && effects[e].effect->traits().own_flow) continue;
-      // How often names of their evidence are right was learned of what is missing, not of what is there by nature.
-      const double reliable = effects.size() > e && effects[e].effect->traits().own_flow ? 1.0 : found.reliability[e];
-      least = std::min(least, found.probability[e] * reliable);
+      const bool own = e < effects.size() && by_nature(effects[e]);
+      if (own && (names > 0 || by_nature(found.rival[e]))) continue;
+      least = std::min(least, found.probability[e] * (own ? 1.0 : found.reliability[e]));
       beside_others = std::min(beside_others, found.probability[e]);
     }
     const bool sure = least >= thresholds.name_probability;

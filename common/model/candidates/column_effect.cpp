@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "common/base/brief_number.hpp"
 #include "common/base/error.hpp"
 #include "common/model/rollout.hpp"
 
@@ -159,13 +159,9 @@ Shown shown_by(const Law& law, std::span<const Trial> trials) {
   return shown;
 }
 
-std::string brief(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
+std::string with_unit(double value, const std::string& unit) {
+  return brief_number(value) + (unit.empty() ? "" : " " + unit);
 }
-
-std::string with_unit(double value, const std::string& unit) { return brief(value) + (unit.empty() ? "" : " " + unit); }
 
 std::string unit_of_model(const Candidate& candidate) {
   std::string unit;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "common/base/brief_number.hpp"
 
 namespace fathom::model {
 namespace {
@@ -15,12 +16,6 @@ constexpr double kHeaviest = 2e4;
 constexpr double kFastest = 300.0;
 constexpr double kWithWater = 6.0;  // times the rigid body, as LeavingSettings::heaviest_share
 
-std::string brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 }  // namespace
 
 double largest_push(const Vehicle& vehicle) {
@@ -31,21 +26,21 @@ double largest_push(const Vehicle& vehicle) {
 
 void check_proportions(const Config& config, const Vehicle& vehicle) {
   if (vehicle.mass <= 0.0) return;
-  const std::string mass = "'mass' of " + brief(vehicle.mass) + " kg is ";
+  const std::string mass = "'mass' of " + brief_number(vehicle.mass) + " kg is ";
   if (vehicle.hull.minCoeff() > 0.0) {
     const double box = vehicle.hull.prod();
     if (vehicle.mass < kLightest * box)
-      config.fail("mass", mass + "no more than the air in this 'hull' weighs: at least " + brief(kLightest * box) +
-                              " kg; are the units of both right?");
+      config.fail("mass", mass + "no more than the air in this 'hull' weighs: at least " +
+                              brief_number(kLightest * box) + " kg; are the units of both right?");
     if (vehicle.mass > kHeaviest * box)
       config.fail("mass", mass + "more than this 'hull' would weigh if it were all tungsten: at most " +
-                              brief(kHeaviest * box) + " kg; are the units of both right?");
+                              brief_number(kHeaviest * box) + " kg; are the units of both right?");
   }
   const double push = largest_push(vehicle);
   if (push > kFastest * vehicle.mass)
-    config.fail("mass", mass + "too little for " + brief(push) + " N of thrust, which would move it off with " +
-                            brief(push / vehicle.mass / 9.81) + " times gravity: at least " + brief(push / kFastest) +
-                            " kg; are the units of both right?");
+    config.fail("mass", mass + "too little for " + brief_number(push) + " N of thrust, which would move it off with " +
+                            brief_number(push / vehicle.mass / 9.81) + " times gravity: at least " +
+                            brief_number(push / kFastest) + " kg; are the units of both right?");
   for (int axis = 0; axis < 3; ++axis) check_moment(config, "inertia", "inertia", axis, vehicle.inertia[axis], vehicle);
 }
 
@@ -57,8 +52,9 @@ void check_moment(const Config& section, const std::string& line, const std::str
   corner[axis] = 0.0;
   const double largest = kWithWater * vehicle.mass * corner.squaredNorm();
   if (moment <= largest) return;
-  section.fail(line, "'" + key + "' of " + brief(moment) + " kg m^2 is impossible: with this 'mass' and 'hull', " +
-                         "water included, it is at most " + brief(largest) + " kg m^2; correct one of the three");
+  section.fail(line, "'" + key + "' of " + brief_number(moment) +
+                         " kg m^2 is impossible: with this 'mass' and 'hull', " + "water included, it is at most " +
+                         brief_number(largest) + " kg m^2; correct one of the three");
 }
 
 }  // namespace fathom::model

@@ -111,6 +111,7 @@ TEST_CASE("conclusion: as many names as the search allows are no claim") {
     for (const char* name : names)
       found.best.fit.hypothesis.model.effects.push_back({.effect = model::find_effect(name), .variant_name = ""});
     found.probability = found.reliability = std::vector<double>(names.size(), 1.0);
+    found.rival.assign(names.size(), "");
     nothing.conclusion.reasons.clear();
     return nothing.concluded();
   };
@@ -128,7 +129,12 @@ TEST_CASE("conclusion: as many names as the search allows are no claim") {
   nothing.conclusion.found.reliability = {0.7};
   nothing.conclusion.reasons.clear();
   CHECK(nothing.concluded().verdict == Verdict::effect);
-  nothing.conclusion.found.probability = {0.7};  // another name fits as well
+  // Another name fits as well: a term of the same flow says nothing else, one of what is missing does.
+  nothing.conclusion.found.probability = {0.7};
+  nothing.conclusion.found.rival = {"turning_resistance"};
+  nothing.conclusion.reasons.clear();
+  CHECK(nothing.concluded().verdict == Verdict::effect);
+  nothing.conclusion.found.rival = {"cross_coupling"};
   nothing.conclusion.reasons.clear();
   CHECK(nothing.concluded().verdict == Verdict::ambiguous);
 }

@@ -94,9 +94,10 @@ class LiftingSurfaces final : public Form {
     for (std::size_t i = 0; i < thrusters.size(); ++i) {
       if (!stands(thrusters[i])) continue;
       const auto place = static_cast<Eigen::Index>(i);
-      const Eigen::Vector3d force_B =
-          -theta[kDrag] * leaning(motion, place) * Eigen::Vector3d::UnitX() -
-          (theta[kWash] * washed(motion, place) + theta[kStall] * stalled(motion, place)) * thrusters[i].axis_B;
+      const Eigen::Vector3d force_B = -theta[kDrag] * leaning(motion, place) * Eigen::Vector3d::UnitX() -
+                                      (theta[kWash] * washed(motion, thrusters[i]) +
+                                       theta[kStall] * stalled(motion, thrusters[i], motion.force[place])) *
+                                          thrusters[i].axis_B;
       load.wrench.head<3>() += force_B;
       load.wrench.tail<3>() += thrusters[i].p_BJ.cross(force_B);
     }
@@ -124,27 +125,34 @@ class LiftingSurfaces final : public Form {
     }
     return found;
   }
-  /// N: what a propeller's wash adds to the lift by which a fin resists being carried across.
-  [[nodiscard]] static double washed(const Motion& motion, Eigen::Index i) {
-    const Thruster& one = motion.vehicle->thrusters[static_cast<std::size_t>(i)];
-    const Fin& fin = *one.fin;
-    if (fin.behind < 0) return 0.0;
+  /// Water past a fin.
+  struct Past {
+    double ahead{};   ///< m/s, the hull's own
+    double square{};  ///< (m/s)^2 with the wash, negative astern
+    double across{};  ///< m/s along the fin's axis
+  };
+  [[nodiscard]] static Past past(const Motion& motion, const Thruster& one) {
     const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
-    const double wash = fin.slipstream * std::max(acting_force(*motion.vehicle, motion, fin.behind), 0.0);
-    const double past = std::sqrt(std::abs(v_r.x() * std::abs(v_r.x()) + wash));
-    return fin.slope * one.axis_B.dot(v_r) * (past - std::abs(v_r.x())) / (fin.reference_speed * fin.reference_speed);
+    Past water{v_r.x(), v_r.x() * std::abs(v_r.x()), one.axis_B.dot(v_r)};
+    if (one.fin->behind >= 0)
+      water.square += one.fin->slipstream * std::max(acting_force(*motion.vehicle, motion, one.fin->behind), 0.0);
+    return water;
+  }
+  /// N: what a propeller's wash adds to the lift by which a fin resists being carried across.
+  [[nodiscard]] static double washed(const Motion& motion, const Thruster& one) {
+    if (one.fin->behind < 0) return 0.0;
+    const Past water = past(motion, one);
+    const double reference = one.fin->reference_speed;
+    return one.fin->slope * water.across * (std::sqrt(std::abs(water.square)) - std::abs(water.ahead)) /
+           (reference * reference);
   }
   /// N: lift that a fin at this angle to the flow does not have any more.
-  [[nodiscard]] static double stalled(const Motion& motion, Eigen::Index i) {
-    const Thruster& one = motion.vehicle->thrusters[static_cast<std::size_t>(i)];
-    const Fin& fin = *one.fin;
-    const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
-    double square = v_r.x() * std::abs(v_r.x());
-    if (fin.behind >= 0) square += fin.slipstream * std::max(acting_force(*motion.vehicle, motion, fin.behind), 0.0);
-    const double drift = std::atan2(one.axis_B.dot(v_r), std::max(std::sqrt(std::abs(square)), kSlowest));
-    const double angle = motion.force[i] / fin.slope - std::copysign(drift, drift * square);
-    const double beyond = angle - std::clamp(angle, -fin.stall, fin.stall);
-    return fin.slope * beyond * square / (fin.reference_speed * fin.reference_speed);
+  [[nodiscard]] static double stalled(const Motion& motion, const Thruster& one, double told) {
+    const Past water = past(motion, one);
+    const double drift = std::atan2(water.across, std::max(std::sqrt(std::abs(water.square)), kSlowest));
+    const double angle = told / one.fin->slope - (water.square < 0.0 ? -drift : drift);
+    const double beyond = angle - std::clamp(angle, -one.fin->stall, one.fin->stall);
+    return one.fin->slope * beyond * water.square / (one.fin->reference_speed * one.fin->reference_speed);
   }
   /// N: lift of a fin at its deflection in straight flow, times the deflection.
   [[nodiscard]] static double leaning(const Motion& motion, Eigen::Index i) {

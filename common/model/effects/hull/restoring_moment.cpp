@@ -7,7 +7,6 @@
 #include <array>
 
 #include "common/model/component_set.hpp"
-#include "common/model/priors/wide_prior.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::model::effects {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <string_view>
 
+#include "common/base/brief_number.hpp"
 #include "common/model/learned/features.hpp"
 
 namespace fathom::model {
@@ -49,11 +49,5 @@ struct FactorKind {
 }
 constexpr const char* kNuNames[6]{"u", "v", "w", "p", "q", "r"};
 constexpr const char* kTauNames[6]{"X", "Y", "Z", "K", "M", "N"};
-
-[[nodiscard]] inline std::string brief_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 }  // namespace fathom::model
