@@ -196,11 +196,21 @@ bool of_sensor(const EffectFound& effect) {
   return known != nullptr && known->measures();
 }
 
+/// What every craft of its kind has, and the base model has not: no fault, and nothing to look for.
+bool of_own_flow(const EffectFound& effect) {
+  const model::Effect* known = model::find_effect(effect.name);
+  return known != nullptr && known->traits().own_flow;
+}
+
 std::string causes(const DiagnosisResult& result) {
-  std::string items;
+  std::string items, own_flow;
   if (result.wiring) items += "<li>" + escape(join(result.wiring->readings, ", or ")) + "</li>\n";
   for (const EffectFound& effect : result.effects) {
     if (!effect.accepted) continue;
+    if (of_own_flow(effect)) {
+      own_flow += (own_flow.empty() ? "" : ", ") + effect_title(effect.name, effect.variant);
+      continue;
+    }
     std::string others;
     for (const Alternative& other : effect.alternatives)
       others += (others.empty() ? "" : ", ") + effect_title(other.name);
@@ -212,6 +222,9 @@ std::string causes(const DiagnosisResult& result) {
              "it is this cause: " + escape(sure(effect.probability)) +
              (others.empty() ? "" : "; or else " + escape(others)) + "</span></li>\n";
   }
+  if (!own_flow.empty())
+    items += "<li>What the craft's own flow does, by its nature: " + escape(own_flow) +
+             " <span class=\"soft\">its numbers stand with the model's</span></li>\n";
   std::string refused;
   for (const StandIn& one : result.stand_ins) {
     if (!one.in_model) {
@@ -274,6 +287,10 @@ std::string front_section(const DiagnosisReport& report, Album& album) {
     if (!names.empty())
       said.words = "The model does not follow its thrust along " + names + ": those numbers are withheld";
   }
+  if (result.verdict == "effect" && std::ranges::all_of(result.effects, [](const EffectFound& effect) {
+        return !effect.accepted || of_own_flow(effect);
+      }))
+    said = {"adequate", "Nothing is missing but what the flow past this craft does, and that was found"};
   std::string html = "<header><h1>Why does " + escape(result.vehicle) +
                      " move as it does?</h1>\n<p class=\"soft\">Diagnosis of " + recordings(result) +
                      "</p>\n<div class=\"badge " + said.css + "\">" + escape(said.words) + "</div>\n" + causes(result) +

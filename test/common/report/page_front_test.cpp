@@ -132,6 +132,21 @@ TEST_CASE("What sensors do wrong is no cause of the motion, and nothing was adde
   CHECK(has(text, "nothing was added to the model"));
 }
 
+TEST_CASE("What a craft's flow does by nature shares a line behind the causes; alone, it is nothing that was missing") {
+  auto report = fathom::test::made_up_report({.samples = 600});
+  const EffectFound lift{.name = "body_lift", .variant = "hull, sideways"}, cross{.name = "cross_flow"};
+  report.result.effects.insert(report.result.effects.begin(), {lift, cross});
+  const std::string beside = seen(to_html(report));
+  CHECK(has(beside, "Something was missing, and it was found"));
+  const std::string line = "What the craft's own flow does, by its nature: body lift (hull, sideways), cross flow";
+  CHECK(has(beside, line));
+  CHECK(beside.find("Thrust follows its command") < beside.find(line));
+  report.result.effects = {lift, cross};
+  const std::string alone = seen(to_html(report));
+  CHECK(has(alone, "Nothing is missing but what the flow past this craft does, and that was found"));
+  CHECK_FALSE(has(alone, "Something was missing"));
+}
+
 TEST_CASE("A cause says which thruster, how much, and in which direction") {
   EffectFound gain{.name = "thruster_gain", .variant = "FL", .parameters = {{"gain_change", -0.29, 0.0075, ""}}};
   CHECK(has(cause_line(gain), "Thruster FL gives 29.0 (27.5 to 30.5) % less than the file says"));
