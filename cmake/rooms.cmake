@@ -9,6 +9,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_BUILD_TYPE STREQUAL "Release" 
   target_compile_options(fathom_warnings INTERFACE -Wno-error=array-bounds -Wno-error=free-nonheap-object
                          -Wno-error=restrict -Wno-error=stringop-overflow -Wno-error=stringop-overread)
 endif()
+# One code for programs and for Python's module, which must be position-independent; calls within a program are as direct
+# as without, since nothing may put itself in a symbol's place.
+add_compile_options(-fPIC -fno-semantic-interposition)
 # The compiler may fuse a product and a sum into one operation where the processor has it (arm64), which rounds once
 # instead of twice. Without that a log gives nearly the same numbers on the vehicle and on the shore
 # (docs/decisions/116-*).

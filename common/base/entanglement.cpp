@@ -1,8 +1,9 @@
 #include "common/base/entanglement.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "common/base/factors.hpp"
 
 namespace fathom {
 
@@ -13,13 +14,13 @@ Entanglement entanglement(std::span<const double> covariance) {
   if (!P.allFinite() || !(P.diagonal().minCoeff() > 0.0)) return {};
   const Eigen::VectorXd scale = P.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * P * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen{correlation};
-  const Eigen::VectorXd& values = eigen.eigenvalues();  // ascending
-  if (eigen.info() != Eigen::Success || !(values[0] > 1e-14 * values[n - 1])) return {};
+  const SymmetricEigen eigen = symmetric_eigen(correlation);
+  const Eigen::VectorXd& values = eigen.values;  // ascending
+  if (!eigen.found || !(values[0] > 1e-14 * values[n - 1])) return {};
   Entanglement found{.inflation = std::vector<double>(static_cast<std::size_t>(n)),
                      .condition = values[n - 1] / values[0]};
   // Diagonal of the inverse correlations: P_ii (P^-1)_ii.
-  Eigen::Map<Eigen::VectorXd>{found.inflation.data(), n} = eigen.eigenvectors().cwiseAbs2() * values.cwiseInverse();
+  Eigen::Map<Eigen::VectorXd>{found.inflation.data(), n} = eigen.vectors.cwiseAbs2() * values.cwiseInverse();
   return found;
 }
 

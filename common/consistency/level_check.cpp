@@ -2,11 +2,11 @@
 // vertical whatever its heading. In a world that is tilted against gravity those angles turn with the heading:
 //   R_WB^T e_z = trim - R_WB^T n,   n: horizontal, the tilt of the world's down against the true one.
 // Every stretch of a recording has a trim of its own, so that a load that shifts is no tilt.
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "common/base/factors.hpp"
 #include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
 #include "common/base/units.hpp"
@@ -85,10 +85,10 @@ std::array<Estimate, 2> tilt_of(const PoseSeries& pose) {
   Stretch all;
   for (const Stretch& one : stretches) all = {all.h + one.h, all.g + one.g, all.count + one.count};
   if (stretches.size() < kFewestStretches || all.h.trace() < 2.0 * kLeastTurning * all.count) return {};
-  const Eigen::Vector2d n = all.h.ldlt().solve(all.g);
+  const Eigen::Vector2d n = solve_symmetric(all.h, all.g);
   std::array<std::vector<double>, 2> replicates;
   for (const Stretch& one : stretches) {
-    const Eigen::Vector2d without = (all.h - one.h).ldlt().solve(all.g - one.g);
+    const Eigen::Vector2d without = solve_symmetric(all.h - one.h, all.g - one.g);
     for (std::size_t k = 0; k < 2; ++k) replicates[k].push_back(without[static_cast<Eigen::Index>(k)]);
   }
   std::array<Estimate, 2> result;

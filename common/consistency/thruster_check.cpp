@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/base/factors.hpp"
 #include "common/base/statistics.hpp"
 #include "common/consistency/consistency.hpp"
 #include "common/estimation/thruster_forces.hpp"
@@ -102,7 +103,7 @@ std::string reversed_thrusters(std::span<const Recording> recordings, const mode
     total += wanted.squaredNorm();
   });
   const Eigen::MatrixXd held = normal + kRidge * normal.trace() * Eigen::MatrixXd::Identity(n, n);
-  const Eigen::VectorXd gains = held.ldlt().solve(right);
+  const Eigen::VectorXd gains = solve_symmetric(held, right);
   Eigen::VectorXd sign = Eigen::VectorXd::Ones(n);
   std::string names;
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,9 +1,11 @@
 #include "common/estimation/smoothing_derivative.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "common/base/factors.hpp"
+#include "common/base/least_squares.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -15,7 +17,7 @@ SmoothingDerivative quartic(int half, double step, double bandwidth) {
     const double x = static_cast<double>(i - half) / half;
     for (int k = 0; k < 5; ++k) powers(i, k) = std::pow(x, k);
   }
-  const Eigen::MatrixXd inverse = powers.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = pseudo_inverse(powers);
   SmoothingDerivative result{.half = half, .weight = {}, .gain = 0.0, .noise = 0.0};
   double squares = 0.0, gain = 0.0;
   const double omega = 2.0 * std::numbers::pi * bandwidth;
@@ -50,7 +52,7 @@ std::vector<double> slope_weights(std::span<const double> t) {
     for (Eigen::Index k = 1; k < 5; ++k) powers(k, i) = powers(k - 1, i) * t[static_cast<std::size_t>(i)] / scale;
   }
   const Eigen::Matrix<double, 5, 5> normal = powers * powers.transpose();
-  const Eigen::Matrix<double, 5, 1> slope = normal.ldlt().solve(Eigen::Matrix<double, 5, 1>::Unit(1)) / scale;
+  const Eigen::Matrix<double, 5, 1> slope = solve_symmetric(normal, Eigen::VectorXd::Unit(5, 1)) / scale;
   std::vector<double> weight(t.size());
   Eigen::Map<Eigen::RowVectorXd>(weight.data(), powers.cols()) = slope.transpose() * powers;
   return weight;

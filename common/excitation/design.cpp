@@ -1,11 +1,11 @@
 #include "common/excitation/design.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "common/base/factors.hpp"
 #include "common/model/priors/wide_prior.hpp"
 #include "common/model/regressor.hpp"
 #include "common/model/vehicle.hpp"
@@ -19,8 +19,7 @@ constexpr double kPossible = 0.3;   // of the prior's size: no mass is less, as 
 constexpr double kBendWorth = 0.5;  // a segment that the fence alters all the time is worth half of what it promises
 
 double log_det(const Eigen::MatrixXd& matrix) {
-  const Eigen::LDLT<Eigen::MatrixXd> factor{matrix};
-  return factor.vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
+  return SymmetricFactor{matrix}.pivots().array().max(std::numeric_limits<double>::min()).log().sum();
 }
 
 }  // namespace
@@ -171,8 +170,7 @@ Segment Designer::next(const StateEstimate& state, double turned, const ModelEst
   }
   // Scaled: parameters count by their relative uncertainty.
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * P * scale.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd before =
-      (scaled + 1e-12 * Eigen::MatrixXd::Identity(n, n)).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd before = inverse_symmetric(scaled + 1e-12 * Eigen::MatrixXd::Identity(n, n));
   const double log_before = log_det(before);
   const double sum_before = scaled.trace();
 
@@ -184,9 +182,8 @@ Segment Designer::next(const StateEstimate& state, double turned, const ModelEst
     if (!predict(candidate, state, turned, fence, trim_W, bent)) continue;
     const Eigen::MatrixXd after =
         before + Eigen::MatrixXd(scale.asDiagonal() * information_.matrix() * scale.asDiagonal());
-    double gain = settings_.criterion == Criterion::kD
-                      ? 0.5 * (log_det(after) - log_before)
-                      : sum_before - after.ldlt().solve(Eigen::MatrixXd::Identity(n, n)).trace();
+    double gain = settings_.criterion == Criterion::kD ? 0.5 * (log_det(after) - log_before)
+                                                       : sum_before - inverse_symmetric(after).trace();
     gain *= 1.0 - (1.0 - kBendWorth) * bent;
     if (gain > best) {
       best = gain;

@@ -1,9 +1,10 @@
 #include "common/inference/feature_screen.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::inference {
 namespace {
@@ -82,8 +83,7 @@ likelihood::FreeForce chosen(const likelihood::FreeForce& library, const Screen&
 }
 
 void renew_sigmas(likelihood::Fit& fit) {
-  const Eigen::Index p = fit.information.rows();
-  const Eigen::MatrixXd covariance = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const Eigen::MatrixXd covariance = inverse_symmetric(fit.information);
   std::size_t first = 0;
   while (first < fit.numbers.size() && fit.numbers[first].kind != likelihood::NumberKind::kWeight) ++first;
   for (likelihood::FeatureGroup& group : fit.hypothesis.force.groups) {
@@ -116,12 +116,13 @@ GroupEvidence group_evidence(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
     }
     Eigen::MatrixXd scaled = D.asDiagonal() * G * D.asDiagonal();
     scaled.diagonal().array() += 1.0;
-    const Eigen::LDLT<Eigen::MatrixXd> ldlt{scaled};
-    const Eigen::VectorXd x = ldlt.solve(D.cwiseProduct(b));
+    const SymmetricFactor factor{scaled};
+    const Eigen::VectorXd pivots = factor.pivots();
+    const Eigen::VectorXd x = factor.solve(D.cwiseProduct(b));
     double value = 0.5 * D.cwiseProduct(b).dot(x);
-    for (Eigen::Index j = 0; j < D.size(); ++j) value -= 0.5 * std::log(std::max(ldlt.vectorD()[j], 1e-300));
+    for (Eigen::Index j = 0; j < D.size(); ++j) value -= 0.5 * std::log(std::max(pivots[j], 1e-300));
     if (std::isfinite(value) && value > best.log_bayes_factor) best = {value, sigma, D.cwiseProduct(x)};
-    const Eigen::MatrixXd inverse = ldlt.solve(Eigen::MatrixXd::Identity(D.size(), D.size()));
+    const Eigen::MatrixXd inverse = factor.inverse();
     at = 0;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       double square = 0.0, open = 0.0;

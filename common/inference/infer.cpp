@@ -1,6 +1,5 @@
 #include "common/inference/infer.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <iterator>

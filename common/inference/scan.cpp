@@ -1,6 +1,5 @@
 #include "common/inference/scan.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/model/effect_size.hpp"
 
@@ -287,13 +287,13 @@ Gain linear_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, c
   // In units of sigma.
   const Eigen::MatrixXd G = sigma.asDiagonal() * gram * sigma.asDiagonal();
   const Eigen::VectorXd b = sigma.cwiseProduct(gradient);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(sigma.size());
-  Eigen::LDLT<Eigen::MatrixXd> ldlt;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(sigma.size()), pivots;
   for (int turn = 0; turn < kTurns; ++turn) {
     Eigen::MatrixXd weighted = G;
     for (Eigen::Index j = 0; j < x.size(); ++j) weighted(j, j) += likelihood::prior_weight(plain, x[j]);
-    ldlt.compute(weighted);
-    x = ldlt.solve(b);
+    const SymmetricFactor factor{weighted};
+    x = factor.solve(b);
+    pivots = factor.pivots();
   }
   gain.amplitude = sigma.cwiseProduct(x);
   gain.gain = b.dot(x) - 0.5 * x.dot(G * x);
@@ -301,7 +301,7 @@ Gain linear_gain(const Eigen::MatrixXd& gram, const Eigen::VectorXd& gradient, c
   gain.score = gain.gain;
   for (Eigen::Index j = 0; j < sigma.size(); ++j)
     gain.score += likelihood::log_prior(plain, x[j]) + 0.5 * std::log(2.0 * std::numbers::pi) -
-                  0.5 * std::log(std::max(ldlt.vectorD()[j], 1e-300));
+                  0.5 * std::log(std::max(pivots[j], 1e-300));
   return gain;
 }
 

@@ -1,8 +1,8 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/searching.hpp"
 
@@ -281,7 +281,7 @@ double Searching::guessed_loss(const Seen& seen, std::size_t effect) const {
   if (places.empty()) return 0.0;
   const Eigen::MatrixXd covariance = seen.covariance(places, places);
   const Eigen::Map<const Eigen::VectorXd> theta{values.data(), static_cast<Eigen::Index>(values.size())};
-  return 0.5 * theta.dot(covariance.ldlt().solve(theta));
+  return 0.5 * theta.dot(solve_symmetric(covariance, theta));
 }
 
 void Searching::drop() {

@@ -1,9 +1,9 @@
 // A fitted model made ready for questions, and the size of what an effect does in it.
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/base/factors.hpp"
 #include "common/inference/scan.hpp"
 #include "common/model/driven_axes.hpp"
 
@@ -14,8 +14,7 @@ using likelihood::NumberKind;
 Seen see(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   Seen seen{.fit = std::move(fit)};
   likelihood::refer(problem, seen.fit, seen.reference, threads);
-  const Eigen::Index p = seen.fit.information.rows();
-  seen.covariance = seen.fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  seen.covariance = inverse_symmetric(seen.fit.information);
   Vector6d square = Vector6d::Zero(), moved = Vector6d::Zero();
   double count = 0.0;
   const std::vector<likelihood::Number> none;
@@ -68,7 +67,7 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
   Eigen::MatrixXd scaled = scale.asDiagonal() * Eigen::MatrixXd{G.selfadjointView<Eigen::Lower>()} * scale.asDiagonal();
   scaled.diagonal().array() += kRidge;
   const Eigen::VectorXd of = scale.asDiagonal() * b;
-  return scale.asDiagonal() * scaled.ldlt().solve(of);
+  return scale.asDiagonal() * solve_symmetric(scaled, of);
 }
 
 /// Square that least squares take away, with numbers from `limit(x)` on held within their limits.

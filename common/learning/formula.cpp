@@ -1,11 +1,11 @@
 #include "common/learning/formula.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 
+#include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 
 namespace fathom::learning {
@@ -78,7 +78,7 @@ void score(const Problem& problem, const inference::Seen& seen, const std::vecto
       Eigen::MatrixXd G = gram.block(first, first, count, count);
       G.diagonal() *= 1.0 + 1e-9;
       const Eigen::VectorXd slope = sums.gradient.segment(first, count);
-      const double gain = 0.5 * slope.dot(G.ldlt().solve(slope));
+      const double gain = 0.5 * slope.dot(solve_symmetric(G, slope));
       places[batches[b].first + g].gain = std::isfinite(gain) && G.diagonal().minCoeff() > 0.0 ? gain : 0.0;
     }
   });

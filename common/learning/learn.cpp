@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/base/factors.hpp"
 #include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
 #include "common/learning/left_out.hpp"
@@ -50,8 +51,7 @@ void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& gi
   for (std::size_t j = 0; j < fit.numbers.size(); ++j) {
     if (fit.numbers[j].kind == likelihood::NumberKind::kWeight) at.push_back(static_cast<Eigen::Index>(j));
   }
-  const Eigen::Index p = fit.information.rows();
-  const Eigen::MatrixXd covariance = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const Eigen::MatrixXd covariance = inverse_symmetric(fit.information);
   for (const model::FeatureGroup& group : force.groups) {
     for (int j = group.first; j < group.first + group.count; ++j) {
       const auto k = static_cast<std::size_t>(j);

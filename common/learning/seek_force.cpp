@@ -1,10 +1,10 @@
 #include "common/learning/seek_force.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
 #include "common/learning/moments.hpp"
@@ -268,17 +268,16 @@ class Seeker {
   /// Nats that each group is worth, its price paid: Savage and Dickey's ratio of densities at no weight.
   [[nodiscard]] std::vector<double> worths(const likelihood::Fit& fit) const {
     const Eigen::Index p = fit.information.rows();
-    const Eigen::MatrixXd covariance = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+    const Eigen::MatrixXd covariance = inverse_symmetric(fit.information);
     Eigen::Index first = 0;
     while (first < p && fit.numbers[static_cast<std::size_t>(first)].kind != likelihood::NumberKind::kWeight) ++first;
     std::vector<double> worths;
     for (const likelihood::FeatureGroup& group : fit.hypothesis.force.groups) {
       const Eigen::MatrixXd C = covariance.block(first + group.first, first + group.first, group.count, group.count);
       const Eigen::Map<const Eigen::VectorXd> w{fit.hypothesis.force.weights.data() + group.first, group.count};
-      const Eigen::LDLT<Eigen::MatrixXd> ldlt{C};
-      double log_det = 0.0;
-      for (Eigen::Index j = 0; j < group.count; ++j) log_det += std::log(std::max(ldlt.vectorD()[j], 1e-300));
-      worths.push_back(0.5 * w.dot(ldlt.solve(w)) + 0.5 * log_det - group.count * std::log(group.sigma) -
+      const SymmetricFactor factor{C};
+      const double log_det = factor.pivots().array().max(1e-300).log().sum();
+      worths.push_back(0.5 * w.dot(factor.solve(w)) + 0.5 * log_det - group.count * std::log(group.sigma) -
                        price(group, groups_));
     }
     return worths;

@@ -1,10 +1,10 @@
 #include "common/learning/spread.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "common/base/factors.hpp"
 #include "common/learning/learn.hpp"
 
 namespace fathom::learning {
@@ -32,9 +32,8 @@ Vector6d spread_of(const likelihood::Fit& fit, const model::Visited& visited, co
   Vector6d sigma = Vector6d::Zero();
   if (at.empty() || chosen.empty() || fit.information.rows() != static_cast<Eigen::Index>(fit.numbers.size()))
     return sigma;
-  const Eigen::Index p = fit.information.rows();
-  const Eigen::MatrixXd inverse = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ways{inverse(at, at)};
+  const Eigen::MatrixXd inverse = inverse_symmetric(fit.information);
+  const SymmetricEigen ways = symmetric_eigen(inverse(at, at));
   const auto ends = [&](const likelihood::Hypothesis& hypothesis) {
     const model::LearnedForce force{tell(hypothesis.force), visited, hypothesis.model.allocation};
     const model::Model model = as_model(hypothesis, input_step, &force);
@@ -48,10 +47,10 @@ Vector6d spread_of(const likelihood::Fit& fit, const model::Visited& visited, co
   };
   const Eigen::VectorXd middle = values(fit.hypothesis, numbers);
   const Eigen::MatrixXd from = ends(fit.hypothesis);
-  for (Eigen::Index j = 0; j < ways.eigenvalues().size(); ++j) {
-    if (!(ways.eigenvalues()[j] > 0.0)) continue;
+  for (Eigen::Index j = 0; j < ways.values.size(); ++j) {
+    if (!(ways.values[j] > 0.0)) continue;
     likelihood::Hypothesis moved = fit.hypothesis;
-    set_values(moved, numbers, middle + std::sqrt(ways.eigenvalues()[j]) * ways.eigenvectors().col(j));
+    set_values(moved, numbers, middle + std::sqrt(ways.values[j]) * ways.vectors.col(j));
     sigma += (ends(moved) - from).rowwise().squaredNorm() / static_cast<double>(chosen.size());
   }
   return sigma.cwiseSqrt();

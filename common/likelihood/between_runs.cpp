@@ -1,8 +1,9 @@
 #include "common/likelihood/between_runs.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::likelihood {
 namespace {
@@ -45,9 +46,9 @@ BetweenRuns between_runs(const Problem& problem, const Fit& fit, int threads) {
   for (const RunInformation& run : seen.per_run) {
     Eigen::MatrixXd information = run.information;
     information.diagonal() += prior.cwiseInverse();
-    const Eigen::LDLT<Eigen::MatrixXd> ldlt{information};
-    const Eigen::VectorXd off = ldlt.solve(run.gradient);
-    const Eigen::MatrixXd covariance = ldlt.solve(Eigen::MatrixXd::Identity(p, p));
+    const SymmetricFactor factor{information};
+    const Eigen::VectorXd off = factor.solve(run.gradient);
+    const Eigen::MatrixXd covariance = factor.inverse();
     for (Eigen::Index j = 0; j < p; ++j) {
       const double known = 1.0 - covariance(j, j) / prior[j];
       if (fit.numbers[static_cast<std::size_t>(j)].run >= 0 || known < kLeastKnown) continue;

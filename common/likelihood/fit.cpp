@@ -1,17 +1,16 @@
 #include "common/likelihood/fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "common/base/factors.hpp"
 #include "common/likelihood/fitting.hpp"
 
 namespace fathom::likelihood {
 
 Eigen::VectorXd Fit::sigma() const {
-  const Eigen::Index p = information.rows();
-  const Eigen::MatrixXd covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const Eigen::MatrixXd covariance = inverse_symmetric(information);
   return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
@@ -21,9 +20,10 @@ double laplace(const std::vector<Number>& numbers, const Eigen::VectorXd& values
   const auto p = static_cast<Eigen::Index>(numbers.size());
   Eigen::VectorXd sigma(p);
   for (Eigen::Index j = 0; j < p; ++j) sigma[j] = numbers[static_cast<std::size_t>(j)].sigma;
-  const Eigen::LDLT<Eigen::MatrixXd> ldlt{sigma.asDiagonal() * information_with_prior * sigma.asDiagonal()};
+  const Eigen::VectorXd pivots =
+      SymmetricFactor{sigma.asDiagonal() * information_with_prior * sigma.asDiagonal()}.pivots();
   double log_det = 0.0;
-  for (Eigen::Index j = 0; j < p; ++j) log_det += std::log(std::max(ldlt.vectorD()[j], 1e-300));
+  for (Eigen::Index j = 0; j < p; ++j) log_det += std::log(std::max(pivots[j], 1e-300));
   log_det -= 2.0 * sigma.array().log().sum();
   return log_likelihood + log_prior(numbers, values) + 0.5 * static_cast<double>(p) * std::log(2.0 * std::numbers::pi) -
          0.5 * log_det;

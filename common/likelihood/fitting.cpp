@@ -1,11 +1,11 @@
 #include "common/likelihood/fitting.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/likelihood/noise_fit.hpp"
 
@@ -140,7 +140,7 @@ Eigen::VectorXd Fitting::step_within(const Eigen::MatrixXd& A, const Eigen::Vect
   Eigen::VectorXd right = b;
   std::vector<bool> held(numbers_.size(), false);
   while (true) {
-    const Eigen::VectorXd step = free.ldlt().solve(right);
+    const Eigen::VectorXd step = solve_symmetric(free, right);
     double least = 1.0;  // of the step, where the first limit is reached
     Eigen::Index first = -1;
     double room_of_first = 0.0;

@@ -1,11 +1,11 @@
 #include "common/likelihood/noise_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "common/base/factors.hpp"
 #include "common/likelihood/processor.hpp"
 
 namespace fathom::likelihood {
@@ -209,13 +209,13 @@ NoiseFit fit_noise(std::span<const std::vector<ReducedBlock>* const> runs, const
       gradient[i] = (here.log_likelihood[j + 1] - here.log_likelihood[0]) / kStep - weight * (at[j] - prior.mean[j]);
       information(i, i) += weight;
     }
-    if (0.5 * gradient.dot(information.ldlt().solve(gradient)) < 0.1 * kEnough) break;
+    if (0.5 * gradient.dot(solve_symmetric(information, gradient)) < 0.1 * kEnough) break;
     // Trial steps, each with its own damping, all in one pass.
     LaneLogs trials;
     for (int l = 0; l < kLanes; ++l) {
       Information damped = information;
       damped.diagonal() *= 1.0 + (l == 0 ? 0.0 : std::pow(10.0, l - 4));
-      const Eigen::Matrix<double, kNoiseNumbers, 1> step = damped.ldlt().solve(gradient);
+      const Eigen::Matrix<double, kNoiseNumbers, 1> step = solve_symmetric(damped, gradient);
       for (std::size_t j = 0; j < kNoiseNumbers; ++j) {
         const double moved = at[j] + std::clamp(step[static_cast<Eigen::Index>(j)], -kLongest, kLongest);
         trials[static_cast<std::size_t>(l)][j] = std::clamp(moved, prior.low[j], prior.high[j]);

@@ -1,8 +1,9 @@
 #include "common/likelihood/plant.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::likelihood {
 namespace {
@@ -173,7 +174,7 @@ Vector6d Plant::added_by(const model::ActiveEffect& effect, const Vector6d& nu_d
   // (M + m) x = M there + wrench, with axes that are not simulated as measured.
   const Matrix6d m = load.inertia();
   const Vector6d change = inverse * (load.wrench - m * (there + motion_.nu_dot_told));
-  return there - nu_dot + (Matrix6d::Identity() + inverse * m).partialPivLu().solve(change);
+  return there - nu_dot + InertiaFactor{Matrix6d::Identity() + inverse * m}.solve(change);
 }
 
 Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {

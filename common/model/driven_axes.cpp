@@ -1,7 +1,9 @@
 #include "common/model/driven_axes.hpp"
 
-#include <Eigen/QR>
+#include <array>
 #include <vector>
+
+#include "common/base/least_squares.hpp"
 
 namespace fathom::model {
 namespace {
@@ -20,10 +22,10 @@ std::array<bool, 6> driven_axes(const Vehicle& vehicle) {
   }
   // Driven: the unit wrench lies in the range of the enabled rows.
   const Eigen::MatrixXd rows = vehicle.allocation(enabled, Eigen::all);
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(rows);
+  const Eigen::MatrixXd basis = range_basis(rows);
   for (std::size_t i = 0; i < enabled.size(); ++i) {
     const Eigen::VectorXd wanted = Eigen::VectorXd::Unit(rows.rows(), static_cast<Eigen::Index>(i));
-    driven[static_cast<std::size_t>(enabled[i])] = (rows * solver.solve(wanted) - wanted).norm() <= kReached;
+    driven[static_cast<std::size_t>(enabled[i])] = (basis * (basis.transpose() * wanted) - wanted).norm() <= kReached;
   }
   return driven;
 }

@@ -1,9 +1,9 @@
 #include "common/model/dynamics.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 
+#include "common/base/factors.hpp"
 #include "common/model/actuators.hpp"
 #include "common/model/hull_terms.hpp"
 
@@ -175,7 +175,7 @@ Vector6d acceleration(const Model& model, const Motion& motion) {
     M(i, i) = 1.0;
     right[i] = 0.0;
   }
-  return M.partialPivLu().solve(right);
+  return InertiaFactor{M}.solve(right);
 }
 
 Vector6d residual_wrench(const Model& model, const Motion& motion, const Vector6d& nu_dot) {

@@ -1,11 +1,11 @@
 // Block means, central differences, one ridge regression over the translational axes, one periodogram.
 #include "common/model/tones.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "common/base/factors.hpp"
 #include "common/model/dynamics.hpp"
 #include "common/model/regressor.hpp"
 #include "common/samples/trial.hpp"
@@ -72,7 +72,7 @@ std::vector<Eigen::Vector3d> left_over(const Vehicle& vehicle, const Blocks& blo
     rows.push_back(Y_scaled);
     residuals.push_back(residual);
   }
-  const BaseTheta step = normal.ldlt().solve(right);
+  const BaseTheta step = solve_symmetric(normal, right);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     residuals[k] = (blocks.R_WB[k + 1] * (residuals[k] + rows[k] * step)).eval();
   }

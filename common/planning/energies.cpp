@@ -35,20 +35,22 @@ std::optional<Answer> at_least(std::optional<Answer> answer) {
   return answer;
 }
 
-}  // namespace
-
-Base::Base(const model::Model& model, std::span<const View* const> views) {
+Eigen::MatrixXd information(const model::Model& model, std::span<const View* const> views) {
   const identification::ParameterMap map{model};
   const auto n = static_cast<Eigen::Index>(map.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  information(n, n) = 1.0;  // the clock of the commands
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  sum(n, n) = 1.0;  // the clock of the commands
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& free = map[static_cast<std::size_t>(i)];
-    information(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
+    sum(i, i) = (free.scale / free.prior_sigma) * (free.scale / free.prior_sigma);
   }
-  for (const View* view : views) information += view->jacobian().transpose() * view->jacobian();
-  factor_.compute(information);
+  for (const View* view : views) sum += view->jacobian().transpose() * view->jacobian();
+  return sum;
 }
+
+}  // namespace
+
+Base::Base(const model::Model& model, std::span<const View* const> views) : factor_{information(model, views)} {}
 
 bool grow(model::ActiveEffect& active, double factor) {
   const auto parameters = active.effect->parameters();

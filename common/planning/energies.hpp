@@ -1,13 +1,13 @@
 // How strongly effects show in a stretch of motion, beside the base parameters and beside each other.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/base/factors.hpp"
 #include "common/planning/view.hpp"
 
 namespace fathom::planning {
@@ -40,7 +40,7 @@ class Base {
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return factor_.solve(b); }
 
  private:
-  Eigen::LDLT<Eigen::MatrixXd> factor_;
+  SymmetricFactor factor_;
 };
 
 /// An effect in one form at one size, and what it changes.

@@ -1,9 +1,9 @@
 #include "common/preflight/thrust_evidence.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/factors.hpp"
 #include "common/residual/force_residual.hpp"
 
 namespace fathom::preflight {
@@ -75,7 +75,8 @@ ThrustEvidence::ThrustEvidence(const model::Vehicle& vehicle, std::span<const Tr
     for (Eigen::Index i = 0; i < gram.rows(); ++i) gram(i, i) = std::max(gram(i, i), kLeastLeft);
     const Eigen::MatrixXd base = gram.topLeftCorner(kBaseTerms, kBaseTerms),
                           side = gram.topRightCorner(kBaseTerms, rest);
-    const Eigen::MatrixXd left = gram.bottomRightCorner(rest, rest) - side.transpose() * base.ldlt().solve(side);
+    const Eigen::MatrixXd left =
+        gram.bottomRightCorner(rest, rest) - side.transpose() * SymmetricFactor{base}.solve_columns(side);
     axis.inputs = left.topLeftCorner(inputs, inputs);
     axis.both = left.topRightCorner(inputs, 1);
     axis.square = left(inputs, inputs);

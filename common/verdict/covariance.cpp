@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/factors.hpp"
 #include "common/model/effect_size.hpp"
 
 namespace fathom::verdict {
@@ -29,7 +30,7 @@ void put_covariance(const likelihood::Fit& fit, const Eigen::VectorXd& sigma, Ve
                     const std::set<int>& withheld) {
   const auto p = static_cast<Eigen::Index>(fit.numbers.size());
   if (!fit.finite || p == 0 || sigma.size() != p || fit.information.rows() != p) return;
-  const Eigen::MatrixXd inverse = fit.information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const Eigen::MatrixXd inverse = inverse_symmetric(fit.information);
   std::vector<Eigen::Index> told;
   for (Eigen::Index j = 0; j < p; ++j) {
     const likelihood::Number& number = fit.numbers[static_cast<std::size_t>(j)];

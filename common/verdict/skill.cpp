@@ -1,10 +1,10 @@
 #include "common/verdict/skill.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "common/base/distributions.hpp"
+#include "common/base/factors.hpp"
 
 namespace fathom::verdict {
 namespace {
@@ -90,10 +90,10 @@ std::array<PlainAxis, 6> plain_fit(const model::Vehicle& vehicle, std::span<cons
     const Eigen::Vector4d scale = A.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
     const Information scaled =
         scale.asDiagonal() * A * scale.asDiagonal() + 1e-9 * Information{Information::Identity()};
-    const Eigen::LDLT<Information> ldlt{scaled};
-    const Eigen::Vector4d x = scale.cwiseProduct(ldlt.solve(scale.cwiseProduct(b)));
+    const SymmetricFactor factor{scaled};
+    const Eigen::Vector4d x = scale.cwiseProduct(factor.solve(scale.cwiseProduct(b)));
     const double residual = std::max(square - b.dot(x), 1e-12 * square) / (count - 4.0);
-    const double variance = residual * scale[0] * scale[0] * ldlt.solve(Eigen::Vector4d::Unit(0))[0];
+    const double variance = residual * scale[0] * scale[0] * factor.solve(Eigen::Vector4d::Unit(0))[0];
     plain[axis] = {x[0], x[1], x[2], x[3], variance > 0.0 ? x[0] / std::sqrt(variance) : 0.0, true};
   }
   return plain;

@@ -1,9 +1,9 @@
 #include "common/vision/camera_pose.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::vision {
 namespace {
@@ -49,8 +49,7 @@ cv::Mat planar_objects(const std::vector<Correspondence>& points, Eigen::Matrix3
   p_WS /= static_cast<double>(points.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Correspondence& each : points) spread += (each.p_W - p_WS) * (each.p_W - p_WS).transpose();
-  R_WS =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{spread}.eigenvectors().rowwise().reverse();  // widest axis first
+  R_WS = symmetric_eigen(spread).vectors.rowwise().reverse();  // widest axis first
   if (R_WS.determinant() < 0.0) R_WS.col(2) *= -1.0;
   cv::Mat objects(static_cast<int>(points.size()), 1, CV_64FC3);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -73,7 +72,7 @@ std::optional<FittedPose> fit_pose(const Projection& projection, const std::vect
   for (int round = 0; round < kMostRounds; ++round) {
     Matrix6d damped = information;
     damped.diagonal() *= 1.0 + damping;
-    const Vector6d step = -damped.ldlt().solve(gradient);
+    const Vector6d step = -solve_symmetric(damped, gradient);
     if (!step.allFinite()) return {};
     Pose tried = fitted.pose;
     tried.p_WC += step.head<3>();

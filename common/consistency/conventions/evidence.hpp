@@ -7,11 +7,11 @@
 
 #include <array>
 #include <map>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "common/consistency/conventions/evidence_windows.hpp"
 #include "common/consistency/conventions/reading.hpp"
 #include "common/estimation/timeline.hpp"
 
@@ -42,8 +42,6 @@ class Evidence {
   /// Empty series: not recorded. `depth` holds (0, 0, z).
   Evidence(const estimation::PoseSeries& pose, const estimation::Series& velocity, const estimation::Series& rates,
            const estimation::Series& force, const estimation::Series& depth);
-  ~Evidence();
-  Evidence(Evidence&&) noexcept;
   [[nodiscard]] Judged judge(const Reading& reading) const;
   /// Enough windows, and at least one relation.
   [[nodiscard]] bool speaks() const;
@@ -51,13 +49,10 @@ class Evidence {
   [[nodiscard]] bool heading_alone() const { return heading_alone_; }
 
  private:
-  struct Windows;
-  [[nodiscard]] const Windows& windows(const Reading& reading) const;
-  const estimation::PoseSeries& pose_;
-  const estimation::Series &velocity_, &rates_, &force_, &depth_;
-  double velocity_delay_{}, rates_delay_{};  ///< s, by what no turn of axes changes: speeds
+  [[nodiscard]] const std::vector<EvidenceWindow>& windows(const Reading& reading) const;
+  EvidenceStreams streams_;
   bool heading_alone_{};
-  mutable std::map<std::pair<int, int>, std::unique_ptr<Windows>> forms_;
+  mutable std::map<std::pair<int, int>, std::vector<EvidenceWindow>> forms_;  ///< each way to read the attitude
 };
 
 }  // namespace fathom::consistency

@@ -2,9 +2,10 @@
 // increment_estimate.cpp only.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <span>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::consistency {
 
@@ -44,7 +45,7 @@ struct Normals {
     scaled = scale.asDiagonal() * scaled * scale.asDiagonal();
     scaled.diagonal().array() += 1e-7;
     const Eigen::VectorXd right = scale.asDiagonal() * of;
-    return scale.asDiagonal() * scaled.ldlt().solve(right);
+    return scale.asDiagonal() * solve_symmetric(scaled, right);
   }
   [[nodiscard]] Eigen::MatrixXd full() const { return h.selfadjointView<Eigen::Lower>(); }
   [[nodiscard]] double square(const Eigen::VectorXd& theta) const {

@@ -1,8 +1,9 @@
 #include "common/estimation/online/kalman_start.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::estimation {
 namespace {
@@ -45,7 +46,7 @@ std::optional<Eigen::Vector3d> locate(const std::vector<Transponder>& transponde
       H(2, 2) += 1.0;
       g.z() += *depth - p.z();
     }
-    const Eigen::Vector3d step = H.ldlt().solve(g);
+    const Eigen::Vector3d step = solve_symmetric(H, g);
     p += step;
     if (step.norm() < 1e-6) break;
   }

@@ -1,9 +1,9 @@
 #include "common/identification/regression/term_errors.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/factors.hpp"
 #include "common/base/spatial.hpp"
 
 namespace fathom::identification {
@@ -22,7 +22,7 @@ struct Normal {
 
   [[nodiscard]] Eigen::Index b() const { return G.cols() - 1; }
   [[nodiscard]] Eigen::VectorXd solve(const std::vector<int>& columns) const {
-    return G(columns, columns).ldlt().solve(G(columns, Eigen::all).col(b()));
+    return solve_symmetric(G(columns, columns), G(columns, Eigen::all).col(b()));
   }
   [[nodiscard]] double left(const std::vector<int>& columns) const {
     const Eigen::VectorXd x = solve(columns);
@@ -134,7 +134,7 @@ std::vector<int> equivalents_of(const Normal& normal, int candidates, std::size_
     if (!(own > 0.0)) continue;
     if (!others.empty()) {
       const Eigen::VectorXd cross = normal.G(others, Eigen::all).col(j);
-      if (own - cross.dot(normal.G(others, others).ldlt().solve(cross)) < kCollinear * own) continue;
+      if (own - cross.dot(solve_symmetric(normal.G(others, others), cross)) < kCollinear * own) continue;
     }
     others.push_back(j);
     const double worse = 0.5 * samples * std::log(std::max(normal.left(others), 1e-300) / std::max(left, 1e-300));
@@ -169,9 +169,9 @@ void add_term_errors(const model::Vehicle& vehicle, std::span<const ManoeuvreRow
   const double variance = std::max(result.sigma * result.sigma * widening, 1e-300);
   Eigen::MatrixXd precision = normal.G(all, all) / variance;
   precision.diagonal() += Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size()));
-  const Eigen::LDLT<Eigen::MatrixXd> factor{precision};
-  const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(precision.rows(), precision.rows()));
-  const Eigen::VectorXd mean = factor.solve(Eigen::VectorXd(normal.G(all, Eigen::all).col(normal.b()) / variance));
+  const SymmetricFactor factor{precision};
+  const Eigen::MatrixXd covariance = factor.inverse();
+  const Eigen::VectorXd mean = factor.solve(normal.G(all, Eigen::all).col(normal.b()) / variance);
   const Eigen::VectorXd least_squares = normal.solve(normal.in);
   for (std::size_t i = 0; i < result.terms.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

@@ -1,8 +1,9 @@
 #include "common/identification/trajectories/box_step.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
+
+#include "common/base/factors.hpp"
 
 namespace fathom::identification {
 namespace {
@@ -21,7 +22,7 @@ Eigen::VectorXd minimum(const Eigen::MatrixXd& A, const Eigen::VectorXd& g, cons
     for (Eigen::Index c = 0; c < m; ++c)
       part(r, c) = A(free[static_cast<std::size_t>(r)], free[static_cast<std::size_t>(c)]);
   }
-  const Eigen::VectorXd solved = part.ldlt().solve(b);
+  const Eigen::VectorXd solved = solve_symmetric(part, b);
   for (Eigen::Index r = 0; r < m; ++r) fixed[free[static_cast<std::size_t>(r)]] = solved[r];
   return fixed;
 }

@@ -1,9 +1,9 @@
 #include "common/model/derivatives/sensitivity.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/factors.hpp"
 #include "common/model/derivatives/state_matrix.hpp"
 #include "common/model/regressor.hpp"
 #include "common/model/rollout_steps.hpp"
@@ -36,7 +36,9 @@ Right divided_by_inertia(const Model& model, const Load& load, Right right) {
     M(axis, axis) = 1.0;
   }
   if (!load.has_couplings) return M.diagonal().cwiseInverse().asDiagonal() * right;
-  return M.partialPivLu().solve(right);
+  const InertiaFactor factor{M};
+  for (Eigen::Index j = 0; j < right.cols(); ++j) right.col(j) = factor.solve(right.col(j));
+  return right;
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 // may lose its echo. Three beams at least give the velocity by least squares. One scale error per run (speed of sound),
 // one bias per axis. The driver turns it into body axes and takes the lever arm out with the rates that AHRS tells. Not
 // modelled: water tracking, errors that grow with speed, side lobes.
-#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "common/base/config.hpp"
+#include "common/base/factors.hpp"
 #include "common/simulation/boundaries.hpp"
 #include "common/simulation/sensor.hpp"
 
@@ -64,7 +64,7 @@ class DvlSensor final : public Sensor {
         arm && ahrs_->newest.has_rates && std::abs(seconds_between(ahrs_->newest.utime, moment.utime)) <= kFresh;
     if (good >= 3 && (rates || !arm)) {
       const Eigen::Matrix3d normal = rows.transpose() * rows;
-      const Eigen::Vector3d v = normal.ldlt().solve(rows.transpose() * along);
+      const Eigen::Vector3d v = solve_symmetric(normal, rows.transpose() * along);
       sample.v_WB_B = mount_.R_BS * v;
       if (arm) sample.v_WB_B -= ahrs_->w_WB_B(moment).cross(mount_.p_BS);
       sample.altitude = altitude / good;
