@@ -1,11 +1,12 @@
 #include "common/model/derivative_motion.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "common/base/error.hpp"
+#include "common/base/factors.hpp"
 #include "common/model/sensors/kinematic_point.hpp"
 
 namespace fathom::model {
@@ -29,19 +30,33 @@ void require_derivatives(const Vehicle& vehicle) {
   throw InputError(vehicle.name + ": a manoeuvre needs mass, inertia, buoyancy and hydrodynamics in the vehicle file");
 }
 
-Vector6d total_inertia(const Vehicle& vehicle) {
-  Vector6d mass = vehicle.hydrodynamics->added_mass;
-  mass.head<3>().array() += vehicle.mass;
-  mass.tail<3>() += vehicle.inertia;
-  return mass;
+Matrix6d rigid_inertia(const Vehicle& vehicle) {
+  const Hydrodynamics& h = *vehicle.hydrodynamics;
+  const Eigen::Matrix3d S = skew(h.p_BG);
+  Matrix6d M = Matrix6d::Zero();
+  M.topLeftCorner<3, 3>().diagonal().setConstant(vehicle.mass);
+  M.topRightCorner<3, 3>() = -vehicle.mass * S;
+  M.bottomLeftCorner<3, 3>() = vehicle.mass * S;
+  M.bottomRightCorner<3, 3>() = -vehicle.mass * S * S;  // the parallel axes
+  M.bottomRightCorner<3, 3>().diagonal() += vehicle.inertia;
+  for (const auto& [i, j, value] : {std::tuple{3, 4, h.products[0]}, {3, 5, h.products[1]}, {4, 5, h.products[2]}}) {
+    M(i, j) += value;
+    M(j, i) += value;
+  }
+  return M;
 }
+
+Matrix6d total_inertia(const Vehicle& vehicle) { return rigid_inertia(vehicle) + vehicle.hydrodynamics->added_mass; }
 
 Vector6d rigid_wrench(const Vehicle& vehicle, const Eigen::Vector3d& down_B, const Vector6d& nu) {
   const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
-  const Eigen::Vector3d lift = -vehicle.buoyancy * down_B;
-  Vector6d wrench;
-  wrench.head<3>() = vehicle.mass * kGravity * down_B + lift - vehicle.mass * w.cross(v);
-  wrench.tail<3>() = vehicle.hydrodynamics->p_BB.cross(lift) - w.cross(vehicle.inertia.cwiseProduct(w));
+  // Momentum about Bo, which stands still in W: its change in B turns with w, and Bo itself moves on with v.
+  const Vector6d momentum = rigid_inertia(vehicle) * nu;
+  const Eigen::Vector3d linear = momentum.head<3>(), angular = momentum.tail<3>();
+  Vector6d wrench = at_origin(vehicle.mass * kGravity * down_B, vehicle.hydrodynamics->p_BG) +
+                    at_origin(-vehicle.buoyancy * down_B, vehicle.hydrodynamics->p_BB);
+  wrench.head<3>() -= w.cross(linear);
+  wrench.tail<3>() -= w.cross(angular) + v.cross(linear);
   return wrench;
 }
 
@@ -49,8 +64,7 @@ Vector6d water_wrench(const Vehicle& vehicle, const Eigen::Vector3d& w, const Ei
                       const Eigen::Vector3d& a_WF_B) {
   const Hydrodynamics& h = *vehicle.hydrodynamics;
   Vector6d wrench = at_origin(vehicle.buoyancy / kGravity * a_WF_B, h.p_BB);
-  wrench.head<3>() += h.added_mass.head<3>().cwiseProduct(a_WF_B - w.cross(v_WF_B));
-  return wrench;
+  return wrench + h.added_mass.leftCols<3>() * (a_WF_B - w.cross(v_WF_B));
 }
 
 Eigen::Vector3d umbilical_drag(const Vehicle& vehicle, double paid_out, const Vector6d& nu,
@@ -88,7 +102,6 @@ Attached attached(const Vehicle& vehicle, const Eigen::Vector3d& p_WB, const Eig
 Vector6d derivative_acceleration(const Model& model, const Motion& motion, const Attached& attached) {
   const Vehicle& vehicle = *model.vehicle;
   const Hydrodynamics& h = *vehicle.hydrodynamics;
-  const Vector6d inertia = total_inertia(vehicle);
   Load load;
   load.clear();
   load.drag = manoeuvring_wrench(h.coefficients, motion.nu_r(), h.length, vehicle.water_density);
@@ -98,16 +111,13 @@ Vector6d derivative_acceleration(const Model& model, const Motion& motion, const
   force += water_wrench(vehicle, motion.nu.tail<3>(), motion.v_WF_B, motion.a_WF_B);
   for (const ActiveEffect& active : model.effects) active.effect->load(motion, active.theta, active.variant, load);
   force += load.wrench;
-  if (!load.has_inertia()) return force.cwiseQuotient(inertia);
-  Matrix6d M = load.inertia();
-  M.diagonal() += inertia;
-  return M.partialPivLu().solve(force);
+  return InertiaFactor{total_inertia(vehicle) + load.inertia()}.solve(force);
 }
 
 BaseTheta nearest_base(const Vehicle& vehicle) {
   const Hydrodynamics& h = *vehicle.hydrodynamics;
   BaseTheta theta = BaseTheta::Zero();
-  theta.head<6>() = total_inertia(vehicle);
+  theta.head<6>() = total_inertia(vehicle).diagonal();
   for (const ManoeuvringCoefficient& one : h.coefficients) {
     const auto square = std::find(kSquares.begin(), kSquares.end(), one.term->name);
     if (square == kSquares.end()) continue;
@@ -115,7 +125,7 @@ BaseTheta nearest_base(const Vehicle& vehicle) {
         one.value * manoeuvring_scale(*one.term, h.length, vehicle.water_density);
   }
   theta[index(BaseParameter::W_B)] = vehicle.mass * kGravity - vehicle.buoyancy;
-  theta.segment<3>(index(BaseParameter::G_x)) = -vehicle.buoyancy * h.p_BB;
+  theta.segment<3>(index(BaseParameter::G_x)) = vehicle.mass * kGravity * h.p_BG - vehicle.buoyancy * h.p_BB;
   return theta;
 }
 

@@ -20,8 +20,11 @@ struct Attached {
 [[nodiscard]] Attached attached(const Vehicle& vehicle, const Eigen::Vector3d& p_WB, const Eigen::Matrix3d& R_WB,
                                 const Vector6d& nu, const Eigen::Vector3d& pull_W,
                                 const Eigen::Vector3d& v_WF_B = Eigen::Vector3d::Zero());
-/// Diagonal of rigid body and added mass [kg, kg m^2].
-[[nodiscard]] Vector6d total_inertia(const Vehicle& vehicle);
+/// The rigid body's inertia about Bo [kg, kg m, kg m^2]: its mass stands at the centre of mass, about which the vehicle
+/// file's inertia is.
+[[nodiscard]] Matrix6d rigid_inertia(const Vehicle& vehicle);
+/// The same and the added mass.
+[[nodiscard]] Matrix6d total_inertia(const Vehicle& vehicle);
 /// What the water's own motion does besides drag: the pressure that accelerates it acts on the hull, at the centre of
 /// buoyancy, and added mass feels its acceleration as seen from a turning body. `a_WF_B` [m/s^2]: rate of v_WF in W,
 /// along B.

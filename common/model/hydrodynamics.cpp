@@ -1,8 +1,11 @@
 #include "common/model/hydrodynamics.hpp"
 
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "common/base/config.hpp"
+#include "common/base/factors.hpp"
 #include "common/model/priors/bounded.hpp"
 
 namespace fathom::model {
@@ -36,6 +39,37 @@ LoadCell read_cell(const Config& config) {
   return cell;
 }
 
+/// Off the diagonal, by the derivative's name: `Y_rdot: -12 kg m` is -M_26. What is stated on one side alone holds on
+/// the other: ideal fluid has no sides.
+void read_couplings(const Config& config, Matrix6d& M) {
+  constexpr std::string_view kForces = "XYZKMN", kMotions = "uvwpqr";
+  std::array<std::array<bool, 6>, 6> told{};
+  for (const std::string& name : config.keys()) {
+    const bool formed = name.size() == 6 && name[1] == '_' && name.ends_with("dot");
+    const std::size_t i = formed ? kForces.find(name[0]) : std::string_view::npos;
+    const std::size_t j = formed ? kMotions.find(name[2]) : std::string_view::npos;
+    if (i >= 6 || j >= 6 || i == j)
+      config.fail(name, "'" + name + "' is no coupling of added mass; they are X_vdot, Y_rdot, M_wdot and the like");
+    const std::size_t turns = (i >= 3 ? 1 : 0) + (j >= 3 ? 1 : 0);
+    const std::array<const char*, 3> units{"kg", "kg m", "kg m^2"};
+    M(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = -bounded::quantity(config, name, units[turns]);
+    told[i][j] = true;
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) {
+      const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+      if (told[i][j] && !told[j][i]) M(b, a) = M(a, b);
+    }
+  }
+}
+
+/// InputError where a motion would have no energy: no body's inertia is such.
+void require_energy(const Config& config, const char* key, const Eigen::MatrixXd& M, const std::string& what) {
+  const double least = symmetric_eigen(0.5 * (M + M.transpose())).values[0];
+  if (!(least >= -1e-9 * M.diagonal().cwiseAbs().maxCoeff()))
+    config.fail(key, "with these numbers " + what + " is not positive: no body is so; are sign and unit right?");
+}
+
 }  // namespace
 
 std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config) {
@@ -54,12 +88,26 @@ std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config) {
   return coefficients;
 }
 
-Hydrodynamics Hydrodynamics::from(const Config& config) {
+Hydrodynamics Hydrodynamics::from(const Config& config, const Eigen::Vector3d& inertia) {
   Hydrodynamics h;
   h.length = bounded::positive(config, "length", "m");
-  h.added_mass << bounded::vector3(config, "added_mass", "kg"), bounded::vector3(config, "added_inertia", "kg m^2");
+  h.added_mass.diagonal() << bounded::vector3(config, "added_mass", "kg"),
+      bounded::vector3(config, "added_inertia", "kg m^2");
   if (h.added_mass.minCoeff() < 0.0) config.fail("added_mass", "added mass and inertia must not be negative");
+  if (config.has("added_mass_couplings")) {
+    read_couplings(config.section("added_mass_couplings"), h.added_mass);
+    require_energy(config, "added_mass_couplings", h.added_mass, "the added mass");
+  }
   if (config.has("centre_of_buoyancy")) h.p_BB = bounded::vector3(config, "centre_of_buoyancy", "m");
+  if (config.has("centre_of_mass")) h.p_BG = bounded::vector3(config, "centre_of_mass", "m");
+  if (config.has("products_of_inertia")) {
+    h.products = bounded::vector3(config, "products_of_inertia", "kg m^2");
+    Eigen::Matrix3d I = inertia.asDiagonal();
+    I(0, 1) = I(1, 0) = h.products[0];
+    I(0, 2) = I(2, 0) = h.products[1];
+    I(1, 2) = I(2, 1) = h.products[2];
+    require_energy(config, "products_of_inertia", I, "the inertia about the centre of mass");
+  }
   if (config.has("coefficients")) h.coefficients = read_coefficients(config.section("coefficients"));
   if (config.has("reference")) h.reference = read_coefficients(config.section("reference"));
   if (config.has("umbilical")) h.umbilical = read_umbilical(config.section("umbilical"));

@@ -40,16 +40,19 @@ struct LoadCell {
 };
 
 struct Hydrodynamics {
-  double length{};                                ///< m, of the dimensionless numbers
-  Vector6d added_mass{Vector6d::Zero()};          ///< kg, kg m^2: -X_udot ... -N_rdot
-  Eigen::Vector3d p_BB{Eigen::Vector3d::Zero()};  ///< m, centre of buoyancy; that of mass is the origin
+  double length{};                                    ///< m, of the dimensionless numbers
+  Matrix6d added_mass{Matrix6d::Zero()};              ///< kg, kg m, kg m^2: -X_udot, -X_vdot ... -N_rdot, row by row
+  Eigen::Vector3d p_BB{Eigen::Vector3d::Zero()};      ///< m, centre of buoyancy
+  Eigen::Vector3d p_BG{Eigen::Vector3d::Zero()};      ///< m, centre of mass
+  Eigen::Vector3d products{Eigen::Vector3d::Zero()};  ///< kg m^2: I_xy, I_xz, I_yz of the inertia's matrix about it
   std::vector<ManoeuvringCoefficient> coefficients;
   std::vector<ManoeuvringCoefficient> reference;  ///< another set, to be printed beside (a planar motion mechanism's)
   std::optional<Umbilical> umbilical;
   std::optional<Chain> chain;
   std::vector<LoadCell> load_cells;  ///< order of LOADS
 
-  [[nodiscard]] static Hydrodynamics from(const Config& config);
+  /// `inertia` [kg m^2]: of the vehicle file, about the centre of mass; products must go with it.
+  [[nodiscard]] static Hydrodynamics from(const Config& config, const Eigen::Vector3d& inertia);
 };
 
 /// A map of term names to numbers, or to {value, error}.

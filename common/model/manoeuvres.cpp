@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "common/base/error.hpp"
+#include "common/base/factors.hpp"
 #include "common/model/derivative_motion.hpp"
 
 namespace fathom::model {
@@ -36,7 +37,7 @@ Forces forces(const Vehicle& vehicle, const State& state, const Vector6d& thrust
   const Vector6d sum = thrust + f.attached.umbilical + f.attached.chain +
                        rigid_wrench(vehicle, R.row(2).transpose(), state.nu) +
                        manoeuvring_wrench(h.coefficients, state.nu, h.length, vehicle.water_density);
-  f.nu_dot = sum.cwiseQuotient(total_inertia(vehicle));
+  f.nu_dot = InertiaFactor{total_inertia(vehicle)}.solve(sum);
   return f;
 }
 
@@ -211,7 +212,7 @@ std::vector<FlightMoment> fly(const Vehicle& vehicle, const Manoeuvre& manoeuvre
 Vector6d hydrodynamic_wrench(const Vehicle& vehicle, const Eigen::Quaterniond& q_WB, const Vector6d& nu,
                              const Vector6d& nu_dot, const Vector6d& known) {
   const Eigen::Vector3d down_B = q_WB.conjugate() * Eigen::Vector3d::UnitZ();
-  return total_inertia(vehicle).cwiseProduct(nu_dot) - rigid_wrench(vehicle, down_B, nu) - known;
+  return total_inertia(vehicle) * nu_dot - rigid_wrench(vehicle, down_B, nu) - known;
 }
 
 }  // namespace fathom::model

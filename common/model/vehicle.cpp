@@ -285,7 +285,8 @@ Vehicle vehicle_from(const Config& config) {
     }
   }
   if (config.has("candidates")) read_candidates(config, vehicle);
-  if (config.has("hydrodynamics")) vehicle.hydrodynamics = Hydrodynamics::from(config.section("hydrodynamics"));
+  if (config.has("hydrodynamics"))
+    vehicle.hydrodynamics = Hydrodynamics::from(config.section("hydrodynamics"), vehicle.inertia);
   if (config.has("after_abort")) {
     const AfterAbort after = AfterAbort::from(config.section("after_abort"));
     if (after.action != AfterAbort::Action::kZero && !vehicle.dof[2])

@@ -42,6 +42,7 @@ constexpr std::array kBounds{
     PhysicalBound{"position", "m", 0.0, 500.0, kPlaces},
     PhysicalBound{"emitter", "m", 0.0, 500.0, kPlaces},
     PhysicalBound{"centre_of_buoyancy", "m", 0.0, 500.0, kPlaces},
+    PhysicalBound{"centre_of_mass", "m", 0.0, 500.0, kPlaces},
     PhysicalBound{"length", "m", 1e-3, 2e4, "a hull's or a chain's: the deepest sea has 11 km"},
     PhysicalBound{"diameter", "m", 1e-5, 10.0, "of a line: from a hair to a pipeline"},
     PhysicalBound{"paid_out", "m", 1e-3, 2e4, "the deepest sea has 11 km"},

@@ -30,7 +30,7 @@ Vehicle neutral(double mass, const Vector3d& inertia, const Vector6d& derivative
   Vehicle vehicle{.name = "ideal", .mass = mass, .inertia = inertia, .water_density = kDensity};
   vehicle.dof.fill(true);
   vehicle.buoyancy = mass * kGravity;
-  vehicle.hydrodynamics = Hydrodynamics{.length = 1.0, .added_mass = -derivatives};
+  vehicle.hydrodynamics = Hydrodynamics{.length = 1.0, .added_mass = (-derivatives).asDiagonal()};
   return vehicle;
 }
 
