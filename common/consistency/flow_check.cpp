@@ -149,7 +149,7 @@ Recording FlowWitnesses::seen(const std::deque<MotionAt>& motion, Utime begin, U
     if (!(distance > 0.0)) continue;
     const Eigen::Vector3d w_B = at->nu.tail<3>();
     Eigen::Vector3d v_C = velocity_of_camera(at->nu.head<3>(), w_B, camera);
-    v_C.head<2>() = velocity_from_flow(flow.flow_C, distance);
+    v_C.head<2>() = velocity_from_flow(flow.flow_C, distance).head<2>();
     seen.dvl.push_back({.utime = flow.utime, .v_WB_B = camera.R_BC * v_C - w_B.cross(camera.p_BC)});
   }
   return seen;

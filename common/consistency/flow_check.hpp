@@ -54,7 +54,7 @@ class FlowWitnesses {
   struct Flow {
     Utime utime{};
     std::size_t camera{};
-    Eigen::Vector2d flow_C;
+    Eigen::Vector3d flow_C;
   };
   [[nodiscard]] std::size_t camera(const std::string& name) const;
 

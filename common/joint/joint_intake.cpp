@@ -117,11 +117,12 @@ void JointEstimate::use_flow(const Event& event) {
   const double away = distance(filter_.state(), here, *places_.floor, camera);
   const Eigen::Vector3d p_B = camera.p_BC + away * camera.R_BC.col(2);
   if (!(away > kNearest) || !of_floor(p_B, true_attitude(filter_.state(), here))) return;
-  const Eigen::Vector2d scale = (camera.R_BC.cwiseAbs2().transpose() * navigator_.flow.scale).head<2>();
-  see_flow(filter_.state(), here, *places_.floor, camera, event.a.head<2>().cwiseProduct(scale),
-           std::span{at_once_}.first<2>());
-  at_once_[0].variance = at_once_[1].variance = square(navigator_.flow.noise) + square(away * event.sigma);
-  correct(2, "joint estimate: OPTICAL_FLOW refused");
+  const Eigen::Vector3d scale = camera.R_BC.cwiseAbs2().transpose() * navigator_.flow.scale;
+  see_flow(filter_.state(), here, *places_.floor, camera, event.a.cwiseProduct(scale), std::span{at_once_}.first<3>());
+  const bool approach = event.b.z() >= 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    at_once_[i].variance = square(navigator_.flow.noise) + square(away) * event.b[static_cast<Eigen::Index>(i)];
+  correct(approach ? 3 : 2, "joint estimate: OPTICAL_FLOW refused");
 }
 
 void JointEstimate::use_others(const Event& event) {
@@ -198,8 +199,8 @@ void JointEstimate::hear(const OpticalFlow& sample) {
   if (!navigator_.flow.used || camera == places_.cameras.end()) return;
   wait({.utime = sample.utime,
         .kind = Kind::kFlow,
-        .a = {sample.flow_C.x(), sample.flow_C.y(), 0.0},
-        .sigma = sample.sigma,
+        .a = sample.flow_C,
+        .b = sample.covariance.diagonal(),
         .camera = &camera->second});
 }
 

@@ -55,14 +55,14 @@ double distance(const JointVector& x, const Eigen::Matrix3d& told, double floor,
 // -flow d - c (v + w x p_BC) - d (z x c) (turned x w), c and z the camera's axes, with d = (floor - z - down p_BC) /
 // (down axis); d(down)/de = skew(down).
 void see_flow(const JointVector& x, const Eigen::Matrix3d& told, double floor, const estimation::CameraMount& camera,
-              const Eigen::Vector2d& flow, std::span<JointRow, 2> rows) {
+              const Eigen::Vector3d& flow, std::span<JointRow, 3> rows) {
   const Eigen::Vector3d down = true_attitude(x, told).row(2).transpose(), axis = camera.R_BC.col(2);
   const double facing = down.dot(axis);
   const double d = (floor - x(part::kPosition + 2) - down.dot(camera.p_BC)) / facing;
   const Eigen::Vector3d by_attitude = -(camera.p_BC.cross(down) + d * Eigen::Vector3d{axis.cross(down)}) / facing;
   const Eigen::Vector3d v = x.segment<3>(part::kNu), w = x.segment<3>(part::kNu + 3);
   const Eigen::Vector3d at_camera = v + w.cross(camera.p_BC), turned = x.segment<3>(part::kTurned);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const auto axis_C = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d c = camera.R_BC.col(axis_C);
     const Eigen::Vector3d about = axis.cross(c);

@@ -19,10 +19,10 @@ void see_floor(const JointVector& x, const Eigen::Matrix3d& told, double floor, 
 /// Distance of a camera to the floor along its axis [m]; not positive when it looks away.
 [[nodiscard]] double distance(const JointVector& x, const Eigen::Matrix3d& told, double floor,
                               const estimation::CameraMount& camera);
-/// Flow of the floor [rad/s], as a velocity [m/s] along the camera's axes x and y; distance() must be positive. Its
-/// rotation was taken out with the gyros, whose turned axes therefore show in it.
+/// Flow of the floor [1/s], as a velocity [m/s] along the camera's axes; distance() must be positive. Its rotation was
+/// taken out with the gyros, whose turned axes therefore show in it.
 void see_flow(const JointVector& x, const Eigen::Matrix3d& told, double floor, const estimation::CameraMount& camera,
-              const Eigen::Vector2d& flow, std::span<JointRow, 2> rows);
+              const Eigen::Vector3d& flow, std::span<JointRow, 3> rows);
 /// A velocity log's velocity of the body [m/s].
 void see_velocity(const JointVector& x, const Eigen::Vector3d& v_B, std::span<JointRow, 3> rows);
 /// Rates as gyros tell them [rad/s], about axes that are turned a little.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,12 +33,23 @@ struct TagPose {
 
 /// Mean motion of the scene between two pictures, the camera's rotation removed.
 struct OpticalFlow {
-  Utime utime{};                                    ///< middle between the two pictures
-  std::string camera;                               ///< name in the vehicle file
-  double interval{};                                ///< s between the two pictures
-  Eigen::Vector2d flow_C{Eigen::Vector2d::Zero()};  ///< rad/s along x and y of C
-  double sigma{};                                   ///< rad/s, of each component
-  int n_tracks{};                                   ///< features that agreed
+  Utime utime{};       ///< middle between the two pictures
+  std::string camera;  ///< name in the vehicle file
+  double interval{};   ///< s between the two pictures
+  /// 1/s: minus the camera's velocity in C over its distance to the scene along z. Along x and y it is the scene's
+  /// angular motion, along z minus the rate at which its picture grows.
+  Eigen::Vector3d flow_C{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d covariance{Eigen::Vector3d{0.0, 0.0, -1.0}.asDiagonal()};  ///< 1/s^2
+  int n_tracks{};                                                            ///< features that agreed
+
+  /// False where only the motion across the optical axis was measured.
+  [[nodiscard]] bool tells_approach() const { return covariance(2, 2) >= 0.0; }
+  /// rad/s, standard deviation of either component across.
+  [[nodiscard]] double sigma_across() const { return std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1))); }
+  /// Both components across with that standard deviation, and nothing along the axis.
+  [[nodiscard]] static Eigen::Matrix3d only_across(double sigma) {
+    return Eigen::Vector3d{sigma * sigma, sigma * sigma, -1.0}.asDiagonal();
+  }
 };
 
 /// Distance from the picture of a laser dot L.

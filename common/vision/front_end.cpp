@@ -262,8 +262,8 @@ std::optional<OpticalFlow> FrontEnd::optical_flow(const std::string& camera) con
   return OpticalFlow{.utime = flow.utime,
                      .camera = camera,
                      .interval = flow.interval,
-                     .flow_C = -flow.rate.head<2>(),
-                     .sigma = std::sqrt(0.5 * (flow.covariance(0, 0) + flow.covariance(1, 1))),
+                     .flow_C = -flow.rate,
+                     .covariance = flow.covariance,
                      .n_tracks = flow.n_agreed};
 }
 

@@ -50,13 +50,14 @@ fathom_lcm::tag_pose_t encode(const TagPose& sample) {
 }
 
 std::optional<OpticalFlow> decode(const fathom_lcm::optical_flow_t& message) {
-  if (!finite(message.flow_C) || !finite(message.interval) || !finite(message.sigma)) return {};
-  return OpticalFlow{.utime = message.utime,
-                     .camera = message.camera,
-                     .interval = message.interval,
-                     .flow_C = vector(message.flow_C),
-                     .sigma = message.sigma,
-                     .n_tracks = message.n_tracks};
+  if (!finite(message.flow_C) || !finite(message.interval) || !finite(message.covariance)) return {};
+  return OpticalFlow{
+      .utime = message.utime,
+      .camera = message.camera,
+      .interval = message.interval,
+      .flow_C = vector(message.flow_C),
+      .covariance = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&message.covariance[0]),
+      .n_tracks = message.n_tracks};
 }
 
 fathom_lcm::optical_flow_t encode(const OpticalFlow& sample) {
@@ -65,7 +66,7 @@ fathom_lcm::optical_flow_t encode(const OpticalFlow& sample) {
   message.camera = sample.camera;
   message.interval = sample.interval;
   put(sample.flow_C, message.flow_C);
-  message.sigma = sample.sigma;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{&message.covariance[0]} = sample.covariance;
   message.n_tracks = sample.n_tracks;
   return message;
 }

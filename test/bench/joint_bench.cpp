@@ -60,8 +60,8 @@ void joint_step(benchmark::State& state) {
     if (n % 3 == 0) {
       see_point(filter.state(), I, {0.0, 0.0, 1.5}, {0.1, 0.0, 0.8}, rows);
       use(3, 1e-4);
-      see_flow(filter.state(), I, 1.5, camera, {0.1, 0.1}, std::span{rows}.first<2>());
-      use(2, 1e-4);
+      see_flow(filter.state(), I, 1.5, camera, {0.1, 0.1, 0.1}, rows);
+      use(3, 1e-4);
       see_floor(filter.state(), I, 1.5, {0.1, 0.0, 0.8}, rows[0]);
       use(1, 1e-4);
     }

@@ -60,7 +60,7 @@ inline void fill(Fill& f, TagPose& s) {
   s = {f.utime(), f.word(), f.whole(), f.matrix<Vector3>(), f.quaternion(), f.number()};
 }
 inline void fill(Fill& f, OpticalFlow& s) {
-  s = {f.utime(), f.word(), f.number(), f.matrix<Eigen::Vector2d>(), f.number(), f.whole()};
+  s = {f.utime(), f.word(), f.number(), f.matrix<Vector3>(), f.matrix<Eigen::Matrix3d>(), f.whole()};
 }
 inline void fill(Fill& f, LaserRange& s) { s = {f.utime(), f.word(), f.matrix<Vector3>(), f.number()}; }
 inline void fill(Fill& f, WrenchCommand& s) {

@@ -65,12 +65,13 @@ struct Pictures {
       // Turning moves the floor's picture as a velocity does; vision takes it out with the rates that it knows.
       const Eigen::Vector3d left = (w_B - w_seen).cross(distance * camera.R_BS.col(2));
       const Eigen::Vector3d v_C = camera.R_BS.transpose() * (v_B + w_B.cross(camera.p_BS) + left);
-      recording.optical_flow.push_back({.utime = utime,
-                                        .camera = "down",
-                                        .interval = 1.0 / o.rate,
-                                        .flow_C = -v_C.head<2>() / distance + noise(0.005).head<2>(),
-                                        .sigma = 0.005,
-                                        .n_tracks = 80});
+      recording.optical_flow.push_back(
+          {.utime = utime,
+           .camera = "down",
+           .interval = 1.0 / o.rate,
+           .flow_C = -v_C / distance + Eigen::Vector3d(noise(0.005).cwiseProduct(Eigen::Vector3d{1, 1, 0})),
+           .covariance = OpticalFlow::only_across(0.005),
+           .n_tracks = 80});
     }
   }
 };

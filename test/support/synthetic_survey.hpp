@@ -147,10 +147,13 @@ inline std::vector<Arrival> synthetic_survey(const SurveyOptions& o) {
       }
       const double distance = (kFloor - p_WC.z()) / R_WC(2, 2);
       const Eigen::Vector3d v_C = mount.R_BC.transpose() * (motion.v_B(t) + motion.w_B(t).cross(mount.p_BC));
-      const Eigen::Vector2d flow = -v_C.head<2>() / distance + noise(0.01).head<2>();
-      add(
-          OpticalFlow{
-              .utime = utime, .camera = "down", .interval = 1.0 / 30.0, .flow_C = flow, .sigma = 0.01, .n_tracks = 50},
+      const Eigen::Vector3d flow = -v_C / distance + noise(0.01).cwiseProduct(Eigen::Vector3d{1.0, 1.0, 3.0});
+      add(OpticalFlow{.utime = utime,
+                      .camera = "down",
+                      .interval = 1.0 / 30.0,
+                      .flow_C = flow,
+                      .covariance = Eigen::Vector3d{1e-4, 1e-4, 9e-4}.asDiagonal(),
+                      .n_tracks = 50},
           t, 0.045);
       add(
           LaserRange{

@@ -21,7 +21,7 @@ double depth_from_floor_point(double floor, const Eigen::Vector3d& p_CL, const C
   return floor - R_WB.row(2).dot(mount.p_BC + mount.R_BC * p_CL);
 }
 
-Eigen::Vector2d velocity_from_flow(const Eigen::Vector2d& flow, double distance) { return -distance * flow; }
+Eigen::Vector3d velocity_from_flow(const Eigen::Vector3d& flow, double distance) { return -distance * flow; }
 
 Eigen::Vector3d velocity_of_camera(const Eigen::Vector3d& v_B, const Eigen::Vector3d& w_B, const CameraMount& mount) {
   return mount.R_BC.transpose() * (v_B + w_B.cross(mount.p_BC));

@@ -21,9 +21,9 @@ struct CameraMount {
 /// (1.28): z of the body from a point on the floor seen at p_CL.
 [[nodiscard]] double depth_from_floor_point(double floor, const Eigen::Vector3d& p_CL, const CameraMount& mount,
                                             const Eigen::Matrix3d& R_WB);
-/// (1.25) solved: velocity of Co in C across the optical axis, from the scene's motion `flow` [rad/s], rotation removed
-/// already, at `distance` [m]. The scene moves opposite to the camera.
-[[nodiscard]] Eigen::Vector2d velocity_from_flow(const Eigen::Vector2d& flow, double distance);
+/// (1.25) solved: velocity of Co in C, from the scene's motion `flow` [1/s], rotation removed already, at `distance`
+/// [m]. The scene moves opposite to the camera.
+[[nodiscard]] Eigen::Vector3d velocity_from_flow(const Eigen::Vector3d& flow, double distance);
 /// v_B + w x p_BC, in C.
 [[nodiscard]] Eigen::Vector3d velocity_of_camera(const Eigen::Vector3d& v_B, const Eigen::Vector3d& w_B,
                                                  const CameraMount& mount);

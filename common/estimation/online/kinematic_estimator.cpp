@@ -301,11 +301,13 @@ void KinematicEstimator<N>::use(const OpticalFlow& sample) {
     return;
   }
   // A scale of what is read, along B, seen by the camera.
-  const Eigen::Vector3d read{sample.flow_C.x(), sample.flow_C.y(), 0.0};
+  Eigen::Vector3d read = sample.flow_C;
+  if (!sample.tells_approach()) read.z() = 0.0;
   const Eigen::Vector3d flow = by->X_BC.q.conjugate() * settings_->flow_scale.cwiseProduct(by->X_BC.q * read);
-  const double variance = square(sample.sigma) + square(settings_->flow_noise / *distance);
-  const auto rows = observe_flow(point, *settings_->floor, by->X_BC, flow.head<2>(), variance);
-  for (const auto& row : *rows) apply(kFlow, row);
+  const Eigen::Vector3d variance =
+      Eigen::Vector3d{sample.covariance.diagonal()}.array() + square(settings_->flow_noise / *distance);
+  const auto rows = observe_flow(point, *settings_->floor, by->X_BC, flow, variance);
+  for (std::size_t i = 0; i < (sample.tells_approach() ? 3 : 2); ++i) apply(kFlow, (*rows)[i]);
 }
 
 template <int N>

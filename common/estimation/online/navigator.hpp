@@ -138,8 +138,6 @@ class Navigator {
     NavigationFilter filter;
     std::array<Track, kSources> tracks{};
     bool started{false};
-    std::optional<Utime> laser_before;  // for the rate of depth under published gains
-    double laser_z{};
   };
   struct Node {
     Utime utime{};

@@ -137,17 +137,21 @@ void Navigator::use_flow(Memory& memory, const Measurement& m, const Input& inpu
   const double distance = distance_to_floor(*places_.floor, memory.filter.position(), *m.camera, R_WB);
   if (!(distance > 0.0)) return;
   if (!of_floor(memory, m, m.camera->p_BC + distance * m.camera->R_BC.col(2), R_WB)) return;
-  const Eigen::Vector2d across = velocity_from_flow(m.a.head<2>(), distance);
-  // Along the optical axis nothing is seen: there the estimate stands in for the measurement.
+  const Eigen::Vector3d by_flow = velocity_from_flow(m.a, distance);
+  // The paper's gains want all three. Ours are for what is seen across the optical axis: laser and tags tell the height
+  // to millimetres, which a picture's growth does not, and along the axis the estimate stands in for the measurement.
+  const bool approach = settings_.published_gains && m.b.z() >= 0.0;
   const Eigen::Vector3d v_B = R_WB.transpose() * memory.filter.velocity();
   Eigen::Vector3d v_C = velocity_of_camera(v_B, input.w_B, *m.camera);
-  v_C.head<2>() = across;
+  v_C.head(approach ? 3 : 2) = by_flow.head(approach ? 3 : 2);
   const Eigen::Vector3d seen =
       settings_.flow.scale.cwiseProduct(m.camera->R_BC * v_C - input.w_B.cross(m.camera->p_BC));
   // What is not known of the height is an error of scale.
-  const double height = std::sqrt(memory.filter.covariance()[2].pp) / distance * across.norm();
+  const double height = std::sqrt(memory.filter.covariance()[2].pp) / distance * by_flow.head<2>().norm();
   const double sigma = std::hypot(settings_.flow.noise, distance * m.sigma) + height;
-  use_velocity(memory, m, seen, {1.0, 1.0, 0.0}, Eigen::Vector3d::Constant(sigma * sigma), input);
+  Eigen::Vector3d variance = Eigen::Vector3d::Constant(sigma * sigma);
+  if (approach) variance += distance * distance * m.b.z() * (m.camera->R_BC.col(2)).cwiseAbs2();
+  use_velocity(memory, m, seen, {1.0, 1.0, approach ? 1.0 : 0.0}, variance, input);
 }
 
 void Navigator::use_laser(Memory& memory, const Measurement& m, const Input& input) const {
@@ -155,21 +159,6 @@ void Navigator::use_laser(Memory& memory, const Measurement& m, const Input& inp
   if (!of_floor(memory, m, m.camera->p_BC + m.camera->R_BC * m.a, R_WB)) return;
   const double z = depth_from_floor_point(*places_.floor, m.a, *m.camera, R_WB);
   const double sigma = std::hypot(settings_.laser.noise, m.sigma);
-  if (settings_.published_gains && memory.started && memory.laser_before) {
-    // The paper's flow has a third component, the picture's divergence; two ranges are what it would be at best.
-    const double dt = seconds_between(*memory.laser_before, m.utime);
-    if (dt > 0.0 && dt < kLongestInterval) {
-      const Eigen::Vector3d v_W{memory.filter.velocity().x(), memory.filter.velocity().y(), (z - memory.laser_z) / dt};
-      AxisGains k = gains(Source::kOpticalFlow, dt, true);
-      k.value.head<2>().setZero();
-      k.rate.head<2>().setZero();
-      const double noise = 2.0 * sigma * sigma / (dt * dt);
-      memory.filter.correct_velocity(R_WB.transpose() * (v_W - memory.filter.velocity()), k,
-                                     Eigen::Vector3d::Constant(noise), R_WB);
-    }
-  }
-  memory.laser_before = m.utime;
-  memory.laser_z = z;
   use_position(memory, m, {0.0, 0.0, z}, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(sigma * sigma), input);
 }
 

@@ -52,8 +52,9 @@ const Navigator::Output& Navigator::step(const OpticalFlow& sample) {
   }
   return wait({.utime = sample.utime,
                .source = Source::kOpticalFlow,
-               .a = {sample.flow_C.x(), sample.flow_C.y(), 0.0},
-               .sigma = sample.sigma,
+               .a = sample.flow_C,
+               .b = sample.covariance.diagonal(),
+               .sigma = sample.sigma_across(),
                .camera = &camera->second});
 }
 

@@ -76,9 +76,11 @@ Seen seen_flow(const Recording& recording, const States& states, const model::Mo
     if (!(distance > 0.0)) continue;
     const Eigen::Vector3d w_B = state->nu.tail<3>();
     Eigen::Vector3d v_C = velocity_of_camera(state->nu.head<3>(), w_B, *mount);
-    v_C.head<2>() = velocity_from_flow(one.flow_C, distance);
+    const Eigen::Vector3d by_flow = velocity_from_flow(one.flow_C, distance);
+    v_C.head<2>() = by_flow.head<2>();
+    if (one.tells_approach()) v_C.z() = by_flow.z();
     const Eigen::Vector3d v_B = mount->R_BC * v_C - w_B.cross(mount->p_BC);
-    add(seen, seconds_between(origin, one.utime), {v_B.x(), v_B.y(), kNaN});
+    add(seen, seconds_between(origin, one.utime), {v_B.x(), v_B.y(), one.tells_approach() ? v_B.z() : kNaN});
   }
   return seen;
 }

@@ -33,8 +33,9 @@ std::optional<double> distance_to_floor(const KinematicPoint& point, double floo
   return seen ? std::optional{seen->distance} : std::nullopt;
 }
 
-std::optional<std::array<Observation, 2>> observe_flow(const KinematicPoint& point, double floor, const Pose& X_BC,
-                                                       const Eigen::Vector2d& measured, double variance) {
+std::optional<std::array<Observation, 3>> observe_flow(const KinematicPoint& point, double floor, const Pose& X_BC,
+                                                       const Eigen::Vector3d& measured,
+                                                       const Eigen::Vector3d& variance) {
   const auto seen = sight(point, floor, X_BC, Eigen::Vector3d::UnitZ());
   if (!seen) return std::nullopt;
   const double d = seen->distance;
@@ -43,12 +44,12 @@ std::optional<std::array<Observation, 2>> observe_flow(const KinematicPoint& poi
   const Eigen::Vector3d v_C = R_CB * (v_B + point.group(at::kRates).cross(X_BC.p));
   const Eigen::Matrix3d by_velocity = R_CB * point.R_WB.transpose();
   const Eigen::Matrix3d by_euler = R_CB * point.turned_in(v_B), by_rates = -R_CB * skew(X_BC.p);
-  std::array<Observation, 2> result;
-  for (int i = 0; i < 2; ++i) {
+  std::array<Observation, 3> result;
+  for (int i = 0; i < 3; ++i) {
     Observation& one = result[static_cast<std::size_t>(i)];
     const double by_distance = v_C[i] / (d * d);
     one.innovation = measured[i] + v_C[i] / d;
-    one.variance = variance;
+    one.variance = variance[i];
     one.set(at::kPosition, {0.0, 0.0, by_distance * seen->by_depth});
     one.set(at::kVelocity, -by_velocity.row(i).transpose() / d);
     one.set(at::kEuler, -by_euler.row(i).transpose() / d + by_distance * seen->by_euler);

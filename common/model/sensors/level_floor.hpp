@@ -13,11 +13,11 @@ namespace fathom::model {
 [[nodiscard]] std::optional<double> distance_to_floor(const KinematicPoint& point, double floor, const Pose& X_BC,
                                                       const Eigen::Vector3d& along_C);
 
-/// Motion of the scene in the middle of the picture, the camera's rotation removed: z = -(v_C)_xy / distance [rad/s].
-/// Nothing when the camera looks away from the floor.
-[[nodiscard]] std::optional<std::array<Observation, 2>> observe_flow(const KinematicPoint& point, double floor,
-                                                                     const Pose& X_BC, const Eigen::Vector2d& measured,
-                                                                     double variance);
+/// Motion of the scene in the middle of the picture, the camera's rotation removed: z = -v_C / distance [1/s], of which
+/// the third is minus the rate at which the picture grows. Nothing when the camera looks away from the floor.
+[[nodiscard]] std::optional<std::array<Observation, 3>> observe_flow(const KinematicPoint& point, double floor,
+                                                                     const Pose& X_BC, const Eigen::Vector3d& measured,
+                                                                     const Eigen::Vector3d& variance);
 
 /// A point of the floor seen at p_CL: how far it is along its line of sight [m]. Nothing when that leads away from the
 /// floor.

@@ -193,14 +193,13 @@ std::string motion(const Recording& recording, const estimation::AidsSeen& seen,
   html += heading("How fast it went", "Figure 1.12") + key({{kTagColour, speed_name}, {kMeasuredColour, "estimate"}}) +
           "<div class=\"grid pair\">" + put(draw_component(recording, 3, only_speed)) +
           put(draw_component(recording, 4, only_speed)) + "</div></section>\n";
-  html +=
-      heading("Depth and heave", "Figure 1.13") +
-      key({{kLaserColour, deep ? "depth sensor alone" : "laser alone"},
-           {kTagColour, deep ? "velocity log alone" : place_name},
-           {kMeasuredColour, "estimate"}}) +
-      "<div class=\"grid pair\">" + put(draw_component(recording, 2, both)) +
-      put(draw_component(recording, 5, deep ? std::span<const AidCurve>{only_speed} : std::span<const AidCurve>{})) +
-      "</div></section>\n";
+  html += heading("Depth and heave", "Figure 1.13") +
+          key({{kLaserColour, deep ? "depth sensor alone" : "laser alone"},
+               {kTagColour,
+                deep ? "velocity log alone" : place_name + "; heave: optical flow alone, by the picture's growth"},
+               {kMeasuredColour, "estimate"}}) +
+          "<div class=\"grid pair\">" + put(draw_component(recording, 2, both)) +
+          put(draw_component(recording, 5, only_speed)) + "</div></section>\n";
   return html;
 }
 

@@ -95,8 +95,8 @@ class FlowImport {
       out.optical_flow.push_back({.utime = utime,
                                   .camera = camera_,
                                   .interval = interval_.at(row),
-                                  .flow_C = {flow_.scalar_of(0, row), flow_.scalar_of(1, row)},
-                                  .sigma = sigma_.at(row),
+                                  .flow_C = {flow_.scalar_of(0, row), flow_.scalar_of(1, row), 0.0},
+                                  .covariance = OpticalFlow::only_across(sigma_.at(row)),
                                   .n_tracks = whole_number(tracks_.at(row)).value_or(0)});
       ++count_.kept;
     });

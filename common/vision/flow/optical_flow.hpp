@@ -38,7 +38,7 @@ struct Flow {
   Utime utime{};      ///< middle between the pictures
   double interval{};  ///< s
   /// v_C / z_C [1/s]: camera's velocity in C, over its distance to the floor along its axis; both in the middle. The
-  /// third one is the picture's divergence. Flow as the messages have it is minus the first two.
+  /// third one is the picture's divergence. Flow as the messages have it is minus that.
   Eigen::Vector3d rate{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   int n_tracks{}, n_agreed{};

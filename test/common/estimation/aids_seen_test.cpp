@@ -52,16 +52,20 @@ TEST_CASE("aids seen: a tag gives the position, the laser's dot the depth") {
   CHECK(std::isnan(seen.laser.x[0].x()));
 }
 
-TEST_CASE("aids seen: the scene's motion gives u and v") {
+TEST_CASE("aids seen: the scene's motion gives u and v, and w where its growth was measured") {
   Fixture f;
   const Eigen::Vector3d v_C = f.camera.R_BS.transpose() * (f.v_B + f.w_B.cross(f.camera.p_BS));
   const Eigen::Vector3d down_B = f.R_WB.row(2).transpose();
   const double distance =
       (1.5 - f.p_WB.z() - down_B.dot(f.camera.p_BS)) / down_B.dot(Eigen::Vector3d{f.camera.R_BS.col(2)});
-  f.recording.optical_flow.push_back({.utime = 1'000'000, .camera = "down", .flow_C = -v_C.head<2>() / distance});
+  f.recording.optical_flow.push_back({.utime = 1'000'000, .camera = "down", .flow_C = -v_C / distance});
+  f.recording.optical_flow.push_back(f.recording.optical_flow.front());
+  f.recording.optical_flow.back().covariance.setIdentity();
   const AidsSeen seen = aids_seen(f.recording, f.mounts, f.site, 0);
-  REQUIRE(seen.flow.x.size() == 1);
+  REQUIRE(seen.flow.x.size() == 2);
   CHECK((seen.flow.x[0].head<2>() - f.v_B.head<2>()).norm() < kExact);
+  CHECK(std::isnan(seen.flow.x[0].z()));  // the picture's growth was not measured
+  CHECK((seen.flow.x[1] - f.v_B).norm() < kExact);
 }
 
 TEST_CASE("aids seen: what has no place, no tag on the map, or no state near it is left out") {

@@ -247,7 +247,7 @@ TEST_CASE("live identifier: samples that are no numbers, a silence and a jump in
       {"flow that stands still",
        [](Sample& sample, double t) {
          if (auto* flow = std::get_if<OpticalFlow>(&sample); flow != nullptr && t > 20.0 && t < 21.0)
-           flow->flow_C = {0.1, 0.1};
+           flow->flow_C = {0.1, 0.1, 0.0};
          return true;
        },
        "joint estimate: frozen"}};

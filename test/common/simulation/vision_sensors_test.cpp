@@ -61,6 +61,7 @@ TEST_CASE("optical flow: the scene moves against the camera, over its distance, 
   Vector6d nu = Vector6d::Zero();
   nu[0] = 0.3;
   nu[1] = -0.1;
+  nu[2] = 0.2;
   nu[5] = 0.5;  // the camera sits 0.10 m ahead of Bo: 0.05 m/s to starboard
   Moment moment = moment_at({0, 0, 0.75}, Eigen::Vector3d::Zero(), nu);
   CHECK(bench.measure(moment).empty());  // one picture is no motion
@@ -72,6 +73,8 @@ TEST_CASE("optical flow: the scene moves against the camera, over its distance, 
   // Camera x to starboard, y astern; 0.63 m above the floor.
   CHECK(std::abs(sample.flow_C.x() - 0.05 / 0.63) < kExact);
   CHECK(std::abs(sample.flow_C.y() - 0.3 / 0.63) < kExact);
+  CHECK(std::abs(sample.flow_C.z() + 0.2 / 0.63) < kExact);  // it sinks, and the picture grows
+  CHECK(sample.tells_approach());
 }
 
 TEST_CASE("optical flow: a hidden scale of the velocity reaches it") {
@@ -111,7 +114,7 @@ TEST_CASE("optical flow: the rotation taken out is that of the picture, whatever
     return std::get<OpticalFlow>(bench.samples.back()).flow_C;
   };
   // Forward over the floor, and the camera's arm of 0.12 m below turns with it.
-  const Eigen::Vector2d right = flow_with(0.0);
+  const Eigen::Vector3d right = flow_with(0.0);
   CHECK(std::abs(right.y() - (0.3 + 0.4 * 0.12) / 0.63) < kExact);
   CHECK(std::abs(right.x()) < kExact);
   CHECK(std::abs((flow_with(0.02) - right).norm() - 0.02) < kExact);  // the gyro's own error does remain

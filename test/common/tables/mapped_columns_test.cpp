@@ -354,7 +354,8 @@ TEST_CASE("columns: tags, optical flow and laser dots come in from tables, and t
     REQUIRE(run.optical_flow.size() == 1);
     CHECK(run.optical_flow[0].flow_C.y() == doctest::Approx(2.0 * std::numbers::pi / 180.0));
     CHECK(run.optical_flow[0].interval == doctest::Approx(0.1));
-    CHECK(run.optical_flow[0].sigma == doctest::Approx(0.02));
+    CHECK(run.optical_flow[0].sigma_across() == doctest::Approx(0.02));
+    CHECK_FALSE(run.optical_flow[0].tells_approach());
     CHECK(run.optical_flow[0].n_tracks == 35);
     REQUIRE(run.laser_range.size() == 1);
     CHECK(run.laser_range[0].p_CL == Vector3d(4, 5, 6));

@@ -185,11 +185,14 @@ TEST_CASE("watch: flow needs the attitude sensor where tags are missing, and is 
   for (int i = 0; i < 6; ++i) {
     utime += 33'333;
     watch.hear({.utime = utime, .has_attitude = true});
-    watch.see(compressed(renderer.step(i / 30.0, pose({0.01 * i, 0.0, 0.4})), utime));
+    watch.see(compressed(renderer.step(i / 30.0, pose({0.01 * i, 0.0, 0.38 + 0.004 * i})), utime));
   }
   const auto flow = watch.front_end().optical_flow("down");
   REQUIRE(flow);
   CHECK(flow->flow_C.x() == doctest::Approx(-0.3 / 1.1).epsilon(0.05));  // -v / z
+  REQUIRE(flow->tells_approach());
+  CHECK(std::abs(flow->flow_C.z() + 0.12 / 1.1) < 4.0 * std::sqrt(flow->covariance(2, 2)));
+  CHECK(std::sqrt(flow->covariance(2, 2)) < 0.1);
   REQUIRE(watch.front_end().sight().v_C);
   CHECK(watch.front_end().sight().v_C->x() == doctest::Approx(0.3).epsilon(0.05));
   CHECK(watch.drawing(80));

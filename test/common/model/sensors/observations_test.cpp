@@ -128,22 +128,25 @@ TEST_CASE("tag: a pose in the camera becomes the pose of the hull, whatever the 
   CHECK(back.q.angularDistance(X_WB.q) < 1e-7);  // an arc cosine near one
 }
 
-TEST_CASE("floor: a level camera 0.5 m above it at 0.2 m/s ahead sees the scene go back, and a dot at 0.5 m") {
+TEST_CASE(
+    "floor: a level camera 0.5 m above it at 0.2 m/s ahead sees the scene go back and grow as it sinks, and a dot at "
+    "0.5 m") {
   KinematicVector x = KinematicVector::Zero();
   x[2] = 1.0;
   x[at::kVelocity] = 0.2;
+  x[at::kVelocity + 2] = 0.3;  // down
   // The camera's x axis points to starboard, its y axis aft: read with the bow upward.
   const Pose X_BC{{0.0, 0.0, 0.1}, Eigen::Quaterniond{Eigen::AngleAxisd{std::acos(0.0), Eigen::Vector3d::UnitZ()}}};
   const KinematicPoint level{x};
   CHECK(distance_to_floor(level, 1.6, X_BC, Eigen::Vector3d::UnitZ()).value() == doctest::Approx(0.5).epsilon(kExact));
-  const auto flow = observe_flow(level, 1.6, X_BC, {0.0, 0.4}, 1.0);  // v_C = (0, -0.2), so z = +0.2 / 0.5
+  const auto flow = observe_flow(level, 1.6, X_BC, {0.0, 0.4, -0.6}, {1.0, 1.0, 1.0});  // v_C = (0, -0.2, 0.3)
   REQUIRE(flow);
   for (const auto& one : *flow) CHECK(one.innovation == doctest::Approx(0.0).epsilon(kExact).scale(1.0));
   const auto dot = observe_floor_point(level, 1.6, X_BC, {0.0, 0.0, 0.53}, 1.0);
   REQUIRE(dot);
   CHECK(dot->innovation == doctest::Approx(0.03).epsilon(1e-9));
   x[at::kEuler] = 3.0;  // bottom up: there is no floor in sight
-  CHECK_FALSE(observe_flow(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.4}, 1.0));
+  CHECK_FALSE(observe_flow(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.4, -0.6}, {1.0, 1.0, 1.0}));
   CHECK_FALSE(observe_floor_point(KinematicPoint{x}, 1.6, X_BC, {0.0, 0.0, 0.53}, 1.0));
 }
 
@@ -171,8 +174,8 @@ TEST_CASE("observations: every row is the derivative of what is predicted") {
     check_row("tag", [&](const auto& p) { return observe_tag(p, X_WT, X_BC, X_CT, 1.0, 1.0, 1.0)[i]; });
   }
   const Pose down{arm, quaternion_from_rotation_vector({0.1, -0.2, 1.4})};
-  for (std::size_t i = 0; i < 2; ++i)
-    check_row("flow", [&](const auto& p) { return (*observe_flow(p, 3.5, down, {0.1, -0.2}, 1.0))[i]; });
+  for (std::size_t i = 0; i < 3; ++i)
+    check_row("flow", [&](const auto& p) { return (*observe_flow(p, 3.5, down, {0.1, -0.2, 0.3}, {1, 1, 1}))[i]; });
   check_row("floor point", [&](const auto& p) { return *observe_floor_point(p, 3.5, down, {0.2, -0.1, 1.1}, 1.0); });
 }
 
