@@ -3,11 +3,12 @@
 #include <array>
 #include <utility>
 
+#include "common/base/motions.hpp"
+
 namespace fathom::excitation {
 namespace {
 
 constexpr double kDuration = 20.0;  // s
-constexpr std::array kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 Segment named(const std::string& name) { return {.name = name, .duration = kDuration}; }
 
@@ -21,7 +22,7 @@ std::vector<Segment> segments(const model::Vehicle& vehicle, const Vector6d& lar
   }
   Segment together = named("full steps on all axes");
   for (const Eigen::Index axis : axes) {
-    const std::string motion = kMotions[static_cast<std::size_t>(axis)];
+    const std::string motion = kMotionNames[static_cast<std::size_t>(axis)];
     Segment full = named("full steps in " + motion), small = named("small steps in " + motion),
             slow = named("a slow sine in " + motion), quick = named("a quick sine in " + motion);
     full.step[axis] = 0.95;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/base/config.hpp"
+#include "common/base/motions.hpp"
 #include "common/excitation/preflight.hpp"
 #include "common/excitation/supervisor.hpp"
 #include "common/model/parameters.hpp"
@@ -14,9 +15,8 @@ namespace fathom::excitation {
 namespace {
 
 int axis_of(const std::string& mode) {
-  constexpr std::array kNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (mode == kNames[i]) return static_cast<int>(i);
+  for (std::size_t i = 0; i < kMotionNames.size(); ++i) {
+    if (mode == kMotionNames[i]) return static_cast<int>(i);
   }
   return mode == "total" ? -1 : 6;
 }

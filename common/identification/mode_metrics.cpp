@@ -4,13 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/motions.hpp"
+
 namespace fathom::identification {
-namespace {
-
-constexpr std::array kModes{"surge", "sway", "heave", "roll", "pitch", "yaw"};
-
-}  // namespace
-
 std::vector<ModeMetric> mode_metrics(const std::vector<model::BaseParameter>& parameters,
                                      const ParameterVector& variance, const ParameterVector& estimate,
                                      const ParameterVector& sigma) {
@@ -31,7 +27,7 @@ std::vector<ModeMetric> mode_metrics(const std::vector<model::BaseParameter>& pa
   std::vector<ModeMetric> all;
   for (std::size_t axis = 0; axis < 6; ++axis) {
     if (!any[axis]) continue;
-    modes[axis].mode = kModes[axis];
+    modes[axis].mode = kMotionNames[axis];
     all.push_back(modes[axis]);
   }
   all.push_back(total);

@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "common/base/least_squares.hpp"
+#include "common/base/motions.hpp"
 
 namespace fathom::model {
 namespace {
 
 constexpr double kReached = 1e-6;  // of a unit wrench, in the units of the allocation
-constexpr std::array<const char*, 6> kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 }  // namespace
 
@@ -40,7 +40,7 @@ std::string undriven_note(const Vehicle& vehicle) {
   std::string axes;
   int count = 0;
   for (std::size_t i = 0; i < 6; ++i) {
-    if (vehicle.dof[i] && !driven[i]) axes += (count++ == 0 ? "" : ", ") + std::string(kMotions[i]);
+    if (vehicle.dof[i] && !driven[i]) axes += (count++ == 0 ? "" : ", ") + std::string(kMotionNames[i]);
   }
   if (count == 0) return {};
   return vehicle.name + ": " + axes + (count == 1 ? " moves" : " move") + " freely, without thrust of " +

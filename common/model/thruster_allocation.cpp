@@ -9,6 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/least_squares.hpp"
+#include "common/base/motions.hpp"
 #include "common/model/driven_axes.hpp"
 
 namespace fathom::model {
@@ -18,10 +19,7 @@ constexpr double kNoForce = 1e-9;         // N
 constexpr double kReachTolerance = 1e-6;  // of a unit wrench
 constexpr double kHardly = 0.01;  // of a thruster's force, or of its farthest arm: what is less is an error of drawing
 
-std::string_view motion_name(Eigen::Index axis) {
-  constexpr std::array<std::string_view, 6> kNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
-  return kNames[static_cast<std::size_t>(axis)];
-}
+std::string_view motion_name(Eigen::Index axis) { return kMotionNames[static_cast<std::size_t>(axis)]; }
 
 }  // namespace
 

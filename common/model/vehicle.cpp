@@ -8,6 +8,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/base/motions.hpp"
 #include "common/model/actuators.hpp"
 #include "common/model/after_abort.hpp"
 #include "common/model/candidates/candidate.hpp"
@@ -19,7 +20,6 @@
 namespace fathom::model {
 namespace {
 
-constexpr std::array<const char*, 6> kMotionNames{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr double kUnitTolerance = 0.01;      // an axis typed with three digits is still a unit vector
 constexpr double kTriangleTolerance = 1e-9;  // a flat plate meets the triangle inequality exactly
 constexpr double kControlTolerance = 1e-6;   // of a unit wrench, in the units of the allocation

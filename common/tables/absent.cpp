@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/base/motions.hpp"
 
 namespace fathom::tables {
 namespace {
 
-constexpr std::array<const char*, 6> kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 constexpr int kYaw = 5;
 
 /// One component of a group, and the axes whose motion shows in it.
@@ -61,8 +61,8 @@ class Completion {
   [[nodiscard]] std::string note() const {
     if (zero_.empty()) return "";
     std::vector<std::string> axes;
-    for (std::size_t i = 0; i < kMotions.size(); ++i) {
-      if ((*simulated_)[i]) axes.emplace_back(kMotions[i]);
+    for (std::size_t i = 0; i < kMotionNames.size(); ++i) {
+      if ((*simulated_)[i]) axes.emplace_back(kMotionNames[i]);
     }
     return "columns for " + listed(zero_, "") + " are missing and taken as zero: the vehicle simulates " +
            listed(axes, "") + " only";
@@ -73,7 +73,7 @@ class Completion {
     std::vector<std::string> axes;
     for (const int axis : component.axes) {
       const auto i = static_cast<std::size_t>(axis);
-      if (!simulated_ || (*simulated_)[i]) axes.emplace_back(kMotions[i]);
+      if (!simulated_ || (*simulated_)[i]) axes.emplace_back(kMotionNames[i]);
     }
     return axes;
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/base/motions.hpp"
 #include "common/base/near_name.hpp"
 #include "common/drafts/ardusub_frames.hpp"
 #include "common/drafts/draft.hpp"
@@ -48,10 +49,9 @@ std::map<std::string, fs::path> files() {
 }
 
 std::string motions(const model::Vehicle& vehicle) {
-  constexpr std::array<const char*, 6> kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
   std::string text;
-  for (std::size_t i = 0; i < kMotions.size(); ++i) {
-    if (vehicle.dof[i]) text += (text.empty() ? "" : " ") + std::string{kMotions[i]};
+  for (std::size_t i = 0; i < kMotionNames.size(); ++i) {
+    if (vehicle.dof[i]) text += (text.empty() ? "" : " ") + std::string{kMotionNames[i]};
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
+#include "common/base/motions.hpp"
 #include "common/identification/regression/residual_tracing.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
@@ -17,8 +18,6 @@ namespace {
 
 using identification::AxisRegression;
 using identification::StepwiseResult;
-
-constexpr std::array<const char*, 6> kTitles{"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 struct RegressOptions {
   std::string vehicle, write, json, page;
@@ -44,7 +43,8 @@ std::string cell(const StepwiseResult& result, int column) {
 void print(const AxisRegression& axis, const std::vector<identification::ManoeuvreRows>& runs,
            const model::Vehicle& vehicle) {
   std::printf("\n%s (%s): dimensionless, standard error in per cent, * most significant, ? within its errors\n%-10s",
-              model::kAxisNames[static_cast<std::size_t>(axis.axis)], kTitles[static_cast<std::size_t>(axis.axis)], "");
+              model::kAxisNames[static_cast<std::size_t>(axis.axis)], kMotionNames[static_cast<std::size_t>(axis.axis)],
+              "");
   for (const auto& run : runs) std::printf(" | %17.17s", run.name.c_str());
   if (runs.size() > 1) std::printf(" | %17s", "together");
   std::printf(" | %17s\n", "reference");

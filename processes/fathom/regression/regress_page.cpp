@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/base/motions.hpp"
 #include "common/model/vehicle.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
@@ -23,10 +24,8 @@ using report::cell;
 using report::escape;
 using report::percent;
 
-constexpr std::array<const char*, 6> kMotions{"surge", "sway", "heave", "roll", "pitch", "yaw"};
-
 const char* letter(const AxisRegression& axis) { return model::kAxisNames[static_cast<std::size_t>(axis.axis)]; }
-const char* motion(const AxisRegression& axis) { return kMotions[static_cast<std::size_t>(axis.axis)]; }
+const char* motion(const AxisRegression& axis) { return kMotionNames[static_cast<std::size_t>(axis.axis)]; }
 
 const std::string& name_of(const AxisRegression& axis, int column) {
   return axis.candidates.names[static_cast<std::size_t>(column)];
