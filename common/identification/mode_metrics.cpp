@@ -7,6 +7,7 @@
 #include "common/base/motions.hpp"
 
 namespace fathom::identification {
+
 std::vector<ModeMetric> mode_metrics(const std::vector<model::BaseParameter>& parameters,
                                      const ParameterVector& variance, const ParameterVector& estimate,
                                      const ParameterVector& sigma) {
