@@ -8,6 +8,7 @@
 #include "common/base/factors.hpp"
 #include "common/model/derivative_motion.hpp"
 #include "common/model/manoeuvres.hpp"
+#include "common/model/sensors/kinematic_point.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/virtual_dive.hpp"
 
