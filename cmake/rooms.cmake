@@ -29,6 +29,9 @@ if(FATHOM_SANITIZE)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # guesses wrongly of std::regex and others that are instrumented
     target_compile_options(fathom_warnings INTERFACE -Wno-maybe-uninitialized)
   endif()
+  # Ceres, which is not instrumented, frees what Eigen has allocated here: both must take it from malloc as it is. The
+  # sanitizer's is aligned as the C library's is, but Eigen does not trust it.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
   add_link_options(-fsanitize=address,undefined)
 endif()
 

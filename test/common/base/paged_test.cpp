@@ -70,7 +70,10 @@ TEST_CASE("paged: ten million values take the memory of half a million") {
   const long before = resident();
   const Paged<double> all = counted(10'000'000);  // 80 MB
   CHECK(std::ranges::is_sorted(all));
+#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
   CHECK(resident() - before < 20'000);
+#endif
+  CHECK(before > 0);
 }
 
 TEST_CASE("paged: a folder that is none is refused with what to do") {
