@@ -1,22 +1,12 @@
 // What an operator is told is true, and a stranger on the bus moves nothing: real programs on a bus of their own, and
 // the commands arm, abort and steer against them.
-#include "test/support/orders.hpp"
-
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <linux/joystick.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <fathom_lcm/state_t.hpp>
 #include <fstream>
-#include <functional>
-#include <memory>
 
-#include "common/link/server.hpp"
-#include "test/support/private_network.hpp"
+#include "test/support/dry_vehicle.hpp"
 
 namespace fathom {
 namespace {
@@ -30,92 +20,8 @@ using test::program;
 using test::Ran;
 using test::Scratch;
 
-const std::string kOperator = file("config/operators/simulated.yaml");
-
-/// A thruster driver that moves nothing, and, where a test wants one, a supervisor in the middle of the tank.
-struct Vehicle {
-  Bus bus;
-  Scratch scratch;
-  std::unique_ptr<Background> driver, supervisor;
-  std::function<void()> meanwhile;  ///< every 5 ms
-  std::string identifier{"running"};
-  bool deaf_supervisor{false};  ///< one says HEALTH and hears nothing
-  double north{}, down{0.75};   ///< m, where STATE sees it
-
-  Vehicle() { start_driver(); }
-  void start_driver() {
-    std::ofstream{scratch.path("x.yaml")}
-        << "thruster_driver: {protocol: dry_run, rate: 20 Hz, largest_thrust: 30 N}\n";
-    driver = std::make_unique<Background>(scratch, "driver",
-                                          program("thruster_driver") + " --config " + scratch.path("x.yaml") +
-                                              " --config " + file("config/vehicles/bluerov2.yaml") + " --config " +
-                                              kOperator + " --in '" + bus.url + "'");
-    bus.answers.clear();
-    for (int i = 0; i < 100 && bus.gate() == nullptr; ++i) bus.listen(0.1);
-    REQUIRE_MESSAGE(bus.gate() != nullptr, test::read_bytes(scratch.path("driver.text")));
-  }
-  void start_supervisor() {
-    supervisor = std::make_unique<Background>(
-        scratch, "supervisor",
-        program("supervisor") + " --config " + file("config/pipelines/tank.yaml") + " --config " +
-            file("config/vehicles/bluerov2.yaml") + " --config " + file("config/sites/tank.yaml") + " --config " +
-            kOperator + " --in '" + bus.url + "'");
-    until([&] { return !bus.said_of("supervisor").empty(); });
-    run(1.0);  // until it has heard its neighbours
-  }
-  /// Estimator and identifier as far as a supervisor sees them.
-  void run(double seconds) {
-    const double end = link::wall_seconds() + seconds;
-    for (int i = 0; link::wall_seconds() < end; ++i) {
-      if (i % 100 == 0) {
-        std::vector<std::string> neighbours{"estimator", "identifier", "recorder"};
-        if (deaf_supervisor) neighbours.emplace_back("supervisor");
-        for (const std::string& process : neighbours) {
-          bus.publish("HEALTH", test::word_of(process, process == "identifier" ? identifier : "running"));
-        }
-      }
-      if (i % 10 == 0) {
-        StateEstimate state{.utime = now(), .valid = true};
-        state.p_WB = {north, 0.0, down};
-        bus.publish("STATE", wire::encode(state));
-      }
-      if (meanwhile) meanwhile();
-      bus.listen(0.005);
-    }
-  }
-  /// As long as a busy machine may take until `enough`; whether it came to that.
-  template <class Enough>
-  bool until(const Enough& enough, double longest = 30.0) {
-    for (const double end = link::wall_seconds() + longest; !enough(); run(0.05)) {
-      if (link::wall_seconds() > end) return false;
-    }
-    return true;
-  }
-  [[nodiscard]] bool supervisor_says(const std::string& words) const {
-    return bus.said_of("supervisor").find(words) != std::string::npos;
-  }
-  /// A command of the operator's tool, while everything else goes on.
-  Ran tool(const std::string& words, double longest = 30.0) {
-    std::remove(scratch.path("code").c_str());
-    const Background one{scratch, "tool",
-                         "sh -c \"" + program("fathom") + " " + words + " --bus '" + bus.url + "' < /dev/null > " +
-                             scratch.path("said") + " 2>&1; echo \\$? > " + scratch.path("code") + "\""};
-    const double end = link::wall_seconds() + longest;
-    while (link::wall_seconds() < end && test::read_bytes(scratch.path("code")).empty()) run(0.1);
-    const std::string code = test::read_bytes(scratch.path("code"));
-    return {.code = code.empty() ? -1 : std::stoi(code), .text = test::read_bytes(scratch.path("said"))};
-  }
-  [[nodiscard]] double strongest_since(std::size_t first) const {
-    double most = 0.0;
-    for (std::size_t i = first; i < bus.thrusters.size(); ++i) {
-      for (const double each : bus.thrusters[i].tau) most = std::max(most, std::abs(each));
-    }
-    return most;
-  }
-  /// Of the newest command.
-  [[nodiscard]] double commanded_ahead() const { return bus.commands.empty() ? 0.0 : bus.commands.back().tau[0]; }
-  [[nodiscard]] bool pushes_ahead(double force) const { return std::abs(commanded_ahead() - force) < 0.1 * force; }
-};
+const std::string kOperator = test::operator_file();
+using Vehicle = test::DryVehicle;
 
 }  // namespace
 
@@ -364,116 +270,6 @@ TEST_CASE("orders: number and time come from the vehicle, whatever the operator'
   CHECK(bus.orders.front().challenge == 99);
   CHECK(std::abs(seconds_between(bus.orders.front().utime, now() - kHour)) < 1.0);
   CHECK(wire::authentic(bus.orders.front(), keys.order));
-}
-
-TEST_CASE("orders: what is steered ages out: one order to push is not held") {
-  Vehicle vehicle;
-  vehicle.start_supervisor();
-  give(vehicle.bus, {.enable = true, .order = "hold"});
-  CHECK_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("hold: "); }), vehicle.bus.said_of("supervisor"));
-  give(vehicle.bus, {.order = "manual", .tau = test::ahead(10.0)});
-  CHECK(vehicle.until([&] { return vehicle.pushes_ahead(10.0); }));
-  vehicle.run(1.0);
-  CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);
-  CHECK_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("hold: who steers has let go"); }),
-                vehicle.bus.said_of("supervisor"));
-}
-
-TEST_CASE("orders: fathom steer pushes while a key or the joystick's button is held, and ends with thrust at zero") {
-  for (const bool joystick : {false, true}) {
-    CAPTURE(joystick);
-    Vehicle vehicle;
-    vehicle.start_supervisor();
-    const std::string terminal = vehicle.scratch.path("keys"), pad = vehicle.scratch.path("js0");
-    link::Server keys{"pty:" + terminal};
-    if (joystick) test::shell("mkfifo " + pad);
-    const int stick =
-        joystick ? open(pad.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC) : -1;  // both ends: waits for nobody
-    const Background tool{vehicle.scratch, "steer",
-                          "sh -c \"exec " + program("fathom") + " steer --force 8 --operator " + kOperator +
-                              " --bus '" + vehicle.bus.url + "'" + (joystick ? " --joystick " + pad : "") + " < " +
-                              terminal + "\""};
-    const auto event = [&](std::int16_t value, int type, std::uint8_t number) {
-      const js_event e{.time = 0, .value = value, .type = static_cast<std::uint8_t>(type), .number = number};
-      CHECK(write(stick, &e, sizeof e) == static_cast<ssize_t>(sizeof e));
-    };
-    if (joystick) event(0, JS_EVENT_BUTTON | JS_EVENT_INIT, 4);
-    const auto said = [&] { return vehicle.bus.said_of("supervisor"); };
-    REQUIRE_MESSAGE(vehicle.until([&] { return vehicle.supervisor_says("hold: "); }),
-                    test::read_bytes(vehicle.scratch.path("steer.text")));
-    if (joystick) {
-      event(-32767, JS_EVENT_AXIS, 1);
-      vehicle.run(0.5);
-      CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);  // nobody holds the button
-      event(1, JS_EVENT_BUTTON, 4);
-    } else {
-      vehicle.meanwhile = [&, i = 0]() mutable {
-        if (++i % 6 == 0) keys.send("w");
-      };
-    }
-    CHECK(vehicle.until([&] { return vehicle.pushes_ahead(8.0); }));
-    vehicle.run(1.0);
-    CHECK(vehicle.commanded_ahead() == doctest::Approx(8.0).epsilon(0.1));  // and goes on
-    vehicle.meanwhile = {};
-    if (joystick) event(0, JS_EVENT_BUTTON, 4);
-    vehicle.run(1.5);
-    CHECK(std::abs(vehicle.commanded_ahead()) < 1.0);
-    CHECK_MESSAGE(said().find("hold: ") != std::string::npos, said());
-    if (joystick) {
-      close(stick);  // pulled out
-    } else {
-      keys.send(" ");
-    }
-    const auto confirmed = [&] {
-      const std::string told = test::read_bytes(vehicle.scratch.path("steer.text"));
-      return told.find("aborted, confirmed after") != std::string::npos;
-    };
-    CHECK_MESSAGE(vehicle.until(confirmed), test::read_bytes(vehicle.scratch.path("steer.text")));
-    CHECK(vehicle.until([&] { return vehicle.supervisor_says("aborted: "); }));
-    CHECK(vehicle.bus.gate()->armed == 0);
-  }
-}
-
-TEST_CASE("orders: where the bus leaves this host who arms stays, unless told to leave") {
-  if (!test::private_network()) return;
-  const Scratch scratch;
-  test::write_bytes(scratch.path("x.yaml"),
-                    "thruster_driver: {protocol: dry_run, rate: 20 Hz, largest_thrust: 30 N}\n");
-  const auto ran = test::on_a_network(
-      scratch, "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=1'\n" + program("thruster_driver") +
-                   " --config x.yaml --config " + file("config/vehicles/bluerov2.yaml") + " --config " + kOperator +
-                   " 2>driver.txt &\n"
-                   "up() { $fathom status | grep -q thruster_driver; }; within 30 up\n"
-                   "arm() { timeout -s INT 8 $fathom arm --no-supervisor --operator " +
-                   kOperator +
-                   " $*; echo \"code $?\"; }\n"
-                   "arm; echo leaves; arm --leave; export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'; arm\n");
-  const auto leaves = ran.text.find("leaves");
-  REQUIRE_MESSAGE(leaves != std::string::npos, ran.text);
-  const std::string stayed = ran.text.substr(0, leaves), left = ran.text.substr(leaves);
-  CHECK_MESSAGE(stayed.find("stays with it, a sign of life every 1.2 s; Ctrl-C aborts") != std::string::npos, ran.text);
-  CHECK(stayed.find("code 124") != std::string::npos);  // until it was told to end
-  CHECK(left.find("stays with it") == std::string::npos);
-  const auto first = left.find("code 0");
-  REQUIRE_MESSAGE(first != std::string::npos, ran.text);
-  CHECK(left.find("code 0", first + 1) != std::string::npos);
-}
-
-TEST_CASE("orders: who armed over a link and is gone is missed") {
-  Vehicle vehicle;
-  vehicle.start_supervisor();
-  {
-    const Background tool{
-        vehicle.scratch, "attend",
-        program("fathom") + " arm --attend 1.5 --operator " + kOperator + " --bus '" + vehicle.bus.url + "'"};
-    vehicle.run(6.0);
-    CHECK_MESSAGE(vehicle.bus.said_of("supervisor").find("aborted") == std::string::npos,
-                  vehicle.bus.said_of("supervisor"));
-    test::shell("kill -KILL $(cat " + vehicle.scratch.path("attend.pid") + ")");
-  }
-  CHECK_MESSAGE(
-      vehicle.until([&] { return vehicle.supervisor_says("aborted: the operator is lost: no sign of life"); }),
-      vehicle.bus.said_of("supervisor"));
 }
 
 }  // namespace fathom
