@@ -145,7 +145,7 @@ TEST_CASE("1.25: the scene moves opposite to the camera; with the camera's own s
   const Vector3d point = lens(kMoment) + R_WC.col(2) * distance;
   const auto image = [&](double t) {
     const Vector3d p = R_WC.transpose() * (point - lens(t));
-    return Vector3d{p.x() / p.z(), p.y() / p.z(), 0.0};
+    return Vector3d{p.x() / p.z(), p.y() / p.z(), std::log(p.z())};  // the picture grows as the distance falls
   };
   const Vector3d flow = rate_of_change(image, kMoment);
   const Vector3d v_C = estimation::velocity_of_camera(m.v_B(kMoment), m.w_B(kMoment), c);
