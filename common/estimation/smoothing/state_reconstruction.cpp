@@ -108,7 +108,8 @@ void refuse_against_state(const Recording& recording, const SmoothedTrial& trial
 Reconstruction reconstruct_state(const Recording& recording, const TrialFiles& files,
                                  const ReconstructionOptions& options, std::vector<std::string>& notes,
                                  const Progress& progress) {
-  auto [settings, noises_stated, process_stated] = instruments_of(recording, files);
+  auto [settings, noises_stated, process_stated, note] = instruments_of(recording, files);
+  if (!note.empty()) notes.push_back(recording.name + ": " + note);
   if (options.model) settings.model = *options.model;
   refuse_without_position(recording, settings, options.without_position);
   for (std::string& line : unused_instruments(recording, settings)) notes.push_back(std::move(line));

@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <sstream>
 
+#include "common/base/spatial.hpp"
 #include "common/base/statistics.hpp"
 #include "common/estimation/online/estimator.hpp"
 #include "common/estimation/online/navigator.hpp"
+#include "common/estimation/smoothing/turned_package.hpp"
+#include "common/estimation/wording.hpp"
 
 namespace fathom::estimation {
 namespace {
 
 constexpr double kAttitudeMemory = 30.0;  // s: what an attitude sensor's own filter leaves, as `joint` states it
+constexpr double kClearly = 5.0;          // standard deviations by which a package is turned: no chance, and no haste
 constexpr double kLeastBias = 1e-3;       // m/s, of a velocity log: makers state no less
 constexpr std::size_t kFewest = 100;      // samples that a white noise is measured from
 constexpr double kLeastForce = 1e-3;      // m/s^2 and rad/s: rounding of instruments
@@ -71,7 +76,7 @@ void measure_white_noises(const std::vector<Ahrs>& stream, KalmanSettings& s) {
 }
 
 // The live filter's section: its cut-offs are of no use here; its noises, and what it says lasts, are.
-void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, KalmanSettings& s) {
+void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, KalmanSettings& s, std::string& note) {
   s.gate = live.gate;
   s.attitude_noise = live.attitude_noise;
   s.attitude_memory = kAttitudeMemory;
@@ -94,8 +99,20 @@ void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, Ka
   const double across = std::max(live.tags.systematic, live.usbl.systematic);
   const double down = live.depth.systematic > 0.0 ? live.depth.systematic : std::max(across, live.laser.systematic);
   s.lasting_position = {across, across, down};
-  // Gyros and accelerometers are one rigid package: how it is turned in the hull no motion tells.
+  // Gyros and accelerometers are one rigid package: how it is turned in the hull the attitude beside them tells, which
+  // the live filter believes; what that is off by all the time no motion tells.
   s.lasting_attitude.setConstant(live.attitude_noise);
+  if (const auto package = turned_package(stream); package && package->turn.norm() > kClearly * package->sigma) {
+    s.R_BI = quaternion_from_rotation_vector(package->turn).toRotationMatrix();
+    const double t = seconds_between(stream.front().utime, stream.back().utime);
+    const double wandered = live.attitude_noise * std::sqrt(std::min(1.0, 2.0 * kAttitudeMemory / t));
+    s.lasting_attitude.setConstant(std::hypot(package->sigma, wandered));
+    const Eigen::Vector3d mrad = 1e3 * package->turn;
+    note = text(
+        "gyros and accelerometers stand turned against the told attitude by %.1f %.1f %.1f mrad (+- %.1f): taken "
+        "out",
+        mrad.x(), mrad.y(), mrad.z(), 1e3 * package->sigma);
+  }
   s.lasting_velocity.setConstant(std::max(live.flow.systematic, live.dvl.systematic));
   measure_white_noises(stream, s);
 }
@@ -175,7 +192,7 @@ TrialInstruments instruments_of(const Recording& recording, const TrialFiles& fi
   }
   add_places(files, s);
   if (filter == "complementary") {
-    add_live(NavigatorSettings::from(*files.estimator), recording.ahrs, s);
+    add_live(NavigatorSettings::from(*files.estimator), recording.ahrs, s, result.note);
     result.noises_stated = true;
   }
   return result;

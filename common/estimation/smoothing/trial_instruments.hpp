@@ -38,6 +38,7 @@ struct TrialInstruments {
   KalmanSettings settings;
   bool noises_stated{false};   ///< by the pipeline, for a filter that knows lasting errors: no rest may replace them
   bool process_stated{false};  ///< likewise the process noise
+  std::string note;            ///< what was found of them, a line; may be empty
 };
 
 /// White noises of the inertial package are measured in the recording where no file states them. InputError when a file
