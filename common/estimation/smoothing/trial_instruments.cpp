@@ -16,7 +16,7 @@ namespace fathom::estimation {
 namespace {
 
 constexpr double kAttitudeMemory = 30.0;  // s: what an attitude sensor's own filter leaves, as `joint` states it
-constexpr double kClearly = 5.0;          // standard deviations by which a package is turned: no chance, and no haste
+constexpr double kTurned = 0.01;          // rad, prior: what a package is turned by in a hull, about each axis
 constexpr double kLeastBias = 1e-3;       // m/s, of a velocity log: makers state no less
 constexpr std::size_t kFewest = 100;      // samples that a white noise is measured from
 constexpr double kLeastForce = 1e-3;      // m/s^2 and rad/s: rounding of instruments
@@ -102,16 +102,17 @@ void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, Ka
   // Gyros and accelerometers are one rigid package: how it is turned in the hull the attitude beside them tells, which
   // the live filter believes; what that is off by all the time no motion tells.
   s.lasting_attitude.setConstant(live.attitude_noise);
-  if (const auto package = turned_package(stream); package && package->turn.norm() > kClearly * package->sigma) {
-    s.R_BI = quaternion_from_rotation_vector(package->turn).toRotationMatrix();
+  if (const auto package = turned_package(stream)) {
     const double t = seconds_between(stream.front().utime, stream.back().utime);
     const double wandered = live.attitude_noise * std::sqrt(std::min(1.0, 2.0 * kAttitudeMemory / t));
-    s.lasting_attitude.setConstant(std::hypot(package->sigma, wandered));
-    const Eigen::Vector3d mrad = 1e3 * package->turn;
+    const double doubt = std::hypot(package->sigma, wandered);
+    const double share = kTurned * kTurned / (kTurned * kTurned + doubt * doubt);  // of what is seen, by the prior
+    s.R_BI = quaternion_from_rotation_vector(share * package->turn).toRotationMatrix();
+    s.lasting_attitude.setConstant(std::sqrt(share) * doubt);
+    const Eigen::Vector3d mrad = 1e3 * share * package->turn;
     note = text(
-        "gyros and accelerometers stand turned against the told attitude by %.1f %.1f %.1f mrad (+- %.1f): taken "
-        "out",
-        mrad.x(), mrad.y(), mrad.z(), 1e3 * package->sigma);
+        "gyros and accelerometers stand turned against the told attitude by %.1f %.1f %.1f mrad (+- %.1f): taken out",
+        mrad.x(), mrad.y(), mrad.z(), 1e3 * std::sqrt(share) * doubt);
   }
   s.lasting_velocity.setConstant(std::max(live.flow.systematic, live.dvl.systematic));
   measure_white_noises(stream, s);
