@@ -11,9 +11,10 @@
 namespace fathom::estimation {
 
 struct TurnedPackage {
-  Eigen::Vector3d turn{
-      Eigen::Vector3d::Zero()};  ///< rad: R_BI = exp(turn), axes of the package in those of the attitude
-  double sigma{};                ///< rad, of its least certain component
+  /// rad: R_BI = exp(turn), axes of the package in those of the attitude
+  Eigen::Vector3d turn{Eigen::Vector3d::Zero()};
+  /// rad, of its least certain component, the attitude being right on average: what it is off by for long comes on top
+  double sigma{};
 };
 
 /// Least squares over windows of two seconds, rotation vectors of both: y_gyro - y_attitude = y_attitude x turn + b t,
