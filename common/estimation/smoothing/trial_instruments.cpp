@@ -16,10 +16,11 @@ namespace fathom::estimation {
 namespace {
 
 constexpr double kAttitudeMemory = 30.0;  // s: what an attitude sensor's own filter leaves, as `joint` states it
-constexpr double kTurned = 0.01;          // rad, prior: what a package is turned by in a hull, about each axis
-constexpr double kLeastBias = 1e-3;       // m/s, of a velocity log: makers state no less
-constexpr std::size_t kFewest = 100;      // samples that a white noise is measured from
-constexpr double kLeastForce = 1e-3;      // m/s^2 and rad/s: rounding of instruments
+constexpr double kWander = 60.0;  // s: how long an attitude may be off the same way, where its mean over a trial counts
+constexpr double kTurned = 0.01;  // rad, prior: what a package is turned by in a hull, about each axis
+constexpr double kLeastBias = 1e-3;   // m/s, of a velocity log: makers state no less
+constexpr std::size_t kFewest = 100;  // samples that a white noise is measured from
+constexpr double kLeastForce = 1e-3;  // m/s^2 and rad/s: rounding of instruments
 constexpr double kLeastRate = 1e-4;
 
 model::Pose pose_of(const model::Mount& mount) { return {mount.p_BS, Eigen::Quaterniond{mount.R_BS}}; }
@@ -104,7 +105,7 @@ void add_live(const NavigatorSettings& live, const std::vector<Ahrs>& stream, Ka
   s.lasting_attitude.setConstant(live.attitude_noise);
   if (const auto package = turned_package(stream)) {
     const double t = seconds_between(stream.front().utime, stream.back().utime);
-    const double wandered = live.attitude_noise * std::sqrt(std::min(1.0, 2.0 * kAttitudeMemory / t));
+    const double wandered = live.attitude_noise * std::sqrt(std::min(1.0, 2.0 * kWander / t));
     const double doubt = std::hypot(package->sigma, wandered);
     const double share = kTurned * kTurned / (kTurned * kTurned + doubt * doubt);  // of what is seen, by the prior
     s.R_BI = quaternion_from_rotation_vector(share * package->turn).toRotationMatrix();
