@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include "common/base/error.hpp"
 #include "common/base/factors.hpp"
@@ -37,12 +36,7 @@ Matrix6d rigid_inertia(const Vehicle& vehicle) {
   M.topLeftCorner<3, 3>().diagonal().setConstant(vehicle.mass);
   M.topRightCorner<3, 3>() = -vehicle.mass * S;
   M.bottomLeftCorner<3, 3>() = vehicle.mass * S;
-  M.bottomRightCorner<3, 3>() = -vehicle.mass * S * S;  // the parallel axes
-  M.bottomRightCorner<3, 3>().diagonal() += vehicle.inertia;
-  for (const auto& [i, j, value] : {std::tuple{3, 4, h.products[0]}, {3, 5, h.products[1]}, {4, 5, h.products[2]}}) {
-    M(i, j) += value;
-    M(j, i) += value;
-  }
+  M.bottomRightCorner<3, 3>() = h.inertia(vehicle.inertia) - vehicle.mass * S * S;  // parallel axes
   return M;
 }
 

@@ -88,6 +88,14 @@ std::vector<ManoeuvringCoefficient> read_coefficients(const Config& config) {
   return coefficients;
 }
 
+Eigen::Matrix3d Hydrodynamics::inertia(const Eigen::Vector3d& diagonal) const {
+  Eigen::Matrix3d I = diagonal.asDiagonal();
+  I(0, 1) = I(1, 0) = products[0];
+  I(0, 2) = I(2, 0) = products[1];
+  I(1, 2) = I(2, 1) = products[2];
+  return I;
+}
+
 Hydrodynamics Hydrodynamics::from(const Config& config, const Eigen::Vector3d& inertia) {
   Hydrodynamics h;
   h.length = bounded::positive(config, "length", "m");
@@ -102,11 +110,7 @@ Hydrodynamics Hydrodynamics::from(const Config& config, const Eigen::Vector3d& i
   if (config.has("centre_of_mass")) h.p_BG = bounded::vector3(config, "centre_of_mass", "m");
   if (config.has("products_of_inertia")) {
     h.products = bounded::vector3(config, "products_of_inertia", "kg m^2");
-    Eigen::Matrix3d I = inertia.asDiagonal();
-    I(0, 1) = I(1, 0) = h.products[0];
-    I(0, 2) = I(2, 0) = h.products[1];
-    I(1, 2) = I(2, 1) = h.products[2];
-    require_energy(config, "products_of_inertia", I, "the inertia about the centre of mass");
+    require_energy(config, "products_of_inertia", h.inertia(inertia), "the inertia about the centre of mass");
   }
   if (config.has("coefficients")) h.coefficients = read_coefficients(config.section("coefficients"));
   if (config.has("reference")) h.reference = read_coefficients(config.section("reference"));

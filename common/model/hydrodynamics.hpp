@@ -52,6 +52,9 @@ struct Hydrodynamics {
   std::vector<LoadCell> load_cells;  ///< order of LOADS
 
   /// `inertia` [kg m^2]: of the vehicle file, about the centre of mass; products must go with it.
+  /// The inertia's matrix about the centre of mass, of which the vehicle file states the `diagonal` [kg m^2].
+  [[nodiscard]] Eigen::Matrix3d inertia(const Eigen::Vector3d& diagonal) const;
+
   [[nodiscard]] static Hydrodynamics from(const Config& config, const Eigen::Vector3d& inertia);
 };
 

@@ -51,6 +51,7 @@ fathom_lcm::tag_pose_t encode(const TagPose& sample) {
 
 std::optional<OpticalFlow> decode(const fathom_lcm::optical_flow_t& message) {
   if (!finite(message.flow_C) || !finite(message.interval) || !finite(message.covariance)) return {};
+  if (message.covariance[0] < 0.0 || message.covariance[4] < 0.0) return {};  // the third alone may be unmeasured
   return OpticalFlow{
       .utime = message.utime,
       .camera = message.camera,

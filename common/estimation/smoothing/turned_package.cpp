@@ -17,17 +17,11 @@ constexpr std::size_t kFewest = 30;    // windows
 constexpr double kLeastKnown = 0.01;   // rad: worse than the mount of any instrument
 constexpr double kLeastSpread = 1e-5;  // rad, of what windows leave: rounding
 constexpr int kRounds = 4;             // of weighing
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct Window {
   Eigen::Vector3d told, summed;  // rad, rotation vectors by attitude and by rates
   double length{};               // s
 };
-
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
-  const Eigen::AngleAxisd turn{q};
-  return (turn.angle() > M_PI ? turn.angle() - 2.0 * M_PI : turn.angle()) * turn.axis();
-}
 
 std::vector<Window> windows_of(std::span<const Ahrs> stream) {
   std::vector<Window> windows;
@@ -50,7 +44,8 @@ std::vector<Window> windows_of(std::span<const Ahrs> stream) {
     before = &one;
     const double length = seconds_between(begin->utime, one.utime);
     if (length < kWindow) continue;
-    windows.push_back({rotation_vector(begin->q_WB.conjugate() * one.q_WB), rotation_vector(sum), length});
+    windows.push_back({rotation_vector_from_quaternion(begin->q_WB.conjugate() * one.q_WB),
+                       rotation_vector_from_quaternion(sum), length});
     begin = &one;
     sum.setIdentity();
   }
@@ -63,7 +58,7 @@ std::optional<TurnedPackage> turned_package(std::span<const Ahrs> stream) {
   const std::vector<Window> windows = windows_of(stream);
   if (windows.size() < kFewest) return std::nullopt;
   Eigen::MatrixXd information;
-  Vector6 x = Vector6::Zero();  // turn, bias
+  Vector6d x = Vector6d::Zero();  // turn, bias
   double spread = 0.0;
   const auto left = [&](const Window& one) {
     return Eigen::Vector3d{one.summed - one.told - one.told.cross(Eigen::Vector3d{x.head<3>()}) -
@@ -74,7 +69,7 @@ std::optional<TurnedPackage> turned_package(std::span<const Ahrs> stream) {
     for (const Window& one : windows) residuals.push_back(left(one).norm() / std::sqrt(3.0));
     spread = std::max(median(residuals), kLeastSpread);
     information = Eigen::MatrixXd::Zero(6, 6);
-    Vector6 right = Vector6::Zero();
+    Vector6d right = Vector6d::Zero();
     for (std::size_t i = 0; i < windows.size(); ++i) {
       const double weight = huber_weight(residuals[i] / spread);
       Eigen::Matrix<double, 3, 6> row;

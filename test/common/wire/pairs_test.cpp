@@ -179,6 +179,18 @@ TEST_CASE("wire: every sample of minds, commands and processes comes back whole,
   check_pair<ProcessInfo, 5>();
 }
 
+TEST_CASE("wire: flow of a negative variance is refused; the third component may say that it was not measured") {
+  auto message = filled_message<OpticalFlow>();
+  message.covariance[8] = -1.0;
+  REQUIRE(wire::decode(message));
+  CHECK_FALSE(wire::decode(message)->tells_approach());
+  for (const int across : {0, 4}) {
+    auto forged = message;
+    forged.covariance[across] = -1e-6;
+    CHECK_FALSE(wire::decode(forged));
+  }
+}
+
 TEST_CASE("wire: quaternions travel as w x y z and must be unit") {
   auto message = filled_message<PoseCapture>();
   CHECK(message.q_WB[0] == doctest::Approx(1.0 / std::sqrt(30.0)));
