@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/near_name.hpp"
+#include "common/tables/readers.hpp"
 
 namespace fathom::recordings {
 namespace {
