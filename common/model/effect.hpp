@@ -33,8 +33,9 @@ struct Traits {
   bool knows_size{false};     ///< its numbers' sigmas are already those of the data at hand
   bool feels_motion{true};    ///< false: feel() changes the thrust by command, time and voltage alone, or nothing
   bool feels_place{false};    ///< the wrench depends on where the vehicle is (not only on how it moves)
-  /// The memory depends on how the vehicle has moved (not only on commands). advance() and feel() must then be linear
-  /// in the relative velocity and the memory, and alter w_memory alone, so that derivatives go the same way.
+  /// The memory depends on how the vehicle has moved (not only on commands), or leaves a wrench rather than a thrust.
+  /// advance() and feel() must then be linear in the relative velocity, the thrust and the memory, feel() by the memory
+  /// alone, and alter w_memory alone, so that derivatives go the same way.
   bool remembers_motion{false};
   bool asked_first{false};  ///< the recording's business rather than the vehicle's: a force would stand in for it
   /// A craft that lives by its flow has it by its nature: it takes no place among the names of what is missing.

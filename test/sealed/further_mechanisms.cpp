@@ -1,6 +1,8 @@
 // Further forms of listed effects, and effects listed later: drawn only when asked for by name (--only), so that the
 // numbers of the benchmark's sets keep their meaning. The name behind the colon is the form's.
+#include "test/sealed/interaction_mechanisms.hpp"
 #include "test/sealed/mechanism_tools.hpp"
+#include "test/sealed/site_mechanisms.hpp"
 
 namespace fathom::sealed {
 namespace {
@@ -275,21 +277,26 @@ class TurningStream : public Sized {
 
 const std::vector<Entry>& further() {
   const Needs single{.thrusters = true}, clock{.clock = true};
-  static const std::vector<Entry> list{{"centre_of_mass", {}, make<CentreOfMass>},
-                                       {"current:tide", clock, make<TideTurns>},
-                                       {"current:turning", clock, make<TurningStream>},
-                                       {"current:sheared", {}, make<ShearedStream>},
-                                       {"centre_of_mass:tilting", {.tilting = true}, make<CentreOfMass>},
-                                       {"tether_tension:astern", {}, make<TetherAstern>},
-                                       {"tether_tension:astern tilting", {.tilting = true}, make<TetherAstern>},
-                                       {"tether_drag:astern", {}, make<TowAstern>},
-                                       {"thruster_delay:two", single, make<TwoDelays>},
-                                       {"thruster_lag:two", single, make<TwoLags>},
-                                       {"thruster_lag:shaft", single, make<ShaftLag>},
-                                       {"thruster_lag:torque", single, make<TorqueLag>},
-                                       {"thruster_deadband:rounded", single, make<SoftBand>},
-                                       {"bottom_effect:suction", {}, make<Suction>},
-                                       {"wall_effect:suction", {}, make<Suction>}};
+  static const std::vector<Entry> list = [&] {
+    std::vector<Entry> all{{"centre_of_mass", {}, make<CentreOfMass>},
+                           {"current:tide", clock, make<TideTurns>},
+                           {"current:turning", clock, make<TurningStream>},
+                           {"current:sheared", {}, make<ShearedStream>},
+                           {"centre_of_mass:tilting", {.tilting = true}, make<CentreOfMass>},
+                           {"tether_tension:astern", {}, make<TetherAstern>},
+                           {"tether_tension:astern tilting", {.tilting = true}, make<TetherAstern>},
+                           {"tether_drag:astern", {}, make<TowAstern>},
+                           {"thruster_delay:two", single, make<TwoDelays>},
+                           {"thruster_lag:two", single, make<TwoLags>},
+                           {"thruster_lag:shaft", single, make<ShaftLag>},
+                           {"thruster_lag:torque", single, make<TorqueLag>},
+                           {"thruster_deadband:rounded", single, make<SoftBand>},
+                           {"bottom_effect:suction", {}, make<Suction>},
+                           {"wall_effect:suction", {}, make<Suction>}};
+    for (const auto& part : {interaction_mechanisms(), surface_mechanisms()})
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
   return list;
 }
 

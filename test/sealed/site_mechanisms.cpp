@@ -55,14 +55,14 @@ class TetherDrag : public Sized {
   double unit_;
 };
 
-/// A solid plane: near it all drag grows, or the thrusters' wash cushions the vehicle off it.
+/// A plane at which the water ends: near it all drag grows, or the vehicle is pushed off it.
 class Plane : public Sized {
  public:
   Plane(const std::string& name, const Craft& craft, const Site& site, Random& random)
       : Sized(name, 0.5, 25.0), pushes_(random.chance(0.4)), reach_(random.uniform(0.5, 1.2) * craft.extent.y() + 0.1) {
-    const bool bottom = name == "bottom_effect";
-    const int axis = bottom ? 2 : random.below(2);
-    normal_ = Vector3d::Unit(axis) * (bottom ? 1.0 : random.sign());  // into the solid
+    const bool surface = name == "surface_effect", level = surface || name == "bottom_effect";
+    const int axis = level ? 2 : random.below(2);
+    normal_ = Vector3d::Unit(axis) * (surface ? -1.0 : level ? 1.0 : random.sign());  // into what is no water
     place_ = normal_.dot(site.centre) + 0.75 * site.half[axis] + 0.5 * craft.extent.y();
     force_ = usual_drag(craft)[0];
   }
@@ -149,5 +149,7 @@ std::vector<Entry> site_mechanisms() {
           {"bottom_effect", {}, make<Plane>},
           {"wall_effect", {}, make<Plane>}};
 }
+
+std::vector<Entry> surface_mechanisms() { return {{"surface_effect", {}, make<Plane>}}; }
 
 }  // namespace fathom::sealed

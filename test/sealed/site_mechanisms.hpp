@@ -5,4 +5,6 @@
 
 namespace fathom::sealed {
 [[nodiscard]] std::vector<Entry> site_mechanisms();
-}
+/// The water's surface: drawn by name alone.
+[[nodiscard]] std::vector<Entry> surface_mechanisms();
+}  // namespace fathom::sealed

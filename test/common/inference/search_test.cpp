@@ -15,10 +15,9 @@ using namespace fathom::inference;
 
 namespace {
 
-Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::string>& without = {},
-                    const char* craft = "bluerov2") {
-  static std::map<std::string, model::Vehicle> vehicles;  // a conclusion refers to its vehicle
-  const model::Vehicle& vehicle = vehicles.try_emplace(craft, test::vehicle_from_repository(craft)).first->second;
+/// A conclusion refers to its vehicle.
+Conclusion inferred(const model::Vehicle& vehicle, const test::NoisyDive& settings,
+                    const std::vector<std::string>& without = {}) {
   const auto dive = test::fly(vehicle, settings);
   const auto begin = std::chrono::steady_clock::now();
   const Conclusion conclusion =
@@ -59,6 +58,12 @@ Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::stri
                   force.share);
   }
   return conclusion;
+}
+
+Conclusion inferred(const test::NoisyDive& settings, const std::vector<std::string>& without = {},
+                    const char* craft = "bluerov2") {
+  static std::map<std::string, model::Vehicle> vehicles;
+  return inferred(vehicles.try_emplace(craft, test::vehicle_from_repository(craft)).first->second, settings, without);
 }
 
 }  // namespace
@@ -118,6 +123,25 @@ TEST_CASE("search: what a boat's flow does by nature is found whole, and takes n
   CHECK(effects[0].theta[1] == doctest::Approx(31.0).epsilon(0.1));
   CHECK(effects[0].theta[4] == doctest::Approx(0.5).epsilon(0.2));
   CHECK(effects[1].theta[0] == doctest::Approx(96.0).epsilon(0.2));
+}
+
+TEST_CASE("search: a thruster whose jet crosses another's is told from thrusters that are weak") {
+  model::Vehicle crossed = test::vehicle_from_repository("bluerov2");
+  const model::Thruster& blows = crossed.thrusters[0];
+  model::Thruster& blown_at = crossed.thrusters[2];
+  blown_at.p_BJ = blows.p_BJ - 0.3 * blows.axis_B;
+  crossed.allocation.col(2) << blown_at.axis_B, blown_at.p_BJ.cross(blown_at.axis_B);
+  const model::Effect& wake = *model::find_effect("thruster_wake");
+  const auto forms = wake.variants({.vehicle = &crossed});
+  const std::string pair = blown_at.name + " in the jet of " + blows.name;
+  const auto form = static_cast<int>(std::ranges::find(forms, pair) - forms.begin());
+  const Conclusion found = inferred(
+      crossed, {.duration = 90.0, .seed = 8, .force = 0.05, .effects = {test::active("thruster_wake", {0.3}, form)}});
+  CHECK(found.verdict == Verdict::effect);
+  REQUIRE(found.found.best.names == std::vector<std::string>{"thruster_wake"});
+  const model::ActiveEffect& named = found.found.best.fit.hypothesis.model.effects.front();
+  CHECK(named.variant_name == pair);
+  CHECK(named.theta[0] == doctest::Approx(0.3).epsilon(0.15));
 }
 
 TEST_CASE("free force: it finds what no list holds, says what it goes with, and nothing where nothing is") {

@@ -17,11 +17,12 @@ namespace {
 
 constexpr double kAbsent = 1e-12;  // relative: battery_sag multiplies by pow(x, 0)
 
-/// Six axes, eight thrusters, one component of the restoring moment that the base model does not have, and something
-/// that stands above the water.
+/// Six axes, eight thrusters, two of them one behind the other, one component of the restoring moment that the base
+/// model does not have, and something that stands above the water.
 model::Vehicle vehicle_without_G_y() {
   model::Vehicle vehicle = test::vehicle_from_repository("beluga");
   vehicle.windage = 0.2;
+  vehicle.thrusters[1].p_BJ = vehicle.thrusters[0].p_BJ + 0.3 * vehicle.thrusters[0].axis_B;
   const auto place = std::find(vehicle.parameters.begin(), vehicle.parameters.end(), "G_y");
   vehicle.priors.erase(vehicle.priors.begin() + (place - vehicle.parameters.begin()));
   vehicle.parameters.erase(place);

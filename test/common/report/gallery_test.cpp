@@ -21,7 +21,7 @@ constexpr double kDuration = 60.0, kStep = 0.05;  // s
 constexpr double kShown = 30.0;                   // s
 constexpr double kPlain = 0.1;                    // of the applied wrench (rms): an effect of this size is plain to see
 constexpr double kFloor = 8.0;                    // times what differences leave of a residual without any effect
-constexpr std::size_t kLeastDrawn = 32;           // all that there were when this was written
+constexpr std::size_t kLeastDrawn = 38;           // all that there were when this was written
 constexpr int kColumns = 3, kWidth = 330, kHeight = 170;
 const std::string kPage = std::string{FATHOM_SOURCE_DIR} + "/docs/gallery.md";
 const std::string kPicture = std::string{FATHOM_SOURCE_DIR} + "/docs/gallery.svg";
@@ -160,6 +160,9 @@ TEST_CASE("gallery: every effect shows in the residual, and the page names each"
   sailing.flow_matters = true;
   sailing.windage = 0.1;
   const Craft flying{sailing};
+  model::Vehicle behind = heavy;  // no jet of this frame meets another thruster
+  behind.thrusters[1].p_BJ = behind.thrusters[0].p_BJ + 0.3 * behind.thrusters[0].axis_B;
+  const Craft crowded{behind};
   std::vector<report::Figure> figures;
   std::string rows;
   std::vector<std::string> begins;
@@ -168,7 +171,7 @@ TEST_CASE("gallery: every effect shows in the residual, and the page names each"
     Leftovers residual;
     std::optional<model::ActiveEffect> active;
     const Craft* flown = nullptr;
-    for (const Craft* craft : {&rov, &light, &flying}) {
+    for (const Craft* craft : {&rov, &light, &flying, &crowded}) {
       model::Scene scene = model::scene_of(craft->vehicle, {&craft->calm.trial, 1});
       if (effect->measures()) scene.position = scene.attitude = false;  // else kinematics finds it, not the residual
       flown = craft;
@@ -181,7 +184,9 @@ TEST_CASE("gallery: every effect shows in the residual, and the page names each"
     }
     const Eigen::Index axis = strongest(residual);
     CHECK(residual.left_rms[axis] > kFloor * flown->bare.left_rms[axis]);
-    const std::string of = flown == &flying ? " (of craft that live by the flow past them)" : "";
+    std::string of;
+    if (flown == &flying) of = " (of craft that live by the flow past them)";
+    if (flown == &crowded) of = " (of a craft that has one thruster behind another)";
     const std::string title = report::effect_title(std::string{effect->name()}, active->variant_name);
     figures.push_back(panel(report::effect_title(std::string{effect->name()}), residual, axis));
     std::string numbers;

@@ -10,17 +10,20 @@
 // 1/2 rho A C_L over all surfaces, times x and x^2 (strip theory of quasi-steady lift, Newman 1977, sec. 7.9). A
 // surface at an angle is drawn ahead by the suction at its nose, less what its wake takes: X = E_S (S v^2 + 2 S_x v r +
 // S_xx r^2) u / |(u, v)|, E_S = 1 - C_L' / (pi AR) of an elliptic wing (Prandtl's lifting line; Fossen 2021, sec. 9.7),
-// some .5; up and down E_H with H, w and -q. A fin that turns by delta leans its lift back with it: X = -D_S L delta, L
-// its lift at that deflection in straight flow, D_S = 1 - E_S. In a propeller's wash it meets the drift with more speed
-// than the hull's, which adds W_S (some 1) times what its slope and the wash make of it; beyond the stall, by its whole
-// angle to the flow, B_S (some 1) times what lies beyond is gone. Every craft that steers by its flow has that, and no
-// free force is told from others beside a base model that lacks it: so it is asked for before anything else. Ignores:
-// stall of the hull, the product of deflection and drift, (1 - 2 D_S) of either. Revealed by drifting and turning at
-// several speeds ahead and astern, and at rest. Confused with linear drag across at one speed, with masses that serve
-// inertia and Coriolis moment at once, with speed_drag, and E_S with turning_resistance.
+// some .5; up and down E_H with H, w and -q. What the actuators give of a fin that turns is its lift by its deflection
+// alone, in straight flow. Its whole law is that of an angle, alpha = delta - atan(across, along) as far as the stall,
+// at the speed V past it, its propeller's wash included: lift q V^2 alpha square to the flow, and D_S times q V^2
+// alpha^2 along it (D_S = C_L' / (pi e AR), some .5). F_S, some 1, is the share of what that law adds to the lift: that
+// a drifting fin resists being carried across, in the wash most of all, leans back, and stalls by its whole angle.
+// Every craft that steers by its flow has that, and no free force is told from others beside a base model that lacks
+// it: so it is asked for before anything else. Ignores: stall of the hull. Revealed by drifting and turning at several
+// speeds ahead and astern, and at rest. Confused with linear drag across at one speed, with masses that serve inertia
+// and Coriolis moment at once, with speed_drag, and E_S with turning_resistance.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "common/model/actuators.hpp"
 #include "common/model/speed_products.hpp"
@@ -35,36 +38,33 @@ constexpr std::array kBodyLiftParameters{EffectParameter{.name = "coefficient", 
                                          EffectParameter{.name = "S_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "E_S", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_S", .unit = "1/rad", .sigma = 0.5},
-                                         EffectParameter{.name = "W_S", .unit = "", .sigma = 1.0},
-                                         EffectParameter{.name = "B_S", .unit = "", .sigma = 1.0},
+                                         EffectParameter{.name = "F_S", .unit = "", .sigma = 1.0},
                                          EffectParameter{.name = "H", .unit = "N/(m/s)^2", .sigma = 60.0},
                                          EffectParameter{.name = "H_x", .unit = "N/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "H_xx", .unit = "N m/(m/s)/(rad/s)", .sigma = 30.0},
                                          EffectParameter{.name = "E_H", .unit = "", .sigma = 0.5},
                                          EffectParameter{.name = "D_H", .unit = "1/rad", .sigma = 0.5},
-                                         EffectParameter{.name = "W_H", .unit = "", .sigma = 1.0},
-                                         EffectParameter{.name = "B_H", .unit = "", .sigma = 1.0}};
-constexpr std::size_t kSideways = 1, kUpAndDown = 8;  // where the numbers of each begin
-constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4, kWash = 5, kStall = 6;
+                                         EffectParameter{.name = "F_H", .unit = "", .sigma = 1.0}};
+constexpr std::size_t kSideways = 1, kUpAndDown = 7;  // where the numbers of each begin
+constexpr std::size_t kLift = 0, kLiftX = 1, kLiftXX = 2, kSuction = 3, kDrag = 4, kWhole = 5;
 constexpr double kSlowest = 0.02;  // m/s, rad/s RMS: less shows no lift
+constexpr double kNoFlow = 1e-9;   // m/s: no angle to a flow that is none
 
 constexpr Eigen::Index kU = 0;
-
-enum class Turning { kNothing, kFins, kFinsInWash };
 
 /// All surfaces that stand one way: `across` 1 with yaw, or 2 with pitch. With fins that turn, lift costs resistance.
 class LiftingSurfaces final : public Form {
  public:
-  LiftingSurfaces(Eigen::Index across, Turning fins, const char* name)
+  LiftingSurfaces(Eigen::Index across, bool fins, std::string name)
       : Form{{.sought = numbers_of(first_of(across), fins), .drawn = kDrawn}},
         across_{across},
         fins_{fins},
-        name_{name} {}
+        name_{std::move(name)} {}
   FormName name(const Scene& scene) const override {
     const Vehicle& vehicle = *scene.vehicle;
     const bool moves = scene.nu_rms[kU] > kSlowest && scene.nu_rms[across_] > 0.25 * kSlowest;
     return when(lives_by_flow(vehicle) && vehicle.dof[static_cast<std::size_t>(across_)] &&
-                    vehicle.dof[static_cast<std::size_t>(turning())] && moves && turning_in(scene) == fins_,
+                    vehicle.dof[static_cast<std::size_t>(turning())] && moves && fins_turn(scene) == fins_,
                 name_);
   }
   Starts starts(const Scene& scene) const override {
@@ -87,17 +87,14 @@ class LiftingSurfaces final : public Form {
           theta[kLift] * along * along + 2.0 * theta[kLiftX] * along * turn + theta[kLiftXX] * turn * turn;
       load.wrench[kU] += theta[kSuction] * square * nu_r[kU] / past;
     }
-    const bool fins = theta[kDrag] != 0.0 || theta[kWash] != 0.0 || theta[kStall] != 0.0;
+    const bool fins = theta[kDrag] != 0.0 || theta[kWhole] != 0.0;
     if (!fins || motion.vehicle == nullptr) return;
     const auto& thrusters = motion.vehicle->thrusters;
     if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return;
     for (std::size_t i = 0; i < thrusters.size(); ++i) {
       if (!stands(thrusters[i])) continue;
-      const auto place = static_cast<Eigen::Index>(i);
-      const Eigen::Vector3d force_B = -theta[kDrag] * leaning(motion, place) * Eigen::Vector3d::UnitX() -
-                                      (theta[kWash] * washed(motion, thrusters[i]) +
-                                       theta[kStall] * stalled(motion, thrusters[i], motion.force[place])) *
-                                          thrusters[i].axis_B;
+      const Eigen::Vector3d force_B =
+          beside_straight_flow(motion, thrusters[i], motion.force[static_cast<Eigen::Index>(i)], theta);
       load.wrench.head<3>() += force_B;
       load.wrench.tail<3>() += thrusters[i].p_BJ.cross(force_B);
     }
@@ -106,64 +103,40 @@ class LiftingSurfaces final : public Form {
  private:
   static constexpr double kDrawn = 0.2;
   static constexpr std::size_t first_of(Eigen::Index across) { return across == 1 ? kSideways : kUpAndDown; }
-  static constexpr NumberSet numbers_of(std::size_t first, Turning fins) {
+  static constexpr NumberSet numbers_of(std::size_t first, bool fins) {
     NumberSet set{first + kLift, first + kLiftX, first + kLiftXX, first + kSuction};
-    if (fins != Turning::kNothing) set.add(first + kDrag), set.add(first + kStall);
-    if (fins == Turning::kFinsInWash) set.add(first + kWash);
+    if (fins) set.add(first + kDrag), set.add(first + kWhole);
     return set;
   }
   [[nodiscard]] Eigen::Index turning() const { return across_ == 1 ? 5 : 4; }
   [[nodiscard]] bool stands(const Thruster& one) const {
     return one.fin.has_value() && std::abs(one.axis_B[across_]) > 0.7;
   }
-  [[nodiscard]] Turning turning_in(const Scene& scene) const {
-    Turning found = Turning::kNothing;
-    for (const Thruster& one : scene.vehicle->thrusters) {
-      if (scene.input_is_wrench || !stands(one)) continue;
-      if (one.fin->behind >= 0) return Turning::kFinsInWash;
-      found = Turning::kFins;
-    }
-    return found;
+  [[nodiscard]] bool fins_turn(const Scene& scene) const {
+    return !scene.input_is_wrench &&
+           std::ranges::any_of(scene.vehicle->thrusters, [this](const Thruster& one) { return stands(one); });
   }
-  /// Water past a fin.
-  struct Past {
-    double ahead{};   ///< m/s, the hull's own
-    double square{};  ///< (m/s)^2 with the wash, negative astern
-    double across{};  ///< m/s along the fin's axis
-  };
-  [[nodiscard]] static Past past(const Motion& motion, const Thruster& one) {
+  /// N in B: what the whole law of a fin adds to its lift in straight flow, `told` N at the reference speed.
+  [[nodiscard]] static Eigen::Vector3d beside_straight_flow(const Motion& motion, const Thruster& one, double told,
+                                                            EffectTheta theta) {
+    const Fin& fin = *one.fin;
     const Eigen::Vector3d v_r = motion.nu_r().head<3>() + motion.nu.tail<3>().cross(one.p_BJ);
-    Past water{v_r.x(), v_r.x() * std::abs(v_r.x()), one.axis_B.dot(v_r)};
-    if (one.fin->behind >= 0)
-      water.square += one.fin->slipstream * std::max(acting_force(*motion.vehicle, motion, one.fin->behind), 0.0);
-    return water;
-  }
-  /// N: what a propeller's wash adds to the lift by which a fin resists being carried across.
-  [[nodiscard]] static double washed(const Motion& motion, const Thruster& one) {
-    if (one.fin->behind < 0) return 0.0;
-    const Past water = past(motion, one);
-    const double reference = one.fin->reference_speed;
-    return one.fin->slope * water.across * (std::sqrt(std::abs(water.square)) - std::abs(water.ahead)) /
-           (reference * reference);
-  }
-  /// N: lift that a fin at this angle to the flow does not have any more.
-  [[nodiscard]] static double stalled(const Motion& motion, const Thruster& one, double told) {
-    const Past water = past(motion, one);
-    const double drift = std::atan2(water.across, std::max(std::sqrt(std::abs(water.square)), kSlowest));
-    const double angle = told / one.fin->slope - (water.square < 0.0 ? -drift : drift);
-    const double beyond = angle - std::clamp(angle, -one.fin->stall, one.fin->stall);
-    return one.fin->slope * beyond * water.square / (one.fin->reference_speed * one.fin->reference_speed);
-  }
-  /// N: lift of a fin at its deflection in straight flow, times the deflection.
-  [[nodiscard]] static double leaning(const Motion& motion, Eigen::Index i) {
-    const Fin& fin = *motion.vehicle->thrusters[static_cast<std::size_t>(i)].fin;
-    const double deflection = motion.force[i] / fin.slope;
-    return acting_force(*motion.vehicle, motion, i) * std::clamp(deflection, -fin.stall, fin.stall);
+    double square = v_r.x() * std::abs(v_r.x());  // (m/s)^2, negative astern
+    if (fin.behind >= 0) square += fin.slipstream * std::max(acting_force(*motion.vehicle, motion, fin.behind), 0.0);
+    const double along = std::copysign(std::sqrt(std::abs(square)), square), across = one.axis_B.dot(v_r);
+    const double speed = std::hypot(along, across);
+    if (speed < kNoFlow) return Eigen::Vector3d::Zero();
+    const double drift = std::atan2(across, std::abs(along)) * (along < 0.0 ? -1.0 : 1.0);
+    const double alpha = std::clamp(told / fin.slope - drift, -fin.stall, fin.stall);
+    const double q = fin.slope / (fin.reference_speed * fin.reference_speed);   // N/rad per (m/s)^2
+    const double lift = q * speed * alpha, drag = theta[kDrag] * lift * alpha;  // per m/s of the flow
+    return (-theta[kWhole] * lift * across - drag * along) * Eigen::Vector3d::UnitX() +
+           (theta[kWhole] * (lift * along - q * square * told / fin.slope) - drag * across) * one.axis_B;
   }
 
   Eigen::Index across_;
-  Turning fins_;
-  const char* name_;
+  bool fins_;
+  std::string name_;
 };
 
 Forms every_product() {
@@ -174,13 +147,11 @@ Forms every_product() {
   for (const Sense sense : {Sense::kWithSign, Sense::kEitherWay}) {
     for (const auto& [row, column] : kLoadedBy) all.push_back(std::make_unique<SpeedProduct>(row, kU, column, sense));
   }
-  const auto both = [&](Turning fins, const char* aside, const char* below) {
-    all.push_back(std::make_unique<LiftingSurfaces>(1, fins, aside));
-    all.push_back(std::make_unique<LiftingSurfaces>(2, fins, below));
-  };
-  both(Turning::kNothing, "hull, sideways", "hull, up and down");
-  both(Turning::kFins, "hull and fins, sideways", "hull and fins, up and down");
-  both(Turning::kFinsInWash, "hull and fins in a wash, sideways", "hull and fins in a wash, up and down");
+  for (const Eigen::Index across : {1, 2}) {
+    const std::string way = across == 1 ? ", sideways" : ", up and down";
+    all.push_back(std::make_unique<LiftingSurfaces>(across, false, "hull" + way));
+    all.push_back(std::make_unique<LiftingSurfaces>(across, true, "hull and fins" + way));
+  }
   return all;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -99,7 +100,7 @@ TEST_CASE("body_lift: surfaces that stand one way lift with the water's angle at
   model::Motion motion = moving();
   // Two surfaces, at 0.5 m and -2 m, of 3 and 8 N/(m/s)^2.
   const double sum = 3.0 + 8.0, at_x = 0.5 * 3.0 - 2.0 * 8.0, at_xx = 0.25 * 3.0 + 4.0 * 8.0;
-  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, 0.0};
+  const std::vector<double> theta{0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0, sum, at_x, at_xx, 0.0, 0.0, 0.0};
   const int sideways = variant_of("body_lift", "hull, sideways");
   const int upright = variant_of("body_lift", "hull, up and down");
   for (const double u : {0.8, -0.8}) {
@@ -133,73 +134,83 @@ TEST_CASE("body_lift: a surface at an angle is drawn towards where it goes, in p
   }
 }
 
-TEST_CASE("body_lift: a fin's lift leans back with its deflection, as far as the stall") {
-  model::Vehicle craft;
-  craft.dof = {true, true, false, false, false, true};
-  craft.thrusters.resize(1);
-  craft.thrusters[0].axis_B = Eigen::Vector3d::UnitY();
-  craft.thrusters[0].p_BJ = {-1.0, 0.0, 0.0};
-  craft.thrusters[0].fin = model::Fin{.slope = 40.0, .stall = 0.5, .reference_speed = 2.0};
-  craft.allocation.setZero(6, 1);
-  craft.allocation(1, 0) = 1.0;
-  craft.allocation(5, 0) = -1.0;
-  craft.flow_matters = true;
-  model::Scene scene{.vehicle = &craft};
-  scene.nu_rms.setConstant(0.3);
-  const auto names = model::find_effect("body_lift")->variants(scene);
-  const auto found = std::ranges::find(names, "hull and fins, sideways");
-  REQUIRE(found != names.end());
-  model::Motion motion{.vehicle = &craft};
-  motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;
-  const std::vector<double> theta{0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  for (const double deflection : {0.2, -0.3, 2.0}) {
-    motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
-    // At half of the reference speed a quarter of the force that is told.
-    CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion)[0] ==
-          doctest::Approx(-0.5 * 10.0 * deflection * std::min(deflection, 0.5)).epsilon(kProductRounding));
-  }
-  // Beyond the stall by its whole angle, of which the drift is a part, it lifts no more.
-  std::vector<double> stall(theta.size(), 0.0);
-  stall[7] = 1.0;  // B_S
-  for (const double deflection : {0.2, 0.4, -0.3}) {
-    motion.force = Eigen::VectorXd::Constant(1, 40.0 * deflection);
-    const double beyond = std::max(deflection + std::atan(0.2) - 0.5, 0.0);
-    CHECK(wrench_of("body_lift", stall, static_cast<int>(found - names.begin()), motion)[1] ==
-          doctest::Approx(-10.0 * beyond).epsilon(kProductRounding));
-  }
-}
+namespace {
 
-TEST_CASE("body_lift: a fin in a propeller's wash resists being carried across, at rest too") {
+/// A fin aft, with a propeller before it or none.
+model::Vehicle with_fin(int behind, double slipstream) {
   model::Vehicle craft;
   craft.dof = {true, true, false, false, false, true};
   craft.thrusters.resize(2);
   craft.thrusters[1].axis_B = Eigen::Vector3d::UnitY();
   craft.thrusters[1].p_BJ = {-1.0, 0.0, 0.0};
   craft.thrusters[1].fin =
-      model::Fin{.slope = 40.0, .stall = 0.5, .reference_speed = 2.0, .behind = 0, .slipstream = 0.1};
+      model::Fin{.slope = 40.0, .stall = 0.5, .reference_speed = 2.0, .behind = behind, .slipstream = slipstream};
   craft.allocation.setZero(6, 2);
   craft.allocation.col(0)[0] = craft.allocation.col(1)[1] = 1.0;
   craft.allocation.col(1)[5] = -1.0;
   craft.flow_matters = true;
+  return craft;
+}
+
+/// Ahead + i aside [N] of a foil that goes through the water ahead and aside [m/s]: lift at a right angle to its way.
+std::complex<double> foil(double deflection, std::complex<double> way, double leaning) {
+  const double alpha = std::clamp(deflection - std::arg(way), -0.5, 0.5), lift = 10.0 * std::norm(way) * alpha;
+  return way / std::abs(way) * std::complex<double>{-leaning * lift * alpha, lift};
+}
+
+int fin_form(const model::Vehicle& craft) {
   model::Scene scene{.vehicle = &craft};
   scene.nu_rms.setConstant(0.3);
   const auto names = model::find_effect("body_lift")->variants(scene);
-  const auto found = std::ranges::find(names, "hull and fins in a wash, sideways");
+  const auto found = std::ranges::find(names, "hull and fins, sideways");
   REQUIRE(found != names.end());
-  CHECK(std::ranges::find(names, "hull and fins, sideways") == names.end());
+  CHECK(std::ranges::find(names, "hull, sideways") == names.end());
+  return static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+TEST_CASE("body_lift: a fin that turns and drifts is a foil at its angle to the flow, as far as the stall") {
+  const model::Vehicle craft = with_fin(-1, 0.0);
+  const int form = fin_form(craft);
   model::Motion motion{.vehicle = &craft};
-  std::vector<double> theta(15, 0.0);
-  theta[6] = 0.9;  // W_S
-  motion.force = Eigen::Vector2d(25.0, 0.0);
-  for (const double u : {0.0, 0.8}) {
-    motion.nu << u, 0.1, 0.0, 0.0, 0.0, 0.3;  // at the fin 0.2 m/s to port
-    const Vector6d wrench = wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion);
-    const double aside = 0.9 * 40.0 / 4.0 * 0.2 * (std::sqrt(u * u + 2.5) - u);
-    CHECK(wrench[1] == doctest::Approx(aside).epsilon(kProductRounding));
-    CHECK(wrench[5] == doctest::Approx(-aside).epsilon(kProductRounding));
+  motion.nu << 1.0, 0.1, 0.0, 0.0, 0.0, 0.3;  // at the fin 0.2 m/s to port
+  std::vector<double> theta(model::find_effect("body_lift")->parameters().size(), 0.0);
+  theta[5] = 0.6;  // D_S
+  theta[6] = 1.0;  // F_S
+  for (const double deflection : {0.0, 0.2, -0.3, 0.4, 0.5}) {
+    CAPTURE(deflection);
+    motion.force = Eigen::Vector2d(0.0, 40.0 * deflection);
+    const Vector6d wrench = wrench_of("body_lift", theta, form, motion);
+    const std::complex<double> whole = foil(deflection, {1.0, -0.2}, 0.6);
+    CHECK(wrench[0] == doctest::Approx(whole.real()).epsilon(kProductRounding));
+    // In straight flow at half of the reference speed the actuator gives a quarter of the force that is told.
+    CHECK(wrench[1] + 10.0 * deflection == doctest::Approx(whole.imag()).epsilon(kProductRounding));
+    CHECK(wrench[5] == doctest::Approx(-wrench[1]).epsilon(kProductRounding));
   }
-  motion.force = Eigen::Vector2d(-25.0, 0.0);  // astern there is no wash on it
-  CHECK(wrench_of("body_lift", theta, static_cast<int>(found - names.begin()), motion).isZero(kProductRounding));
+  motion.nu << 1.0, 0.0, 0.0, 0.0, 0.0, 0.0;  // straight on, lift is the actuator's own and leans back alone
+  motion.force = Eigen::Vector2d(0.0, 40.0 * 0.2);
+  const Vector6d straight = wrench_of("body_lift", theta, form, motion);
+  CHECK((straight + 0.6 * 10.0 * 0.2 * 0.2 * Vector6d::Unit(0)).norm() < kProductRounding);
+}
+
+TEST_CASE("body_lift: a fin in a propeller's wash resists being carried across, at rest too") {
+  const model::Vehicle craft = with_fin(0, 0.1);
+  const int form = fin_form(craft);
+  model::Motion motion{.vehicle = &craft};
+  std::vector<double> theta(model::find_effect("body_lift")->parameters().size(), 0.0);
+  theta[6] = 0.9;  // F_S
+  for (const double thrust : {25.0, -25.0}) {
+    for (const double u : {0.0, 0.8}) {
+      motion.force = Eigen::Vector2d(thrust, 0.0);
+      motion.nu << u, 0.1, 0.0, 0.0, 0.0, 0.3;
+      const double along = std::sqrt(u * u + (thrust > 0.0 ? 2.5 : 0.0));  // astern there is no wash on it
+      const Vector6d wrench = wrench_of("body_lift", theta, form, motion);
+      const std::complex<double> whole = 0.9 * foil(0.0, {along, -0.2}, 0.0);
+      CHECK(wrench[1] == doctest::Approx(whole.imag()).epsilon(kProductRounding));
+      CHECK(wrench[5] == doctest::Approx(-whole.imag()).epsilon(kProductRounding));
+    }
+  }
 }
 
 TEST_CASE("cross_flow: is what many strips do, less what a hull does that only drifts or only turns") {
