@@ -98,6 +98,33 @@ bool at_the_same_place(const Fitted& a, const Fitted& b) {
 
 }  // namespace
 
+namespace {
+
+constexpr double kLost = 30.0;          // nats below the model that it extends, priors of the numbers added included
+constexpr std::array kLess{0.25, 0.0};  // of what was added, for a start that led astray; none: where it is known
+
+/// The start with less of what was added to it: numbers that say where, when or how fast stay.
+likelihood::Hypothesis with_less(const Start& start, double share) {
+  likelihood::Hypothesis less = start.hypothesis;
+  for (model::ActiveEffect& active : less.model.effects) {
+    const bool fresh = std::ranges::any_of(start.added, [&](const model::ActiveEffect& one) {
+      return one.effect == active.effect && one.variant == active.variant;
+    });
+    if (!fresh) continue;
+    const auto amplitudes = static_cast<std::size_t>(active.effect->amplitudes());
+    const std::size_t count = amplitudes > 0 ? amplitudes : active.theta.size();
+    for (std::size_t c = 0; c < count; ++c) active.theta[c] *= share;
+  }
+  return less;
+}
+
+/// Whether a fit has lost its way: a model that holds another one is never less likely than that, at its best.
+bool lost(const Start& start, const likelihood::Fit& fit) {
+  return !start.noise_there.empty() && (!fit.finite || fit.log_posterior < start.reached - kLost);
+}
+
+}  // namespace
+
 std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of) {
   if (starts.empty()) return {};
   const auto count = static_cast<double>(starts.size());
@@ -113,8 +140,19 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
     for_each_index(those.size(), threads_, [&](std::size_t k) {
       const std::size_t i = those[k];
       if (!fits[i]) fits[i].emplace(problem_, starts[i].hypothesis, starts[i].noise, options);
+      const bool first = all[i].names.empty();
       gained[i] = fits[i]->round();
       all[i] = judged(fits[i]->fit());
+      for (const double share : kLess) {
+        if (!first || !lost(starts[i], all[i].fit)) break;
+        likelihood::Fitting anew{problem_, with_less(starts[i], share), starts[i].noise_there, options};
+        const double gain = anew.round();
+        Fitted other = judged(anew.fit());
+        if (!other.fit.finite || (all[i].fit.finite && other.score <= all[i].score)) continue;
+        fits[i].emplace(std::move(anew));
+        gained[i] = gain;
+        all[i] = std::move(other);
+      }
     });
   };
   std::vector<std::size_t> open(starts.size());

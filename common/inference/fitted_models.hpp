@@ -31,6 +31,10 @@ struct Fitted {
 struct Start {
   likelihood::Hypothesis hypothesis;
   likelihood::Noise noise;
+  std::vector<model::ActiveEffect> added{};  ///< what it has beside the model that it extends
+  /// Log posterior and noise of that model: with less of what was added the fit would be at least as likely.
+  double reached{-std::numeric_limits<double>::infinity()};
+  likelihood::Noise noise_there{};
 };
 
 /// Log prior of a set: of their number, and uniform over sets and over the forms of each. What a craft that lives by
