@@ -119,7 +119,11 @@ void Searching::note(const Promise& promise) {
 
 Refusal Searching::refusal(const std::string& name, double promised) const {
   const Fitted* best = models_.best_with(name);
-  if (best == nullptr) return {Rule::kScore, promised, thresholds_.score_worth};
+  if (best == nullptr) {
+    // Most of what a name promised before others were found has been theirs.
+    const auto beside = beside_.find(name);
+    return {Rule::kScore, beside != beside_.end() ? beside->second : promised, thresholds_.score_worth};
+  }
   const double odds = best->fit.finite ? best->score - found_.best.score : -std::numeric_limits<double>::infinity();
   if (const auto gave_way = gave_way_.find(name); gave_way != gave_way_.end()) return gave_way->second;
   if (!std::ranges::includes(best->names, found_.best.names))

@@ -207,6 +207,11 @@ bool Searching::take_best(std::vector<Fitted> fits) {
 bool Searching::add_some() {
   const bool pairs = !sought_ && claims(effects()) + 2 <= static_cast<std::size_t>(thresholds_.most_effects);
   std::vector<Proposal> all = proposals(found_.best, thresholds_.score_worth, pairs), first;
+  beside_.clear();
+  for (const auto& [law, promise] : promised_) {
+    double& most = beside_.try_emplace(laws_[law].name, promise.score).first->second;
+    most = std::max(most, promise.score);
+  }
   std::ranges::copy_if(all, std::back_inserter(first), &Proposal::first);
   std::erase_if(all, [](const Proposal& proposal) { return proposal.first; });
   const likelihood::Fit from = found_.best.fit;

@@ -126,6 +126,7 @@ class Searching {
   Found found_;
   bool sought_{};  // on stretches already: forms, times and places, and what could stand in another's place
   std::map<std::string, Promise> noted_;
+  std::map<std::string, double> beside_;  // what each name promised beside the best model, as it was last looked at
   std::map<std::size_t, Promise> promised_;          // by law, in the last look
   std::vector<std::pair<double, Proposal>> behind_;  // promised, in the last look: too little beside the best
   std::map<std::string, Refusal> failed_;            // what evidence alone would have named

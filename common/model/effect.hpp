@@ -26,6 +26,9 @@ struct Traits {
   std::string_view name;         ///< = file name = registry line
   std::string_view sentence;     ///< for people
   std::string_view revealed_by;  ///< the motion that shows it best
+  /// What was found, for whoever repairs it: "{thruster} gives {gain_change more} than the file says". {form},
+  /// {thruster}: where; {NUMBER}: with unit and interval; {NUMBER %}, {NUMBER more}: a share; {NUMBER late}: a time.
+  std::string_view finding{};
   Stage stage{Stage::kBody};
   /// How many leading numbers it is proportional to; the others say where, when or how fast. 0: not told apart.
   int amplitudes{0};

@@ -115,7 +115,8 @@ std::string candidate_section(const DiagnosisResult& result) {
       heading_cells({"Suspected cause", "it is this cause", "why"}, {});
   std::vector<const CandidateTried*> ranked;
   for (const auto& candidate : result.candidates) ranked.push_back(&candidate);
-  std::ranges::stable_partition(ranked, [&](const CandidateTried* c) { return accepted_form(result, *c) != nullptr; });
+  std::stable_partition(ranked.begin(), ranked.end(),  // clang 14 does not compile the one of std::ranges
+                        [&](const CandidateTried* c) { return accepted_form(result, *c) != nullptr; });
   constexpr Scale kWhole{0.0, 1.0};
   for (const auto* c : ranked) {
     const EffectFound* found = accepted_form(result, *c);

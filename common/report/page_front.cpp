@@ -11,6 +11,7 @@
 #include "common/model/effect.hpp"
 #include "common/model/parameters.hpp"
 #include "common/report/correction.hpp"
+#include "common/report/finding.hpp"
 #include "common/report/live_plot.hpp"
 #include "common/report/page_parts.hpp"
 #include "common/report/pictures.hpp"
@@ -79,97 +80,10 @@ std::optional<std::size_t> telling_axis(const DiagnosisResult& result) {
   return best;
 }
 
-/// "11 %", "0.35 s": the two ends share the unit.
-std::string between(double value, double low, double high, double scale, const std::string& unit) {
-  std::string text = number(scale * value, 3);
-  if (std::isfinite(low) && std::isfinite(high) && high > low)
-    text += " (" + number(scale * low, 3) + " to " + number(scale * high, 3) + ")";
-  return text + (unit.empty() ? "" : " " + unit);
-}
-
-const NamedValue* find(const EffectFound& effect, const std::string& name) {
-  const auto found = std::ranges::find(effect.parameters, name, &NamedValue::name);
-  return found == effect.parameters.end() ? nullptr : &*found;
-}
-
-/// A share that is more or less than one: "29 % (27.5 to 30.5) less".
-std::string more_or_less(const NamedValue& value) {
-  const auto [low, high] = value.range95();
-  const bool less = value.value < 0.0;
-  return less ? between(-value.value, -high, -low, 100.0, "%") + " less"
-              : between(value.value, low, high, 100.0, "%") + " more";
-}
-
-std::string plain_value(const NamedValue& value) {
-  const auto [low, high] = value.range95();
-  return between(value.value, low, high, 1.0, value.unit);
-}
-
-/// "FL" becomes "Thruster FL"; "thruster 3" "Thruster 3".
-std::string thruster(const std::string& variant) {
-  constexpr std::string_view kWord = "thruster ";
-  return "Thruster " + (variant.starts_with(kWord) ? variant.substr(kWord.size()) : variant);
-}
-
 /// Symbols stay as they are ("v_N"), words lose their underscores ("time constant").
 std::string number_title(const std::string& name) {
   constexpr std::size_t kSymbol = 4;  // letters
   return name.size() <= kSymbol ? name : effect_title(name);
-}
-
-/// The numbers with the place that each belongs to ("T6.gain_change": T6; without one: the effect's form). Empty where
-/// one of them is another quantity than `name`.
-std::vector<std::pair<std::string, NamedValue>> places(const EffectFound& effect, const std::string& name) {
-  std::vector<std::pair<std::string, NamedValue>> found;
-  for (const NamedValue& value : effect.parameters) {
-    const bool plain = value.name == name;
-    if (!plain && !value.name.ends_with("." + name)) return {};
-    found.emplace_back(plain ? effect.variant : value.name.substr(0, value.name.size() - name.size() - 1), value);
-  }
-  return found;
-}
-
-/// "T6 gives 69 % more, T4 gives 21 % less".
-template <class Says>
-std::string each(const std::vector<std::pair<std::string, NamedValue>>& places, Says&& says) {
-  std::string text;
-  for (const auto& [place, value] : places) text += (text.empty() ? "" : ", ") + place + says(value);
-  return text;
-}
-
-/// In the words of whoever repairs it; empty where no sentence was written for the effect.
-std::string in_words(const EffectFound& effect) {
-  if (const auto gains = places(effect, "gain_change"); !gains.empty()) {
-    const auto gives = [](const NamedValue& gain) { return " gives " + more_or_less(gain); };
-    return thruster(each(gains, gives)) + " than the file says";
-  }
-  if (const auto late = places(effect, "delay"); !late.empty() && effect.name == "sensor_latency")
-    return each(late, [](const NamedValue& delay) {
-      const auto [low, high] = delay.range95();
-      return delay.value < 0.0 ? " comes early by " + between(-delay.value, -high, -low, 1.0, delay.unit)
-                               : " comes late by " + plain_value(delay);
-    });
-  if (const auto off = places(effect, "error"); !off.empty() && effect.name == "sensor_scale")
-    return each(off, [](const NamedValue& error) { return " shows " + more_or_less(error) + " than there is"; });
-  if (const NamedValue* lost = find(effect, "share_lost")) {
-    const auto [low, high] = lost->range95();
-    std::string text =
-        thruster(effect.variant) + " lost " + between(lost->value, low, high, 100.0, "%") + " of its thrust";
-    if (const NamedValue* onset = find(effect, "onset")) text += " at " + plain_value(*onset);
-    return text;
-  }
-  if (const NamedValue* reverse = find(effect, "reverse_change"))
-    return "Thrusters in reverse give " + more_or_less(*reverse) + " than ahead";
-  if (effect.name == "thruster_lag") {
-    if (const NamedValue* time = find(effect, "time_constant"))
-      return "Thrust follows its command with a time constant of " + plain_value(*time);
-  }
-  if (effect.name == "thruster_delay") {
-    if (const NamedValue* time = find(effect, "delay")) return "Thrust comes late by " + plain_value(*time);
-  }
-  if (const NamedValue* width = find(effect, "half_width"); width != nullptr && effect.name == "thruster_deadband")
-    return "Commands below " + plain_value(*width) + " give no thrust";
-  return "";
 }
 
 std::string picture(const DiagnosisReport& report, std::optional<std::size_t> axis, Album& album) {
@@ -251,7 +165,7 @@ std::string sure(double probability) {
 }
 
 std::string cause_line(const EffectFound& effect) {
-  const std::string title = effect_title(effect.name, effect.variant), words = in_words(effect);
+  const std::string title = effect_title(effect.name, effect.variant), words = finding(effect);
   if (!words.empty()) return "<b>" + escape(words) + "</b> <span class=\"soft\">(" + escape(title) + ")</span>";
   std::string numbers;
   for (const NamedValue& value : effect.parameters)

@@ -141,6 +141,7 @@ std::string sentence(const inference::Refusal& refusal) {
     case Rule::kBound:
       return "fits only with a number at its limit";
     case Rule::kScore:
+      if (refusal.value >= refusal.needed) return text("promises %.1f nats, others more", refusal.value);
       return text("promises %.1f nats, %.0f needed to be fitted", refusal.value, refusal.needed);
   }
   return {};

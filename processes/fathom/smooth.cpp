@@ -8,8 +8,11 @@
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
 #include "common/base/progress_line.hpp"
+#include "common/consistency/consistency.hpp"
+#include "common/estimation/corrected_recording.hpp"
 #include "common/estimation/smoothing/state_reconstruction.hpp"
 #include "common/report/smoothed_page.hpp"
+#include "common/report/text.hpp"
 #include "common/runtime/command_line.hpp"
 #include "common/tables/writer.hpp"
 #include "common/wire/log_writer.hpp"
@@ -105,6 +108,51 @@ std::uint64_t write(const Recording& recording, const std::string& path) {
   return log.finish();
 }
 
+/// Share of an instrument's numbers that was refused, of the one that most of was.
+double most_refused(const estimation::SmoothedTrial& trial) {
+  double most = 0.0;
+  for (const estimation::InnovationStatistics& one : trial.statistics) {
+    const auto refused = static_cast<double>(one.refused), all = static_cast<double>(one.used + one.refused);
+    if (all > 0.0) most = std::max(most, refused / all);
+  }
+  return most;
+}
+
+/// As recorded. Where the instruments contradict each other, so that this is refused or refuses more of one than
+/// outliers are, once more with what the comparison of sensors corrects: axes, clocks, scales.
+estimation::Reconstruction reconstructed(const Recording& recording, const estimation::TrialFiles& files,
+                                         const estimation::ReconstructionOptions& asked,
+                                         std::vector<std::string>& notes, const Progress& progress) {
+  std::optional<estimation::Reconstruction> first;
+  std::string why;
+  try {
+    first = estimation::reconstruct_state(recording, files, asked, notes, progress);
+    if (most_refused(first->trial) <= kMostRefused) return std::move(*first);
+    why = recording.name + ": much of one instrument is refused";
+  } catch (const InputError& refused) {
+    why = refused.what();
+  }
+  const consistency::ConsistencyResult checked = consistency::check_consistency({&recording, 1});
+  std::string what;
+  for (const ConsistencyFinding& one : checked.findings) {
+    if (one.action.starts_with("corrected"))
+      what += (what.empty() ? "" : ", ") + one.signal + " (" + report::effect_title(one.finding) + ")";
+  }
+  if (!what.empty()) {
+    notes.push_back(why + "; once more with what the comparison of sensors corrects: " + what);
+    try {
+      auto again = estimation::reconstruct_state(estimation::corrected(recording, checked.corrections.front()), files,
+                                                 asked, notes, progress);
+      if (!first || most_refused(again.trial) < most_refused(first->trial)) return again;
+      notes.push_back(recording.name + ": that refuses no less; as recorded");
+    } catch (const InputError& error) {
+      if (!first) throw InputError(std::string{error.what()} + " (corrected: " + what + ")");
+    }
+  }
+  if (!first) throw InputError(why);
+  return std::move(*first);
+}
+
 void run_smooth(const SmoothOptions& options) {
   refuse_over(options.out, options.run);
   std::vector<std::string> notes;
@@ -127,7 +175,7 @@ void run_smooth(const SmoothOptions& options) {
   estimation::SmoothedTrial trial;
   bool attitude_used = false;
   try {
-    auto found = estimation::reconstruct_state(recording, files, asked, notes, line->progress());
+    auto found = reconstructed(recording, files, asked, notes, line->progress());
     attitude_used = found.settings.attitude == estimation::AttitudeUse::kEverything;
     trial = std::move(found.trial);
   } catch (const InputError&) {

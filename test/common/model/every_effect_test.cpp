@@ -141,6 +141,15 @@ TEST_CASE("every effect: names, words, units and priors are stated") {
     CHECK(model::find_effect(effect->name()) == effect);
     CHECK(effect->sentence().ends_with("."));
     CHECK_FALSE(effect->revealed_by().empty());
+    for (std::string_view rest = effect->traits().finding; rest.find('{') != std::string_view::npos;) {
+      rest.remove_prefix(rest.find('{') + 1);
+      const std::string_view name = rest.substr(0, rest.find_first_of(" }"));
+      CAPTURE(name);
+      // A comparison of sensors tells of a delay.
+      const bool other = name == "form" || name == "thruster" || (effect->measures() && name == "delay");
+      CHECK((other ||
+             std::ranges::any_of(effect->parameters(), [&](const auto& parameter) { return parameter.name == name; })));
+    }
     REQUIRE_FALSE(effect->parameters().empty());
     // Some number must be able to say "absent".
     CHECK(std::any_of(effect->parameters().begin(), effect->parameters().end(),

@@ -155,7 +155,7 @@ TEST_CASE("A cause says which thruster, how much, and in which direction") {
   CHECK(has(cause_line(gain), "Thruster 3 gives 10.0 (8.53 to 11.5) % more than the file says"));
   gain.variant = "T6, T4";
   gain.parameters = {{"T6.gain_change", 0.686, 0.0, ""}, {"T4.gain_change", -0.206, 0.0, ""}};
-  CHECK(has(cause_line(gain), "Thruster T6 gives 68.6 % more, T4 gives 20.6 % less than the file says"));
+  CHECK(has(cause_line(gain), "Thruster T6 gives 68.6 % more than the file says, thruster T4 gives 20.6 % less than"));
   EffectFound late{.name = "sensor_latency",
                    .variant = "gyro, dvl",
                    .parameters = {{"gyro.delay", 0.07, 0.0, "s"}, {"dvl.delay", 0.2, 0.0, "s"}}};
@@ -168,6 +168,14 @@ TEST_CASE("A cause says which thruster, how much, and in which direction") {
                             .variant = "T5",
                             .parameters = {{"share_lost", 0.5, 0.0, ""}, {"onset", 40.0, 0.0, "s"}}};
   CHECK(has(cause_line(failure), "Thruster T5 lost 50.0 % of its thrust at 40.0 s"));
+  const EffectFound fades{.name = "thrust_overshoot",
+                          .variant = "all",
+                          .parameters = {{"share_lost", 0.2, 0.0, ""}, {"time_constant", 0.5, 0.0, "s"}}};
+  CHECK(has(cause_line(fades),
+            "Thrust peaks after each change of command and loses 20.0 % of it, with a time constant "
+            "of 0.500 s"));
+  const EffectFound jet{.name = "jet_on_hull", .variant = "T3 ahead", .parameters = {{"share_lost", 0.5, 0.0, ""}}};
+  CHECK(has(cause_line(jet), "Thruster T3 ahead loses 50.0 % of its push that way"));
   const EffectFound current{.name = "current", .variant = "", .parameters = {{"v_N", 0.1, 0.0, "m/s"}}};
   CHECK(has(cause_line(current), "<b>Current: v_N 0.100 m/s</b>"));
   const EffectFound odd{.name = "<odd>", .variant = "", .parameters = {}};

@@ -15,6 +15,7 @@ TEST_CASE("sentences: a refusal says what was reached and what was needed") {
   CHECK(verdict::sentence({Rule::kSize, 0.0043, 0.01}) == "0.43 % of the applied force, 1 % needed");
   CHECK(verdict::sentence({Rule::kProbability, 0.4, 0.9}) == "probability 0.4 beside other names, 0.9 needed");
   CHECK(verdict::sentence({Rule::kScore, 1.04, 8.0}) == "promises 1.0 nats, 8 needed to be fitted");
+  CHECK(verdict::sentence({Rule::kScore, 52.0, 8.0}) == "promises 52.0 nats, others more");
   CHECK(verdict::sentence({Rule::kBound, 12.0, 10.0}) == "fits only with a number at its limit");
 }
 

@@ -110,6 +110,7 @@ const Effect& sensor_latency() {
       {.name = "sensor_latency",
        .sentence = "A measured velocity is older than its time stamp.",
        .revealed_by = "steps and reversals of thrust while turning",
+       .finding = "{form} comes {delay late}",
        .stage = Stage::kSensor,
        .forms_coexist = true,
        .feels_motion = false},

@@ -58,6 +58,7 @@ const Effect& sensor_scale() {
   static const Effect kEffect{{.name = "sensor_scale",
                                .sentence = "A sensor shows more or less than there is, in proportion.",
                                .revealed_by = "turning while moving: axes coupled by known physics",
+                               .finding = "{form} shows {error more} than there is",
                                .stage = Stage::kSensor,
                                .forms_coexist = true,
                                .feels_motion = false},

@@ -45,6 +45,7 @@ const Effect& jet_on_hull() {
   static const Effect kEffect{{.name = "jet_on_hull",
                                .sentence = "One thruster's jet meets the hull one way, and a part of its push is lost.",
                                .revealed_by = "each thruster driven by itself, ahead and in reverse",
+                               .finding = "{thruster} loses {share_lost %} of its push that way",
                                .stage = Stage::kThrust,
                                .forms_coexist = true,
                                .feels_motion = false},

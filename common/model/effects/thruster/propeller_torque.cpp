@@ -71,14 +71,16 @@ Forms all_and_each() {
 }  // namespace
 
 const Effect& propeller_torque() {
-  static const Effect kEffect{{.name = "propeller_torque",
-                               .sentence = "A propeller's torque turns the vehicle about the propeller's axis.",
-                               .revealed_by = "constant thrust of each thruster by itself, at rest and both ways",
-                               .stage = Stage::kBody,
-                               .forms_coexist = true,
-                               .feels_motion = false},
-                              kPropellerTorqueParameters,
-                              all_and_each()};
+  static const Effect kEffect{
+      {.name = "propeller_torque",
+       .sentence = "A propeller's torque turns the vehicle about the propeller's axis.",
+       .revealed_by = "constant thrust of each thruster by itself, at rest and both ways",
+       .finding = "{thruster} turns the vehicle about its own axis by {torque_per_force} times its thrust",
+       .stage = Stage::kBody,
+       .forms_coexist = true,
+       .feels_motion = false},
+      kPropellerTorqueParameters,
+      all_and_each()};
   return kEffect;
 }
 

@@ -26,6 +26,7 @@ const Effect& thrust_asymmetry() {
   static const Effect kEffect{{.name = "thrust_asymmetry",
                                .sentence = "Thrusters push differently in reverse than ahead.",
                                .revealed_by = "equal thrust in both directions, for several seconds each",
+                               .finding = "Thrusters in reverse give {reverse_change more} than ahead",
                                .stage = Stage::kThrust,
                                .feels_motion = false},
                               kThrustAsymmetryParameters,

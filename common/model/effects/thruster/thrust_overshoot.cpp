@@ -70,6 +70,8 @@ const Effect& thrust_overshoot() {
   static const Effect kEffect{{.name = "thrust_overshoot",
                                .sentence = "Thrust peaks after each change of command and then fades.",
                                .revealed_by = "steps of thrust held for five seconds and more",
+                               .finding = "Thrust peaks after each change of command and loses {share_lost %} of it, "
+                                          "with a time constant of {time_constant}",
                                .stage = Stage::kThrust,
                                .amplitudes = 1,
                                .forms_coexist = true,

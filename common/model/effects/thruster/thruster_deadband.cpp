@@ -96,6 +96,7 @@ const Effect& thruster_deadband() {
   static const Effect kEffect{{.name = "thruster_deadband",
                                .sentence = "Small commands produce no thrust.",
                                .revealed_by = "small thrust commands that change sign",
+                               .finding = "Commands below {half_width} give no thrust",
                                .stage = Stage::kCommand,
                                .feels_motion = false},
                               kThrusterDeadbandParameters,

@@ -52,6 +52,7 @@ const Effect& thruster_delay() {
       {.name = "thruster_delay",
        .sentence = "Thrust follows the logged command late by a fixed time, or all sensors are late alike.",
        .revealed_by = "steps and reversals of thrust, each held for several seconds",
+       .finding = "Thrust comes {delay late}",
        .stage = Stage::kCommand,
        .feels_motion = false},
       kThrusterDelayParameters,

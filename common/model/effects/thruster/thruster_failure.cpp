@@ -46,6 +46,7 @@ const Effect& thruster_failure() {
   static const Effect kEffect{{.name = "thruster_failure",
                                .sentence = "One thruster loses part of its thrust at some moment.",
                                .revealed_by = "the same motions in every part of the run",
+                               .finding = "{thruster} lost {share_lost %} of its thrust at {onset}",
                                .stage = Stage::kThrust,
                                .amplitudes = 1,
                                .forms_coexist = true,

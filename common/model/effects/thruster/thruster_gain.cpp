@@ -33,6 +33,7 @@ const Effect& thruster_gain() {
   static const Effect kEffect{{.name = "thruster_gain",
                                .sentence = "One thruster gives more or less force than it should.",
                                .revealed_by = "sway, surge and yaw at constant thrust: the odd one turns the vehicle",
+                               .finding = "{thruster} gives {gain_change more} than the file says",
                                .stage = Stage::kThrust,
                                .forms_coexist = true,
                                .feels_motion = false},

@@ -166,6 +166,7 @@ const Effect& thruster_lag() {
   static const Effect kEffect{{.name = "thruster_lag",
                                .sentence = "Thrust builds up gradually after each change of command.",
                                .revealed_by = "steps and a sweep of thrust up to about 2 Hz",
+                               .finding = "Thrust follows its command with a time constant of {time_constant}",
                                .stage = Stage::kThrust,
                                .feels_motion = false},
                               kThrusterLagParameters,

@@ -127,6 +127,7 @@ const Effect& thruster_wake() {
       {.name = "thruster_wake",
        .sentence = "A thruster that runs in the jet of another one pushes less.",
        .revealed_by = "one thruster at constant thrust while the others are switched, both ways",
+       .finding = "{thruster} loses {loss %} of its push where both push alike",
        .stage = Stage::kThrust,
        .forms_coexist = true,
        .feels_motion = false},

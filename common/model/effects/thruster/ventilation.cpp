@@ -60,6 +60,7 @@ const Effect& ventilation() {
       {.name = "ventilation",
        .sentence = "Near the surface propellers draw air and push less.",
        .revealed_by = "the same thrust just below the surface and several hull's heights deeper",
+       .finding = "Propellers lose {share_lost %} of their push where the vehicle was shallowest",
        .stage = Stage::kWater,
        .amplitudes = 1,
        .feels_motion = false,
