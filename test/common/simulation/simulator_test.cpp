@@ -268,6 +268,8 @@ TEST_CASE("simulator: every registered effect can be hidden with drawn sizes, an
       CAPTURE(vehicle);
       model::Vehicle craft = test::vehicle_of_file(vehicle);
       craft.windage = kMast;
+      // One thruster in another's jet, which not every frame has.
+      craft.thrusters[1].p_BJ = craft.thrusters[0].p_BJ + 0.3 * craft.thrusters[0].axis_B;
       const Config config = Config::parse(test::simulation_text(vehicle, {}), vehicle + ".yaml");
       const auto simulator =
           std::make_unique<simulation::Simulator>(craft, test::site_of_file("tank"), config.section("simulator"),
