@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -140,19 +141,8 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
     for_each_index(those.size(), threads_, [&](std::size_t k) {
       const std::size_t i = those[k];
       if (!fits[i]) fits[i].emplace(problem_, starts[i].hypothesis, starts[i].noise, options);
-      const bool first = all[i].names.empty();
       gained[i] = fits[i]->round();
       all[i] = judged(fits[i]->fit());
-      for (const double share : kLess) {
-        if (!first || !lost(starts[i], all[i].fit)) break;
-        likelihood::Fitting anew{problem_, with_less(starts[i], share), starts[i].noise_there, options};
-        const double gain = anew.round();
-        Fitted other = judged(anew.fit());
-        if (!other.fit.finite || (all[i].fit.finite && other.score <= all[i].score)) continue;
-        fits[i].emplace(std::move(anew));
-        gained[i] = gain;
-        all[i] = std::move(other);
-      }
     });
   };
   std::vector<std::size_t> open(starts.size());
@@ -190,6 +180,15 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
   fitted_.insert(fitted_.end(), all.begin(), all.end());
   progress_.done(kCandidateFit.phase, count);
   to_come_ = std::max(0.0, to_come_ - count);
+  std::vector<Start> anew;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!lost(starts[i], all[i].fit)) continue;
+    for (const double share : kLess) anew.push_back({with_less(starts[i], share), starts[i].noise_there});
+  }
+  if (!anew.empty()) {
+    of.to_beat = best();
+    std::ranges::copy(race(anew, of), std::back_inserter(all));
+  }
   return all;
 }
 

@@ -64,7 +64,8 @@ class FittedModels {
   Fitted add(likelihood::Fit fit);
   /// Each start, the most promising first, moved a little; it and those that came near enough to the best of them and
   /// to `to_beat`, seen from `from`, go on round by round, until what is still to be gained cannot bring them near it,
-  /// or another has come to the same numbers. All are kept.
+  /// or another has come to the same numbers. What has then fallen behind the model that it extends begins anew with
+  /// less of what was added. All are kept and returned.
   std::vector<Fitted> race(const std::vector<Start>& starts, Odds of);
   /// All fitted to the end.
   std::vector<Fitted> fit_all(const std::vector<Start>& starts);
