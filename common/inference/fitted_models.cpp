@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -99,33 +98,6 @@ bool at_the_same_place(const Fitted& a, const Fitted& b) {
 
 }  // namespace
 
-namespace {
-
-constexpr double kLost = 30.0;          // nats below the model that it extends, priors of the numbers added included
-constexpr std::array kLess{0.25, 0.0};  // of what was added, for a start that led astray; none: where it is known
-
-/// The start with less of what was added to it: numbers that say where, when or how fast stay.
-likelihood::Hypothesis with_less(const Start& start, double share) {
-  likelihood::Hypothesis less = start.hypothesis;
-  for (model::ActiveEffect& active : less.model.effects) {
-    const bool fresh = std::ranges::any_of(start.added, [&](const model::ActiveEffect& one) {
-      return one.effect == active.effect && one.variant == active.variant;
-    });
-    if (!fresh) continue;
-    const auto amplitudes = static_cast<std::size_t>(active.effect->amplitudes());
-    const std::size_t count = amplitudes > 0 ? amplitudes : active.theta.size();
-    for (std::size_t c = 0; c < count; ++c) active.theta[c] *= share;
-  }
-  return less;
-}
-
-/// Whether a fit has lost its way: a model that holds another one is never less likely than that, at its best.
-bool lost(const Start& start, const likelihood::Fit& fit) {
-  return !start.noise_there.empty() && (!fit.finite || fit.log_posterior < start.reached - kLost);
-}
-
-}  // namespace
-
 std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of) {
   if (starts.empty()) return {};
   const auto count = static_cast<double>(starts.size());
@@ -180,15 +152,6 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
   fitted_.insert(fitted_.end(), all.begin(), all.end());
   progress_.done(kCandidateFit.phase, count);
   to_come_ = std::max(0.0, to_come_ - count);
-  std::vector<Start> anew;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!lost(starts[i], all[i].fit)) continue;
-    for (const double share : kLess) anew.push_back({with_less(starts[i], share), starts[i].noise_there});
-  }
-  if (!anew.empty()) {
-    of.to_beat = best();
-    std::ranges::copy(race(anew, of), std::back_inserter(all));
-  }
   return all;
 }
 

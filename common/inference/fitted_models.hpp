@@ -31,10 +31,6 @@ struct Fitted {
 struct Start {
   likelihood::Hypothesis hypothesis;
   likelihood::Noise noise;
-  std::vector<model::ActiveEffect> added{};  ///< what it has beside the model that it extends
-  /// Log posterior and noise of that model: with less of what was added the fit would be at least as likely.
-  double reached{-std::numeric_limits<double>::infinity()};
-  likelihood::Noise noise_there{};
 };
 
 /// Log prior of a set: of their number, and uniform over sets and over the forms of each. What a craft that lives by
@@ -64,8 +60,7 @@ class FittedModels {
   Fitted add(likelihood::Fit fit);
   /// Each start, the most promising first, moved a little; it and those that came near enough to the best of them and
   /// to `to_beat`, seen from `from`, go on round by round, until what is still to be gained cannot bring them near it,
-  /// or another has come to the same numbers. What has then fallen behind the model that it extends begins anew with
-  /// less of what was added. All are kept and returned.
+  /// or another has come to the same numbers. All are kept.
   std::vector<Fitted> race(const std::vector<Start>& starts, Odds of);
   /// All fitted to the end.
   std::vector<Fitted> fit_all(const std::vector<Start>& starts);

@@ -172,16 +172,6 @@ std::vector<Start> Searching::starts(const likelihood::Hypothesis& from, const s
   return starts;
 }
 
-std::vector<Start> Searching::starts(const likelihood::Fit& from, const std::vector<Proposal>& proposals) {
-  std::vector<Start> all = starts(from.hypothesis, proposals);
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    all[k].added = proposals[k].added;
-    all[k].reached = from.log_posterior;
-    all[k].noise_there = from.noise;
-  }
-  return all;
-}
-
 Start Searching::without(const Fitted& from, std::size_t effect) {
   Start start{from.fit.hypothesis, from.fit.noise};
   auto& effects = start.hypothesis.model.effects;
@@ -214,7 +204,7 @@ bool Searching::add_some() {
   }
   std::ranges::copy_if(all, std::back_inserter(first), &Proposal::first);
   std::erase_if(all, [](const Proposal& proposal) { return proposal.first; });
-  const likelihood::Fit from = found_.best.fit;
+  const likelihood::Hypothesis from = found_.best.fit.hypothesis;
   if (take_best(models_.race(starts(from, first), {.from = found_.best.score}))) return true;
   std::vector<Fitted> fits = models_.race(starts(from, all), {.from = found_.best.score});
   double gained = 0.0;
@@ -351,7 +341,7 @@ bool Searching::swap() {
     std::vector<Proposal> proposed = proposals(rest, std::max(thresholds_.score_worth, kFarBehind * lost), false);
     std::erase_if(proposed, [&](const Proposal& proposal) { return proposal.added.front().effect == active.effect; });
     for (const Fitted& other :
-         models_.race(starts(rest.fit, proposed), {.from = rest.score, .to_beat = found_.best.score})) {
+         models_.race(starts(rest.fit.hypothesis, proposed), {.from = rest.score, .to_beat = found_.best.score})) {
       if (!other.fit.finite || other.score <= found_.best.score || !counts(other)) continue;
       found_.best = other;
       exchanged = true;

@@ -60,8 +60,6 @@ class Searching {
   /// swallowed something slow, at a fifth of it. `least`: what a promise must come to, in nats.
   std::vector<Proposal> proposals(const Fitted& from, double least, bool with_pairs);
   static std::vector<Start> starts(const likelihood::Hypothesis& from, const std::vector<Proposal>& proposals);
-  /// The same from a fit, which no start may fall behind.
-  static std::vector<Start> starts(const likelihood::Fit& from, const std::vector<Proposal>& proposals);
   [[nodiscard]] static Start without(const Fitted& from, std::size_t effect);
   /// Takes the best of these where it is a name's worth better; else false.
   bool take_best(std::vector<Fitted> fits);
@@ -126,8 +124,8 @@ class Searching {
   Found found_;
   bool sought_{};  // on stretches already: forms, times and places, and what could stand in another's place
   std::map<std::string, Promise> noted_;
-  std::map<std::string, double> beside_;  // what each name promised beside the best model, as it was last looked at
-  std::map<std::size_t, Promise> promised_;          // by law, in the last look
+  std::map<std::string, double> beside_;     // what each name promised beside the best model, as it was last looked at
+  std::map<std::size_t, Promise> promised_;  // by law, in the last look
   std::vector<std::pair<double, Proposal>> behind_;  // promised, in the last look: too little beside the best
   std::map<std::string, Refusal> failed_;            // what evidence alone would have named
   std::map<std::string, Refusal> gave_way_;          // to a free force in its place

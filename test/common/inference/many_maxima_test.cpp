@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/inference/fitted_models.hpp"
 #include "common/inference/infer.hpp"
 #include "test/common/likelihood/noisy_dive.hpp"
 
@@ -111,29 +110,4 @@ TEST_CASE("many maxima: forms that act in place of each other do not stand in on
   CHECK(exclude(seed("thruster_lag", ""), seed("thruster_lag", "second order")));
   CHECK_FALSE(exclude(seed("cross_coupling", "X_r"), seed("cross_coupling", "X_w")));
   CHECK_FALSE(exclude(seed("thruster_delay", ""), seed("thruster_lag", "")));
-}
-
-TEST_CASE("many maxima: a start that makes the vehicle run away is begun anew with less, and falls behind no model") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
-  const auto dive = test::fly(vehicle, {.duration = 60.0, .seed = 9, .force = 0.03});
-  const likelihood::Problem problem = likelihood::make_problem(vehicle, {&dive.trial, 1});
-  const std::vector<Law> laws = catalogue(model::scene_of(vehicle, {&dive.trial, 1}), {});
-  const likelihood::Fit base = base_fit(problem);
-  model::ActiveEffect pushes = law_of(laws, "asymmetric_drag", "X_uu").seed;
-  pushes.theta[0] = 3000.0;  // N/(m/s)^2: what goes ahead goes faster
-  Start start{base.hypothesis, base.noise};
-  start.hypothesis.model.add(pushes);
-  const Progress progress;
-  FittedModels models{problem, laws, 1, progress};
-  constexpr double kPrior = 30.0;  // nats that a number more may cost
-  const Fitted led_astray = models.race({start}, {}).front();
-  CHECK((!led_astray.fit.finite || led_astray.fit.log_posterior < base.log_posterior - kPrior));
-  start.added = {pushes};
-  start.reached = base.log_posterior;
-  start.noise_there = base.noise;
-  const std::vector<Fitted> all = models.race({start}, {});
-  const Fitted& fitted = *std::ranges::max_element(all, {}, &Fitted::score);
-  REQUIRE(fitted.fit.finite);
-  CHECK(fitted.fit.log_posterior > base.log_posterior - kPrior);
-  CHECK(std::abs(fitted.fit.hypothesis.model.effects[0].theta[0]) < 1.0);  // nothing of the kind is there
 }
