@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <span>
 
 #include "common/model/boundary.hpp"
 #include "common/model/effect.hpp"

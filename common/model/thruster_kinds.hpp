@@ -17,13 +17,18 @@ namespace fathom::model {
   return std::abs(column[2]) > column.head<2>().norm();
 }
 
-/// A rudder, a fin or a weight, which no battery, propeller or reversal concerns.
+/// A rudder, a fin or a weight is none: no battery, propeller or reversal concerns it.
+[[nodiscard]] inline bool is_propeller(const Thruster& one) { return !one.fin && !one.weight; }
+
+/// Whether the motion's forces are those of the vehicle's actuators, one each; else they are a wrench, or not its.
+[[nodiscard]] inline bool by_thruster(const Motion& motion) {
+  return motion.vehicle != nullptr && motion.vehicle->thrusters.size() == static_cast<std::size_t>(motion.force.size());
+}
+
+/// Of a motion's actuator, where it is one.
 [[nodiscard]] inline bool is_no_propeller(const Motion& motion, Eigen::Index actuator) {
   if (motion.vehicle == nullptr || !(motion.vehicle->flow_matters || motion.vehicle->weight_moves)) return false;
-  const auto& thrusters = motion.vehicle->thrusters;
-  if (static_cast<std::size_t>(motion.force.size()) != thrusters.size()) return false;
-  const Thruster& one = thrusters[static_cast<std::size_t>(actuator)];
-  return one.fin.has_value() || one.weight.has_value();
+  return by_thruster(motion) && !is_propeller(motion.vehicle->thrusters[static_cast<std::size_t>(actuator)]);
 }
 
 /// Whether a data set has both.

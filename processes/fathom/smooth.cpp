@@ -34,6 +34,11 @@ struct SmoothOptions {
   bool stated{false}, without_position{false}, despite_state{false};
 };
 
+double refused_share(const estimation::InnovationStatistics& one) {
+  const auto refused = static_cast<double>(one.refused), all = static_cast<double>(one.used + one.refused);
+  return all > 0.0 ? refused / all : 0.0;
+}
+
 void print(const estimation::SmoothedTrial& trial) {
   std::printf("%-18s %9s %9s %9s %8s\n", "instrument", "used", "refused", "not heard", "NIS");
   for (const estimation::InnovationStatistics& one : trial.statistics) {
@@ -42,10 +47,9 @@ void print(const estimation::SmoothedTrial& trial) {
                 static_cast<long long>(one.refused), static_cast<long long>(one.dropped), one.nis());
   }
   for (const estimation::InnovationStatistics& one : trial.statistics) {
-    if (static_cast<double>(one.refused) <= kMostRefused * static_cast<double>(one.used + one.refused)) continue;
+    if (refused_share(one) <= kMostRefused) continue;
     std::printf("%s: %.0f %% refused; its noise is stated too small, or it contradicts the others (fathom check)\n",
-                one.name.c_str(),
-                100.0 * static_cast<double>(one.refused) / static_cast<double>(one.used + one.refused));
+                one.name.c_str(), 100.0 * refused_share(one));
   }
   Eigen::Vector3d early = Eigen::Vector3d::Zero(), sum = Eigen::Vector3d::Zero();
   double count = 0.0;
@@ -111,10 +115,7 @@ std::uint64_t write(const Recording& recording, const std::string& path) {
 /// Share of an instrument's numbers that was refused, of the one that most of was.
 double most_refused(const estimation::SmoothedTrial& trial) {
   double most = 0.0;
-  for (const estimation::InnovationStatistics& one : trial.statistics) {
-    const auto refused = static_cast<double>(one.refused), all = static_cast<double>(one.used + one.refused);
-    if (all > 0.0) most = std::max(most, refused / all);
-  }
+  for (const estimation::InnovationStatistics& one : trial.statistics) most = std::max(most, refused_share(one));
   return most;
 }
 

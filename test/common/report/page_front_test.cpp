@@ -155,7 +155,8 @@ TEST_CASE("A cause says which thruster, how much, and in which direction") {
   CHECK(has(cause_line(gain), "Thruster 3 gives 10.0 (8.53 to 11.5) % more than the file says"));
   gain.variant = "T6, T4";
   gain.parameters = {{"T6.gain_change", 0.686, 0.0, ""}, {"T4.gain_change", -0.206, 0.0, ""}};
-  CHECK(has(cause_line(gain), "Thruster T6 gives 68.6 % more than the file says, thruster T4 gives 20.6 % less than"));
+  CHECK(has(cause_line(gain),
+            "Thruster T6 gives 68.6 % more than the file says, thruster T4 gives 20.6 % less than the file says"));
   EffectFound late{.name = "sensor_latency",
                    .variant = "gyro, dvl",
                    .parameters = {{"gyro.delay", 0.07, 0.0, "s"}, {"dvl.delay", 0.2, 0.0, "s"}}};

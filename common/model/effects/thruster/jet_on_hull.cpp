@@ -21,7 +21,7 @@ class OneWay final : public OfThruster {
   FormName name(const Scene& scene) const override {
     if (scene.input_is_wrench || !exists(scene)) return {};
     const Thruster& one = scene.vehicle->thrusters[place()];
-    return when(!one.fin && !one.weight, one.name + (sign_ > 0.0 ? " ahead" : " astern"));
+    return when(is_propeller(one), one.name + (sign_ > 0.0 ? " ahead" : " astern"));
   }
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
     if (thruster_ < motion.force.size() && sign_ * motion.force[thruster_] > 0.0)

@@ -4,8 +4,8 @@
 // sense. Ignores: advance, stators that take the swirl out of the jet, and the rotor's own inertia (switching_moment).
 // Revealed by constant thrust at rest: the vehicle lists. Confused with restoring_moment and centre_of_mass, which stay
 // when the thrust is off.
-#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/model/one_of_many.hpp"
 #include "common/model/thruster_kinds.hpp"
@@ -17,10 +17,14 @@ constexpr std::array kPropellerTorqueParameters{EffectParameter{"torque_per_forc
 constexpr double kStart = 0.005;    // m
 constexpr double kSmallest = 0.05;  // of an axis, along what is simulated: less turns nothing
 
-bool turns(const Vehicle& vehicle, const Thruster& one) {
-  if (one.fin || one.weight) return false;
+/// By the allocation, which every vehicle file states in one way or the other.
+auto axis_of(const Vehicle& vehicle, Eigen::Index thruster) { return vehicle.allocation.col(thruster).head<3>(); }
+
+bool turns(const Vehicle& vehicle, Eigen::Index thruster) {
+  if (!is_propeller(vehicle.thrusters[static_cast<std::size_t>(thruster)])) return false;
   for (Eigen::Index k = 0; k < 3; ++k)
-    if (vehicle.dof[static_cast<std::size_t>(3 + k)] && std::abs(one.axis_B[k]) > kSmallest) return true;
+    if (vehicle.dof[static_cast<std::size_t>(3 + k)] && std::abs(axis_of(vehicle, thruster)[k]) > kSmallest)
+      return true;
   return false;
 }
 
@@ -29,14 +33,12 @@ class OneTorque final : public OfThruster {
   using OfThruster::OfThruster;
   FormName name(const Scene& scene) const override {
     if (scene.input_is_wrench || !exists(scene)) return {};
-    const Thruster& one = scene.vehicle->thrusters[place()];
-    return when(turns(*scene.vehicle, one), one.name);
+    return when(turns(*scene.vehicle, thruster_), scene.vehicle->thrusters[place()].name);
   }
   Starts starts(const Scene&) const override { return {{kStart}}; }
   void load(const Motion& motion, EffectTheta theta, Load& load) const override {
-    if (motion.vehicle == nullptr || place() >= motion.vehicle->thrusters.size() || thruster_ >= motion.force.size())
-      return;
-    load.wrench.tail<3>() += theta[0] * motion.force[thruster_] * motion.vehicle->thrusters[place()].axis_B;
+    if (!by_thruster(motion) || thruster_ >= motion.force.size()) return;
+    load.wrench.tail<3>() += theta[0] * motion.force[thruster_] * axis_of(*motion.vehicle, thruster_);
   }
 };
 
@@ -44,19 +46,17 @@ class EveryTorque final : public OneOfMany {
  public:
   bool exists(const Scene&) const override { return true; }
   FormName name(const Scene& scene) const override {
-    const auto& all = scene.vehicle->thrusters;
-    const auto count =
-        std::count_if(all.begin(), all.end(), [&](const Thruster& one) { return turns(*scene.vehicle, one); });
+    int count = 0;
+    for (std::size_t i = 0; i < scene.vehicle->thrusters.size(); ++i)
+      count += turns(*scene.vehicle, static_cast<Eigen::Index>(i)) ? 1 : 0;
     return when(!scene.input_is_wrench && count > 1, "all");
   }
   Starts starts(const Scene&) const override { return {{kStart}}; }
   void load(const Motion& motion, EffectTheta theta, Load& load) const override {
-    if (motion.vehicle == nullptr || motion.vehicle->thrusters.size() != static_cast<std::size_t>(motion.force.size()))
-      return;
+    if (!by_thruster(motion)) return;
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
-      if (is_no_propeller(motion, i)) continue;
-      const Eigen::Vector3d& a = motion.vehicle->thrusters[static_cast<std::size_t>(i)].axis_B;
-      load.wrench.tail<3>() += theta[0] * motion.force[i] * a;
+      if (!is_no_propeller(motion, i))
+        load.wrench.tail<3>() += theta[0] * motion.force[i] * axis_of(*motion.vehicle, i);
     }
   }
 };

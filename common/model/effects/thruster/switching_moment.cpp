@@ -20,8 +20,8 @@ constexpr std::array kSwitchingMomentParameters{EffectParameter{"moment_per_forc
                                                 EffectParameter{"time_constant", "s", 0.5, 0.05, 10.0}};
 constexpr std::array<const char*, 3> kAbout{" about x", " about y", " about z"};
 constexpr double kStart = 0.01;  // m
-constexpr double kDriven =
-    0.02;  // m: with a longer arm the thruster drives the axis, and what comes late is its thrust
+// m: with a longer arm the thruster drives the axis, and what comes late is its thrust.
+constexpr double kDriven = 0.02;
 
 class OneKick final : public OfThruster {
  public:
@@ -30,7 +30,7 @@ class OneKick final : public OfThruster {
     if (scene.input_is_wrench || !exists(scene)) return {};
     const Vehicle& vehicle = *scene.vehicle;
     const Thruster& one = vehicle.thrusters[place()];
-    const bool free = vehicle.dof[static_cast<std::size_t>(3 + axis_)] && !one.fin && !one.weight &&
+    const bool free = vehicle.dof[static_cast<std::size_t>(3 + axis_)] && is_propeller(one) &&
                       std::abs(vehicle.allocation(3 + axis_, thruster_)) < kDriven;
     return when(free, one.name + kAbout[static_cast<std::size_t>(axis_)]);
   }

@@ -28,21 +28,19 @@ struct Meeting {
   double cosine{0.0};
 };
 
-bool pushes(const Thruster& thruster) { return !thruster.fin && !thruster.weight; }
-
-double largest_distance(const Vehicle& vehicle) {
+/// m: of what blows and is blown at.
+double radius_of(const Vehicle& vehicle) {
   double largest = 0.0;
   for (const Thruster& a : vehicle.thrusters)
-    for (const Thruster& b : vehicle.thrusters) largest = std::max(largest, (a.p_BJ - b.p_BJ).norm());
-  return largest;
+    for (const Thruster& b : vehicle.thrusters) largest = std::max(largest, (a.p_BJ - b.p_BJ).squaredNorm());
+  return kPropeller * std::sqrt(largest);
 }
 
-Meeting meeting(const Vehicle& vehicle, std::size_t to, std::size_t from) {
+Meeting meeting(const Vehicle& vehicle, double radius, std::size_t to, std::size_t from) {
   const Thruster &j = vehicle.thrusters[from], &i = vehicle.thrusters[to];
-  if (!pushes(i) || !pushes(j)) return {};
+  if (!is_propeller(i) || !is_propeller(j)) return {};
   const Eigen::Vector3d apart = i.p_BJ - j.p_BJ;
   const double along = j.axis_B.dot(apart), aside = (apart - along * j.axis_B).norm();
-  const double radius = kPropeller * largest_distance(vehicle);
   if (std::abs(along) <= radius || aside > radius + kSpread * std::abs(along)) return {};
   return {along > 0.0 ? -1.0 : 1.0, i.axis_B.dot(j.axis_B)};  // a jet leaves against the push
 }
@@ -54,10 +52,6 @@ double lost(const Meeting& m, double f_i, double f_j) {
   return std::abs(m.cosine) > kAlongside ? size * std::copysign(1.0, f_j) * m.cosine : std::copysign(size, f_i);
 }
 
-bool by_thruster(const Motion& motion) {
-  return motion.vehicle != nullptr && motion.vehicle->thrusters.size() == static_cast<std::size_t>(motion.force.size());
-}
-
 /// `to` in the jet of `from`.
 class OnePair final : public OneOfMany {
  public:
@@ -66,13 +60,14 @@ class OnePair final : public OneOfMany {
   FormName name(const Scene& scene) const override {
     if (scene.input_is_wrench || !exists(scene)) return {};
     const auto& thrusters = scene.vehicle->thrusters;
-    return when(meeting(*scene.vehicle, to_, from_).blows != 0.0,
+    return when(meeting(*scene.vehicle, radius_of(*scene.vehicle), to_, from_).blows != 0.0,
                 thrusters[to_].name + " in the jet of " + thrusters[from_].name);
   }
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
     if (theta[0] == 0.0 || !by_thruster(motion) || std::max(to_, from_) >= motion.vehicle->thrusters.size()) return;
     double& f = motion.force[static_cast<Eigen::Index>(to_)];
-    f -= theta[0] * lost(meeting(*motion.vehicle, to_, from_), f, motion.force[static_cast<Eigen::Index>(from_)]);
+    const Meeting m = meeting(*motion.vehicle, radius_of(*motion.vehicle), to_, from_);
+    f -= theta[0] * lost(m, f, motion.force[static_cast<Eigen::Index>(from_)]);
   }
 
  private:
@@ -88,10 +83,11 @@ class EveryPair final : public OneOfMany {
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
     if (theta[0] == 0.0 || !by_thruster(motion)) return;
     const ActuatorForces before = motion.force;
+    const double radius = radius_of(*motion.vehicle);
     for (Eigen::Index i = 0; i < before.size(); ++i) {
       for (Eigen::Index j = 0; j < before.size(); ++j) {
         if (i == j) continue;
-        const Meeting m = meeting(*motion.vehicle, static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+        const Meeting m = meeting(*motion.vehicle, radius, static_cast<std::size_t>(i), static_cast<std::size_t>(j));
         motion.force[i] -= theta[0] * lost(m, before[i], before[j]);
       }
     }
@@ -100,9 +96,10 @@ class EveryPair final : public OneOfMany {
  private:
   static int pairs(const Vehicle& vehicle) {
     int count = 0;
+    const double radius = radius_of(vehicle);
     for (std::size_t i = 0; i < vehicle.thrusters.size(); ++i)
       for (std::size_t j = 0; j < vehicle.thrusters.size(); ++j)
-        count += i != j && meeting(vehicle, i, j).blows != 0.0 ? 1 : 0;
+        count += i != j && meeting(vehicle, radius, i, j).blows != 0.0 ? 1 : 0;
     return count;
   }
 };

@@ -41,9 +41,8 @@ class DrawsAir final : public Form {
     return starts;
   }
   void feel(Motion& motion, EffectTheta theta, std::span<const double>) const override {
-    if (theta[0] == 0.0 || motion.vehicle == nullptr) return;
+    if (theta[0] == 0.0 || !by_thruster(motion)) return;
     const auto& thrusters = motion.vehicle->thrusters;
-    if (thrusters.size() != static_cast<std::size_t>(motion.force.size())) return;
     for (Eigen::Index i = 0; i < motion.force.size(); ++i) {
       if (is_no_propeller(motion, i)) continue;
       const double h = motion.p_WB.z() + motion.R_WB.row(2).dot(thrusters[static_cast<std::size_t>(i)].p_BJ);
@@ -63,7 +62,6 @@ const Effect& ventilation() {
        .finding = "Propellers lose {share_lost %} of their push where the vehicle was shallowest",
        .stage = Stage::kWater,
        .amplitudes = 1,
-       .feels_motion = false,
        .feels_place = true},
       kVentilationParameters,
       forms(DrawsAir{})};

@@ -123,6 +123,24 @@ TEST_CASE("propeller_torque: a moment about the propeller's axis by its thrust, 
   CHECK(load.wrench.isApprox((Vector6d() << 0.0, 0.0, 0.0, -0.26, -0.32, 0.0).finished(), kRounding));
 }
 
+TEST_CASE("propeller_torque: where a file states the allocation alone, its columns tell the axes") {
+  model::Vehicle beluga = test::vehicle_from_repository("beluga");
+  beluga.dof = {true, true, true, false, false, true};
+  const auto names = model::find_effect("propeller_torque")->variants({.vehicle = &beluga});
+  for (std::size_t i = 0; i < beluga.thrusters.size(); ++i) {
+    CAPTURE(beluga.thrusters[i].name);
+    const auto place = static_cast<Eigen::Index>(i);
+    const bool upright = std::abs(beluga.allocation(2, place)) > 0.5;
+    CHECK((std::ranges::find(names, beluga.thrusters[i].name) != names.end()) == upright);  // turns it in yaw
+    model::Motion motion{.vehicle = &beluga};
+    motion.force = Eigen::VectorXd::Zero(beluga.allocation.cols());
+    motion.force[place] = 5.0;
+    model::Load load;
+    model::find_effect("propeller_torque")->load(motion, std::vector{0.01}, static_cast<int>(i) + 1, load);
+    CHECK((load.wrench.tail<3>() - 0.05 * beluga.allocation.col(place).head<3>()).norm() < kRounding);
+  }
+}
+
 TEST_CASE("switching_moment: comes whole with a step of thrust, about an axis not driven, and fades in its time") {
   Fixture fixture;
   const model::Effect& effect = *model::find_effect("switching_moment");

@@ -124,6 +124,8 @@ TEST_CASE("sensitivity: six axes, with nothing and with each kind of effect") {
   check(vehicle, {test::active("tether_drag", {4.0, 1.5, 0.5, 0.0}, 9)}, 91);
   check(vehicle, {test::active("thruster_lag", {0.25}, 2), test::active("thruster_delay", {0.1, 0.2}, 1)}, 89);
   check(vehicle, {test::active("centre_of_mass", {0.05, -0.03, 0.02}, 7)}, 85);
+  check(vehicle, {test::active("ventilation", {0.5, 0.3, 0.0})}, 93);
+  check(vehicle, {test::active("switching_moment", {0.1, 0.5}, 2)}, 94);
   check(vehicle, {test::active("fluid_memory", {20.0, 30.0, 30.0, 2.0, 2.0, 2.0, 1.5, 0.0}, 6 + 63)}, 90);
   check(vehicle, {test::active("fluid_memory", {20.0, 30.0, 30.0, 2.0, 2.0, 2.0, 1.5, 0.9}, 70 + 6 + 63)}, 92);
 }
