@@ -16,6 +16,7 @@ using likelihood::Quantity;
 constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kThrustSteps = 4;
 constexpr double kMomentLasts = 0.3;                     // s
 constexpr double kSmallestRange = 0.05;                  // m
+constexpr double kNever = 1e9;                           // N: no thrust is as large
 constexpr double kLowestTone = 0.2, kHighestTone = 6.0;  // rad/s
 constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
@@ -35,6 +36,7 @@ class Library {
       time(axis);
     }
     if (scene_.attitude) world();
+    together();
     scale();
     force_.weights.assign(force_.features.size(), 0.0);
     return std::move(force_);
@@ -139,6 +141,21 @@ class Library {
     });
   }
 
+  /// Laws that all thrusters share: one number each instead of one per thruster.
+  void together() {
+    begin("thrust a moment ago, along each axis", model::kEachAxis);
+    for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
+      add({{.quantity = Quantity::kSlowWrench, .bank = bank}});
+    if (scene_.input_is_wrench) return;
+    begin("a thrust curve of all thrusters", model::kEachThruster);
+    for (const Factor& knot : thrust_knots(problem_, seen_)) add({knot});
+    add({{.quantity = Quantity::kThrusterSize}});
+    begin("the speed at which thrusters advance", model::kEachThruster);
+    add({{.quantity = Quantity::kThrusterRoot}, {.quantity = Quantity::kAdvance}});
+    add({{.quantity = Quantity::kThrusterSize}, {.quantity = Quantity::kAdvance}});
+    add({{.quantity = Quantity::kThruster}, {.quantity = Quantity::kAdvanceSize}});
+  }
+
   template <typename Use>
   void steps(int count, const Use& use) {
     const double length = problem_.t_high - problem_.t_low;
@@ -211,7 +228,7 @@ class Library {
     std::vector<std::size_t> all(force_.groups.size());
     for (std::size_t g = 0; g < all.size(); ++g) all[g] = g;
     Eigen::VectorXd square = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force_.features.size()));
-    double count = 0.0;
+    double count = 0.0, thrust = 0.0;
     const std::vector<likelihood::Number> none;
     for (std::size_t r = 0; r < problem_.runs.size(); ++r) {
       likelihood::Plant plant{seen_.fit.hypothesis, none, problem_.runs[r], r, false};
@@ -219,20 +236,23 @@ class Library {
       for (std::size_t b = 0; b < problem_.runs[r].blocks().size(); ++b) {
         const auto at = static_cast<Eigen::Index>(b);
         plant.at_middle(b);
-        const likelihood::FeatureState state = plant.features_at(seen_.reference[r].nu_middle.col(at));
+        const likelihood::FeatureState state = plant.features_at(seen_.reference[r].nu_middle.col(at), false);
         for (std::size_t j = 0; j < force_.features.size(); ++j) {
-          const double value = force_.features[j].value(state);
-          square[static_cast<Eigen::Index>(j)] += value * value;
+          const double size = force_.features[j].size(state);
+          square[static_cast<Eigen::Index>(j)] += size * size;
         }
+        thrust += state.force.squaredNorm();
         count += 1.0;
         plant.end_block(b, seen_.reference[r].nu_end.col(at));
       }
     }
     for (std::size_t j = 0; j < force_.features.size(); ++j) {
       const int axis = force_.features[j].axis;
-      const double wrench = axis < kWorldAxis ? scene_.tau_rms[axis] : scene_.tau_rms.head<3>().norm() / std::sqrt(3.0);
+      double wrench = axis < kWorldAxis ? scene_.tau_rms[axis] : scene_.tau_rms.head<3>().norm() / std::sqrt(3.0);
+      if (axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
       const double rms = std::sqrt(square[static_cast<Eigen::Index>(j)] / std::max(count, 1.0));
       force_.features[j].scale = rms > 1e-12 ? std::max(wrench, 1e-6) / rms : 0.0;
+      if (axis == model::kEachAxis) force_.features[j].scale = 1.0;  // shares of the thrust
     }
   }
 
@@ -285,6 +305,28 @@ std::vector<double> strongest_tones(const likelihood::Problem& problem, const st
   return found;
 }
 
+std::vector<likelihood::Factor> thrust_knots(const likelihood::Problem& problem, const Seen& seen) {
+  constexpr int kKnots = 6;
+  double square = 0.0, count = 0.0;
+  const std::vector<likelihood::Number> none;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    const likelihood::Plant plant{seen.fit.hypothesis, none, problem.runs[r], r, false};
+    square += plant.mean_forces().squaredNorm();
+    count += static_cast<double>(plant.mean_forces().size());
+  }
+  // Twice the rms and down by twos: what is small (a dead band) is narrow, what is large (a limit) is wide.
+  std::vector<likelihood::Factor> knots;
+  double at = 2.0 * std::sqrt(square / std::max(count, 1.0));
+  for (int k = 0; k < kKnots && at > 0.0; ++k, at *= 0.5) {
+    const bool lowest = k == kKnots - 1;
+    knots.push_back({.quantity = likelihood::Quantity::kThrustKnot,
+                     .a = at,
+                     .b = lowest ? at : 0.5 * at,
+                     .c = k == 0 ? kNever : at});
+  }
+  return knots;
+}
+
 likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene) {
   return Library{problem, seen, scene}.make();
 }
@@ -297,13 +339,14 @@ FeatureColumns::FeatureColumns(const likelihood::Problem& problem, const Seen& s
     for (int j = group.first; j < group.first + group.count; ++j)
       features_.push_back(library.features[static_cast<std::size_t>(j)]);
   }
+  streams_ = std::ranges::any_of(features_, &likelihood::Feature::streams);
   plant_.begin(problem.runs[run].start());
 }
 
 void FeatureColumns::at(std::size_t block, likelihood::RowMatrix& acceleration) {
   const auto b = static_cast<Eigen::Index>(block);
   plant_.at_middle(block);
-  const likelihood::FeatureState state = plant_.features_at(seen_.reference[run_].nu_middle.col(b));
+  const likelihood::FeatureState state = plant_.features_at(seen_.reference[run_].nu_middle.col(b), streams_);
   const Matrix6d inverse = seen_.inverse[run_].col(b).reshaped(6, 6);
   for (std::size_t j = 0; j < features_.size(); ++j) {
     Vector6d wrench = Vector6d::Zero();

@@ -14,6 +14,9 @@ namespace fathom::inference {
 [[nodiscard]] std::vector<double> strongest_tones(const likelihood::Problem& problem,
                                                   const std::vector<Eigen::MatrixXd>& slope, int w, double lowest);
 
+/// Hats over the size of a thruster's force, of which any curve of all thrusters can be made.
+[[nodiscard]] std::vector<likelihood::Factor> thrust_knots(const likelihood::Problem& problem, const Seen& seen);
+
 /// Features as accelerations at the seen model's states. `groups`: indices into the library.
 class FeatureColumns {
  public:
@@ -26,6 +29,7 @@ class FeatureColumns {
   const likelihood::Problem& problem_;
   const Seen& seen_;
   std::vector<likelihood::Feature> features_;
+  bool streams_{};
   std::size_t run_;
   std::vector<likelihood::Number> none_;
   likelihood::Plant plant_;

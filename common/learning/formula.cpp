@@ -146,7 +146,7 @@ double rms_of(const Problem& problem, const inference::Seen& seen, const Feature
     for (std::size_t b = 0; b < problem.runs[r].blocks().size(); ++b) {
       plant.at_middle(b);
       const model::FeatureState state =
-          plant.features_at(seen.reference[r].nu_middle.col(static_cast<Eigen::Index>(b)));
+          plant.features_at(seen.reference[r].nu_middle.col(static_cast<Eigen::Index>(b)), false);
       const double value = feature.value(state);
       square += value * value;
       count += 1.0;

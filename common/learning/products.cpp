@@ -135,15 +135,16 @@ class Library {
   /// Root mean square of each feature becomes that of the applied wrench along it.
   void scale() {
     Eigen::VectorXd square = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force_.features.size()));
-    double count = 0.0;
+    double count = 0.0, thrust = 0.0;
     Vector6d drag = Vector6d::Zero(), tau = Vector6d::Zero();
     each_block([&](std::size_t, std::size_t, const likelihood::FeatureState& state, const Matrix6d&) {
       for (std::size_t j = 0; j < force_.features.size(); ++j) {
-        const double value = force_.features[j].value(state);
-        square[static_cast<Eigen::Index>(j)] += value * value;
+        const double size = force_.features[j].size(state);
+        square[static_cast<Eigen::Index>(j)] += size * size;
       }
       drag += state.drag.cwiseAbs2();
       tau += state.tau.cwiseAbs2();
+      thrust += state.force.squaredNorm();
       count += 1.0;
     });
     // Along the whole drag or thrust a feature is a share of it.
@@ -155,7 +156,9 @@ class Library {
       if (feature.axis < likelihood::kWorldAxis) wrench = scene_.tau_rms[feature.axis];
       if (feature.axis == model::kHullDrag) wrench = of_drag;
       if (feature.axis == model::kAllThrust) wrench = 1.0;
+      if (feature.axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
       feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
+      if (feature.axis == model::kEachAxis) feature.scale = 1.0;  // shares of the thrust
     }
   }
 
@@ -168,7 +171,7 @@ class Library {
       for (std::size_t b = 0; b < problem_.runs[r].blocks().size(); ++b) {
         const auto at = static_cast<Eigen::Index>(b);
         plant.at_middle(b);
-        use(r, b, plant.features_at(seen_.reference[r].nu_middle.col(at)),
+        use(r, b, plant.features_at(seen_.reference[r].nu_middle.col(at), scene_.attitude),
             Matrix6d{seen_.inverse[r].col(at).reshaped(6, 6)});
         plant.end_block(b, seen_.reference[r].nu_end.col(at));
       }

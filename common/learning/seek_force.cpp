@@ -128,7 +128,7 @@ class Seeker {
     });
     std::vector<std::size_t> shortlist;
     for (std::size_t g = 0; g < all; ++g) {
-      if (!held(seen, library.groups[g])) shortlist.push_back(g);
+      if (!held(seen, library, library.groups[g])) shortlist.push_back(g);
     }
     if (shortlist.empty()) return {};
     const auto best_first = [&] {
@@ -203,9 +203,15 @@ class Seeker {
   }
 
   /// A group of the force that is in the model already.
-  static bool held(const Seen& seen, const likelihood::FeatureGroup& group) {
-    return !group.searched && std::ranges::any_of(seen.fit.hypothesis.force.groups, [&](const auto& other) {
-      return other.kind == group.kind && other.axis == group.axis && other.count == group.count;
+  static bool held(const Seen& seen, const likelihood::FreeForce& library, const likelihood::FeatureGroup& group) {
+    const auto features = [](const likelihood::FreeForce& force, const likelihood::FeatureGroup& of) {
+      return std::span{force.features}.subspan(static_cast<std::size_t>(of.first), static_cast<std::size_t>(of.count));
+    };
+    const likelihood::FreeForce& force = seen.fit.hypothesis.force;
+    return !group.searched && std::ranges::any_of(force.groups, [&](const likelihood::FeatureGroup& other) {
+      return std::ranges::equal(features(force, other), features(library, group), [](const auto& a, const auto& b) {
+        return a.axis == b.axis && a.count == b.count && a.factors == b.factors;
+      });
     });
   }
 

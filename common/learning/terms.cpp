@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "common/inference/feature_library.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -84,6 +87,7 @@ class Terms {
     for (const int axis : axes_) along(axis, seen.fit.hypothesis.model.allocation);
     if (scene.attitude) world();
     together();
+    if (thrusters_ > 0) each_thruster(inference::thrust_knots(problem, seen));
   }
   std::vector<Term> all;
 
@@ -136,15 +140,15 @@ class Terms {
     all.push_back({.words = "thrust a moment ago", .axis = axis, .columns = slow_thrust, .closed = false});
   }
 
-  /// A force, and what a stream adds to the drag.
+  /// A force, and a stream past the hull.
   void world() {
     for (int w = 0; w < 3; ++w) {
       if (std::ranges::find(axes_, w) == axes_.end()) continue;
       const std::string name = kWorldNames[w];
       const int axis = likelihood::kWorldAxis + w;
+      if (w < 2) all.push_back({"a stream toward " + name, model::kStream + w, {{}}, kStreamTerm});
       // Along the vertical the base number of weight holds the force.
       all.push_back({"a force toward " + name, axis, {{}}, kConstantTerm, w == 2});
-      all.push_back({"a stream toward " + name, axis, {{}, {{.quantity = Quantity::kFlowSpeed}}}, kStreamTerm});
     }
   }
 
@@ -152,6 +156,11 @@ class Terms {
   void together() {
     all.push_back({"the hull's drag", model::kHullDrag, {{}}, kDragTerm, true});
     all.push_back({"the whole thrust", model::kAllThrust, {{}}, kThrustTerm, true});
+    Columns slow;
+    for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
+      slow.push_back({{.quantity = Quantity::kSlowWrench, .bank = bank}});
+    all.push_back(
+        {.words = "thrust a moment ago, along each axis", .axis = model::kEachAxis, .columns = slow, .closed = false});
     Columns worn;
     for (int j = 0; j < thrusters_; ++j) {
       for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank)
@@ -173,6 +182,25 @@ class Terms {
               {name + ", by thruster " + std::to_string(k + 1), axis, {{f_size(j), f(k)}, {f_size(j), f_size(k)}}});
       }
     }
+  }
+
+  /// Laws that all thrusters share.
+  void each_thruster(const std::vector<Factor>& knots) {
+    const auto own = [](Quantity quantity) { return Factor{.quantity = quantity}; };
+    Columns curve;
+    for (const Factor& knot : knots) curve.push_back({knot});
+    all.push_back(
+        {.words = "a thrust curve of all thrusters", .axis = model::kEachThruster, .columns = curve, .closed = false});
+    const auto law = [&](const char* words, Columns columns) {
+      all.push_back({words, model::kEachThruster, std::move(columns)});
+    };
+    law("each thruster, by its size", {{own(Quantity::kThrusterSize)}});
+    law("each thruster, by the root of its size", {{own(Quantity::kThrusterRoot)}});
+    const char* advances = "each thruster, by the speed at which it advances";
+    law(advances, {{own(Quantity::kThrusterRoot), own(Quantity::kAdvance)}});
+    law(advances, {{own(Quantity::kThrusterSize), own(Quantity::kAdvance)}});
+    law(advances, {{own(Quantity::kThruster), own(Quantity::kAdvanceSize)}});
+    law(advances, {{own(Quantity::kAdvanceSize), own(Quantity::kAdvance)}});
   }
 
   const model::Scene& scene_;

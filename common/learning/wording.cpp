@@ -26,6 +26,8 @@ constexpr Hint kHints[]{
     {"drag", "from a moment on", "something that was caught or lost at that moment"},
     {"drag", "depth", "the surface, the bottom or a layer of other water"},
     {"drag", "place", "walls, or line in the water whose length goes with the place"},
+    {"thrust curve", "", "propellers, drivers or a limit of power whose curve is not that of the vehicle file"},
+    {"thruster", "advance", "propellers that lose thrust as the craft moves"},
     {"thrust", "growing with time", "motors that warm, or a supply that sags"},
     {"thrust", "from a moment on", "damage, a reset or a changed setting at that moment"},
     {"thrust", "by", "flow into the thrusters that goes with the motion, or a supply that is shared"},

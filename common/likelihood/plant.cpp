@@ -8,6 +8,7 @@
 namespace fathom::likelihood {
 namespace {
 
+constexpr double kStreamStep = 1e-4;    // m/s
 constexpr double kVelocityStep = 1e-5;  // m/s, rad/s: truncation and rounding both below 1e-5 of a slope
 
 bool moves_thrust(const Hypothesis& hypothesis, const Number& number) {
@@ -32,6 +33,7 @@ Plant::Plant(const Hypothesis& hypothesis, const std::vector<Number>& numbers, c
   feels_ = std::ranges::find(stages_, Stage::kHull) != stages_.end();
   free_moves_ = std::ranges::any_of(free_.features, [](const Feature& f) { return f.moves_with_velocity(); });
   free_drags_ = free_.reads_drag();
+  free_streams_ = free_.streams();
   features_.allocation = &model_.allocation;
   thrust_forces(model_, run_, own_.command_offset, forces_);
   mean_over_blocks(forces_, mean_);
@@ -80,7 +82,7 @@ void Plant::begin(const Vector6d& nu) {
   motion_.nu = nu;
   motion_.v_WF_B.setZero();
   if (!memory_.empty()) {
-    feel();
+    feel(motion_);
     memory_.begin(motion_);
   }
   for (auto& slow : features_.slow_nu) slow = nu;
@@ -108,6 +110,7 @@ void Plant::show_features() {
   features_.force = force_;
   features_.tau = model_.allocation * force_;
   if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);
+  if (free_streams_) stream_ = motion_.R_WB.transpose() * free_.stream(features_);
 }
 
 void Plant::at_middle(std::size_t block) {
@@ -121,10 +124,10 @@ void Plant::at_middle(std::size_t block) {
   show_features();
 }
 
-void Plant::feel() {
+void Plant::feel(model::Motion& motion) const {
   for (std::size_t e = 0; e < stages_.size(); ++e) {
     const model::ActiveEffect& active = model_.effects[e];
-    if (stages_[e] == Stage::kHull) active.effect->feel(motion_, active.theta, active.variant, {});
+    if (stages_[e] == Stage::kHull) active.effect->feel(motion, active.theta, active.variant, {});
   }
 }
 
@@ -138,21 +141,36 @@ Vector6d Plant::outside_wrench(const Vector6d& nu) {
   return wrench + free_.wrench(features_);
 }
 
-FeatureState Plant::features_at(const Vector6d& nu) const {
+FeatureState Plant::features_at(const Vector6d& nu, bool with_streams) const {
   FeatureState state = features_;
   state.nu = nu;
   state.drag = model::hull_drag(model_, nu);
+  if (!with_streams) return state;
+  model::Load load;
+  const auto pushed = [&](const Eigen::Vector3d& more) {
+    model::Motion motion = motion_;
+    motion.nu = nu;
+    motion.v_WF_B = stream_ + more;
+    motion.a_WF_B.setZero();
+    motion.force = force_;
+    feel(motion);
+    return model::generalised_force(model_, motion, load);
+  };
+  for (Eigen::Index w = 0; w < 3; ++w) {
+    const Eigen::Vector3d step = kStreamStep * motion_.R_WB.row(w).transpose();
+    state.by_stream.col(w) = (pushed(step) - pushed(-step)) / (2.0 * kStreamStep);
+  }
   return state;
 }
 
 Vector6d Plant::acceleration(const Vector6d& nu) {
   motion_.nu = nu;
-  motion_.v_WF_B.setZero();
+  motion_.v_WF_B = stream_;
   motion_.a_WF_B.setZero();
   motion_.w_memory = outside_wrench(nu);
   if (feels_) {
     motion_.force = force_;
-    feel();
+    feel(motion_);
   }
   return model::acceleration(model_, motion_);
 }
@@ -195,11 +213,11 @@ Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
   const Vector6d remembered = outside_wrench(nu);
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
-    motion_.v_WF_B.setZero();
+    motion_.v_WF_B = stream_;
     motion_.a_WF_B.setZero();
     motion_.w_memory = remembered + Vector6d::Unit(i);
     motion_.force = force_;
-    if (feels_) feel();
+    if (feels_) feel(motion_);
     inverse.col(i) = model::acceleration(model_, motion_) - nu_dot;
   }
   motion_.w_memory = remembered;
@@ -254,8 +272,16 @@ void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_do
         break;
       }
       case NumberKind::kWeight: {
+        const Feature& feature = free_.features[static_cast<std::size_t>(number.index)];
+        if (feature.streams()) {
+          const Eigen::Vector3d before = stream_;
+          stream_ += kStreamStep * motion_.R_WB.row(feature.axis - model::kStream).transpose();
+          out.col(column) = (acceleration(nu) - nu_dot) * (feature.value(features_) / kStreamStep);
+          stream_ = before;
+          break;
+        }
         Vector6d wrench = Vector6d::Zero();
-        free_.features[static_cast<std::size_t>(number.index)].add(features_, 1.0, wrench);
+        feature.add(features_, 1.0, wrench);
         out.col(column) = inverse * wrench;
         break;
       }
@@ -275,10 +301,10 @@ void Plant::end_block(std::size_t block, const Vector6d& nu) {
   if (!memory_.empty()) {
     at_middle(block);
     motion_.nu = nu;
-    motion_.v_WF_B.setZero();
+    motion_.v_WF_B = stream_;
     motion_.a_WF_B.setZero();
     motion_.w_memory.setZero();
-    feel();
+    feel(motion_);
     memory_.advance(motion_, here.dt);
   }
   const Vector6d tau = model_.allocation * mean_.col(static_cast<Eigen::Index>(block));

@@ -48,8 +48,8 @@ class Plant {
   /// Mean over every block of what is given at substeps, column after column.
   void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
   [[nodiscard]] const Eigen::MatrixXd& mean_forces() const { return mean_; }  ///< actuators x blocks
-  /// What features read at a velocity, of the moment that was set.
-  [[nodiscard]] FeatureState features_at(const Vector6d& nu) const;
+  /// What features read at a velocity, of the moment that was set; what streams would do only where it is asked for.
+  [[nodiscard]] FeatureState features_at(const Vector6d& nu, bool with_streams) const;
   [[nodiscard]] const model::Motion& motion() const { return motion_; }
 
  private:
@@ -57,7 +57,7 @@ class Plant {
   /// What the free force and the learned features are functions of, of the moment that was set.
   void show_features();
   [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
-  void feel();
+  void feel(model::Motion& motion) const;
 
   model::Model model_;
   FreeForce free_;
@@ -70,13 +70,15 @@ class Plant {
   bool feels_{};                         // some hull effect alters what is felt
   bool free_moves_{};                    // some feature goes with the velocity
   bool free_drags_{};                    // some feature acts along the hull's drag
+  bool free_streams_{};                  // some feature is a velocity of the water
   Eigen::MatrixXd forces_, mean_;        // actuators x substeps, x blocks
   std::vector<Eigen::MatrixXd> slopes_;  // of the mean forces, per number that has one
   std::vector<int> slope_of_;            // number -> place in slopes_, -1: none
   model::Motion motion_;
   model::ActuatorForces force_;
   FeatureState features_;
-  Vector6d free_still_{Vector6d::Zero()};  // features at this place, when they do not go with the velocity
+  Eigen::Vector3d stream_{Eigen::Vector3d::Zero()};  // v_WF in B of the free force, m/s
+  Vector6d free_still_{Vector6d::Zero()};            // features at this place, when they do not go with the velocity
 };
 
 }  // namespace fathom::likelihood

@@ -65,7 +65,9 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
                       .set = set_tau,
                       .index = f.index};
     case Quantity::kThruster:
-    case Quantity::kThrusterSize: {
+    case Quantity::kThrusterSize:
+    case Quantity::kThrusterRoot:
+    case Quantity::kThrustKnot: {
       const double most = index < given.visited_force.size() ? kInside * given.visited_force[index] : 1.0;
       return Argument{.name = "f_" + std::to_string(index + 1),
                       .unit = "N",

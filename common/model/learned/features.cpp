@@ -1,6 +1,7 @@
 #include "common/model/learned/features.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/model/learned/factors/factor_kind.hpp"
 
@@ -17,6 +18,12 @@ template <typename Is>
 bool any(const Feature& feature, const Is& is) {
   return std::any_of(feature.factors.begin(), feature.factors.begin() + feature.count,
                      [&](const Factor& f) { return is(kind_of(f.quantity)); });
+}
+
+/// A law of all thrusters or axes reads here the one of which it is just asked.
+bool of_owner(int axis, const Factor& factor) {
+  const Indexed indexed = kind_of(factor.quantity).indexed;
+  return (axis == kEachThruster && indexed == Indexed::kThrusters) || (axis == kEachAxis && indexed == Indexed::kAxes);
 }
 
 }  // namespace
@@ -36,6 +43,9 @@ std::string direction_words(int axis) {
   if (axis < kHullDrag) return std::array{"north", "east", "down"}[static_cast<std::size_t>(axis - kWorldAxis)];
   if (axis == kHullDrag) return "the hull's drag";
   if (axis == kAllThrust) return "the thrust";
+  if (axis == kEachThruster) return "each thruster";
+  if (axis == kEachAxis) return "each axis";
+  if (axis >= kStream) return "the water's " + direction_words(axis - kStream + kWorldAxis);
   return "thruster " + std::to_string(axis - kThrusterLine + 1);
 }
 
@@ -44,14 +54,50 @@ std::string direction_symbol(int axis) {
   if (axis < kHullDrag) return "f_" + direction_words(axis) + " =";
   if (axis == kHullDrag) return "tau = -D(nu) nu";
   if (axis == kAllThrust) return "tau = B f";
+  if (axis == kEachThruster) return "f_j =";
+  if (axis == kEachAxis) return "tau_i =";
+  if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);
 }
 
 std::string Feature::words() const {
   std::string product;
   for (int i = 0; i < count; ++i) {
-    const Factor& factor = factors[static_cast<std::size_t>(i)];
+    Factor factor = factors[static_cast<std::size_t>(i)];
+    if (of_owner(axis, factor)) factor.index = kOwn;
     product += (product.empty() ? "" : " ") + kind_of(factor.quantity).words(factor);
+  }
+  return product;
+}
+
+int Feature::owners(const FeatureState& state) const {
+  if (axis == kEachAxis) return 6;
+  if (axis != kEachThruster) return 1;
+  return state.allocation == nullptr ? 0 : static_cast<int>(std::min(state.allocation->cols(), state.force.size()));
+}
+
+Feature Feature::of_own(int own) const {
+  if (axis != kEachThruster && axis != kEachAxis) return *this;
+  Feature one = *this;
+  one.axis = axis == kEachAxis ? own : kThrusterLine + own;
+  for (int i = 0; i < count; ++i) {
+    Factor& factor = one.factors[static_cast<std::size_t>(i)];
+    if (of_owner(axis, factor)) factor.index = own;
+  }
+  return one;
+}
+
+double Feature::product(const FeatureState& state, int own) const {
+  double product = scale;
+  for (int i = 0; i < count; ++i) {
+    const Factor& factor = factors[static_cast<std::size_t>(i)];
+    if (of_owner(axis, factor)) {
+      Factor of_own = factor;
+      of_own.index = own;
+      product *= kind_of(factor.quantity).value(of_own, state);
+    } else {
+      product *= kind_of(factor.quantity).value(factor, state);
+    }
   }
   return product;
 }
@@ -63,6 +109,14 @@ double Feature::value(const FeatureState& state) const {
     product *= kind_of(factor.quantity).value(factor, state);
   }
   return product;
+}
+
+double Feature::size(const FeatureState& state) const {
+  if (streams()) return std::abs(value(state)) * state.by_stream.col(axis - kStream).head<3>().norm();
+  if (axis != kEachThruster && axis != kEachAxis) return std::abs(value(state));
+  double square = 0.0;
+  for (int own = 0; own < owners(state); ++own) square += std::pow(product(state, own), 2);
+  return std::sqrt(square);
 }
 
 bool Feature::moves_with_velocity() const {
@@ -78,6 +132,17 @@ bool Feature::remembers() const {
 }
 
 void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) const {
+  if (axis == kEachThruster || axis == kEachAxis) {
+    for (int own = 0; own < owners(state); ++own) {
+      const double size = weight * product(state, own);
+      if (axis == kEachAxis) {
+        wrench[own] += size;
+      } else {
+        wrench += size * state.allocation->col(own);
+      }
+    }
+    return;
+  }
   const double size = weight * value(state);
   if (axis < kWorldAxis) {
     wrench[axis] += size;
@@ -87,6 +152,8 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench += size * state.drag;
   } else if (axis == kAllThrust) {
     wrench += size * state.tau;
+  } else if (streams()) {
+    wrench += size * state.by_stream.col(axis - kStream);
   } else if (state.allocation != nullptr && axis - kThrusterLine < state.allocation->cols()) {
     wrench += size * state.allocation->col(axis - kThrusterLine);
   }
@@ -94,9 +161,21 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
 
 Vector6d FreeForce::wrench(const FeatureState& state) const {
   Vector6d sum = Vector6d::Zero();
-  for (std::size_t j = 0; j < features.size(); ++j) features[j].add(state, weights[j], sum);
+  for (std::size_t j = 0; j < features.size(); ++j) {
+    if (!features[j].streams()) features[j].add(state, weights[j], sum);
+  }
   return sum;
 }
+
+Eigen::Vector3d FreeForce::stream(const FeatureState& state) const {
+  Eigen::Vector3d v_WF = Eigen::Vector3d::Zero();
+  for (std::size_t j = 0; j < features.size(); ++j) {
+    if (features[j].streams()) v_WF[features[j].axis - kStream] += weights[j] * features[j].value(state);
+  }
+  return v_WF;
+}
+
+bool FreeForce::streams() const { return std::ranges::any_of(features, &Feature::streams); }
 
 bool FreeForce::reads_drag() const {
   return std::ranges::any_of(features, [](const Feature& feature) { return feature.axis == kHullDrag; });

@@ -34,8 +34,9 @@ struct FeatureState {
   std::array<Vector6d, kVelocityMemories.size()> slow_nu{};
   std::array<model::ActuatorForces, kUseMemories.size()> use{};  ///< N: size of each actuator's force, lately
   Vector6d drag{Vector6d::Zero()};                               ///< N, N m: the hull's own by the base numbers
-  const Allocation* allocation{};                                ///< tau = B f
-  std::span<const double> columns{};                             ///< as Motion::columns
+  Eigen::Matrix<double, 6, 3> by_stream{Eigen::Matrix<double, 6, 3>::Zero()};  ///< N s/m, N s: water toward N, E, D
+  const Allocation* allocation{};                                              ///< tau = B f
+  std::span<const double> columns{};                                           ///< as Motion::columns
 };
 
 /// Largest sizes that a recording has shown of what features read.
@@ -65,12 +66,19 @@ struct Factor {
   int index{}, bank{};
   double a{}, b{1.0}, c{1.0};
   std::string column{};  ///< what a measured column is called; others have none
+  [[nodiscard]] bool operator==(const Factor&) const = default;
 };
 
 /// Along what a feature acts: X..N of the body; north, east and down of the world; all of the hull's drag; all thrust,
-/// as it is applied; the line of each thruster.
+/// as it is applied; the line of each thruster; all thrusters by one law, each along its line and reading its own
+/// force; all axes by one law, each reading its own thrust. Toward north, east and down as a velocity of the water,
+/// too, which hull and effects feel as they feel any stream: no force that adds to others.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
-constexpr int kDirections = kThrusterLine + kMaxActuators;
+constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
+constexpr int kStream = kEachAxis + 1;
+constexpr int kDirections = kStream + 3;
+/// In words of a law of all thrusters or axes, in place of an index.
+constexpr int kOwn = -1;
 [[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
 /// What stands before the amplitude in an equation, Fossen's notation: "tau_Y =", "tau = b_2" (column of B).
 [[nodiscard]] std::string direction_symbol(int axis);
@@ -80,13 +88,26 @@ struct Feature {
   int count{};  ///< of factors
   std::array<Factor, 4> factors{};
   double scale{1.0};
-  /// Scaled value: N, N m, or a share of the drag or thrust that it acts along.
+  /// Scaled value: N, N m, m/s of a stream, or a share of the drag or thrust that it acts along. Of a law of all
+  /// thrusters or axes that of the one which its factors name.
   [[nodiscard]] double value(const FeatureState& state) const;
+  /// How much it pushes, without sign: of a law of all thrusters or axes the root of their sum of squares, of a stream
+  /// the force to first order.
+  [[nodiscard]] double size(const FeatureState& state) const;
+  /// This law for one of the thrusters or axes for which it holds; others are as they are.
+  [[nodiscard]] Feature of_own(int own) const;
+  /// For how many it holds: thrusters or axes; 1 for all others.
+  [[nodiscard]] int owners(const FeatureState& state) const;
+  [[nodiscard]] bool streams() const { return axis >= kStream; }
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
   [[nodiscard]] bool remembers() const;     ///< reads low passes
   [[nodiscard]] std::string words() const;  ///< its product, Fossen's notation; empty: it is constant
+  /// Of a stream what it does to first order.
   void add(const FeatureState& state, double weight, Vector6d& wrench) const;
+
+ private:
+  [[nodiscard]] double product(const FeatureState& state, int own) const;
 };
 
 struct FeatureGroup {
@@ -103,8 +124,10 @@ struct FreeForce {
   std::vector<FeatureGroup> groups;
   std::vector<double> weights;
   [[nodiscard]] bool empty() const { return features.empty(); }
-  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;
+  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;         ///< without what streams do
+  [[nodiscard]] Eigen::Vector3d stream(const FeatureState& state) const;  ///< v_WF, m/s
   [[nodiscard]] bool reads_drag() const;
+  [[nodiscard]] bool streams() const;
 };
 
 }  // namespace fathom::model

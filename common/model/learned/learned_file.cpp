@@ -75,7 +75,7 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
   visited.p_low = seen.vector3("p_low", "");
   visited.p_high = seen.vector3("p_high", "");
   for (const Feature& feature : force.features) {
-    if (feature.axis - kThrusterLine >= vehicle.allocation.cols())
+    if (feature.axis < kEachThruster && feature.axis - kThrusterLine >= vehicle.allocation.cols())
       config.fail("terms", "a term acts along a thruster that " + vehicle.name + " does not have");
     for (int i = 0; i < feature.count; ++i) {
       const Factor& factor = feature.factors[static_cast<std::size_t>(i)];

@@ -28,15 +28,37 @@ void clip(Vector6d& x, const Vector6d& visited) {
   for (Eigen::Index i = 0; i < 6; ++i) x[i] = clipped(x[i], visited[i]);
 }
 
+/// Laws of all thrusters or axes, written out: each fades where its own thruster has not been.
+FreeForce for_each_owner(const FreeForce& force, const Allocation& allocation) {
+  const FeatureState state{.force = ActuatorForces::Zero(allocation.cols()), .allocation = &allocation};
+  FreeForce all;
+  for (const FeatureGroup& group : force.groups) {
+    FeatureGroup out = group;
+    out.first = static_cast<int>(all.features.size());
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      for (int own = 0; own < force.features[at].owners(state); ++own) {
+        all.features.push_back(force.features[at].of_own(own));
+        all.weights.push_back(force.weights[at]);
+      }
+    }
+    out.count = static_cast<int>(all.features.size()) - out.first;
+    all.groups.push_back(std::move(out));
+  }
+  return all;
+}
+
 }  // namespace
 
 LearnedForm::LearnedForm(FreeForce force, Visited visited, Allocation allocation)
-    : force_{std::move(force)}, visited_{std::move(visited)}, allocation_{std::move(allocation)} {
+    : force_{for_each_owner(force, allocation)}, visited_{std::move(visited)}, allocation_{std::move(allocation)} {
   for (const Feature& feature : force_.features) {
-    part_.push_back(feature.remembers()             ? Part::kRemembers
+    part_.push_back(feature.streams()               ? Part::kStreams
+                    : feature.remembers()           ? Part::kRemembers
                     : feature.moves_with_velocity() ? Part::kMoves
                                                     : Part::kStill);
     remembers_ = remembers_ || feature.remembers();
+    streams_ = streams_ || feature.streams();
   }
 }
 
@@ -87,6 +109,16 @@ Vector6d LearnedForm::sum(const FeatureState& state, Part part) const {
 }
 
 void LearnedForm::feel(Motion& motion, EffectTheta, std::span<const double> z) const {
+  if (streams_) {
+    const FeatureState state = state_of(motion);
+    Eigen::Vector3d v_WF = Eigen::Vector3d::Zero();
+    for (std::size_t j = 0; j < force_.features.size(); ++j) {
+      const Feature& feature = force_.features[j];
+      if (feature.streams())
+        v_WF[feature.axis - kStream] += fade(feature, state) * force_.weights[j] * feature.value(state);
+    }
+    motion.v_WF_B += motion.R_WB.transpose() * v_WF;
+  }
   if (!remembers_) return;
   FeatureState state = state_of(motion);
   const Eigen::Map<const Eigen::Matrix<double, 6, kTaps + kSlow>> memory{z.data()};

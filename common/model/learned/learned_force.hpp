@@ -26,7 +26,7 @@ class LearnedForm final : public Form {
   [[nodiscard]] bool beyond(const Motion& motion) const;
 
  private:
-  enum class Part { kRemembers, kMoves, kStill };
+  enum class Part { kStreams, kRemembers, kMoves, kStill };
   [[nodiscard]] FeatureState state_of(const Motion& motion) const;
   [[nodiscard]] Vector6d sum(const FeatureState& state, Part part) const;
   [[nodiscard]] double fade(const Feature& feature, const FeatureState& state) const;
@@ -35,7 +35,7 @@ class LearnedForm final : public Form {
   std::vector<Part> part_;  // of each feature
   Visited visited_;
   Allocation allocation_;
-  bool remembers_{false};
+  bool remembers_{false}, streams_{false};
 };
 
 class LearnedForce final : public Effect {
