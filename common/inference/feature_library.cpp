@@ -5,6 +5,8 @@
 #include <complex>
 #include <numbers>
 
+#include "common/inference/thruster_laws.hpp"
+
 namespace fathom::inference {
 namespace {
 
@@ -16,7 +18,6 @@ using likelihood::Quantity;
 constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kThrustSteps = 4;
 constexpr double kMomentLasts = 0.3;                     // s
 constexpr double kSmallestRange = 0.05;                  // m
-constexpr double kNever = 1e9;                           // N: no thrust is as large
 constexpr double kLowestTone = 0.2, kHighestTone = 6.0;  // rad/s
 constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
@@ -146,14 +147,16 @@ class Library {
     begin("thrust a moment ago, along each axis", model::kEachAxis);
     for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
       add({{.quantity = Quantity::kSlowWrench, .bank = bank}});
-    if (scene_.input_is_wrench) return;
-    begin("a thrust curve of all thrusters", model::kEachThruster);
-    for (const Factor& knot : thrust_knots(problem_, seen_)) add({knot});
-    add({{.quantity = Quantity::kThrusterSize}});
-    begin("the speed at which thrusters advance", model::kEachThruster);
-    add({{.quantity = Quantity::kThrusterRoot}, {.quantity = Quantity::kAdvance}});
-    add({{.quantity = Quantity::kThrusterSize}, {.quantity = Quantity::kAdvance}});
-    add({{.quantity = Quantity::kThruster}, {.quantity = Quantity::kAdvanceSize}});
+    for (const ThrusterLaw& law : thruster_laws(problem_, seen_, scene_)) {
+      const auto own = [&](Quantity quantity) { return Factor{.quantity = quantity, .index = law.index}; };
+      begin("a thrust curve of " + law.words, law.axis);
+      for (const Factor& knot : law.knots) add({knot});
+      add({own(Quantity::kThrusterSize)});
+      begin("the advance of " + law.words, law.axis);
+      add({own(Quantity::kThrusterRoot), own(Quantity::kAdvance)});
+      add({own(Quantity::kThrusterSize), own(Quantity::kAdvance)});
+      add({own(Quantity::kThruster), own(Quantity::kAdvanceSize)});
+    }
   }
 
   template <typename Use>
@@ -303,28 +306,6 @@ std::vector<double> strongest_tones(const likelihood::Problem& problem, const st
     if (found.size() == 2) break;
   }
   return found;
-}
-
-std::vector<likelihood::Factor> thrust_knots(const likelihood::Problem& problem, const Seen& seen) {
-  constexpr int kKnots = 6;
-  double square = 0.0, count = 0.0;
-  const std::vector<likelihood::Number> none;
-  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
-    const likelihood::Plant plant{seen.fit.hypothesis, none, problem.runs[r], r, false};
-    square += plant.mean_forces().squaredNorm();
-    count += static_cast<double>(plant.mean_forces().size());
-  }
-  // Twice the rms and down by twos: what is small (a dead band) is narrow, what is large (a limit) is wide.
-  std::vector<likelihood::Factor> knots;
-  double at = 2.0 * std::sqrt(square / std::max(count, 1.0));
-  for (int k = 0; k < kKnots && at > 0.0; ++k, at *= 0.5) {
-    const bool lowest = k == kKnots - 1;
-    knots.push_back({.quantity = likelihood::Quantity::kThrustKnot,
-                     .a = at,
-                     .b = lowest ? at : 0.5 * at,
-                     .c = k == 0 ? kNever : at});
-  }
-  return knots;
 }
 
 likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene) {

@@ -14,9 +14,6 @@ namespace fathom::inference {
 [[nodiscard]] std::vector<double> strongest_tones(const likelihood::Problem& problem,
                                                   const std::vector<Eigen::MatrixXd>& slope, int w, double lowest);
 
-/// Hats over the size of a thruster's force, of which any curve of all thrusters can be made.
-[[nodiscard]] std::vector<likelihood::Factor> thrust_knots(const likelihood::Problem& problem, const Seen& seen);
-
 /// Features as accelerations at the seen model's states. `groups`: indices into the library.
 class FeatureColumns {
  public:

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/inference/feature_library.hpp"
+#include "common/inference/thruster_laws.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -87,7 +87,7 @@ class Terms {
     for (const int axis : axes_) along(axis, seen.fit.hypothesis.model.allocation);
     if (scene.attitude) world();
     together();
-    if (thrusters_ > 0) each_thruster(inference::thrust_knots(problem, seen));
+    for (const inference::ThrusterLaw& law : inference::thruster_laws(problem, seen, scene)) along_lines(law);
   }
   std::vector<Term> all;
 
@@ -184,23 +184,22 @@ class Terms {
     }
   }
 
-  /// Laws that all thrusters share.
-  void each_thruster(const std::vector<Factor>& knots) {
-    const auto own = [](Quantity quantity) { return Factor{.quantity = quantity}; };
+  /// What propellers do by their own force and advance.
+  void along_lines(const inference::ThrusterLaw& of) {
+    const auto own = [&](Quantity quantity) { return Factor{.quantity = quantity, .index = of.index}; };
     Columns curve;
-    for (const Factor& knot : knots) curve.push_back({knot});
-    all.push_back(
-        {.words = "a thrust curve of all thrusters", .axis = model::kEachThruster, .columns = curve, .closed = false});
+    for (const Factor& knot : of.knots) curve.push_back({knot});
+    all.push_back({.words = "a thrust curve of " + of.words, .axis = of.axis, .columns = curve, .closed = false});
     const auto law = [&](const char* words, Columns columns) {
-      all.push_back({words, model::kEachThruster, std::move(columns)});
+      all.push_back({of.words + ", by " + words, of.axis, std::move(columns)});
     };
-    law("each thruster, by its size", {{own(Quantity::kThrusterSize)}});
-    law("each thruster, by the root of its size", {{own(Quantity::kThrusterRoot)}});
-    const char* advances = "each thruster, by the speed at which it advances";
-    law(advances, {{own(Quantity::kThrusterRoot), own(Quantity::kAdvance)}});
-    law(advances, {{own(Quantity::kThrusterSize), own(Quantity::kAdvance)}});
-    law(advances, {{own(Quantity::kThruster), own(Quantity::kAdvanceSize)}});
-    law(advances, {{own(Quantity::kAdvanceSize), own(Quantity::kAdvance)}});
+    law("the size of the force", {{own(Quantity::kThrusterSize)}});
+    law("the root of the force", {{own(Quantity::kThrusterRoot)}});
+    const char* advance = "the speed of advance";
+    law(advance, {{own(Quantity::kThrusterRoot), own(Quantity::kAdvance)}});
+    law(advance, {{own(Quantity::kThrusterSize), own(Quantity::kAdvance)}});
+    law(advance, {{own(Quantity::kThruster), own(Quantity::kAdvanceSize)}});
+    law(advance, {{own(Quantity::kAdvanceSize), own(Quantity::kAdvance)}});
   }
 
   const model::Scene& scene_;

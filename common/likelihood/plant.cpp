@@ -8,7 +8,7 @@
 namespace fathom::likelihood {
 namespace {
 
-constexpr double kStreamStep = 1e-4;    // m/s
+constexpr double kStreamStep = 1e-4;    // m/s, to both sides
 constexpr double kVelocityStep = 1e-5;  // m/s, rad/s: truncation and rounding both below 1e-5 of a slope
 
 bool moves_thrust(const Hypothesis& hypothesis, const Number& number) {
@@ -275,8 +275,8 @@ void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_do
         const Feature& feature = free_.features[static_cast<std::size_t>(number.index)];
         if (feature.streams()) {
           const Eigen::Vector3d before = stream_;
-          stream_ += kStreamStep * motion_.R_WB.row(feature.axis - model::kStream).transpose();
-          out.col(column) = (acceleration(nu) - nu_dot) * (feature.value(features_) / kStreamStep);
+          stream_ += kVelocityStep * motion_.R_WB.row(feature.axis - model::kStream).transpose();
+          out.col(column) = (acceleration(nu) - nu_dot) * (feature.value(features_) / kVelocityStep);
           stream_ = before;
           break;
         }

@@ -57,3 +57,51 @@ TEST_CASE("plant: what an effect on the hull adds is the difference of the accel
   }
   CHECK(asked >= 10);
 }
+
+TEST_CASE("plant: a free force's stream pushes as water does, and its columns are its slopes") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 20.0});
+  const RunData run{dive.trial, vehicle, {}};
+  const std::size_t block = run.blocks().size() / 2;
+  const Vector6d nu{0.4, -0.2, 0.1, 0.05, -0.1, 0.3};
+  Hypothesis plain{.model = dive.truth};
+  plain.runs.resize(1);
+  Hypothesis streams = plain;
+  for (const int w : {0, 1}) {
+    streams.force.features.push_back({.axis = model::kStream + w, .scale = 0.5});
+    streams.force.groups.push_back({.axis = model::kStream + w, .first = w, .count = 1});
+    streams.force.weights.push_back(0.3 - 0.4 * w);
+  }
+  Hypothesis told = plain;
+  std::vector<double> theta(model::find_effect("current")->parameters().size(), 0.0);
+  theta[0] = 0.15;
+  theta[1] = -0.05;
+  told.model.add({.effect = model::find_effect("current"), .theta = theta});
+  const Vector6d here = acceleration_at(streams, run, block, nu);
+  CHECK((here - acceleration_at(told, run, block, nu)).norm() < 1e-9);
+  CHECK((here - acceleration_at(plain, run, block, nu)).norm() > 1e-3);
+
+  std::vector<Number> numbers;
+  for (int w = 0; w < 2; ++w) numbers.push_back({.kind = NumberKind::kWeight, .index = w});
+  Plant plant{streams, numbers, run, 0, true};
+  plant.begin(run.start());
+  plant.at_middle(block);
+  Columns columns(6, 2);
+  plant.columns(block, nu, plant.acceleration(nu), columns);
+  constexpr double kStep = 1e-3, kBend = 1e-3;  // of it, by what drag is bent over a step
+  const model::FeatureState state = plant.features_at(nu, true);
+  const Matrix6d inverse = plant.inverse_inertia(nu, plant.acceleration(nu));
+  for (int w = 0; w < 2; ++w) {
+    const auto at = static_cast<std::size_t>(w);
+    Hypothesis more = streams, less = streams;
+    more.force.weights[at] += kStep;
+    less.force.weights[at] -= kStep;
+    const Vector6d slope =
+        (acceleration_at(more, run, block, nu) - acceleration_at(less, run, block, nu)) / (2.0 * kStep);
+    CHECK((columns.col(w) - slope).norm() < kBend * slope.norm());
+    // And what a screen is told of it.
+    Vector6d wrench = Vector6d::Zero();
+    streams.force.features[at].add(state, 1.0, wrench);
+    CHECK((inverse * wrench - slope).norm() < kBend * slope.norm());
+  }
+}

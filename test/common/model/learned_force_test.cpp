@@ -193,6 +193,59 @@ TEST_CASE("learned force: the hull's drag, all thrust and a thruster's line are 
         doctest::Approx(-4.0));
 }
 
+TEST_CASE("learned force: a law of all thrusters is that law for each, with its own force and fading") {
+  const Bench bench;
+  const Factor root{.quantity = Quantity::kThrusterRoot}, advance{.quantity = Quantity::kAdvance},
+      knot{.quantity = Quantity::kThrustKnot, .a = 4.0, .b = 2.0, .c = 4.0};
+  Motion motion{.nu = {0.2, -0.1, 0.05, 0.0, 0.0, 0.3}, .force = ActuatorForces{{1.0, -3.0, 5.0, 0.0, 30.0, -7.0}}};
+  for (const auto& factors : {std::initializer_list<Factor>{knot}, std::initializer_list<Factor>{root, advance}}) {
+    const Feature law = along(kEachThruster, factors, 0.5);
+    Vector6d expected = Vector6d::Zero();
+    Load load;
+    for (int j = 0; j < 6; ++j) {
+      const Feature one_of_them = law.of_own(j);
+      CHECK(one_of_them.axis == kThrusterLine + j);
+      load.clear();
+      load.drag = Vector6d::Constant(-1e6);
+      bench.made(one(one_of_them, 0.3)).load(motion, {}, 0, load);
+      expected += load.wrench;
+    }
+    load.clear();
+    load.drag = Vector6d::Constant(-1e6);
+    bench.made(one(law, 0.3)).load(motion, {}, 0, load);
+    CHECK(load.wrench.isApprox(expected, 1e-12));
+    CHECK(expected.norm() > 0.01);
+  }
+  // A hat: 0 at 2 N, half at 3 N and 6 N, 1 at 4 N, 0 from 8 N on; odd.
+  FeatureState state{.force = ActuatorForces{{2.0, -3.0, 4.0, 6.0, 8.0, 9.0}}};
+  const double values[6]{0.0, -0.5, 1.0, 0.5, 0.0, 0.0};
+  for (int j = 0; j < 6; ++j) CHECK(along(kEachThruster, {knot}).of_own(j).value(state) == doctest::Approx(values[j]));
+  CHECK(along(kEachThruster, {root, advance}).words() == "|f_j|^(1/2) u_aj");
+}
+
+TEST_CASE("learned force: a stream moves the water, as a current does") {
+  const Bench bench;
+  Feature stream = along(kStream + 1, {}, 0.5);
+  const LearnedForce learned = bench.made(one(stream, 0.4));  // 0.2 m/s toward east
+  Model with = nominal_model(bench.vehicle, false), told = with;
+  with.add({.effect = &learned});
+  std::vector<double> theta(find_effect("current")->parameters().size(), 0.0);
+  theta[1] = 0.2;
+  told.add({.effect = find_effect("current"), .theta = theta});
+  for (const double psi : {0.0, 1.0, 3.0}) {
+    Motion a{.R_WB = Eigen::AngleAxisd(psi, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+             .nu = {0.4, -0.2, 0.1, 0.0, 0.0, 0.3},
+             .force = ActuatorForces::Zero(6)};
+    a.vehicle = &bench.vehicle;
+    Motion b = a;
+    feel(with, a, {}, 0.0);
+    feel(told, b, {}, 0.0);
+    CHECK(a.v_WF_B.isApprox(b.v_WF_B, 1e-12));
+    CHECK(acceleration(with, a).isApprox(acceleration(told, b), 1e-12));
+  }
+  CHECK(direction_symbol(kStream + 1) == "v_east =");
+}
+
 TEST_CASE("factors: every kind has a name of its own, words and a value") {
   FeatureState state{.t = 2.0,
                      .p_WB = {0.1, 0.2, 0.3},

@@ -1,0 +1,47 @@
+// Listed effects that are taken out of the list: what is learned in their place does what they do, on data not fitted.
+#include <doctest/doctest.h>
+
+#include "test/common/learning/learned_case.hpp"
+
+using namespace fathom;
+using namespace fathom::learning;
+
+namespace {
+
+struct TakenOut {
+  const char* name;
+  int variant;
+  std::vector<std::pair<std::size_t, double>> numbers;
+  const char* words;  ///< in what is learned
+  double of_base;     ///< most of the base model's error that is left
+};
+
+}  // namespace
+
+TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as what they are") {
+  for (const TakenOut& one : {TakenOut{"current", 0, {{0, 0.15}, {1, -0.1}}, "a stream toward north", 0.3},
+                              TakenOut{"thruster_deadband", 0, {{0, 1.0}}, "a thrust curve of all thrusters", 0.5},
+                              TakenOut{"thrust_loss", 0, {{0, 0.6}}, "all thrusters, by the speed of advance", 0.5}}) {
+    CAPTURE(std::string{one.name});
+    std::vector<double> theta(model::find_effect(one.name)->parameters().size(), 0.0);
+    for (const auto& [place, value] : one.numbers) theta[place] = value;
+    const test::LearnedCase dive{
+        {.duration = 160.0,
+         .seed = 11,
+         .force = 0.01,
+         .effects = {{.effect = model::find_effect(one.name), .variant = one.variant, .theta = theta}}},
+        true,
+        0.5};
+    const Learned learned = dive.learned();
+    test::show(one.name, learned.given);
+    REQUIRE(learned.given.adopted);
+    REQUIRE(learned.given.carried);
+    CHECK(learned.given.words.find(one.words) != std::string::npos);
+    const double step = dive.problem.input_step;
+    const residual::Ratio over_base = residual::error_over(
+        as_model(dive.conclusion.found.best.fit.hypothesis, step),
+        as_model(learned.fit.hypothesis, step, learned.elsewhere.get()), {&dive.rest, 1}, residual::OpenLoop{});
+    MESSAGE(std::string{one.name} << ": " << over_base.value << " of the base model's error");
+    CHECK(over_base.value < one.of_base);
+  }
+}
