@@ -159,14 +159,14 @@ double rms_of(const Problem& problem, const inference::Seen& seen, const Feature
 
 std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base, const model::Scene& scene,
                                          const inference::FreeForceFound& found, int threads) {
-  const std::vector<Form> forms = grammar(problem, scene, found);
-  if (forms.empty()) return std::nullopt;
   // Beside the base numbers, with the noise that the learned force leaves: the random force has swallowed nothing
   // there.
   Fit quiet = base;
   quiet.noise = found.fit.noise;
   inference::Seen seen = inference::see(problem, quiet, threads);
   inference::take_step(seen);
+  const std::vector<Form> forms = grammar(problem, seen, scene, found);
+  if (forms.empty()) return std::nullopt;
   double paid = 0.0;  // by the learned force
   if (found.fit.finite) paid = found.fit.log_evidence - base.log_evidence - found.log_odds;
   std::optional<FormulaFound> best;

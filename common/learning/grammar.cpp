@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/inference/thruster_laws.hpp"
+
 namespace fathom::learning {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double kInnerPrice = 2.3;   // nats for a number of unknown order
 constexpr double kMomentPrice = 5.3;  // a moment has many places
 constexpr double kLinePrice = 9.0;    // a frequency more
 constexpr double kMomentLasts = 0.3;  // s
-constexpr int kMoments = 30;
+constexpr int kMoments = 30, kBends = 60;
 constexpr double kMomentRoom = 8.0, kMomentStep = 1.0;  // s about a moment that the learned force has found
 
 /// "tau_Y", "f_north".
@@ -149,6 +151,22 @@ class Grammar {
     }
   }
 
+  /// A curve of thrust with one bend.
+  void bend(const inference::ThrusterLaw& law) {
+    if (law.knots.empty()) return;
+    const double most = law.knots.front().a;  // twice the rms
+    std::vector<double> sizes;
+    for (int i = 1; i <= kBends; ++i) sizes.push_back(most * i / kBends);
+    const auto read = [=](Quantity quantity) {
+      return [=](double d) { return std::vector{along(law.axis, {of(quantity, law.index, d)})}; };
+    };
+    const std::string f = law.axis == model::kEachThruster ? "f_j" : "f_" + std::to_string(law.index + 1);
+    add(law.axis, "a force that is smaller than d", "c " + f + " where |" + f + "| < d", "d", "N", sizes, kInnerPrice,
+        read(Quantity::kThrustBelow));
+    add(law.axis, "the force up to d", "c sign(" + f + ") min(|" + f + "|, d)", "d", "N", sizes, kInnerPrice,
+        read(Quantity::kThrustHeld));
+  }
+
   std::vector<Form> forms;
 
  private:
@@ -178,7 +196,8 @@ class Grammar {
 
 }  // namespace
 
-std::vector<Form> grammar(const Problem& problem, const model::Scene& scene, const inference::FreeForceFound& found) {
+std::vector<Form> grammar(const Problem& problem, const inference::Seen& seen, const model::Scene& scene,
+                          const inference::FreeForceFound& found) {
   Grammar grammar{problem, scene};
   std::vector<bool> asked(6, false);
   for (const inference::GroupFound& group : found.groups) {
@@ -189,6 +208,10 @@ std::vector<Form> grammar(const Problem& problem, const model::Scene& scene, con
     const int axis = problem.axes[static_cast<std::size_t>(i)];
     if (asked[static_cast<std::size_t>(axis)]) grammar.body(axis);
     if (scene.attitude && axis < 3) grammar.world(kWorldAxis + axis);
+  }
+  for (const inference::ThrusterLaw& law : inference::thruster_laws(problem, seen, scene)) {
+    if (std::ranges::find(found.groups, law.axis, &inference::GroupFound::axis) != found.groups.end())
+      grammar.bend(law);
   }
   for (const inference::GroupFound& group : found.groups) grammar.again(group, found.fit.hypothesis.force);
   return std::move(grammar.forms);

@@ -67,7 +67,9 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
     case Quantity::kThruster:
     case Quantity::kThrusterSize:
     case Quantity::kThrusterRoot:
-    case Quantity::kThrustKnot: {
+    case Quantity::kThrustKnot:
+    case Quantity::kThrustBelow:
+    case Quantity::kThrustHeld: {
       const double most = index < given.visited_force.size() ? kInside * given.visited_force[index] : 1.0;
       return Argument{.name = "f_" + std::to_string(index + 1),
                       .unit = "N",

@@ -54,7 +54,7 @@ std::string direction_symbol(int axis) {
   if (axis < kHullDrag) return "f_" + direction_words(axis) + " =";
   if (axis == kHullDrag) return "tau = -D(nu) nu";
   if (axis == kAllThrust) return "tau = B f";
-  if (axis == kEachThruster) return "f_j =";
+  if (axis == kEachThruster) return "delta f_j =";
   if (axis == kEachAxis) return "tau_i =";
   if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);

@@ -110,6 +110,28 @@ constinit const FactorKind factor_thrust_knot{
         },
     .within = of_thruster};
 
+constinit const FactorKind factor_thrust_below{
+    .word = "thrust_below",
+    .sentence = "one thruster's force where it is smaller than a size a [N], else nothing",
+    .unit = "N",
+    .indexed = Indexed::kThrusters,
+    .value = [](const Factor& f,
+                const FeatureState& s) { return std::abs(s.force[f.index]) < f.a ? s.force[f.index] : 0.0; },
+    .words = [](const Factor& f) { return thruster(f) + " 1(|" + thruster(f) + "| < " + brief_number(f.a) + " N)"; },
+    .within = of_thruster};
+
+constinit const FactorKind factor_thrust_held{
+    .word = "thrust_held",
+    .sentence = "one thruster's force, no larger than a size a [N]",
+    .unit = "N",
+    .indexed = Indexed::kThrusters,
+    .value = [](const Factor& f, const FeatureState& s) { return std::clamp(s.force[f.index], -f.a, f.a); },
+    .words =
+        [](const Factor& f) {
+          return "sign(" + thruster(f) + ") min(|" + thruster(f) + "|, " + brief_number(f.a) + " N)";
+        },
+    .within = of_thruster};
+
 constinit const FactorKind factor_advance{.word = "advance",
                                           .sentence = "the speed at which one thruster advances along its line",
                                           .unit = "m/s",
