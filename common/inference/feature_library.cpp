@@ -147,6 +147,12 @@ class Library {
     begin("thrust a moment ago, along each axis", model::kEachAxis);
     for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
       add({{.quantity = Quantity::kSlowWrench, .bank = bank}});
+    if (scene_.attitude) {
+      for (const int i : levers_that_turn(axes_)) {
+        begin(std::string("a lever between weight and buoyancy in ") + "xyz"[i], model::kLever + i);
+        add({});
+      }
+    }
     for (const ThrusterLaw& law : thruster_laws(problem_, seen_, scene_)) {
       const auto own = [&](Quantity quantity) { return Factor{.quantity = quantity, .index = law.index}; };
       begin("a thrust curve of " + law.words, law.axis);
@@ -252,6 +258,7 @@ class Library {
     for (std::size_t j = 0; j < force_.features.size(); ++j) {
       const int axis = force_.features[j].axis;
       double wrench = axis < kWorldAxis ? scene_.tau_rms[axis] : scene_.tau_rms.head<3>().norm() / std::sqrt(3.0);
+      if (axis >= model::kLever) wrench = scene_.tau_rms.segment<2>(3).norm();
       if (axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
       const double rms = std::sqrt(square[static_cast<Eigen::Index>(j)] / std::max(count, 1.0));
       force_.features[j].scale = rms > 1e-12 ? std::max(wrench, 1e-6) / rms : 0.0;
@@ -268,6 +275,15 @@ class Library {
 };
 
 }  // namespace
+
+std::vector<int> levers_that_turn(const std::vector<int>& axes) {
+  const auto moves = [&](int axis) { return std::ranges::find(axes, axis) != axes.end(); };
+  std::vector<int> levers;  // a level craft's weight turns it nowhere
+  if (moves(4)) levers.push_back(0);
+  if (moves(3)) levers.push_back(1);
+  if (moves(3) || moves(4)) levers.push_back(2);
+  return levers;
+}
 
 std::vector<double> strongest_tones(const likelihood::Problem& problem, const std::vector<Eigen::MatrixXd>& slope,
                                     int w, double lowest) {

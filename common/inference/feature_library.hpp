@@ -9,6 +9,9 @@ namespace fathom::inference {
 [[nodiscard]] likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen,
                                                     const model::Scene& scene);
 
+/// Components of the lever of weight and buoyancy that are felt where these axes move.
+[[nodiscard]] std::vector<int> levers_that_turn(const std::vector<int>& axes);
+
 /// Two strongest lines, from `lowest` [rad/s] on, of the likelihood's slope with a force toward world axis `w`.
 /// `slope`: likelihood::adjoint per run.
 [[nodiscard]] std::vector<double> strongest_tones(const likelihood::Problem& problem,

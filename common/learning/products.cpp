@@ -157,6 +157,7 @@ class Library {
       if (feature.axis == model::kHullDrag) wrench = of_drag;
       if (feature.axis == model::kAllThrust) wrench = 1.0;
       if (feature.axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
+      if (feature.axis >= model::kLever) wrench = scene_.tau_rms.segment<2>(3).norm();
       feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
       if (feature.axis == model::kEachAxis) feature.scale = 1.0;  // shares of the thrust
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/inference/feature_library.hpp"
 #include "common/inference/thruster_laws.hpp"
 
 namespace fathom::learning {
@@ -81,11 +82,13 @@ void of_columns(const likelihood::Problem& problem, std::vector<Modulator>& all)
 
 class Terms {
  public:
-  Terms(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene) : scene_{scene} {
+  Terms(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene)
+      : scene_{scene}, numbers_{seen.fit.numbers} {
     for (int i = 0; i < problem.simulated; ++i) axes_.push_back(problem.axes[static_cast<std::size_t>(i)]);
     if (!scene.input_is_wrench) thrusters_ = static_cast<int>(seen.fit.hypothesis.model.allocation.cols());
     for (const int axis : axes_) along(axis, seen.fit.hypothesis.model.allocation);
     if (scene.attitude) world();
+    if (scene.attitude) levers();
     together();
     for (const inference::ThrusterLaw& law : inference::thruster_laws(problem, seen, scene)) along_lines(law);
   }
@@ -152,6 +155,21 @@ class Terms {
     }
   }
 
+  /// Weight and buoyancy that do not act at one point.
+  void levers() {
+    for (const int i : inference::levers_that_turn(axes_)) {
+      const bool held = std::ranges::any_of(numbers_, [&](const likelihood::Number& number) {
+        return number.kind == likelihood::NumberKind::kBase &&
+               number.index == static_cast<int>(model::index(model::BaseParameter::G_x)) + i;
+      });
+      all.push_back({std::string("a lever between weight and buoyancy in ") + "xyz"[i],
+                     model::kLever + i,
+                     {{}},
+                     kConstantTerm,
+                     held});
+    }
+  }
+
   /// All of the drag, all of the thrust, each thruster along its line.
   void together() {
     all.push_back({"the hull's drag", model::kHullDrag, {{}}, kDragTerm, true});
@@ -203,6 +221,7 @@ class Terms {
   }
 
   const model::Scene& scene_;
+  const std::vector<likelihood::Number>& numbers_;
   std::vector<int> axes_;
   int thrusters_{};
 };

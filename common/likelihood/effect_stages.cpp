@@ -62,7 +62,8 @@ void add_effect_numbers(const model::Model& model, std::size_t effect, double t_
 
 void thrust_forces(const model::Model& model, const RunData& run, double offset, Eigen::MatrixXd& forces) {
   const Trial& trial = run.trial();
-  const model::InputSignal input = model::input_of(model, trial);
+  model::InputSignal input = model::input_of(model, trial);
+  input.act_later(offset);  // for what effects look up as well
   std::vector<const model::ActiveEffect*> chain;
   std::vector<std::size_t> sizes;
   std::size_t size = 0;
@@ -93,14 +94,14 @@ void thrust_forces(const model::Model& model, const RunData& run, double offset,
   };
   motion.t = trial.t.front();
   motion.voltage = run.intervals().front().voltage;
-  input.ago(motion.t, offset, motion.force);
+  input.now(motion.t, motion.force);
   if (size > 0) through(0.0, true);
   const double h = run.h();
   for (std::size_t k = 0; k < intervals; ++k) {
     motion.voltage = run.intervals()[k].voltage;
     for (int s = 0; s < substeps; ++s) {
       motion.t = trial.t[k] + (s + 0.5) * h;
-      input.ago(motion.t, offset, motion.force);
+      input.now(motion.t, motion.force);
       const model::ActuatorForces commanded = motion.force;
       through(0.5 * h, false);
       forces.col(static_cast<Eigen::Index>(k) * substeps + s) = motion.force;

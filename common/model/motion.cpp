@@ -34,7 +34,7 @@ void InputSignal::line(double t, ActuatorForces& force) const {
   force = (1.0 - share) * samples_[index] + share * samples_[next];
 }
 
-void InputSignal::at(double t, ActuatorForces& force) const { line(t - later_, force); }
+void InputSignal::at(double t, ActuatorForces& force) const { line(t - offset_ - later_, force); }
 
 /// Of the force at t in the inputs that are held, in their steps; at a jump, the one after it.
 double InputSignal::place(double t) const {
@@ -73,6 +73,7 @@ void InputSignal::change(double t, ActuatorForces& difference) const {
 void InputSignal::now(double t, ActuatorForces& force) const { ago(t, 0.0, force); }
 
 void InputSignal::ago(double t, double later, ActuatorForces& force) const {
+  later += offset_;
   if (mixed_) return mixture(place(t) - later / part_, force);
   if (held_share_ == 0.0) return line(t - later - later_, force);
   const double held = place(t) - later / dt_;

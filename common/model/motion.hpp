@@ -39,6 +39,8 @@ class InputSignal {
   InputSignal(double t0, double dt, std::span<const Eigen::VectorXd> samples,
               std::span<const Eigen::VectorXd> held = {}, std::span<const Eigen::VectorXd> told = {},
               const InputTiming& timing = {});
+  /// All of it acts so much later than it was told, s: two clocks, and how inputs are held.
+  void act_later(double seconds) { offset_ = seconds; }
   /// Straight lines, early or late as the timing says: continuous in time.
   void at(double t, ActuatorForces& force) const;
   /// With the jumps of inputs that are held.
@@ -57,6 +59,7 @@ class InputSignal {
   double t0_{0.0};
   double dt_{1.0};
   double later_{0.0};       // s
+  double offset_{0.0};      // s: of the clock of the inputs
   double ahead_{0.0};       // steps of the grid from the time that is asked for to the step that tells of it
   double held_share_{0.0};  // the rest goes along straight lines, or as told where both are mixed
   double part_{1.0};        // s

@@ -45,6 +45,7 @@ std::string direction_words(int axis) {
   if (axis == kAllThrust) return "the thrust";
   if (axis == kEachThruster) return "each thruster";
   if (axis == kEachAxis) return "each axis";
+  if (axis >= kLever) return std::string("the lever of weight and buoyancy in ") + "xyz"[axis - kLever];
   if (axis >= kStream) return "the water's " + direction_words(axis - kStream + kWorldAxis);
   return "thruster " + std::to_string(axis - kThrusterLine + 1);
 }
@@ -56,6 +57,7 @@ std::string direction_symbol(int axis) {
   if (axis == kAllThrust) return "tau = B f";
   if (axis == kEachThruster) return "delta f_j =";
   if (axis == kEachAxis) return "tau_i =";
+  if (axis >= kLever) return std::string("G_") + "xyz"[axis - kLever] + " =";
   if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);
 }
@@ -112,6 +114,8 @@ double Feature::value(const FeatureState& state) const {
 }
 
 double Feature::size(const FeatureState& state) const {
+  if (axis >= kLever)
+    return std::abs(value(state)) * Eigen::Vector3d::Unit(axis - kLever).cross(state.R_WB.row(2).transpose()).norm();
   if (streams()) return std::abs(value(state)) * state.by_stream.col(axis - kStream).head<3>().norm();
   if (axis != kEachThruster && axis != kEachAxis) return std::abs(value(state));
   double square = 0.0;
@@ -152,6 +156,9 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench += size * state.drag;
   } else if (axis == kAllThrust) {
     wrench += size * state.tau;
+  } else if (axis >= kLever) {
+    const Eigen::Vector3d down_B = state.R_WB.row(2).transpose();
+    wrench.tail<3>() += size * Eigen::Vector3d::Unit(axis - kLever).cross(down_B);
   } else if (streams()) {
     wrench += size * state.by_stream.col(axis - kStream);
   } else if (state.allocation != nullptr && axis - kThrusterLine < state.allocation->cols()) {

@@ -16,8 +16,9 @@
 
 namespace fathom::model {
 
-/// Time constants of the low passes that features may run over, s.
-constexpr std::array kThrustMemories{0.05, 0.15, 0.4, 1.2};
+/// Time constants of the low passes that features may run over, s. Files name them by their places. Those of thrust
+/// stand so close that any time constant between two is a mixture of both.
+constexpr std::array kThrustMemories{0.05, 0.15, 0.4, 1.2, 0.09, 0.25, 0.7, 2.0};
 constexpr std::array kVelocityMemories{0.4, 1.5, 4.0};
 constexpr std::array kUseMemories{10.0, 40.0};  // of how much an actuator has done: motors and windings warm
 
@@ -73,10 +74,12 @@ struct Factor {
 /// as it is applied; the line of each thruster; all thrusters by one law, each along its line and reading its own
 /// force; all axes by one law, each reading its own thrust. Toward north, east and down as a velocity of the water,
 /// too, which hull and effects feel as they feel any stream: no force that adds to others.
+/// Last the levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
 constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
 constexpr int kStream = kEachAxis + 1;
-constexpr int kDirections = kStream + 3;
+constexpr int kLever = kStream + 3;
+constexpr int kDirections = kLever + 3;
 /// In words of a law of all thrusters or axes, in place of an index.
 constexpr int kOwn = -1;
 [[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
@@ -98,7 +101,7 @@ struct Feature {
   [[nodiscard]] Feature of_own(int own) const;
   /// For how many it holds: thrusters or axes; 1 for all others.
   [[nodiscard]] int owners(const FeatureState& state) const;
-  [[nodiscard]] bool streams() const { return axis >= kStream; }
+  [[nodiscard]] bool streams() const { return axis >= kStream && axis < kLever; }
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
   [[nodiscard]] bool remembers() const;     ///< reads low passes
