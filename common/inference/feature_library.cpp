@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <numbers>
 
 #include "common/inference/thruster_laws.hpp"
+#include "common/inference/tones.hpp"
 
 namespace fathom::inference {
 namespace {
@@ -16,9 +15,9 @@ using likelihood::kWorldAxis;
 using likelihood::Quantity;
 
 constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kThrustSteps = 4;
-constexpr double kMomentLasts = 0.3;                     // s
-constexpr double kSmallestRange = 0.05;                  // m
-constexpr double kLowestTone = 0.2, kHighestTone = 6.0;  // rad/s
+constexpr double kMomentLasts = 0.3;     // s
+constexpr double kSmallestRange = 0.05;  // m
+constexpr double kLowestTone = 0.2;      // rad/s
 constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
 class Library {
@@ -285,75 +284,8 @@ std::vector<int> levers_that_turn(const std::vector<int>& axes) {
   return levers;
 }
 
-std::vector<double> strongest_tones(const likelihood::Problem& problem, const std::vector<Eigen::MatrixXd>& slope,
-                                    int w, double lowest) {
-  std::size_t longest = 0;
-  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
-    if (problem.runs[r].blocks().size() > problem.runs[longest].blocks().size()) longest = r;
-  }
-  const likelihood::RunData& run = problem.runs[longest];
-  const auto& blocks = run.blocks();
-  std::vector<double> series(blocks.size(), 0.0);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const std::size_t middle = std::min((blocks[b].first + blocks[b].last) / 2, run.intervals().size() - 1);
-    for (int i = 0; i < problem.simulated; ++i) {
-      const int axis = problem.axes[static_cast<std::size_t>(i)];
-      if (axis < 3)
-        series[b] += slope[longest](i, static_cast<Eigen::Index>(b)) * run.intervals()[middle].R_WB(w, axis);
-    }
-  }
-  const double length = run.last_time() - run.first_time(), dt = blocks.front().dt;
-  const double spacing = 0.5 * 2.0 * std::numbers::pi / std::max(length, 1.0);
-  std::vector<std::pair<double, double>> power;  // and frequency
-  for (double omega = lowest; omega < kHighestTone; omega += spacing) {
-    std::complex<double> sum{}, at{1.0, 0.0};
-    const std::complex<double> turn{std::cos(omega * dt), std::sin(omega * dt)};
-    for (const double x : series) {
-      sum += x * at;
-      at *= turn;
-    }
-    power.emplace_back(std::norm(sum), omega);
-  }
-  std::ranges::sort(power, std::greater{});
-  std::vector<double> found;
-  for (const auto& [strength, omega] : power) {
-    if (std::ranges::all_of(found, [&](double other) { return std::abs(other - omega) > 4.0 * spacing; }))
-      found.push_back(omega);
-    if (found.size() == 2) break;
-  }
-  return found;
-}
-
 likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen, const model::Scene& scene) {
   return Library{problem, seen, scene}.make();
-}
-
-FeatureColumns::FeatureColumns(const likelihood::Problem& problem, const Seen& seen,
-                               const likelihood::FreeForce& library, std::vector<std::size_t> groups, std::size_t run)
-    : problem_{problem}, seen_{seen}, run_{run}, plant_{seen.fit.hypothesis, none_, problem.runs[run], run, false} {
-  for (const std::size_t g : groups) {
-    const likelihood::FeatureGroup& group = library.groups[g];
-    for (int j = group.first; j < group.first + group.count; ++j)
-      features_.push_back(library.features[static_cast<std::size_t>(j)]);
-  }
-  streams_ = std::ranges::any_of(features_, &likelihood::Feature::streams);
-  plant_.begin(problem.runs[run].start());
-}
-
-void FeatureColumns::at(std::size_t block, likelihood::RowMatrix& acceleration) {
-  const auto b = static_cast<Eigen::Index>(block);
-  plant_.at_middle(block);
-  const likelihood::FeatureState state = plant_.features_at(seen_.reference[run_].nu_middle.col(b), streams_);
-  const Matrix6d inverse = seen_.inverse[run_].col(b).reshaped(6, 6);
-  for (std::size_t j = 0; j < features_.size(); ++j) {
-    Vector6d wrench = Vector6d::Zero();
-    features_[j].add(state, 1.0, wrench);
-    const Vector6d nu_dot = inverse * wrench;
-    for (int i = 0; i < seen_.reference[run_].axes; ++i)
-      acceleration(i, static_cast<Eigen::Index>(j)) =
-          i < problem_.simulated ? nu_dot[problem_.axes[static_cast<std::size_t>(i)]] : 0.0;
-  }
-  plant_.end_block(block, seen_.reference[run_].nu_end.col(b));
 }
 
 }  // namespace fathom::inference

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/base/factors.hpp"
+#include "common/inference/feature_columns.hpp"
 
 namespace fathom::inference {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "common/inference/feature_library.hpp"
+#include "common/inference/scan.hpp"
 
 namespace fathom::inference {
 

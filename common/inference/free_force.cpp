@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/parallel.hpp"
+#include "common/inference/feature_library.hpp"
 #include "common/inference/feature_screen.hpp"
 
 namespace fathom::inference {

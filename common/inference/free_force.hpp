@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/base/deadline.hpp"
-#include "common/inference/feature_library.hpp"
+#include "common/inference/scan.hpp"
 
 namespace fathom::inference {
 

@@ -7,6 +7,7 @@
 
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
+#include "common/inference/feature_columns.hpp"
 
 namespace fathom::learning {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/inference/feature_library.hpp"
+#include "common/inference/tones.hpp"
 #include "common/learning/terms.hpp"
 
 namespace fathom::learning {
