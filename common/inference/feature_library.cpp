@@ -148,6 +148,7 @@ class Library {
       add({{.quantity = Quantity::kSlowWrench, .bank = bank}});
     if (scene_.attitude) {
       for (const int i : levers_that_turn(axes_)) {
+        if (base_has_lever(seen_.fit.numbers, i)) continue;
         begin(std::string("a lever between weight and buoyancy in ") + "xyz"[i], model::kLever + i);
         add({});
       }
@@ -274,6 +275,13 @@ class Library {
 };
 
 }  // namespace
+
+bool base_has_lever(const std::vector<likelihood::Number>& numbers, int component) {
+  const int place = static_cast<int>(model::index(model::BaseParameter::G_x)) + component;
+  return std::ranges::any_of(numbers, [&](const likelihood::Number& number) {
+    return number.kind == likelihood::NumberKind::kBase && number.index == place;
+  });
+}
 
 std::vector<int> levers_that_turn(const std::vector<int>& axes) {
   const auto moves = [&](int axis) { return std::ranges::find(axes, axis) != axes.end(); };

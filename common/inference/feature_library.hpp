@@ -9,6 +9,8 @@ namespace fathom::inference {
 [[nodiscard]] likelihood::FreeForce feature_library(const likelihood::Problem& problem, const Seen& seen,
                                                     const model::Scene& scene);
 
+/// Base numbers hold this component of the lever of weight and buoyancy, 0..2.
+[[nodiscard]] bool base_has_lever(const std::vector<likelihood::Number>& numbers, int component);
 /// Components of the lever of weight and buoyancy that are felt where these axes move.
 [[nodiscard]] std::vector<int> levers_that_turn(const std::vector<int>& axes);
 

@@ -158,15 +158,11 @@ class Terms {
   /// Weight and buoyancy that do not act at one point.
   void levers() {
     for (const int i : inference::levers_that_turn(axes_)) {
-      const bool held = std::ranges::any_of(numbers_, [&](const likelihood::Number& number) {
-        return number.kind == likelihood::NumberKind::kBase &&
-               number.index == static_cast<int>(model::index(model::BaseParameter::G_x)) + i;
-      });
       all.push_back({std::string("a lever between weight and buoyancy in ") + "xyz"[i],
                      model::kLever + i,
                      {{}},
                      kConstantTerm,
-                     held});
+                     inference::base_has_lever(numbers_, i)});
     }
   }
 
