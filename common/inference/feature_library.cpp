@@ -141,11 +141,8 @@ class Library {
     });
   }
 
-  /// Laws that all thrusters share: one number each instead of one per thruster.
+  /// Levers of weight and buoyancy, and laws that all thrusters share: one number each instead of one per thruster.
   void together() {
-    begin("thrust a moment ago, along each axis", model::kEachAxis);
-    for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
-      add({{.quantity = Quantity::kSlowWrench, .bank = bank}});
     if (scene_.attitude) {
       for (const int i : levers_that_turn(axes_)) {
         if (base_has_lever(seen_.fit.numbers, i)) continue;
@@ -262,7 +259,6 @@ class Library {
       if (axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
       const double rms = std::sqrt(square[static_cast<Eigen::Index>(j)] / std::max(count, 1.0));
       force_.features[j].scale = rms > 1e-12 ? std::max(wrench, 1e-6) / rms : 0.0;
-      if (axis == model::kEachAxis) force_.features[j].scale = 1.0;  // shares of the thrust
     }
   }
 
