@@ -21,10 +21,13 @@ std::vector<int> skilled_axes(const model::Vehicle& vehicle, std::span<const Tri
                               by_base = residual::predict(base, windows), by_named = residual::predict(named, windows);
   for (int axis = 0; axis < 6; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double own = std::min(mean_square(by_base, kFiveSeconds, a), mean_square(by_named, kFiveSeconds, a));
+    const bool base_is_better = mean_square(by_base, kFiveSeconds, a) < mean_square(by_named, kFiveSeconds, a);
+    const residual::Predictions& best = base_is_better ? by_base : by_named;
+    const double own = mean_square(best, kFiveSeconds, a);
     const bool acts = plain[a].known && plain[a].t_of_input >= inference::Thresholds{}.idle_input;
+    // As good as an equation of the axis alone is followed: only who is surely worse than that follows nothing.
     if (acts && own >= 0.0 && own < mean_square(unchanged, kFiveSeconds, a) &&
-        own < mean_square(plainly, kFiveSeconds, a))
+        p_no_worse(best, plainly, kFiveSeconds, a) >= inference::Thresholds{}.no_skill)
       axes.push_back(axis);
   }
   return axes;
