@@ -30,6 +30,7 @@ struct Thresholds {
   double slow_memory{10.0};       ///< s: a random force that remembers for longer, above the smallest size, is no noise
   double following{0.0};          ///< least share of an axis' acceleration that the model must foretell
   double no_skill{1e-3};          ///< p-value over windows of a model that is no worse than "nothing changes"
+  double beaten{0.05};            ///< p-value over windows below which an equation of its axis alone beats the model
   double idle_input{3.0};         ///< Student's t below which an axis' thrust does not act on it
   double foreign_unit{5.0};       ///< fitted over expected inertia, or its inverse: thrust in another unit
   double absurd{10.0};            ///< times its prior's mean and sigma together: a number that nothing can have

@@ -27,7 +27,7 @@ std::vector<int> skilled_axes(const model::Vehicle& vehicle, std::span<const Tri
     const bool acts = plain[a].known && plain[a].t_of_input >= inference::Thresholds{}.idle_input;
     // As good as an equation of the axis alone is followed: only who is surely worse than that follows nothing.
     if (acts && own >= 0.0 && own < mean_square(unchanged, kFiveSeconds, a) &&
-        p_no_worse(best, plainly, kFiveSeconds, a) >= inference::Thresholds{}.no_skill)
+        p_no_worse(best, plainly, kFiveSeconds, a) >= inference::Thresholds{}.beaten)
       axes.push_back(axis);
   }
   return axes;
