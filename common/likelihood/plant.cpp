@@ -82,7 +82,7 @@ void Plant::begin(const Vector6d& nu) {
   motion_.nu = nu;
   motion_.v_WF_B.setZero();
   if (!memory_.empty()) {
-    feel(motion_);
+    feel();
     memory_.begin(motion_);
   }
   for (auto& slow : features_.slow_nu) slow = nu;
@@ -124,10 +124,10 @@ void Plant::at_middle(std::size_t block) {
   show_features();
 }
 
-void Plant::feel(model::Motion& motion) const {
+void Plant::feel() {
   for (std::size_t e = 0; e < stages_.size(); ++e) {
     const model::ActiveEffect& active = model_.effects[e];
-    if (stages_[e] == Stage::kHull) active.effect->feel(motion, active.theta, active.variant, {});
+    if (stages_[e] == Stage::kHull) active.effect->feel(motion_, active.theta, active.variant, {});
   }
 }
 
@@ -153,7 +153,7 @@ FeatureState Plant::features_at(const Vector6d& nu, bool with_streams) const {
     motion.v_WF_B = stream_ + more;
     motion.a_WF_B.setZero();
     motion.force = force_;
-    feel(motion);
+    feel_hull(model_, motion);
     return model::generalised_force(model_, motion, load);
   };
   for (Eigen::Index w = 0; w < 3; ++w) {
@@ -170,7 +170,7 @@ Vector6d Plant::acceleration(const Vector6d& nu) {
   motion_.w_memory = outside_wrench(nu);
   if (feels_) {
     motion_.force = force_;
-    feel(motion_);
+    feel();
   }
   return model::acceleration(model_, motion_);
 }
@@ -217,7 +217,7 @@ Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
     motion_.a_WF_B.setZero();
     motion_.w_memory = remembered + Vector6d::Unit(i);
     motion_.force = force_;
-    if (feels_) feel(motion_);
+    if (feels_) feel();
     inverse.col(i) = model::acceleration(model_, motion_) - nu_dot;
   }
   motion_.w_memory = remembered;
@@ -304,7 +304,7 @@ void Plant::end_block(std::size_t block, const Vector6d& nu) {
     motion_.v_WF_B = stream_;
     motion_.a_WF_B.setZero();
     motion_.w_memory.setZero();
-    feel(motion_);
+    feel();
     memory_.advance(motion_, here.dt);
   }
   const Vector6d tau = model_.allocation * mean_.col(static_cast<Eigen::Index>(block));

@@ -57,7 +57,7 @@ class Plant {
   /// What the free force and the learned features are functions of, of the moment that was set.
   void show_features();
   [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
-  void feel(model::Motion& motion) const;
+  void feel();
 
   model::Model model_;
   FreeForce free_;

@@ -78,6 +78,10 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
                       .set = set_force,
                       .index = f.index};
     }
+    case Quantity::kAdvance:
+    case Quantity::kAdvanceSize:
+      return Argument{
+          .name = "u_a", .unit = "m/s", .low = -nu(0), .high = nu(0), .set = set_nu};  // a thruster that points ahead
     case Quantity::kDepthBump:
     case Quantity::kDepth:
       return Argument{.name = "z",
@@ -117,8 +121,10 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
   }
 }
 
-FeatureState middle_of(const CorrectionGiven& given) {
+/// Every thruster's line points ahead, so that its advance is u.
+FeatureState middle_of(const CorrectionGiven& given, const model::Allocation& ahead) {
   FeatureState state;
+  state.allocation = &ahead;
   state.force.setZero(static_cast<Eigen::Index>(given.visited_force.size()));
   for (std::size_t i = 0; i < given.visited_force.size(); ++i)
     state.force[static_cast<Eigen::Index>(i)] = 0.5 * given.visited_force[i];
@@ -171,6 +177,7 @@ Feature beside_columns(Feature feature) {
 
 std::vector<CorrectionCurve> correction_curves(const CorrectionGiven& given) {
   std::vector<CorrectionCurve> curves;
+  const model::Allocation ahead = Vector6d::Unit(0).replicate(1, static_cast<Eigen::Index>(given.visited_force.size()));
   std::size_t first = 0;
   while (first < given.terms.size()) {
     std::size_t last = first;
@@ -200,7 +207,7 @@ std::vector<CorrectionCurve> correction_curves(const CorrectionGiven& given) {
             .title = given.terms[first].group + ", along " + model::direction_words(given.terms[first].axis),
             .argument = argument.name,
             .unit = argument.unit};
-        FeatureState state = middle_of(given);
+        FeatureState state = middle_of(given, ahead);
         for (const Argument& other : arguments) {  // times after all that has happened
           if (other.name == "t") state.t = other.high;
         }

@@ -93,7 +93,7 @@ double Feature::product(const FeatureState& state, int own) const {
   double product = scale;
   for (int i = 0; i < count; ++i) {
     const Factor& factor = factors[static_cast<std::size_t>(i)];
-    if (of_owner(axis, factor)) {
+    if (own != kOwn && of_owner(axis, factor)) {
       Factor of_own = factor;
       of_own.index = own;
       product *= kind_of(factor.quantity).value(of_own, state);
@@ -104,14 +104,7 @@ double Feature::product(const FeatureState& state, int own) const {
   return product;
 }
 
-double Feature::value(const FeatureState& state) const {
-  double product = scale;
-  for (int i = 0; i < count; ++i) {
-    const Factor& factor = factors[static_cast<std::size_t>(i)];
-    product *= kind_of(factor.quantity).value(factor, state);
-  }
-  return product;
-}
+double Feature::value(const FeatureState& state) const { return product(state, kOwn); }
 
 double Feature::size(const FeatureState& state) const {
   if (axis >= kLever)

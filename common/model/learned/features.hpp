@@ -110,6 +110,7 @@ struct Feature {
   void add(const FeatureState& state, double weight, Vector6d& wrench) const;
 
  private:
+  /// `own`: whose law it is; kOwn: of the one that the factors name.
   [[nodiscard]] double product(const FeatureState& state, int own) const;
 };
 

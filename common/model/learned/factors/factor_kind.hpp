@@ -45,7 +45,8 @@ struct FactorKind {
 }
 
 [[nodiscard]] inline std::string axis_name(const char* const (&names)[6], int index) {
-  return index >= 0 && index < 6 ? names[index] : "i";
+  if (index == kOwn) return "i";
+  return index >= 0 && index < 6 ? names[index] : "?";
 }
 constexpr const char* kNuNames[6]{"u", "v", "w", "p", "q", "r"};
 constexpr const char* kTauNames[6]{"X", "Y", "Z", "K", "M", "N"};
