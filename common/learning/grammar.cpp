@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/inference/thruster_laws.hpp"
+#include "common/learning/edges.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kInnerPrice = 2.3;   // nats for a number of unknown order
 constexpr double kMomentPrice = 5.3;  // a moment has many places
 constexpr double kLinePrice = 9.0;    // a frequency more
 constexpr double kMomentLasts = 0.3;  // s
-constexpr int kMoments = 30, kBends = 60;
+constexpr int kMoments = 30, kBends = 60, kReaches = 20;
 constexpr double kMomentRoom = 8.0, kMomentStep = 1.0;  // s about a moment that the learned force has found
 
 /// "tau_Y", "f_north".
@@ -151,6 +152,24 @@ class Grammar {
     }
   }
 
+  /// What the learned force holds near an edge, its reach left open.
+  void nearness(const inference::GroupFound& group, const model::FreeForce& force, std::span<const Edge> edges) {
+    for (const model::FeatureGroup& own : force.groups) {
+      if (own.kind != group.kind || own.axis != group.axis) continue;
+      const Feature& first = force.features[static_cast<std::size_t>(own.first)];
+      if (first.count != 1 || first.factors[0].quantity != Quantity::kNear) continue;
+      const auto edge = std::ranges::find_if(edges, [&](const Edge& each) {
+        return each.along.index == first.factors[0].index && each.along.c == first.factors[0].c;
+      });
+      if (edge == edges.end()) continue;
+      std::vector<double> reaches;
+      for (int k = 0; k <= kReaches; ++k)
+        reaches.push_back(edge->width * std::pow(2.0, -1.0 - 5.0 * k / kReaches));  // from a half to a 64th
+      add(own.axis, own.kind, "c exp(-d / s)", "s", "m", reaches, kInnerPrice,
+          [axis = own.axis, edge = *edge](double s) { return std::vector{along(axis, {near(edge, s)})}; });
+    }
+  }
+
   /// A curve of thrust with one bend.
   void bend(const inference::ThrusterLaw& law) {
     if (law.knots.empty()) return;
@@ -213,7 +232,11 @@ std::vector<Form> grammar(const Problem& problem, const inference::Seen& seen, c
     if (std::ranges::find(found.groups, law.axis, &inference::GroupFound::axis) != found.groups.end())
       grammar.bend(law);
   }
-  for (const inference::GroupFound& group : found.groups) grammar.again(group, found.fit.hypothesis.force);
+  const std::vector<Edge> edges = edges_of(scene);
+  for (const inference::GroupFound& group : found.groups) {
+    grammar.again(group, found.fit.hypothesis.force);
+    grammar.nearness(group, found.fit.hypothesis.force, edges);
+  }
   return std::move(grammar.forms);
 }
 

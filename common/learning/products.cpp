@@ -59,8 +59,7 @@ class Library {
                                    .closed = term.closed && modulator.closed};
     for (const std::vector<Factor>& own : term.columns) {
       for (const std::vector<Factor>& by : modulator.columns) {
-        const int axis = term.own_lines ? model::kThrusterLine + own.front().index : term.axis;
-        Feature feature{.axis = axis, .count = static_cast<int>(own.size() + by.size())};
+        Feature feature{.axis = term.axis, .count = static_cast<int>(own.size() + by.size())};
         std::ranges::copy(by, std::ranges::copy(own, feature.factors.begin()).out);
         force_.features.push_back(feature);
         ++group.count;

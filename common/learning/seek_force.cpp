@@ -9,6 +9,7 @@
 #include "common/inference/feature_screen.hpp"
 #include "common/learning/moments.hpp"
 #include "common/learning/products.hpp"
+#include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -292,17 +293,9 @@ class Seeker {
   /// Groups that others have made superfluous go, if a fit without them agrees.
   void prune(likelihood::Fit& fit) const {
     const std::vector<double> worth_of = worths(fit);
-    likelihood::FreeForce kept;
-    for (std::size_t g = 0; g < worth_of.size(); ++g) {
-      if (worth_of[g] <= 0.0) continue;
-      likelihood::FeatureGroup group = fit.hypothesis.force.groups[g];
-      const auto from = static_cast<std::ptrdiff_t>(group.first), to = from + group.count;
-      group.first = static_cast<int>(kept.features.size());
-      const likelihood::FreeForce& force = fit.hypothesis.force;
-      kept.features.insert(kept.features.end(), force.features.begin() + from, force.features.begin() + to);
-      kept.weights.insert(kept.weights.end(), force.weights.begin() + from, force.weights.begin() + to);
-      kept.groups.push_back(std::move(group));
-    }
+    std::size_t g = 0;
+    const likelihood::FreeForce kept =
+        model::groups_of(fit.hypothesis.force, [&](const likelihood::FeatureGroup&) { return worth_of[g++] > 0.0; });
     if (kept.empty() || kept.groups.size() == worth_of.size()) return;
     likelihood::Hypothesis hypothesis = fit.hypothesis;
     hypothesis.force = {};

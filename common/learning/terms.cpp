@@ -1,11 +1,13 @@
 #include "common/learning/terms.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "common/inference/feature_library.hpp"
 #include "common/inference/thruster_laws.hpp"
+#include "common/learning/edges.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -14,8 +16,9 @@ using likelihood::Factor;
 using likelihood::Quantity;
 
 constexpr int kDepthBumps = 6, kPlanBumps = 3, kTimeSteps = 12, kFewSteps = 4;
-constexpr double kSmallestRange = 0.05;  // m
-constexpr double kMoves = 1e-3;          // m/s, rad/s: an axis that does less shows nothing
+constexpr std::array kEdgeReaches{1.0 / 30, 1.0 / 12, 1.0 / 5};  // of the width of where it was
+constexpr double kSmallestRange = 0.05;                          // m
+constexpr double kMoves = 1e-3;                                  // m/s, rad/s: an axis that does less shows nothing
 constexpr const char* kWorldNames[3] = {"north", "east", "down"};
 
 Factor v(int axis) { return {.quantity = Quantity::kVelocity, .index = axis}; }
@@ -26,6 +29,14 @@ Factor f(int thruster) { return {.quantity = Quantity::kThruster, .index = thrus
 Factor f_size(int thruster) { return {.quantity = Quantity::kThrusterSize, .index = thruster}; }
 Factor of(Quantity quantity, int index, double a, double b) {
   return {.quantity = quantity, .index = index, .a = a, .b = b};
+}
+
+/// How much an actuator has done lately.
+std::vector<Factor> uses(int thruster) {
+  std::vector<Factor> uses;
+  for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank)
+    uses.push_back({.quantity = Quantity::kRecentUse, .index = thruster, .bank = bank});
+  return uses;
 }
 
 Columns steps_in_time(const likelihood::Problem& problem, int count) {
@@ -151,7 +162,7 @@ class Terms {
       const int axis = likelihood::kWorldAxis + w;
       if (w < 2) all.push_back({"a stream toward " + name, model::kStream + w, {{}}, kStreamTerm});
       // Along the vertical the base number of weight holds the force.
-      all.push_back({"a force toward " + name, axis, {{}}, kConstantTerm, w == 2});
+      all.push_back({"a force toward " + name, axis, {{}}, kConstantTerm | kWorldTerm, w == 2});
     }
   }
 
@@ -169,26 +180,19 @@ class Terms {
   /// All of the drag, all of the thrust, each thruster along its line.
   void together() {
     all.push_back({"the hull's drag", model::kHullDrag, {{}}, kDragTerm, true});
-    all.push_back({"the whole thrust", model::kAllThrust, {{}}, kThrustTerm, true});
+    all.push_back({"the whole thrust", model::kAllThrust, {{}}, kThrustTerm | kWholeTerm, true});
     Columns slow;
     for (int bank = 0; bank < static_cast<int>(likelihood::kThrustMemories.size()); ++bank)
       slow.push_back({{.quantity = Quantity::kSlowWrench, .bank = bank}});
     all.push_back(
         {.words = "thrust a moment ago, along each axis", .axis = model::kEachAxis, .columns = slow, .closed = false});
-    Columns worn;
-    for (int j = 0; j < thrusters_; ++j) {
-      for (int bank = 0; bank < static_cast<int>(likelihood::kUseMemories.size()); ++bank)
-        worn.push_back({f(j), {.quantity = Quantity::kRecentUse, .index = j, .bank = bank}});
-    }
-    if (thrusters_ > 0)
-      all.push_back({.words = "thrusters, by what each has done lately",
-                     .axis = model::kAllThrust,
-                     .columns = worn,
-                     .own_lines = true});
     for (int j = 0; j < thrusters_; ++j) {
       const std::string name = "thruster " + std::to_string(j + 1);
       const int axis = model::kThrusterLine + j;
       all.push_back({name, axis, {{f(j)}}, kThrusterTerm});
+      Columns worn;
+      for (const Factor& use : uses(j)) worn.push_back({f(j), use});
+      all.push_back({name + ", by what it has done lately", axis, worn});
       all.push_back({name + ", by its size", axis, {{f_size(j)}, {f_size(j), f(j)}}});
       for (int k = 0; k < thrusters_; ++k) {
         if (k != j)
@@ -207,6 +211,9 @@ class Terms {
     const auto law = [&](const char* words, Columns columns) {
       all.push_back({of.words + ", by " + words, of.axis, std::move(columns)});
     };
+    Columns worn;
+    for (const Factor& use : uses(of.index)) worn.push_back({own(Quantity::kThruster), use});
+    if (of.axis == model::kEachThruster) law("what each has done lately", worn);
     law("the size of the force", {{own(Quantity::kThrusterSize)}});
     law("the root of the force", {{own(Quantity::kThrusterRoot)}});
     const char* advance = "the speed of advance";
@@ -255,6 +262,11 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
     all.push_back({", at places", bumps_over_plan(scene), kConstantTerm, false});
   }
   if (scene.attitude) {
+    for (const Edge& edge : edges_of(scene)) {
+      Columns reaches;
+      for (const double share : kEdgeReaches) reaches.push_back({near(edge, share * edge.width)});
+      all.push_back({", near " + edge.words, reaches, kWorldTerm | kDragTerm | kWholeTerm, false});
+    }
     for (int n = 1; n <= 2; ++n) {
       const Factor cosine = of(Quantity::kHeadingCosine, n, 0.0, 1.0), sine = of(Quantity::kHeadingSine, n, 0.0, 1.0);
       all.push_back({n == 1 ? ", by heading" : ", by twice the heading",

@@ -19,7 +19,9 @@ enum TermKind : unsigned {
   kStreamTerm = 4,
   kDragTerm = 8,
   kThrustTerm = 16,
-  kThrusterTerm = 32
+  kThrusterTerm = 32,
+  kWorldTerm = 64,  ///< a constant that is fixed in the world
+  kWholeTerm = 128  ///< the whole thrust
 };
 
 /// Something that acts along a direction.
@@ -27,10 +29,9 @@ struct Term {
   std::string words;  ///< "drag", "a stream toward north"
   int axis{};         ///< Feature::axis
   Columns columns;    ///< that act together
-  TermKind kind{kPlainTerm};
+  unsigned kind{kPlainTerm};
   bool held{};  ///< base numbers hold it: only its modulations are new
   bool closed{true};
-  bool own_lines{false};  ///< each column acts along the line of the thruster that its first factor reads
 };
 
 /// What a term may go with besides.

@@ -90,6 +90,18 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
                       .high = given.visited_high[2],
                       .set = set_place,
                       .index = 2};
+    case Quantity::kNear: {  // along the axis that it lies closest to
+      const bool level = f.index == 0, across = level && std::abs(std::sin(f.c)) > std::abs(std::cos(f.c));
+      const std::size_t axis = !level ? 2 : across ? 1 : 0;
+      return Argument{.name = axis == 2   ? "z"
+                              : axis == 1 ? "y"
+                                          : "x",
+                      .unit = "m",
+                      .low = given.visited_low[axis],
+                      .high = given.visited_high[axis],
+                      .set = set_place,
+                      .index = static_cast<int>(axis)};
+    }
     case Quantity::kNorth:
     case Quantity::kPlanBump:
       return Argument{.name = "x",

@@ -49,7 +49,22 @@ class LearnedForce final : public Effect {
   [[nodiscard]] const LearnedForm& learned() const { return static_cast<const LearnedForm&>(form(0)); }
 };
 
-/// The same without what depends on time: what another run may be told. Empty where nothing else is in it.
+/// Whole groups of a force.
+template <typename Keep>
+[[nodiscard]] FreeForce groups_of(const FreeForce& force, const Keep& keep) {
+  FreeForce rest;
+  for (FeatureGroup group : force.groups) {
+    if (!keep(group)) continue;
+    const auto from = static_cast<std::ptrdiff_t>(group.first), to = from + group.count;
+    group.first = static_cast<int>(rest.features.size());
+    rest.features.insert(rest.features.end(), force.features.begin() + from, force.features.begin() + to);
+    rest.weights.insert(rest.weights.end(), force.weights.begin() + from, force.weights.begin() + to);
+    rest.groups.push_back(std::move(group));
+  }
+  return rest;
+}
+
+/// A force without what depends on time: what another run may be told. Empty where nothing else is in it.
 [[nodiscard]] FreeForce without_time(const FreeForce& force);
 
 /// What a run whose clock begins anew may be told: besides that, laws that grow with a run's time, which begin anew

@@ -1,6 +1,8 @@
 // Listed effects that are taken out of the list: what is learned in their place does what they do, on data not fitted.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "test/common/learning/learned_case.hpp"
 
 using namespace fathom;
@@ -15,6 +17,23 @@ struct TakenOut {
   const char* words;  ///< in what is learned
   double of_base;     ///< most of the base model's error that is left
 };
+
+/// Where a dive goes that nothing disturbs.
+struct NoisyDiveBox {
+  test::NoisyDive settings;
+  double north{-1e9}, width{};  // m
+};
+NoisyDiveBox where_it_goes() {
+  NoisyDiveBox box{.settings = {.duration = 160.0, .seed = 11, .force = 0.01}};
+  const test::VirtualDive dive = test::fly(test::bluerov(), box.settings);
+  double south = 1e9;
+  for (const Eigen::Vector3d& p : dive.trial.p_WB) {
+    box.north = std::max(box.north, p.x());
+    south = std::min(south, p.x());
+  }
+  box.width = box.north - south;
+  return box;
+}
 
 }  // namespace
 
@@ -44,4 +63,25 @@ TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as
     MESSAGE(std::string{one.name} << ": " << over_base.value << " of the base model's error");
     CHECK(over_base.value < one.of_base);
   }
+}
+
+TEST_CASE("taken out: drag that grows toward a wall is learned as drag near an edge, wherever the wall is") {
+  const NoisyDiveBox box = where_it_goes();
+  // Strength, bearing (north), distance, reach, at distance: three times the hull's drag at the edge.
+  const std::vector<double> theta{3.0, 0.0, 0.0, box.width / 8.0, box.north};
+  test::NoisyDive settings = box.settings;
+  settings.effects = {{.effect = model::find_effect("wall_effect"), .variant = 3, .theta = theta}};
+  const test::LearnedCase dive{settings, true, 0.5};
+  const Learned learned = dive.learned();
+  test::show("wall", learned.given);
+  REQUIRE(learned.given.adopted);
+  REQUIRE(learned.given.carried);
+  CHECK(learned.given.words.find("near the north") != std::string::npos);
+  const double step = dive.problem.input_step;
+  const residual::Ratio over_base = residual::error_over(
+      as_model(dive.conclusion.found.best.fit.hypothesis, step),
+      as_model(learned.fit.hypothesis, step, learned.elsewhere.get()), {&dive.rest, 1}, residual::OpenLoop{});
+  MESSAGE("wall: " << over_base.value << " of the base model's error");
+  CHECK(learned.given.held_out_carried < 0.6);
+  CHECK(over_base.value < 0.9);  // the rest of the dive comes seldom so near
 }

@@ -273,3 +273,24 @@ TEST_CASE("factors: every kind has a name of its own, words and a value") {
 #undef FACTOR
   CHECK_FALSE(quantity_from("no such thing"));
 }
+
+TEST_CASE("factors: nearness is 1 at an edge, falls by e per reach, and fades where no recording has been") {
+  FeatureState state;
+  state.p_WB = {3.0, 4.0, 1.5};
+  const Visited visited;
+  const double bearing = std::atan2(4.0, 3.0);
+  struct Case {
+    Factor factor;
+    double beyond;  // m
+  };
+  for (const Case& one : {Case{{.quantity = Quantity::kNear, .index = 0, .a = 5.0, .b = 0.5, .c = bearing}, 0.0},
+                          Case{{.quantity = Quantity::kNear, .index = 0, .a = 6.0, .b = 0.5, .c = bearing}, -1.0},
+                          Case{{.quantity = Quantity::kNear, .index = 1, .a = 2.0, .b = 0.5}, -0.5},
+                          Case{{.quantity = Quantity::kNear, .index = 2, .a = -1.0, .b = 0.5}, -0.5},
+                          Case{{.quantity = Quantity::kNear, .index = 2, .a = -2.0, .b = 0.5}, 0.5}}) {
+    const FactorKind& kind = kind_of(Quantity::kNear);
+    CHECK(kind.value(one.factor, state) == doctest::Approx(std::exp(std::min(one.beyond, 0.0) / 0.5)));
+    const double left = kind.within(one.factor, state, visited);
+    CHECK((one.beyond <= 0.0 ? left == 1.0 : left < 0.5));
+  }
+}

@@ -18,6 +18,12 @@ std::string line(const char* symbol, const Factor& f) {
   return "(" + std::string{symbol} + (f.a < 0.0 ? " + " : " - ") + brief_number(std::abs(f.a)) + " m) / " +
          brief_number(f.b) + " m";
 }
+/// How far beyond the edge `a` of what was visited, m: toward the bearing `c`, downward (index 1) or upward (2).
+double beyond_edge(const Factor& f, const FeatureState& s) {
+  if (f.index == 1) return s.p_WB.z() - f.a;
+  if (f.index == 2) return -s.p_WB.z() - f.a;
+  return std::cos(f.c) * s.p_WB.x() + std::sin(f.c) * s.p_WB.y() - f.a;
+}
 std::string turns(const Factor& f) { return f.index == 1 ? "psi" : std::to_string(f.index) + " psi"; }
 
 }  // namespace
@@ -57,6 +63,15 @@ constinit const FactorKind factor_plan_bump{
           return std::exp(-0.5 * (square(s.p_WB.x() - f.a) + square(s.p_WB.y() - f.b)) / square(f.c));
         },
     .words = [](const Factor& f) { return "near (" + brief_number(f.a) + ", " + brief_number(f.b) + ") m"; }};
+
+constinit const FactorKind factor_near{
+    .word = "near",
+    .sentence = "nearness to an edge of where the recording has been: 1 there, falling exponentially",
+    .unit = "1",
+    .value = [](const Factor& f, const FeatureState& s) { return std::exp(std::min(beyond_edge(f, s), 0.0) / f.b); },
+    .words = [](const Factor& f) { return "exp(-d / " + brief_number(f.b) + " m)"; },
+    .within = [](const Factor& f, const FeatureState& s,
+                 const Visited&) { return fade_beyond(std::max(beyond_edge(f, s) + f.b, 0.0), f.b); }};
 
 constinit const FactorKind factor_heading_cosine{
     .word = "heading_cosine",
