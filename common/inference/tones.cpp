@@ -10,6 +10,7 @@ namespace fathom::inference {
 namespace {
 
 constexpr double kHighestTone = 6.0;  // rad/s
+constexpr double kFinest = 0.01;      // of half a turn over the run
 
 }  // namespace
 
@@ -32,22 +33,33 @@ std::vector<double> strongest_tones(const likelihood::Problem& problem, const st
   }
   const double length = run.last_time() - run.first_time(), dt = blocks.front().dt;
   const double spacing = 0.5 * 2.0 * std::numbers::pi / std::max(length, 1.0);
-  std::vector<std::pair<double, double>> power;  // and frequency
-  for (double omega = lowest; omega < kHighestTone; omega += spacing) {
+  const auto power_at = [&](double omega) {
     std::complex<double> sum{}, at{1.0, 0.0};
     const std::complex<double> turn{std::cos(omega * dt), std::sin(omega * dt)};
     for (const double x : series) {
       sum += x * at;
       at *= turn;
     }
-    power.emplace_back(std::norm(sum), omega);
-  }
+    return std::norm(sum);
+  };
+  std::vector<std::pair<double, double>> power;  // and frequency
+  for (double omega = lowest; omega < kHighestTone; omega += spacing) power.emplace_back(power_at(omega), omega);
   std::ranges::sort(power, std::greater{});
   std::vector<double> found;
   for (const auto& [strength, omega] : power) {
     if (std::ranges::all_of(found, [&](double other) { return std::abs(other - omega) > 4.0 * spacing; }))
       found.push_back(omega);
     if (found.size() == 2) break;
+  }
+  // A grid's frequency slips by up to a quarter turn over the run, and the swing with it.
+  for (double& omega : found) {
+    double best = power_at(omega);
+    for (double step = 0.5 * spacing; step > kFinest * spacing; step *= 0.5) {
+      for (const double other : {omega - step, omega + step}) {
+        const double there = power_at(other);
+        if (there > best) best = there, omega = other;
+      }
+    }
   }
   return found;
 }

@@ -224,6 +224,10 @@ FreeForce kept_of(const FreeForce& force, const Keep& keep) {
   return rest;
 }
 
+bool swings(const Factor& factor) {
+  return factor.quantity == Quantity::kToneCosine || factor.quantity == Quantity::kToneSine;
+}
+
 }  // namespace
 
 FreeForce without_time(const FreeForce& force) {
@@ -256,7 +260,11 @@ FreeForce as_it_stands(const FreeForce& force, double t) {
       }
     }
   }
-  return without_time(rest);
+  return kept_of(rest, [](const FeatureGroup& group, const Feature& feature) {
+    return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [&](const Factor& factor) {
+      return !kind_of(factor.quantity).in_time || (group.closed && swings(factor));
+    });
+  });
 }
 
 }  // namespace fathom::model
