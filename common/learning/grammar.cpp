@@ -21,7 +21,7 @@ constexpr double kInnerPrice = 2.3;   // nats for a number of unknown order
 constexpr double kMomentPrice = 5.3;  // a moment has many places
 constexpr double kLinePrice = 9.0;    // a frequency more
 constexpr double kMomentLasts = 0.3;  // s
-constexpr int kMoments = 30, kBends = 60, kReaches = 20;
+constexpr int kMoments = 30, kBends = 60, kReaches = 32;
 constexpr double kMomentRoom = 8.0, kMomentStep = 1.0;  // s about a moment that the learned force has found
 
 /// "tau_Y", "f_north".
@@ -163,8 +163,7 @@ class Grammar {
       });
       if (edge == edges.end()) continue;
       std::vector<double> reaches;
-      for (int k = 0; k <= kReaches; ++k)
-        reaches.push_back(edge->width * std::pow(2.0, -1.0 - 5.0 * k / kReaches));  // from a half to a 64th
+      for (int k = 1; k <= kReaches; ++k) reaches.push_back(0.5 * edge->width * k / kReaches);
       add(own.axis, own.kind, "c exp(-d / s)", "s", "m", reaches, kInnerPrice,
           [axis = own.axis, edge = *edge](double s) { return std::vector{along(axis, {near(edge, s)})}; });
     }

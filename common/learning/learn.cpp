@@ -45,23 +45,6 @@ Fit reported(const Problem& problem, std::span<const Trial> trials, const Fit& f
   return ratio.value <= 1.0 ? far : fit;
 }
 
-/// What was found without what acts along these axes alone, fitted anew; no fit: nothing of it does, or all.
-inference::FreeForceFound without(const Problem& problem, const inference::FreeForceFound& found,
-                                  std::span<const int> axes, int threads) {
-  inference::FreeForceFound less = found;
-  less.fit.finite = false;
-  model::FreeForce spared = sparing(found.fit.hypothesis.force, axes);
-  if (spared.empty() || spared.groups.size() == found.fit.hypothesis.force.groups.size()) return less;
-  likelihood::Hypothesis hypothesis = found.fit.hypothesis;
-  hypothesis.force = std::move(spared);
-  less.fit = likelihood::fit(problem, hypothesis, found.fit.noise,
-                             {.noise_rounds = 2, .steps = 2, .enough = 0.3, .threads = threads});
-  less.log_odds += less.fit.log_evidence - found.fit.log_evidence;
-  std::erase_if(less.groups,
-                [&](const inference::GroupFound& group) { return std::ranges::find(axes, group.axis) != axes.end(); });
-  return less;
-}
-
 void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& given) {
   const model::FreeForce& force = fit.hypothesis.force;
   std::vector<Eigen::Index> at;
@@ -165,7 +148,6 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   if (!given.refused.empty()) return learned;
 
   const model::Visited visited = visited_by(problem, free->fit.hypothesis);
-  std::vector<int> harmed;  // by what was judged last
   const auto adopt = [&](const Fit& with) {
     given.refused.clear();
     const Judged judged = leave_out_in_turn(problem, of, base, with, visited, settings.leaving, threads);
@@ -174,7 +156,6 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     given.held_out_carried = carried.value;
     given.windows = whole.windows;
     given.shortened = judged.whole.shortened;
-    harmed = harmed_axes(judged, limits);
     if (whole.windows < limits.fewest_windows) {
       given.refused =
           too_little("predictions where it was not fitted", whole.windows, "at least", limits.fewest_windows);
@@ -212,16 +193,6 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   if (formula && (formula->over_learned < -limits.form || formula->over_base < limits.odds)) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
   if (!formula) (void)adopt(free->fit);
-  if (!formula && !harmed.empty()) {
-    // One axis may pay for what others win, or spoil it: what acts along that one alone is left out, if that helps.
-    inference::FreeForceFound less = without(problem, *free, harmed, threads);
-    Learned whole = learned;
-    if (less.fit.finite && less.log_odds >= limits.odds && adopt(less.fit) && harmed.empty()) {
-      free = std::move(less);
-    } else {
-      learned = std::move(whole);
-    }
-  }
   // What holds on this recording alone helps no other: what lasts, found and fitted without it, may.
   if (lasting && !judged_here && !given.carried && !given.goes_on) {
     Learned alone = std::exchange(learned, {});

@@ -109,25 +109,10 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
   return judged;
 }
 
-std::vector<int> harmed_axes(const Judged& judged, const Limits& limits) {
-  std::vector<int> harmed;
-  for (int axis = 0; axis < 6; ++axis) {
-    const residual::Ratio ratio = ratio_of_axis(judged.whole, axis);
-    if (ratio.windows >= limits.fewest_windows && ratio.value > limits.harm &&
-        std::log(ratio.value) > limits.sure * ratio.log_error)
-      harmed.push_back(axis);
-  }
-  return harmed;
-}
-
-model::FreeForce sparing(const model::FreeForce& force, std::span<const int> axes) {
-  return model::groups_of(
-      force, [&](const model::FeatureGroup& group) { return std::ranges::find(axes, group.axis) == axes.end(); });
-}
-
 model::FreeForce standing_of(const Problem& problem, const model::FreeForce& force) {
-  const model::FreeForce judged = model::groups_of(
-      force, [&](const model::FeatureGroup& group) { return begins(force, group) <= last_part_of(problem); });
+  const model::FreeForce judged = model::kept_of(force, [&](const model::FeatureGroup& group, const model::Feature&) {
+    return begins(force, group) <= last_part_of(problem);
+  });
   return model::as_it_stands(judged, problem.t_high);
 }
 

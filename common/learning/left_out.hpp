@@ -20,11 +20,6 @@ struct Judged {
                                        const likelihood::Fit& base, const likelihood::Fit& with,
                                        const model::Visited& visited, const Leaving& leaving, int threads);
 
-/// Axes whose error is surely larger with the force than without it.
-[[nodiscard]] std::vector<int> harmed_axes(const Judged& judged, const Limits& limits);
-/// The force without the groups that act along these axes of the body.
-[[nodiscard]] model::FreeForce sparing(const model::FreeForce& force, std::span<const int> axes);
-
 /// What later runs on the same clock are told: the force as it stands at the end, without what set in so late that
 /// nothing judges it.
 [[nodiscard]] model::FreeForce standing_of(const likelihood::Problem& problem, const model::FreeForce& force);

@@ -11,7 +11,6 @@ struct Limits {
   double error{0.98};   ///< most of the base model's open-loop error on what was left out, geometric mean
   double carried{1.0};  ///< the same of the part that other runs are told
   double sure{1.3};     ///< standard errors by which the logarithm of that ratio lies below 0: one-sided 90 %
-  double harm{1.02};    ///< of one axis' error, surely above which what acts along that axis alone is not adopted
   double form{10.0};    ///< nats by which a closed form may lie below the table of features that it replaces
   int fewest_windows{4};
   int most_groups{8};  ///< of products: more has never held on a new recording

@@ -293,9 +293,11 @@ class Seeker {
   /// Groups that others have made superfluous go, if a fit without them agrees.
   void prune(likelihood::Fit& fit) const {
     const std::vector<double> worth_of = worths(fit);
-    std::size_t g = 0;
+    const likelihood::FreeForce& force = fit.hypothesis.force;
     const likelihood::FreeForce kept =
-        model::groups_of(fit.hypothesis.force, [&](const likelihood::FeatureGroup&) { return worth_of[g++] > 0.0; });
+        model::kept_of(force, [&](const likelihood::FeatureGroup& group, const likelihood::Feature&) {
+          return worth_of[static_cast<std::size_t>(&group - force.groups.data())] > 0.0;
+        });
     if (kept.empty() || kept.groups.size() == worth_of.size()) return;
     likelihood::Hypothesis hypothesis = fit.hypothesis;
     hypothesis.force = {};

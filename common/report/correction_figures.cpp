@@ -1,6 +1,7 @@
 #include "common/report/correction_figures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -91,11 +92,10 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
                       .set = set_place,
                       .index = 2};
     case Quantity::kNear: {  // along the axis that it lies closest to
-      const bool level = f.index == 0, across = level && std::abs(std::sin(f.c)) > std::abs(std::cos(f.c));
-      const std::size_t axis = !level ? 2 : across ? 1 : 0;
-      return Argument{.name = axis == 2   ? "z"
-                              : axis == 1 ? "y"
-                                          : "x",
+      constexpr std::array kPlaces{"x", "y", "z"};
+      std::size_t axis = 2;
+      if (f.index == 0) axis = std::abs(std::sin(f.c)) > std::abs(std::cos(f.c)) ? 1 : 0;
+      return Argument{.name = kPlaces[axis],
                       .unit = "m",
                       .low = given.visited_low[axis],
                       .high = given.visited_high[axis],

@@ -6,8 +6,6 @@
 namespace fathom::residual {
 namespace {
 
-constexpr double kLost = 10.0;  // logarithm of a ratio to an error that is beyond all numbers
-
 bool measured(const Trial& trial, std::size_t k, std::size_t axis) {
   return axis < 3 ? trial.observed.velocity && trial.velocity_valid[k] != 0
                   : trial.observed.rates && trial.rates_valid[k] != 0;
@@ -27,12 +25,11 @@ Vector6d sizes_of(const Trial& trial, const model::Vehicle& vehicle) {
   return (square.array() / count.array().max(1.0)).sqrt().matrix();
 }
 
-Vector6d scaled_squares(const Vector6d& x, const Vector6d& sizes) {
-  Vector6d squares;
-  for (Eigen::Index i = 0; i < 6; ++i) squares[i] = sizes[i] > 0.0 ? x[i] * x[i] / (sizes[i] * sizes[i]) : 0.0;
-  return squares;
+double scaled_square(const Vector6d& x, const Vector6d& sizes) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < 6; ++i) sum += sizes[i] > 0.0 ? x[i] * x[i] / (sizes[i] * sizes[i]) : 0.0;
+  return sum;
 }
-double scaled_square(const Vector6d& x, const Vector6d& sizes) { return scaled_squares(x, sizes).sum(); }
 
 /// Samples over which a small change of the start stays small.
 std::size_t foreseeable(const model::Model& model, const model::Window& window, const Vector6d& nu0,
@@ -48,35 +45,17 @@ std::size_t foreseeable(const model::Model& model, const model::Window& window, 
   return static_cast<std::size_t>(trace.cols());
 }
 
-/// Mean square of each axis over the window, scaled.
-Vector6d errors_of(const model::VelocityTrace& trace, const model::Window& window, std::size_t samples,
-                   const Vector6d& sizes) {
-  Vector6d squares = Vector6d::Zero();
+double error_of(const model::VelocityTrace& trace, const model::Window& window, std::size_t samples,
+                const Vector6d& sizes) {
+  double square = 0.0;
   for (std::size_t k = 1; k < samples; ++k) {
     Vector6d off = trace.col(static_cast<Eigen::Index>(k)) - window.trial->nu[window.start + k];
     for (std::size_t axis = 0; axis < 6; ++axis) {
       if (!measured(*window.trial, window.start + k, axis)) off[static_cast<Eigen::Index>(axis)] = 0.0;
     }
-    squares += scaled_squares(off, sizes);
+    square += scaled_square(off, sizes);
   }
-  return squares / static_cast<double>(std::max<std::size_t>(samples, 2) - 1);
-}
-
-/// Logarithm of the ratio of two root mean squares.
-double log_ratio(double other, double base) {
-  return std::isfinite(other) && other > 0.0 ? 0.5 * std::log(other / base) : kLost;
-}
-
-Ratio ratio_over(const std::vector<double>& logs) {
-  const auto n = static_cast<double>(logs.size());
-  Ratio ratio{.windows = static_cast<int>(logs.size())};
-  if (n < 2.0) return ratio;
-  double mean = 0.0, square = 0.0;
-  for (const double x : logs) mean += x / n;
-  for (const double x : logs) square += (x - mean) * (x - mean);
-  ratio.value = std::exp(mean);
-  ratio.log_error = std::sqrt(square / (n - 1.0) / n);
-  return ratio;
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(samples, 2) - 1));
 }
 
 }  // namespace
@@ -98,13 +77,9 @@ void compare(const model::Model& base, const model::Model& other, std::span<cons
     if (finished) samples = std::min(samples, foreseeable(other, window, other_start, by_other, sizes, how));
     if (static_cast<double>(samples) * trial.dt < how.shortest) continue;
     if (samples < window.count) ++compared.shortened;
-    const Vector6d one = errors_of(by_base, window, samples, sizes), two = errors_of(by_other, window, samples, sizes);
-    if (!(one.sum() > 0.0) || !one.allFinite()) continue;
-    compared.log_ratio.push_back(log_ratio(two.sum(), one.sum()));
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      const auto i = static_cast<Eigen::Index>(axis);
-      if (one[i] > 0.0) compared.of_axis[axis].push_back(log_ratio(two[i], one[i]));
-    }
+    const double one = error_of(by_base, window, samples, sizes), two = error_of(by_other, window, samples, sizes);
+    if (!(one > 0.0) || !std::isfinite(one)) continue;
+    compared.log_ratio.push_back(std::isfinite(two) && two > 0.0 ? std::log(two / one) : 10.0);
   }
 }
 
@@ -127,9 +102,16 @@ std::vector<model::Window> windows_within(const Trial& trial, double from, doubl
   return windows;
 }
 
-Ratio ratio_of(const Compared& compared) { return ratio_over(compared.log_ratio); }
-Ratio ratio_of_axis(const Compared& compared, int axis) {
-  return ratio_over(compared.of_axis[static_cast<std::size_t>(axis)]);
+Ratio ratio_of(const Compared& compared) {
+  const auto n = static_cast<double>(compared.log_ratio.size());
+  Ratio ratio{.windows = static_cast<int>(compared.log_ratio.size())};
+  if (n < 2.0) return ratio;
+  double mean = 0.0, square = 0.0;
+  for (const double x : compared.log_ratio) mean += x / n;
+  for (const double x : compared.log_ratio) square += (x - mean) * (x - mean);
+  ratio.value = std::exp(mean);
+  ratio.log_error = std::sqrt(square / (n - 1.0) / n);
+  return ratio;
 }
 
 Ratio error_over(const model::Model& base, const model::Model& other, std::span<const Trial> trials,

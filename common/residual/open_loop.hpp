@@ -1,7 +1,6 @@
 // Open-loop errors of two models on the same stretches, window by window, so that one chaotic window decides nothing.
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -17,9 +16,8 @@ struct OpenLoop {
 };
 
 struct Compared {
-  std::vector<double> log_ratio;               ///< per window: of the other model's error to the base model's
-  std::array<std::vector<double>, 6> of_axis;  ///< the same of each simulated axis alone
-  int shortened{};                             ///< windows whose horizon was cut
+  std::vector<double> log_ratio;  ///< per window: of the other model's error to the base model's
+  int shortened{};                ///< windows whose horizon was cut
 };
 
 /// Errors are root mean squares over the axes, each over its velocity's rms. A window is cut where a change of its
@@ -38,7 +36,6 @@ struct Ratio {
   int windows{};
 };
 [[nodiscard]] Ratio ratio_of(const Compared& compared);
-[[nodiscard]] Ratio ratio_of_axis(const Compared& compared, int axis);
 /// Of the other model's errors to the base model's, over whole trials.
 [[nodiscard]] Ratio error_over(const model::Model& base, const model::Model& other, std::span<const Trial> trials,
                                const OpenLoop& how);

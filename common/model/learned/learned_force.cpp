@@ -204,32 +204,6 @@ LearnedForce::LearnedForce(FreeForce force, Visited visited, Allocation allocati
              {},
              forms(LearnedForm{std::move(force), std::move(visited), std::move(allocation)})} {}
 
-namespace {
-
-template <typename Keep>
-FreeForce kept_of(const FreeForce& force, const Keep& keep) {
-  FreeForce rest;
-  for (const FeatureGroup& group : force.groups) {
-    FeatureGroup kept = group;
-    kept.first = static_cast<int>(rest.features.size());
-    for (int j = group.first; j < group.first + group.count; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      if (!keep(group, force.features[at])) continue;
-      rest.features.push_back(force.features[at]);
-      rest.weights.push_back(force.weights[at]);
-    }
-    kept.count = static_cast<int>(rest.features.size()) - kept.first;
-    if (kept.count > 0) rest.groups.push_back(std::move(kept));
-  }
-  return rest;
-}
-
-bool swings(const Factor& factor) {
-  return factor.quantity == Quantity::kToneCosine || factor.quantity == Quantity::kToneSine;
-}
-
-}  // namespace
-
 FreeForce without_time(const FreeForce& force) {
   return kept_of(force, [](const FeatureGroup&, const Feature& feature) { return !feature.depends_on_time(); });
 }
@@ -260,11 +234,7 @@ FreeForce as_it_stands(const FreeForce& force, double t) {
       }
     }
   }
-  return kept_of(rest, [](const FeatureGroup& group, const Feature& feature) {
-    return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [&](const Factor& factor) {
-      return !kind_of(factor.quantity).in_time || (group.closed && swings(factor));
-    });
-  });
+  return without_time(rest);
 }
 
 }  // namespace fathom::model

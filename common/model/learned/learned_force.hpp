@@ -49,17 +49,21 @@ class LearnedForce final : public Effect {
   [[nodiscard]] const LearnedForm& learned() const { return static_cast<const LearnedForm&>(form(0)); }
 };
 
-/// Whole groups of a force.
+/// The part of a force for which `keep(group, feature)` holds; groups without features go.
 template <typename Keep>
-[[nodiscard]] FreeForce groups_of(const FreeForce& force, const Keep& keep) {
+[[nodiscard]] FreeForce kept_of(const FreeForce& force, const Keep& keep) {
   FreeForce rest;
-  for (FeatureGroup group : force.groups) {
-    if (!keep(group)) continue;
-    const auto from = static_cast<std::ptrdiff_t>(group.first), to = from + group.count;
-    group.first = static_cast<int>(rest.features.size());
-    rest.features.insert(rest.features.end(), force.features.begin() + from, force.features.begin() + to);
-    rest.weights.insert(rest.weights.end(), force.weights.begin() + from, force.weights.begin() + to);
-    rest.groups.push_back(std::move(group));
+  for (const FeatureGroup& group : force.groups) {
+    FeatureGroup kept = group;
+    kept.first = static_cast<int>(rest.features.size());
+    for (int j = group.first; j < group.first + group.count; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      if (!keep(group, force.features[at])) continue;
+      rest.features.push_back(force.features[at]);
+      rest.weights.push_back(force.weights[at]);
+    }
+    kept.count = static_cast<int>(rest.features.size()) - kept.first;
+    if (kept.count > 0) rest.groups.push_back(std::move(kept));
   }
   return rest;
 }
@@ -70,8 +74,8 @@ template <typename Keep>
 /// What a run whose clock begins anew may be told: besides that, laws that grow with a run's time, which begin anew
 /// with it. Whether a moment came before or after that run nobody knows.
 [[nodiscard]] FreeForce lasting_of(const FreeForce& force);
-/// The same as it stands at time `t` for good: what has begun goes on, what has grown stays as large, what swings
-/// swings on. Tables over time, which tell of their own recording alone, are left out.
+/// The same as it stands at time `t` for good: what has begun goes on, what has grown stays as large. Tables over time
+/// and swings, which tell of their own recording alone, are left out.
 [[nodiscard]] FreeForce as_it_stands(const FreeForce& force, double t);
 
 }  // namespace fathom::model
