@@ -222,6 +222,7 @@ class Library {
         add({});
       }
       begin(std::string("oscillation toward ") + kWorldNames[w], kWorldAxis + w, true);
+      force_.groups.back().closed = true;
       for (const double omega : strongest_tones(problem_, adjoint_, w, kLowestTone)) {
         add({{.quantity = Quantity::kToneCosine, .a = omega}});
         add({{.quantity = Quantity::kToneSine, .a = omega}});

@@ -8,6 +8,7 @@
 #include "common/base/factors.hpp"
 #include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
+#include "common/learning/frequencies.hpp"
 #include "common/learning/left_out.hpp"
 #include "common/learning/seek_force.hpp"
 #include "common/learning/wording.hpp"
@@ -147,6 +148,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   }
   if (!given.refused.empty()) return learned;
 
+  free->fit = with_frequencies(problem, std::move(free->fit), threads);
   const model::Visited visited = visited_by(problem, free->fit.hypothesis);
   const auto adopt = [&](const Fit& with) {
     given.refused.clear();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/learning/frequencies.hpp"
 #include "common/learning/learn.hpp"
 #include "common/model/rollout.hpp"
 
@@ -70,13 +71,63 @@ double stands_from(const Problem& problem, const model::FreeForce& force) {
   return grows ? last_part_of(problem) : from;
 }
 
+/// The two models' predictions on what was left out of a fit.
+class Comparing {
+ public:
+  Comparing(const Problem& problem, const Fit& base, const model::Visited& visited, const Leaving& leaving)
+      : problem_{problem},
+        plain_{as_model(base.hypothesis, problem.input_step)},
+        visited_{visited},
+        leaving_{leaving} {}
+  void operator()(const Fit& fitted, const model::FreeForce& force, std::span<const model::Window> on,
+                  residual::Compared& compared) const {
+    const auto learned = made(fitted, force, visited_);
+    compare(plain_, as_model(fitted.hypothesis, problem_.input_step, learned.get()), on, leaving_.predicted, compared);
+  }
+
+ private:
+  const Problem& problem_;
+  model::Model plain_;
+  const model::Visited& visited_;
+  const Leaving& leaving_;
+};
+
+constexpr likelihood::FitOptions kAgain{.noise_rounds = 1, .steps = 2, .enough = 0.3, .fit_noise = false};
+
+Fit fitted_to(const Problem& rest, const Fit& with, int threads) {
+  likelihood::FitOptions options = kAgain;
+  options.threads = threads;
+  return likelihood::fit(rest, with.hypothesis, with.noise, options);
+}
+
+/// What swings, beyond what it was fitted to.
+void foretell(const Problem& problem, std::span<const Trial> trials, const Fit& with, const Leaving& leaving,
+              int threads, const Comparing& comparing, residual::Compared& standing) {
+  const double from = last_part_of(problem);
+  Problem before = problem;
+  std::vector<model::Window> windows;
+  for (std::size_t r = 0; r < problem.runs.size(); ++r) {
+    const double end = problem.runs[r].last_time() + problem.runs[r].dt();
+    if (problem.runs[r].last_time() <= from) continue;
+    before.runs[r].leave_out(std::max(from, problem.runs[r].first_time()), end);
+    const auto within = windows_within(trials[r], std::max(from, trials[r].t.front()), end, leaving.predicted);
+    windows.insert(windows.end(), within.begin(), within.end());
+  }
+  if (windows.empty()) return;
+  Fit fitted = fitted_to(before, with, threads);
+  if (!fitted.finite) return;
+  fitted = with_frequencies(before, std::move(fitted), threads);
+  comparing(fitted, standing_of(problem, fitted.hypothesis.force), windows, standing);
+}
+
 }  // namespace
 
 Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, const Fit& base, const Fit& with,
                          const model::Visited& visited, const Leaving& leaving, int threads) {
   const std::vector<Stretch> stretches = stretches_of(problem, leaving);
-  const model::Model plain = as_model(base.hypothesis, problem.input_step);
+  const Comparing comparing{problem, base, visited, leaving};
   const double late = stands_from(problem, with.hypothesis.force);
+  const bool swings = model::swings(with.hypothesis.force);
   Judged judged;
   for (int fold = 0; fold < leaving.folds; ++fold) {
     Problem rest = problem;
@@ -89,23 +140,17 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
         into.insert(into.end(), within.begin(), within.end());
       };
       take(stretch.from, windows);
-      if (stretch.to > late) take(std::max(stretch.from, late), late_windows);
+      if (stretch.to > late && !swings) take(std::max(stretch.from, late), late_windows);
     }
     if (windows.empty()) continue;
-    const Fit fitted =
-        likelihood::fit(rest, with.hypothesis, with.noise,
-                        {.noise_rounds = 1, .steps = 2, .enough = 0.3, .fit_noise = false, .threads = threads});
+    const Fit fitted = fitted_to(rest, with, threads);
     if (!fitted.finite) continue;
-    const auto compare_with = [&](const model::FreeForce& force, std::span<const model::Window> on,
-                                  residual::Compared& compared) {
-      const auto learned = made(fitted, force, visited);
-      compare(plain, as_model(fitted.hypothesis, problem.input_step, learned.get()), on, leaving.predicted, compared);
-    };
-    compare_with(fitted.hypothesis.force, windows, judged.whole);
-    compare_with(model::lasting_of(fitted.hypothesis.force), windows, judged.carried);
+    comparing(fitted, fitted.hypothesis.force, windows, judged.whole);
+    comparing(fitted, model::lasting_of(fitted.hypothesis.force), windows, judged.carried);
     if (!late_windows.empty())
-      compare_with(standing_of(problem, fitted.hypothesis.force), late_windows, judged.standing);
+      comparing(fitted, standing_of(problem, fitted.hypothesis.force), late_windows, judged.standing);
   }
+  if (swings) foretell(problem, trials, with, leaving, threads, comparing, judged.standing);
   return judged;
 }
 

@@ -13,7 +13,9 @@ namespace fathom::learning {
 
 struct Judged {
   residual::Compared whole, carried;
-  residual::Compared standing;  ///< as it stands at the end, on the recordings' last part
+  /// As it stands at the end, on the recordings' last part; where it swings, by numbers and frequencies of what is
+  /// before that part, since a phase is foretold only beyond what it was fitted to.
+  residual::Compared standing;
 };
 
 [[nodiscard]] Judged leave_out_in_turn(const likelihood::Problem& problem, std::span<const Trial> trials,

@@ -14,7 +14,8 @@ struct Limits {
   double form{10.0};    ///< nats by which a closed form may lie below the table of features that it replaces
   int fewest_windows{4};
   int most_groups{8};  ///< of products: more has never held on a new recording
-  int rounds{3};  ///< screens: what lasts, then tables over time too; what each leaves is seen with less random force
+  int rounds{
+      3};  ///< screens: what lasts, then swings, then tables over time, each seen with the random force that is left
 };
 
 /// How the recording is left out in turn, and predicted where it was.

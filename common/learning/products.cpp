@@ -20,12 +20,8 @@ constexpr double kMomentFromEnd = 0.05;  // of the recording: nearer to its ends
 
 class Library {
  public:
-  Library(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene, bool of_recording)
-      : problem_{problem},
-        seen_{seen},
-        scene_{scene},
-        of_recording_{of_recording},
-        terms_{terms_of(problem, seen, scene)} {
+  Library(const likelihood::Problem& problem, const inference::Seen& seen, const model::Scene& scene, Clock clock)
+      : problem_{problem}, seen_{seen}, scene_{scene}, clock_{clock}, terms_{terms_of(problem, seen, scene)} {
     for (std::size_t r = 0; r < problem.runs.size(); ++r) adjoint_.push_back(adjoint(problem, seen.reference[r], r));
   }
 
@@ -36,20 +32,24 @@ class Library {
       const Term& term = terms_[k];
       if (!term.held) multiply(term, {.columns = {{}}});
       for (const Modulator& modulator : modulators) {
-        if (modulator.of_recording && !of_recording_) continue;
+        if (!allows(modulator)) continue;
         if ((modulator.of & term.kind) != 0) multiply(term, modulator);
       }
       if (term.kind == kPlainTerm) continue;
       const Factor step{.quantity = Quantity::kAfter, .a = moments[k], .b = kMomentLasts};
       multiply(term, {.words = ", from a moment on", .columns = {{step}}}, true);
     }
-    if (scene_.attitude && of_recording_) swings();
+    if (scene_.attitude && clock_ != Clock::kLasting) swings(modulators);
     scale();
     force_.weights.assign(force_.features.size(), 0.0);
     return std::move(force_);
   }
 
  private:
+  [[nodiscard]] bool allows(const Modulator& modulator) const {
+    return !modulator.of_recording || clock_ == Clock::kTables;
+  }
+
   /// Every column of a term times every column of what modulates it: one group.
   void multiply(const Term& term, const Modulator& modulator, bool searched = false) {
     likelihood::FeatureGroup group{.kind = term.words + modulator.words,
@@ -115,18 +115,32 @@ class Library {
     return moments;
   }
 
-  void swings() {
+  /// A force that swings, and water that swings, which carries the craft and is felt by all that feels a stream. What
+  /// modulates a stream modulates such water: a wave's phase goes with the place, its size with the depth.
+  void swings(const std::vector<Modulator>& modulators) {
     const double lowest = kFewestPeriods * 2.0 * std::numbers::pi / std::max(problem_.t_high - problem_.t_low, 1.0);
     for (int w = 0; w < 3; ++w) {
       if (std::ranges::find(problem_.axes.begin(), problem_.axes.begin() + problem_.simulated, w) ==
           problem_.axes.begin() + problem_.simulated)
         continue;
       const int axis = likelihood::kWorldAxis + w;
+      const std::string toward = model::direction_words(axis);
       for (const double omega : inference::strongest_tones(problem_, adjoint_, w, lowest)) {
-        multiply({.words = "a swing toward " + model::direction_words(axis), .axis = axis, .columns = {{}}},
-                 {.columns = {{{.quantity = Quantity::kToneCosine, .a = omega}},
-                              {{.quantity = Quantity::kToneSine, .a = omega}}}},
-                 true);
+        const auto pair = [&](Quantity cosine, Quantity sine) {
+          return Columns{{{.quantity = cosine, .a = omega, .b = 0.0, .c = 0.0}},
+                         {{.quantity = sine, .a = omega, .b = 0.0, .c = 0.0}}};
+        };
+        const Term force{.words = "a swing toward " + toward,
+                         .axis = axis,
+                         .columns = pair(Quantity::kToneCosine, Quantity::kToneSine)},
+            water{.words = "a swing of the water toward " + toward,
+                  .axis = model::kStream + w,
+                  .columns = pair(Quantity::kTravelCosine, Quantity::kTravelSine)};
+        multiply(force, {.columns = {{}}}, true);
+        multiply(water, {.columns = {{}}}, true);
+        for (const Modulator& modulator : modulators) {
+          if (allows(modulator) && (modulator.of & kStreamTerm) != 0) multiply(water, modulator, true);
+        }
       }
     }
   }
@@ -181,7 +195,7 @@ class Library {
   const likelihood::Problem& problem_;
   const inference::Seen& seen_;
   const model::Scene& scene_;
-  bool of_recording_;
+  Clock clock_;
   std::vector<Term> terms_;
   std::vector<Eigen::MatrixXd> adjoint_;
   likelihood::FreeForce force_;
@@ -190,8 +204,8 @@ class Library {
 }  // namespace
 
 likelihood::FreeForce products_of(const likelihood::Problem& problem, const inference::Seen& seen,
-                                  const model::Scene& scene, bool of_recording) {
-  return Library{problem, seen, scene, of_recording}.make();
+                                  const model::Scene& scene, Clock clock) {
+  return Library{problem, seen, scene, clock}.make();
 }
 
 }  // namespace fathom::learning

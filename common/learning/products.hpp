@@ -6,9 +6,12 @@
 
 namespace fathom::learning {
 
-/// Of a seen model. What its base numbers hold enters modulated only. `of_recording`: with tables over time and swings,
-/// which tell of no other recording.
+/// How much of the clock a library may read: laws that last; swings, too, which go on while the clock does; tables over
+/// time, too, which tell of no other recording.
+enum class Clock : std::uint8_t { kLasting, kSwings, kTables };
+
+/// Of a seen model. What its base numbers hold enters modulated only.
 [[nodiscard]] likelihood::FreeForce products_of(const likelihood::Problem& problem, const inference::Seen& seen,
-                                                const model::Scene& scene, bool of_recording);
+                                                const model::Scene& scene, Clock clock);
 
 }  // namespace fathom::learning

@@ -3,32 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
-#include "common/learning/moments.hpp"
-#include "common/learning/products.hpp"
+#include "common/learning/frequencies.hpp"
+#include "common/learning/pick_groups.hpp"
 #include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
 namespace {
 
-using inference::ColumnRange;
 using inference::FreeForceFound;
-using inference::GroupEvidence;
 using inference::Seen;
 
-constexpr std::size_t kShortlist = 24;  // groups whose products with all others are worked out
-constexpr std::size_t kProfiled = 4;    // of those that begin at a moment: its place is sought more closely
-constexpr double kFactor = 4.0;         // by which the second start's random force is smaller
-constexpr double kSettled = 4.0;        // times the odds that are needed: no second start could change the verdict
-
-/// What a screen has taken up.
-struct Picked {
-  likelihood::FreeForce force;
-  double log_odds{};  ///< nats of all together, prices paid
-};
+constexpr double kFactor = 4.0;   // by which the second start's random force is smaller
+constexpr double kSettled = 4.0;  // times the odds that are needed: no second start could change the verdict
 
 likelihood::FreeForce both(likelihood::FreeForce force, const likelihood::FreeForce& more) {
   for (likelihood::FeatureGroup group : more.groups) {
@@ -50,26 +41,27 @@ class Seeker {
     Sought sought;
     FreeForceFound& found = sought.all;
     double evidence = seen_.fit.log_evidence;  // prices paid
+    bool begun_again = false;
     for (int round = 0; round < limits_.rounds; ++round) {
-      // A table over time explains anything: what lasts has the first go, and explains what it can.
-      const bool of_recording = round > 0, first = !found.fit.finite;
+      // A table over time explains anything, a swing much: what lasts has the first go, and explains what it can. Where
+      // it has left no room, it may stand for something else: then all begin once more together.
+      const Clock clock = round == 0 ? Clock::kLasting : round == 1 ? Clock::kSwings : Clock::kTables;
+      const bool full = found.fit.finite && room_beside(found.fit) == 0;
+      if (full && std::exchange(begun_again, true)) break;
+      const bool first = !found.fit.finite || full;
       std::optional<Seen> again;
       if (!first) again = seen(found.fit);
       const Seen& now = again ? *again : seen_;
-      const Picked picked = pick(now, first, of_recording);
-      if (picked.force.empty()) {
-        if (of_recording) break;
-        continue;
-      }
-      if (first) found.at_fixed_noise = picked.log_odds;
+      const Picked picked = pick(now, first, clock);
+      if (picked.force.empty()) continue;
       // What the random force has swallowed shows where it is smaller.
       std::optional<Picked> quiet;
       if (first && swallows(now)) {
         likelihood::Fit quick = now.fit;
         quick.noise = quickened(now);
-        quiet = pick(seen(std::move(quick)), true, of_recording);
+        quiet = pick(seen(std::move(quick)), true, clock);
       }
-      const bool settled = !first || found.at_fixed_noise >= kSettled * thresholds_.free_force_odds;
+      const bool settled = !first || picked.log_odds >= kSettled * thresholds_.free_force_odds;
       std::vector<likelihood::Fit> fits(quiet || !settled ? 2 : 1);
       for_each_index(fits.size(), threads_, [&](std::size_t start) {
         likelihood::Noise noise = now.fit.noise;
@@ -87,13 +79,11 @@ class Seeker {
       }
       // What the screen promises and no fit keeps is not found.
       const double gained = best == nullptr ? 0.0 : worth(*best) - evidence;
-      if (gained < thresholds_.group_gain) {
-        if (of_recording) break;
-        continue;
-      }
-      found.fit = *best;
-      evidence = worth(*best);
-      if (!of_recording) sought.lasting = found;
+      if (gained < thresholds_.group_gain) continue;
+      if (first) found.at_fixed_noise = picked.log_odds;
+      found.fit = with_frequencies(problem_, *best, threads_);
+      evidence = worth(found.fit);
+      if (clock == Clock::kLasting) sought.lasting = found;
     }
     for (FreeForceFound* each : {&sought.all, &sought.lasting}) {
       if (!each->fit.finite) continue;
@@ -110,110 +100,17 @@ class Seeker {
     return seen;
   }
 
-  /// Groups that are worth more than they cost, one after the other, those that have become superfluous taken back.
-  [[nodiscard]] Picked pick(const Seen& seen, bool at_least_one, bool of_recording) {
-    likelihood::FreeForce library = products_of(problem_, seen, scene_, of_recording);
-    const std::size_t all = library.groups.size();
-    groups_ = std::max(groups_, all);
-    std::vector<double> alone(all);
-    const std::vector<std::vector<std::size_t>> batches = inference::batches_of(library);
-    for_each_index(batches.size(), threads_, [&](std::size_t b) {
-      const inference::Screen several = inference::screen(problem_, seen, library, batches[b], false);
-      for (std::size_t k = 0; k < batches[b].size(); ++k) {
-        const std::size_t g = batches[b][k];
-        alone[g] = inference::group_evidence(several.gram, several.gradient, std::span{several.ranges}.subspan(k, 1),
-                                             {inference::kStartSigma})
-                       .log_bayes_factor -
-                   price(library.groups[g], all);
-      }
-    });
-    std::vector<std::size_t> shortlist;
-    for (std::size_t g = 0; g < all; ++g) {
-      if (!held(seen, library, library.groups[g])) shortlist.push_back(g);
-    }
-    if (shortlist.empty()) return {};
-    const auto best_first = [&] {
-      std::ranges::stable_sort(shortlist, std::greater{}, [&](std::size_t g) { return alone[g]; });
-    };
-    best_first();
-    std::vector<std::size_t> begun;
-    for (const std::size_t g : shortlist) {
-      if (begun.size() == kProfiled) break;
-      if (library.groups[g].searched) begun.push_back(g);
-    }
-    for (const auto& [g, evidence] : profile_moments(problem_, seen, begun, library, threads_))
-      alone[g] = evidence - price(library.groups[g], all);
-    best_first();
-    shortlist.resize(std::min(shortlist.size(), kShortlist));
-    const inference::Screen whole = inference::screen(problem_, seen, library, shortlist, true);
-    const auto price_of = [&](std::size_t k) { return price(library.groups[whole.groups[k]], all); };
-    const auto evidence_of = [&](const std::vector<std::size_t>& of, std::vector<double> sigma) {
-      std::vector<ColumnRange> ranges;
-      for (const std::size_t k : of) ranges.push_back(whole.ranges[k]);
-      return inference::group_evidence(whole.gram, whole.gradient, ranges, std::move(sigma));
-    };
-    std::vector<std::size_t> picked;
-    GroupEvidence evidence;
-    double priced = 0.0;
-    const auto most = static_cast<std::size_t>(
-        std::max(0, limits_.most_groups - static_cast<int>(seen.fit.hypothesis.force.groups.size())));
-    while (picked.size() < most) {
-      double best = thresholds_.group_gain;
-      std::size_t taken = shortlist.size();
-      GroupEvidence of_best;
-      for (std::size_t k = 0; k < shortlist.size(); ++k) {
-        if (std::ranges::find(picked, k) != picked.end()) continue;
-        std::vector<std::size_t> of = picked;
-        of.push_back(k);
-        std::vector<double> sigma = evidence.sigma;
-        sigma.push_back(inference::kStartSigma);
-        GroupEvidence with = evidence_of(of, std::move(sigma));
-        const double gain = with.log_bayes_factor - evidence.log_bayes_factor - price_of(k);
-        if (gain <= best) continue;
-        best = gain;
-        taken = k;
-        of_best = std::move(with);
-      }
-      if (taken == shortlist.size()) break;
-      picked.push_back(taken);
-      priced += price_of(taken);
-      evidence = std::move(of_best);
-      for (std::size_t k = 0; k + 1 < picked.size();) {  // the one that was just taken up stays
-        std::vector<std::size_t> of = picked;
-        std::vector<double> sigma = evidence.sigma;
-        of.erase(of.begin() + static_cast<std::ptrdiff_t>(k));
-        sigma.erase(sigma.begin() + static_cast<std::ptrdiff_t>(k));
-        GroupEvidence without = evidence_of(of, std::move(sigma));
-        if (without.log_bayes_factor + price_of(picked[k]) <= evidence.log_bayes_factor) {
-          ++k;
-          continue;
-        }
-        priced -= price_of(picked[k]);
-        picked = std::move(of);
-        evidence = std::move(without);
-      }
-    }
-    // Where nothing stands out, the best is fitted all the same: the fitted random force may have swallowed it.
-    if (picked.empty() && at_least_one && most > 0) {
-      picked.push_back(0);
-      priced = price_of(0);
-      evidence = evidence_of(picked, {inference::kStartSigma});
-    }
-    if (picked.empty()) return {};
-    return {inference::chosen(library, whole, picked, evidence), evidence.log_bayes_factor - priced};
+  [[nodiscard]] Picked pick(const Seen& seen, bool at_least_one, Clock clock) {
+    Picked picked =
+        pick_groups(problem_, seen, scene_,
+                    {.most = room_beside(seen.fit), .clock = clock, .at_least_one = at_least_one, .threads = threads_});
+    groups_ = std::max(groups_, picked.among);
+    return picked;
   }
 
-  /// A group of the force that is in the model already.
-  static bool held(const Seen& seen, const likelihood::FreeForce& library, const likelihood::FeatureGroup& group) {
-    const auto features = [](const likelihood::FreeForce& force, const likelihood::FeatureGroup& of) {
-      return std::span{force.features}.subspan(static_cast<std::size_t>(of.first), static_cast<std::size_t>(of.count));
-    };
-    const likelihood::FreeForce& force = seen.fit.hypothesis.force;
-    return !group.searched && std::ranges::any_of(force.groups, [&](const likelihood::FeatureGroup& other) {
-      return std::ranges::equal(features(force, other), features(library, group), [](const auto& a, const auto& b) {
-        return a.axis == b.axis && a.count == b.count && a.factors == b.factors;
-      });
-    });
+  [[nodiscard]] std::size_t room_beside(const likelihood::Fit& fit) const {
+    return static_cast<std::size_t>(
+        std::max(0, limits_.most_groups - static_cast<int>(fit.hypothesis.force.groups.size())));
   }
 
   /// A random force of practical size that remembers for long may have taken something slow for its own.

@@ -35,6 +35,7 @@ constexpr Hint kHints[]{
     {"thruster", "by thruster", "the wash of one thruster in another"},
     {"thruster off its line", "", "a thruster that is turned, or whose wash meets the hull"},
     {"thruster", "", "that thruster and its driver"},
+    {"swing of the water", "", "waves that carry the craft with the water"},
     {"stream", "time", "a tide that turns, or water that is set in motion by the craft itself"},
     {"stream", "moment", "a stream that has set in or turned"},
     {"stream", "depth", "a stream that differs with depth"},
@@ -84,7 +85,8 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
   }
   if (given.goes_on)
     sentence +=
-        " A recording whose clock goes on after these is told what had begun or grown, as it stood at their end.";
+        " A recording whose clock goes on after these is told what had begun or grown, as it stood at their end, and "
+        "what swings, in its phase.";
   if (given.left.empty()) return sentence;
   sentence += " What remains as a random force, share of the applied force:";
   for (const CorrectionLeft& left : given.left)

@@ -8,7 +8,7 @@
 namespace fathom::likelihood {
 namespace {
 
-constexpr double kStreamStep = 1e-4;    // m/s, to both sides
+constexpr double kStreamStep = 1e-4;    // m/s, m/s^2, to both sides
 constexpr double kVelocityStep = 1e-5;  // m/s, rad/s: truncation and rounding both below 1e-5 of a slope
 
 bool moves_thrust(const Hypothesis& hypothesis, const Number& number) {
@@ -81,6 +81,7 @@ void Plant::begin(const Vector6d& nu) {
   set(first, first.t);
   motion_.nu = nu;
   motion_.v_WF_B.setZero();
+  motion_.a_WF_B.setZero();
   if (!memory_.empty()) {
     feel();
     memory_.begin(motion_);
@@ -110,7 +111,10 @@ void Plant::show_features() {
   features_.force = force_;
   features_.tau = model_.allocation * force_;
   if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);
-  if (free_streams_) stream_ = motion_.R_WB.transpose() * free_.stream(features_);
+  if (!free_streams_) return;
+  const model::Stream stream = free_.stream(features_);
+  v_WF_B_ = motion_.R_WB.transpose() * stream.v_WF;
+  a_WF_B_ = motion_.R_WB.transpose() * stream.a_WF;
 }
 
 void Plant::at_middle(std::size_t block) {
@@ -122,6 +126,11 @@ void Plant::at_middle(std::size_t block) {
   force_ = mean_.col(static_cast<Eigen::Index>(block));
   motion_.force = force_;
   show_features();
+}
+
+void Plant::set_water() {
+  motion_.v_WF_B = v_WF_B_;
+  motion_.a_WF_B = a_WF_B_;
 }
 
 void Plant::feel() {
@@ -147,26 +156,27 @@ FeatureState Plant::features_at(const Vector6d& nu, bool with_streams) const {
   state.drag = model::hull_drag(model_, nu);
   if (!with_streams) return state;
   model::Load load;
-  const auto pushed = [&](const Eigen::Vector3d& more) {
+  const auto pushed = [&](const Eigen::Vector3d& faster, const Eigen::Vector3d& gaining) {
     model::Motion motion = motion_;
     motion.nu = nu;
-    motion.v_WF_B = stream_ + more;
-    motion.a_WF_B.setZero();
+    motion.v_WF_B = v_WF_B_ + faster;
+    motion.a_WF_B = a_WF_B_ + gaining;
     motion.force = force_;
     feel_hull(model_, motion);
     return model::generalised_force(model_, motion, load);
   };
   for (Eigen::Index w = 0; w < 3; ++w) {
     const Eigen::Vector3d step = kStreamStep * motion_.R_WB.row(w).transpose();
-    state.by_stream.col(w) = (pushed(step) - pushed(-step)) / (2.0 * kStreamStep);
+    const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+    state.by_stream.col(w) = (pushed(step, none) - pushed(-step, none)) / (2.0 * kStreamStep);
+    state.by_stream_rate.col(w) = (pushed(none, step) - pushed(none, -step)) / (2.0 * kStreamStep);
   }
   return state;
 }
 
 Vector6d Plant::acceleration(const Vector6d& nu) {
   motion_.nu = nu;
-  motion_.v_WF_B = stream_;
-  motion_.a_WF_B.setZero();
+  set_water();
   motion_.w_memory = outside_wrench(nu);
   if (feels_) {
     motion_.force = force_;
@@ -213,8 +223,7 @@ Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
   const Vector6d remembered = outside_wrench(nu);
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
-    motion_.v_WF_B = stream_;
-    motion_.a_WF_B.setZero();
+    set_water();
     motion_.w_memory = remembered + Vector6d::Unit(i);
     motion_.force = force_;
     if (feels_) feel();
@@ -274,10 +283,18 @@ void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_do
       case NumberKind::kWeight: {
         const Feature& feature = free_.features[static_cast<std::size_t>(number.index)];
         if (feature.streams()) {
-          const Eigen::Vector3d before = stream_;
-          stream_ += kVelocityStep * motion_.R_WB.row(feature.axis - model::kStream).transpose();
-          out.col(column) = (acceleration(nu) - nu_dot) * (feature.value(features_) / kVelocityStep);
-          stream_ = before;
+          const double value = feature.value(features_), rate = feature.rate(features_);
+          const double size = std::abs(value) + std::abs(rate);
+          out.col(column).setZero();
+          if (size == 0.0) break;
+          const Eigen::Vector3d v = v_WF_B_, a = a_WF_B_;
+          const Eigen::Vector3d step =
+              kVelocityStep / size * motion_.R_WB.row(feature.axis - model::kStream).transpose();
+          v_WF_B_ += value * step;
+          a_WF_B_ += rate * step;
+          out.col(column) = (acceleration(nu) - nu_dot) * (size / kVelocityStep);
+          v_WF_B_ = v;
+          a_WF_B_ = a;
           break;
         }
         Vector6d wrench = Vector6d::Zero();
@@ -301,8 +318,7 @@ void Plant::end_block(std::size_t block, const Vector6d& nu) {
   if (!memory_.empty()) {
     at_middle(block);
     motion_.nu = nu;
-    motion_.v_WF_B = stream_;
-    motion_.a_WF_B.setZero();
+    set_water();
     motion_.w_memory.setZero();
     feel();
     memory_.advance(motion_, here.dt);

@@ -58,6 +58,7 @@ class Plant {
   void show_features();
   [[nodiscard]] Vector6d outside_wrench(const Vector6d& nu);
   void feel();
+  void set_water();
 
   model::Model model_;
   FreeForce free_;
@@ -77,7 +78,8 @@ class Plant {
   model::Motion motion_;
   model::ActuatorForces force_;
   FeatureState features_;
-  Eigen::Vector3d stream_{Eigen::Vector3d::Zero()};  // v_WF in B of the free force, m/s
+  Eigen::Vector3d v_WF_B_{Eigen::Vector3d::Zero()};  // of the free force's streams, m/s
+  Eigen::Vector3d a_WF_B_{Eigen::Vector3d::Zero()};  // m/s^2
   Vector6d free_still_{Vector6d::Zero()};            // features at this place, when they do not go with the velocity
 };
 

@@ -127,6 +127,8 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
           .name = "t", .unit = "s", .low = f.a - 10.0 - 2.0 * f.b, .high = f.a + 10.0 + 2.0 * f.b, .set = set_time};
     case Quantity::kToneCosine:
     case Quantity::kToneSine:
+    case Quantity::kTravelCosine:
+    case Quantity::kTravelSine:
       return Argument{.name = "t", .unit = "s", .high = 4.0 * M_PI / std::max(f.a, 1e-3), .set = set_time};
     default:  // low passes: a curve over them says nothing
       return std::nullopt;

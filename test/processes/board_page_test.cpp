@@ -1,6 +1,5 @@
 // The page's one order, a log that is played on it, and the page itself in a browser where there is one.
 #include <doctest/doctest.h>
-#include <httplib.h>
 #include <ifaddrs.h>
 #include <netinet/in.h>
 

@@ -1,6 +1,5 @@
 // The board over a real bus and real HTTP: what it shows, what it refuses, and that no client harms it.
 #include <doctest/doctest.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,6 +13,7 @@
 #include "common/runtime/self.hpp"
 #include "test/support/bus.hpp"
 #include "test/support/channels.hpp"
+#include "test/support/http.hpp"
 #include "test/support/private_network.hpp"
 #include "test/support/sleeper.hpp"
 

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <doctest/doctest.h>
-#include <httplib.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "test/support/bus.hpp"
+#include "test/support/http.hpp"
 
 namespace fathom::test {
 

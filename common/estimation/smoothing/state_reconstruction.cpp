@@ -127,7 +127,7 @@ Reconstruction reconstruct_state(const Recording& recording, const TrialFiles& f
   refuse_contradictions(recording.name, result.trial);
   refuse_unsure(recording.name, result.trial, options.without_position);
   if (!options.despite_state) refuse_against_state(recording, result.trial, options.without_position);
-  for (const std::string& note : result.trial.notes) notes.push_back(note);
+  notes.insert(notes.end(), result.trial.notes.begin(), result.trial.notes.end());
   return result;
 }
 

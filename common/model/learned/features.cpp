@@ -106,10 +106,30 @@ double Feature::product(const FeatureState& state, int own) const {
 
 double Feature::value(const FeatureState& state) const { return product(state, kOwn); }
 
+double Feature::rate(const FeatureState& state) const {
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const Factor& swinging = factors[static_cast<std::size_t>(i)];
+    const FactorKind& kind = kind_of(swinging.quantity);
+    if (kind.rate == nullptr) continue;
+    double product = scale * kind.rate(swinging, state);
+    for (int j = 0; j < count; ++j) {
+      const Factor& factor = factors[static_cast<std::size_t>(j)];
+      if (j != i) product *= kind_of(factor.quantity).value(factor, state);
+    }
+    sum += product;
+  }
+  return sum;
+}
+
 double Feature::size(const FeatureState& state) const {
   if (axis >= kLever)
     return std::abs(value(state)) * Eigen::Vector3d::Unit(axis - kLever).cross(state.R_WB.row(2).transpose()).norm();
-  if (streams()) return std::abs(value(state)) * state.by_stream.col(axis - kStream).head<3>().norm();
+  if (streams()) {
+    Vector6d wrench = Vector6d::Zero();
+    add(state, 1.0, wrench);
+    return wrench.head<3>().norm();
+  }
   if (axis != kEachThruster && axis != kEachAxis) return std::abs(value(state));
   double square = 0.0;
   for (int own = 0; own < owners(state); ++own) square += std::pow(product(state, own), 2);
@@ -122,6 +142,10 @@ bool Feature::moves_with_velocity() const {
 
 bool Feature::depends_on_time() const {
   return any(*this, [](const FactorKind& kind) { return kind.in_time; });
+}
+
+bool Feature::swings() const {
+  return any(*this, [](const FactorKind& kind) { return kind.rate != nullptr; });
 }
 
 bool Feature::remembers() const {
@@ -154,6 +178,7 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench.tail<3>() += size * Eigen::Vector3d::Unit(axis - kLever).cross(down_B);
   } else if (streams()) {
     wrench += size * state.by_stream.col(axis - kStream);
+    wrench += weight * rate(state) * state.by_stream_rate.col(axis - kStream);
   } else if (state.allocation != nullptr && axis - kThrusterLine < state.allocation->cols()) {
     wrench += size * state.allocation->col(axis - kThrusterLine);
   }
@@ -167,12 +192,15 @@ Vector6d FreeForce::wrench(const FeatureState& state) const {
   return sum;
 }
 
-Eigen::Vector3d FreeForce::stream(const FeatureState& state) const {
-  Eigen::Vector3d v_WF = Eigen::Vector3d::Zero();
+Stream FreeForce::stream(const FeatureState& state) const {
+  Stream stream;
   for (std::size_t j = 0; j < features.size(); ++j) {
-    if (features[j].streams()) v_WF[features[j].axis - kStream] += weights[j] * features[j].value(state);
+    if (!features[j].streams()) continue;
+    const int toward = features[j].axis - kStream;
+    stream.v_WF[toward] += weights[j] * features[j].value(state);
+    stream.a_WF[toward] += weights[j] * features[j].rate(state);
   }
-  return v_WF;
+  return stream;
 }
 
 bool FreeForce::streams() const { return std::ranges::any_of(features, &Feature::streams); }

@@ -35,9 +35,11 @@ struct FeatureState {
   std::array<Vector6d, kVelocityMemories.size()> slow_nu{};
   std::array<model::ActuatorForces, kUseMemories.size()> use{};  ///< N: size of each actuator's force, lately
   Vector6d drag{Vector6d::Zero()};                               ///< N, N m: the hull's own by the base numbers
-  Eigen::Matrix<double, 6, 3> by_stream{Eigen::Matrix<double, 6, 3>::Zero()};  ///< N s/m, N s: water toward N, E, D
-  const Allocation* allocation{};                                              ///< tau = B f
-  std::span<const double> columns{};                                           ///< as Motion::columns
+  /// What water does that moves toward N, E, D, N s/m and N s, and that gains speed toward there, N s^2/m and N s^2.
+  Eigen::Matrix<double, 6, 3> by_stream{Eigen::Matrix<double, 6, 3>::Zero()};
+  Eigen::Matrix<double, 6, 3> by_stream_rate{Eigen::Matrix<double, 6, 3>::Zero()};
+  const Allocation* allocation{};     ///< tau = B f
+  std::span<const double> columns{};  ///< as Motion::columns
 };
 
 /// Largest sizes that a recording has shown of what features read.
@@ -73,7 +75,8 @@ struct Factor {
 /// Along what a feature acts: X..N of the body; north, east and down of the world; all of the hull's drag; all thrust,
 /// as it is applied; the line of each thruster; all thrusters by one law, each along its line and reading its own
 /// force; all axes by one law, each reading its own thrust. Toward north, east and down as a velocity of the water,
-/// too, which hull and effects feel as they feel any stream: no force that adds to others.
+/// too, which hull and effects feel as they feel any stream, and with the acceleration of water that swings: no force
+/// that adds to others.
 /// Last the levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
 constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
@@ -94,6 +97,7 @@ struct Feature {
   /// Scaled value: N, N m, m/s of a stream, or a share of the drag or thrust that it acts along. Of a law of all
   /// thrusters or axes that of the one which its factors name.
   [[nodiscard]] double value(const FeatureState& state) const;
+  [[nodiscard]] double rate(const FeatureState& state) const;  ///< of a swing's value, with the clock alone, per second
   /// How much it pushes, without sign: of a law of all thrusters or axes the root of their sum of squares, of a stream
   /// the force to first order.
   [[nodiscard]] double size(const FeatureState& state) const;
@@ -104,6 +108,7 @@ struct Feature {
   [[nodiscard]] bool streams() const { return axis >= kStream && axis < kLever; }
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
+  [[nodiscard]] bool swings() const;
   [[nodiscard]] bool remembers() const;     ///< reads low passes
   [[nodiscard]] std::string words() const;  ///< its product, Fossen's notation; empty: it is constant
   /// Of a stream what it does to first order.
@@ -123,13 +128,18 @@ struct FeatureGroup {
   bool closed{false};    ///< few columns that are a law together, none of a table of bumps or steps
 };
 
+struct Stream {
+  Eigen::Vector3d v_WF{Eigen::Vector3d::Zero()};  ///< m/s
+  Eigen::Vector3d a_WF{Eigen::Vector3d::Zero()};  ///< m/s^2, of what swings
+};
+
 struct FreeForce {
   std::vector<Feature> features;
   std::vector<FeatureGroup> groups;
   std::vector<double> weights;
   [[nodiscard]] bool empty() const { return features.empty(); }
-  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;         ///< without what streams do
-  [[nodiscard]] Eigen::Vector3d stream(const FeatureState& state) const;  ///< v_WF, m/s
+  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;  ///< without what streams do
+  [[nodiscard]] Stream stream(const FeatureState& state) const;
   [[nodiscard]] bool reads_drag() const;
   [[nodiscard]] bool streams() const;
 };

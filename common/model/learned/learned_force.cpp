@@ -111,13 +111,16 @@ Vector6d LearnedForm::sum(const FeatureState& state, Part part) const {
 void LearnedForm::feel(Motion& motion, EffectTheta, std::span<const double> z) const {
   if (streams_) {
     const FeatureState state = state_of(motion);
-    Eigen::Vector3d v_WF = Eigen::Vector3d::Zero();
+    Stream stream;
     for (std::size_t j = 0; j < force_.features.size(); ++j) {
       const Feature& feature = force_.features[j];
-      if (feature.streams())
-        v_WF[feature.axis - kStream] += fade(feature, state) * force_.weights[j] * feature.value(state);
+      if (!feature.streams()) continue;
+      const double weight = fade(feature, state) * force_.weights[j];
+      stream.v_WF[feature.axis - kStream] += weight * feature.value(state);
+      stream.a_WF[feature.axis - kStream] += weight * feature.rate(state);
     }
-    motion.v_WF_B += motion.R_WB.transpose() * v_WF;
+    motion.v_WF_B += motion.R_WB.transpose() * stream.v_WF;
+    motion.a_WF_B += motion.R_WB.transpose() * stream.a_WF;
   }
   if (!remembers_) return;
   FeatureState state = state_of(motion);
@@ -216,6 +219,14 @@ FreeForce lasting_of(const FreeForce& force) {
   });
 }
 
+bool swings(const FreeForce& force) {
+  return std::ranges::any_of(force.groups, [&](const FeatureGroup& group) {
+    const auto first = force.features.begin() + group.first;
+    return group.closed &&
+           std::any_of(first, first + group.count, [](const Feature& feature) { return feature.swings(); });
+  });
+}
+
 FreeForce as_it_stands(const FreeForce& force, double t) {
   const FeatureState then{.t = t};
   FreeForce rest = force;
@@ -234,7 +245,12 @@ FreeForce as_it_stands(const FreeForce& force, double t) {
       }
     }
   }
-  return without_time(rest);
+  return kept_of(rest, [](const FeatureGroup& group, const Feature& feature) {
+    return std::all_of(feature.factors.begin(), feature.factors.begin() + feature.count, [&](const Factor& factor) {
+      const FactorKind& kind = kind_of(factor.quantity);
+      return !kind.in_time || (group.closed && kind.rate != nullptr);
+    });
+  });
 }
 
 }  // namespace fathom::model

@@ -31,8 +31,8 @@ TEST_CASE("learning: an unlisted force is adopted, and what was not recorded yet
   CHECK(std::abs(power.value - 2.0) < 0.3);
   const double step = sway.problem.input_step;
   const model::Model better = as_model(learned.fit.hypothesis, step, learned.elsewhere.get());
-  const residual::Ratio over_base =
-      residual::error_over(as_model(sway.conclusion.found.best.fit.hypothesis, step), better, {&sway.rest, 1}, residual::OpenLoop{});
+  const residual::Ratio over_base = residual::error_over(as_model(sway.conclusion.found.best.fit.hypothesis, step),
+                                                         better, {&sway.rest, 1}, residual::OpenLoop{});
   // The law itself, told and fitted to the same half.
   likelihood::Hypothesis told = sway.conclusion.found.best.fit.hypothesis;
   model::Feature law{.axis = 1, .count = 2, .scale = 20.0};
@@ -43,7 +43,8 @@ TEST_CASE("learning: an unlisted force is adopted, and what was not recorded yet
       likelihood::fit(sway.problem, told, learned.fit.noise, {.noise_rounds = 2, .steps = 3, .threads = 2});
   const model::LearnedForce exact{fit.hypothesis.force, visited_by(sway.problem, fit.hypothesis),
                                   fit.hypothesis.model.allocation};
-  const residual::Ratio over_told = residual::error_over(as_model(fit.hypothesis, step, &exact), better, {&sway.rest, 1}, residual::OpenLoop{});
+  const residual::Ratio over_told =
+      residual::error_over(as_model(fit.hypothesis, step, &exact), better, {&sway.rest, 1}, residual::OpenLoop{});
   if (std::getenv("FATHOM_SHOW") != nullptr)
     std::printf("  second half: %.4f of base, %.4f of told\n", over_base.value, over_told.value);
   CHECK(over_base.value < 0.75);

@@ -40,7 +40,7 @@ TEST_CASE("moments: a group's moment is where all of its columns together say, w
   inference::Seen seen = inference::see(bag.problem, bag.conclusion.found.best.fit, 1);
   inference::take_step(seen);
   const model::Scene scene = model::scene_of(test::bluerov(), {&bag.trial, 1});
-  model::FreeForce library = products_of(bag.problem, seen, scene, false);
+  model::FreeForce library = products_of(bag.problem, seen, scene, Clock::kLasting);
   std::vector<std::size_t> groups;
   for (std::size_t g = 0; g < library.groups.size(); ++g) {
     const model::FeatureGroup& group = library.groups[g];

@@ -65,6 +65,28 @@ TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as
   }
 }
 
+TEST_CASE("taken out: waves are learned as water that swings, and foretold beyond what was fitted") {
+  // Cosine, sine m/s, bearing rad, frequency rad/s; orbital.
+  const test::LearnedCase dive{
+      {.duration = 300.0,
+       .seed = 11,
+       .force = 0.01,
+       .effects = {{.effect = model::find_effect("wave"), .variant = 2, .theta = {0.08, 0.05, 0.6, 0.93}}}},
+      true,
+      0.6};
+  const Learned learned = dive.learned(false);
+  test::show("wave", learned.given);
+  REQUIRE(learned.given.adopted);
+  CHECK(learned.given.words.find("a swing of the water") != std::string::npos);
+  REQUIRE(learned.given.goes_on);
+  const double step = dive.problem.input_step;
+  const residual::Ratio over_base = residual::error_over(as_model(dive.conclusion.found.best.fit.hypothesis, step),
+                                                         as_model(learned.fit.hypothesis, step, learned.later.get()),
+                                                         {&dive.rest, 1}, residual::OpenLoop{});
+  MESSAGE("wave: " << over_base.value << " of the base model's error");
+  CHECK(over_base.value < 0.25);  // .15 is the noise
+}
+
 TEST_CASE("taken out: drag that grows toward a wall is learned as drag near an edge, wherever the wall is") {
   const NoisyDiveBox box = where_it_goes();
   // Strength, bearing (north), distance, reach, at distance: three times the hull's drag at the edge.

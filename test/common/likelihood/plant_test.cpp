@@ -81,17 +81,26 @@ TEST_CASE("plant: a free force's stream pushes as water does, and its columns ar
   CHECK((here - acceleration_at(told, run, block, nu)).norm() < 1e-9);
   CHECK((here - acceleration_at(plain, run, block, nu)).norm() > 1e-3);
 
+  // Water that swings has an acceleration besides.
+  for (const int w : {0, 2}) {
+    model::Feature swing{.axis = model::kStream + w, .count = 1, .scale = 0.2};
+    swing.factors[0] = {.quantity = w == 0 ? model::Quantity::kToneCosine : model::Quantity::kToneSine, .a = 2.0};
+    streams.force.groups.push_back(
+        {.axis = swing.axis, .first = static_cast<int>(streams.force.features.size()), .count = 1});
+    streams.force.features.push_back(swing);
+    streams.force.weights.push_back(0.7);
+  }
   std::vector<Number> numbers;
-  for (int w = 0; w < 2; ++w) numbers.push_back({.kind = NumberKind::kWeight, .index = w});
+  for (int w = 0; w < 4; ++w) numbers.push_back({.kind = NumberKind::kWeight, .index = w});
   Plant plant{streams, numbers, run, 0, true};
   plant.begin(run.start());
   plant.at_middle(block);
-  Columns columns(6, 2);
+  Columns columns(6, 4);
   plant.columns(block, nu, plant.acceleration(nu), columns);
   constexpr double kStep = 1e-3, kBend = 1e-3;  // of it, by what drag is bent over a step
   const model::FeatureState state = plant.features_at(nu, true);
   const Matrix6d inverse = plant.inverse_inertia(nu, plant.acceleration(nu));
-  for (int w = 0; w < 2; ++w) {
+  for (int w = 0; w < 4; ++w) {
     const auto at = static_cast<std::size_t>(w);
     Hypothesis more = streams, less = streams;
     more.force.weights[at] += kStep;

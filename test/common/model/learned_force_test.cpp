@@ -148,11 +148,12 @@ TEST_CASE(
                             .count = 1,
                             .closed = j != 2});
   const FreeForce rest = as_it_stands(force, 20.0);
-  REQUIRE(rest.weights == std::vector<double>{1.0, 2.0, 5.0});
+  REQUIRE(rest.weights == std::vector<double>{1.0, 2.0, 4.0, 5.0});
   FeatureState state{.t = -7.0};  // whatever its clock shows
   state.nu[0] = 0.25;
   CHECK(rest.features[0].value(state) == doctest::Approx(2.0 * 0.25));
   CHECK(rest.features[1].value(state) == 1.0);                      // its end
+  CHECK(rest.features[2].value(state) == std::sin(-14.0));          // in its phase
   CHECK(as_it_stands(force, 1.0).features[0].value(state) == 0.0);  // not begun yet
 }
 
@@ -244,6 +245,36 @@ TEST_CASE("learned force: a stream moves the water, as a current does") {
     CHECK(acceleration(with, a).isApprox(acceleration(told, b), 1e-12));
   }
   CHECK(direction_symbol(kStream + 1) == "v_east =");
+}
+
+TEST_CASE("learned force: a craft that moves with water that swings gains speed as the water does") {
+  const Bench bench;
+  const Factor cosine{.quantity = Quantity::kToneCosine, .a = 1.5}, sine{.quantity = Quantity::kToneSine, .a = 1.5};
+  FreeForce force;
+  force.features = {along(kStream, {cosine}, 0.5), along(kStream + 2, {sine}, 0.5)};
+  force.weights = {0.4, -0.3};
+  force.groups = {{.kind = "swing", .axis = kStream, .first = 0, .count = 1, .closed = true},
+                  {.kind = "swing", .axis = kStream + 2, .first = 1, .count = 1, .closed = true}};
+  CHECK(swings(force));
+  CHECK(as_it_stands(force, 9.0).weights == force.weights);
+  const LearnedForce learned = bench.made(force);
+  Model with = nominal_model(bench.vehicle, false);
+  with.theta[index(BaseParameter::W_B)] = 0.0;
+  with.add({.effect = &learned});
+  constexpr double kStep = 1e-4;
+  const auto water = [&](double t) { return force.stream({.t = t}).v_WF; };
+  for (const double t : {0.3, 2.0, 40.0}) {
+    Motion motion{.t = t, .force = ActuatorForces::Zero(6)};
+    motion.vehicle = &bench.vehicle;
+    motion.nu.head<3>() = water(t);
+    feel(with, motion, {}, 0.0);
+    CHECK(motion.v_WF_B.isApprox(water(t), 1e-12));
+    const Eigen::Vector3d rate = (water(t + kStep) - water(t - kStep)) / (2.0 * kStep);
+    CHECK((motion.a_WF_B - rate).norm() < 1e-6);  // to second order of the step
+    const Vector6d nu_dot = acceleration(with, motion);
+    CHECK((nu_dot.head<3>() - rate).norm() < 1e-6);
+    CHECK(nu_dot.tail<3>().norm() < 1e-9);  // what is carried by water is not turned by it
+  }
 }
 
 TEST_CASE("factors: every kind has a name of its own, words and a value") {

@@ -24,6 +24,9 @@ struct FactorKind {
   bool moves{false};    ///< it goes with the velocity
   bool in_time{false};  ///< it goes with the clock: another run is another time
   double (*value)(const Factor&, const FeatureState&){};
+  /// Its rate with the clock alone, 1/s: what swings has one, so that water that swings has an acceleration. A moment
+  /// or a ramp has none: how fast a stream sets in is not known.
+  double (*rate)(const Factor&, const FeatureState&){};
   std::string (*words)(const Factor&){};  ///< Fossen's notation
   /// 1 where its recording has been, falling beyond; none: it is bounded by itself.
   double (*within)(const Factor&, const FeatureState&, const Visited&){};
