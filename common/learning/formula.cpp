@@ -8,6 +8,7 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_columns.hpp"
+#include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -20,7 +21,6 @@ using model::kWorldAxis;
 constexpr double kAmplitudeSigma = 0.3;  // of the applied wrench: prior of a form whose rms is that of the wrench
 constexpr std::size_t kBatch = 48;       // columns that pass through the filter together
 constexpr std::size_t kFitted = 3;       // forms that are fitted in full
-constexpr int kMostAmplitudes = 6;       // of a law that can still be read
 
 void take_amplitudes(const Fit& fit, FormulaFound& found) {
   const Eigen::VectorXd sigma = fit.sigma();
@@ -208,9 +208,7 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
 
 std::optional<FormulaFound> as_formula(const inference::FreeForceFound& found) {
   const model::FreeForce& force = found.fit.hypothesis.force;
-  if (!found.fit.finite || force.empty() || force.features.size() > kMostAmplitudes ||
-      !std::ranges::all_of(force.groups, &model::FeatureGroup::closed))
-    return std::nullopt;
+  if (!found.fit.finite || !model::is_law(force)) return std::nullopt;
   FormulaFound formula{.fit = found.fit};
   formula.form.axis = force.features.front().axis;
   std::size_t named = 0;

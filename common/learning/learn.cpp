@@ -57,8 +57,11 @@ void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& gi
     for (int j = group.first; j < group.first + group.count; ++j) {
       const auto k = static_cast<std::size_t>(j);
       const model::Feature& feature = force.features[k];
-      CorrectionTerm term{
-          .group = group.kind, .axis = feature.axis, .scale = feature.scale, .weight = force.weights[k]};
+      CorrectionTerm term{.group = group.kind,
+                          .axis = feature.axis,
+                          .scale = feature.scale,
+                          .weight = force.weights[k],
+                          .law = group.closed};
       if (k < at.size()) term.sigma = std::sqrt(std::max(covariance(at[k], at[k]), 0.0));
       for (int f = 0; f < feature.count; ++f) {
         const model::Factor& factor = feature.factors[static_cast<std::size_t>(f)];

@@ -40,7 +40,8 @@ Json correction_json(const CorrectionGiven& given) {
                      {"factors", factors},
                      {"scale", term.scale},
                      {"weight", term.weight},
-                     {"std", finite(term.sigma)}});
+                     {"std", finite(term.sigma)},
+                     {"law", term.law}});
   }
   Json left = Json::array();
   for (const CorrectionLeft& one : given.left)

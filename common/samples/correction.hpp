@@ -27,6 +27,7 @@ struct CorrectionTerm {
                       ///< of the thrust; 11.. the line of each thruster
   std::vector<CorrectionFactor> factors;
   double scale{}, weight{}, sigma{};
+  bool law{};  ///< part of a law in closed form, none of a table
 };
 
 /// What is left of an axis' acceleration beside the model with the correction.

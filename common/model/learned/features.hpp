@@ -50,7 +50,9 @@ struct Visited {
   Eigen::Vector3d p_low{Eigen::Vector3d::Zero()}, p_high{Eigen::Vector3d::Zero()};  ///< m, box of positions
 };
 
-constexpr double kVisitedReach = 1.15;  ///< times the visited size, up to which features are taken at their word
+/// Times the visited size, up to which features are taken at their word: a table knows nothing beyond, a law in closed
+/// form is believed as far again, like the base's own drag, beside which it was fitted.
+constexpr double kVisitedReach = 1.15, kLawReach = 2.0;
 
 /// What a factor reads: one kind each, in a source of factors/.
 enum class Quantity : std::uint8_t {

@@ -31,7 +31,7 @@ Factor factor_of(const Config& config) {
   const bool of_six = kind.indexed != Indexed::kThrusters && kind.indexed != Indexed::kColumns;
   if (factor.index < 0 || (of_six && factor.index >= 6) || factor.index >= kMaxActuators)
     config.fail("index", "there is no such axis or thruster");
-  if (factor.b == 0.0 || factor.c == 0.0) config.fail("b", "a width is not 0");
+  if (kind.rate == nullptr && (factor.b == 0.0 || factor.c == 0.0)) config.fail("b", "a width is not 0");
   return factor;
 }
 
@@ -55,7 +55,8 @@ std::shared_ptr<const LearnedForce> force_of(const Config& config, const Vehicle
     const std::string kind = term.text("group");
     const auto at = static_cast<int>(force.features.size());
     if (force.groups.empty() || force.groups.back().kind != kind || force.groups.back().axis != feature.axis)
-      force.groups.push_back({.kind = kind, .axis = feature.axis, .first = at});
+      force.groups.push_back(
+          {.kind = kind, .axis = feature.axis, .first = at, .closed = term.has("law") && term.flag("law")});
     ++force.groups.back().count;
     force.features.push_back(feature);
     force.weights.push_back(term.quantity("weight", ""));

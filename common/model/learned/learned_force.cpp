@@ -51,7 +51,16 @@ FreeForce for_each_owner(const FreeForce& force, const Allocation& allocation) {
 }  // namespace
 
 LearnedForm::LearnedForm(FreeForce force, Visited visited, Allocation allocation)
-    : force_{for_each_owner(force, allocation)}, visited_{std::move(visited)}, allocation_{std::move(allocation)} {
+    : force_{for_each_owner(force, allocation)},
+      visited_{std::move(visited)},
+      believed_{visited_},
+      allocation_{std::move(allocation)} {
+  if (is_law(force)) {
+    constexpr double kFarther = kLawReach / kVisitedReach;
+    believed_.nu *= kFarther;
+    believed_.tau *= kFarther;
+    believed_.force *= kFarther;
+  }
   for (const Feature& feature : force_.features) {
     part_.push_back(feature.streams()               ? Part::kStreams
                     : feature.remembers()           ? Part::kRemembers
@@ -73,37 +82,43 @@ FeatureState LearnedForm::state_of(const Motion& motion) const {
   return state;
 }
 
-double LearnedForm::fade(const Feature& feature, const FeatureState& state) const {
+double LearnedForm::fade(const Feature& feature, const FeatureState& state, const Visited& visited) {
   double left = 1.0;
   for (int i = 0; i < feature.count; ++i) {
     const Factor& factor = feature.factors[static_cast<std::size_t>(i)];
     const FactorKind& kind = kind_of(factor.quantity);
-    if (kind.within != nullptr) left *= kind.within(factor, state, visited_);
+    if (kind.within != nullptr) left *= kind.within(factor, state, visited);
   }
   return left;
 }
 
 bool LearnedForm::beyond(const Motion& motion) const {
   const FeatureState state = state_of(motion);
-  return std::ranges::any_of(force_.features, [&](const Feature& feature) { return fade(feature, state) < 1.0; });
+  return std::ranges::any_of(force_.features,
+                             [&](const Feature& feature) { return fade(feature, state, visited_) < 1.0; });
+}
+
+FeatureState LearnedForm::inside(const FeatureState& state) const {
+  FeatureState inside = state;
+  clip(inside.nu, believed_.nu);
+  clip(inside.tau, believed_.tau);
+  for (auto& slow : inside.slow_tau) clip(slow, believed_.tau);
+  for (auto& slow : inside.slow_nu) clip(slow, believed_.nu);
+  for (ActuatorForces& use : inside.use) {
+    for (Eigen::Index i = 0; i < use.size(); ++i)
+      use[i] = clipped(use[i], i < believed_.force.size() ? believed_.force[i] : 0.0);
+  }
+  for (Eigen::Index i = 0; i < inside.force.size(); ++i)
+    inside.force[i] = clipped(inside.force[i], i < believed_.force.size() ? believed_.force[i] : 0.0);
+  return inside;
 }
 
 Vector6d LearnedForm::sum(const FeatureState& state, Part part) const {
-  FeatureState inside = state;
-  clip(inside.nu, visited_.nu);
-  clip(inside.tau, visited_.tau);
-  for (auto& slow : inside.slow_tau) clip(slow, visited_.tau);
-  for (auto& slow : inside.slow_nu) clip(slow, visited_.nu);
-  for (ActuatorForces& use : inside.use) {
-    for (Eigen::Index i = 0; i < use.size(); ++i)
-      use[i] = clipped(use[i], i < visited_.force.size() ? visited_.force[i] : 0.0);
-  }
-  for (Eigen::Index i = 0; i < inside.force.size(); ++i)
-    inside.force[i] = clipped(inside.force[i], i < visited_.force.size() ? visited_.force[i] : 0.0);
+  const FeatureState near = inside(state);
   Vector6d wrench = Vector6d::Zero();
   for (std::size_t j = 0; j < force_.features.size(); ++j) {
     if (part_[j] != part) continue;
-    force_.features[j].add(inside, fade(force_.features[j], state) * force_.weights[j], wrench);
+    force_.features[j].add(near, fade(force_.features[j], state, believed_) * force_.weights[j], wrench);
   }
   return wrench;
 }
@@ -115,7 +130,7 @@ void LearnedForm::feel(Motion& motion, EffectTheta, std::span<const double> z) c
     for (std::size_t j = 0; j < force_.features.size(); ++j) {
       const Feature& feature = force_.features[j];
       if (!feature.streams()) continue;
-      const double weight = fade(feature, state) * force_.weights[j];
+      const double weight = fade(feature, state, believed_) * force_.weights[j];
       stream.v_WF[feature.axis - kStream] += weight * feature.value(state);
       stream.a_WF[feature.axis - kStream] += weight * feature.rate(state);
     }
@@ -217,6 +232,12 @@ FreeForce lasting_of(const FreeForce& force) {
       return !kind_of(factor.quantity).in_time || factor.quantity == Quantity::kRamp;
     });
   });
+}
+
+bool is_law(const FreeForce& force) {
+  constexpr std::size_t kMostAmplitudes = 6;
+  return !force.empty() && force.features.size() <= kMostAmplitudes &&
+         std::ranges::all_of(force.groups, &FeatureGroup::closed);
 }
 
 bool swings(const FreeForce& force) {

@@ -28,12 +28,14 @@ class LearnedForm final : public Form {
  private:
   enum class Part { kStreams, kRemembers, kMoves, kStill };
   [[nodiscard]] FeatureState state_of(const Motion& motion) const;
+  [[nodiscard]] FeatureState inside(const FeatureState& state) const;
   [[nodiscard]] Vector6d sum(const FeatureState& state, Part part) const;
-  [[nodiscard]] double fade(const Feature& feature, const FeatureState& state) const;
+  [[nodiscard]] static double fade(const Feature& feature, const FeatureState& state, const Visited& visited);
 
   FreeForce force_;
   std::vector<Part> part_;  // of each feature
-  Visited visited_;
+  Visited visited_;         // by the recording
+  Visited believed_;        // where sizes, times kVisitedReach, are taken at their word
   Allocation allocation_;
   bool remembers_{false}, streams_{false};
 };
@@ -67,6 +69,9 @@ template <typename Keep>
   }
   return rest;
 }
+
+/// Whether all of it is a law in closed form that can still be read: its equation is told.
+[[nodiscard]] bool is_law(const FreeForce& force);
 
 /// Whether some law of it swings.
 [[nodiscard]] bool swings(const FreeForce& force);

@@ -58,6 +58,25 @@ TEST_CASE("learned force: it is its features within what was visited, and fades 
   CHECK(before < 1e-6 * edge);
 }
 
+TEST_CASE("learned force: a law in closed form is believed to twice what was visited, and that it was not is said") {
+  const Bench bench;
+  FreeForce law = one(along(1, {kU, kU}, 2.0), -3.0);
+  law.groups.front().closed = true;
+  CHECK(is_law(law));
+  const LearnedForce force = bench.made(law);
+  const Vector6d dissipating = Vector6d::Constant(-1e6);
+  for (const double u : {0.4, 0.8, 0.5 * kLawReach})
+    CHECK(bench.wrench(force, Vector6d::Unit(0) * u, dissipating)[1] == doctest::Approx(-6.0 * u * u));
+  CHECK(std::abs(bench.wrench(force, Vector6d::Unit(0) * 4.0, dissipating)[1]) < 1e-3);
+  CHECK_FALSE(force.beyond({.nu = Vector6d::Unit(0) * 0.5, .force = ActuatorForces::Zero(6)}));
+  CHECK(force.beyond({.nu = Vector6d::Unit(0) * 0.8, .force = ActuatorForces::Zero(6)}));
+  // Seven numbers are no law that can be read.
+  FreeForce many;
+  for (int j = 0; j < 7; ++j) many.features.push_back(along(1, {kU})), many.weights.push_back(0.1);
+  many.groups = {{.kind = "test", .axis = 1, .count = 7, .closed = true}};
+  CHECK_FALSE(is_law(many));
+}
+
 TEST_CASE("learned force: what goes with the velocity gives no more power than the drag takes") {
   const Bench bench;
   const LearnedForce force = bench.made(one(along(0, {kU}), 100.0));  // pushes where it moves to

@@ -21,10 +21,13 @@ DiagnosisResult diagnosed() {
   result.parameters_after = {{"m_X", 21.5, 0.1, "kg"}, {"command offset", 0.01, 0.001, "s"}};
   CorrectionGiven given{.asked = true, .adopted = true, .carried = true, .words = "A correction, not a cause."};
   given.terms.push_back(
-      {"velocity", 1, {{"velocity", 0, 0, 0.0, 1.0, 1.0}, {"speed", 0, 0, 0.0, 1.0, 1.0}}, 2.5, -0.125, 0.01});
+      {"velocity", 1, {{"velocity", 0, 0, 0.0, 1.0, 1.0}, {"speed", 0, 0, 0.0, 1.0, 1.0}}, 2.5, -0.125, 0.01, true});
   given.terms.push_back({"place, toward north", 6, {{"plan_bump", 0, 0, 1.0, -2.0, 0.75}}, 1.5, 0.5, 0.01});
   given.terms.push_back({"time", 0, {{"after", 0, 0, 12.0, 0.3, 1.0}}, 1.0, 2.0, 0.1});
-  given.covariance = {{1e-4, 0.0, 0.0}, {0.0, 1e-4, 0.0}, {0.0, 0.0, 1e-2}};
+  // A swing that has no wave number is no width of nothing.
+  given.terms.push_back({"a swing", 29, {{"travel_cosine", 0, 0, 1.2, 0.0, 0.0}}, 1.0, 0.1, 0.1, true});
+  given.covariance.assign(4, std::vector<double>(4, 0.0));
+  for (std::size_t k = 0; k < 4; ++k) given.covariance[k][k] = k < 2 ? 1e-4 : 1e-2;
   given.visited_nu.fill(0.8);
   given.visited_tau.fill(30.0);
   given.visited_force.assign(6, 20.0);
@@ -51,6 +54,8 @@ TEST_CASE("correction: what result.json holds is read back as the same force, wi
   CHECK(read.parameters[0] == std::pair<std::string, double>{"m_X", 21.5});
   REQUIRE(read.force != nullptr);
   REQUIRE(read.force->force().features.size() == 2);
+  CHECK(read.force->force().groups[0].closed);
+  CHECK_FALSE(read.force->force().groups[1].closed);
   model::Motion motion{
       .p_WB = {1.0, -2.0, 3.0}, .nu = Vector6d::Unit(0) * 0.4, .force = model::ActuatorForces::Zero(6)};
   model::Load load;
