@@ -14,7 +14,10 @@ std::string text_of(double value) {
 
 std::string text_of(const Eigen::Vector3d& v) { return text_of(v.x()) + " " + text_of(v.y()) + " " + text_of(v.z()); }
 
-bool is_control(char c) { return (c >= 0 && c < ' ') || c == 0x7F; }
+bool is_control(char c) {
+  const auto code = static_cast<unsigned char>(c);  // char is unsigned on arm64
+  return code < ' ' || code == 0x7F;
+}
 
 // A plain word, or in quotes what YAML would read as something else.
 std::string quoted(const std::string& name) {

@@ -12,14 +12,15 @@ FeatureColumns::FeatureColumns(const likelihood::Problem& problem, const Seen& s
     for (int j = group.first; j < group.first + group.count; ++j)
       features_.push_back(library.features[static_cast<std::size_t>(j)]);
   }
-  streams_ = std::ranges::any_of(features_, &likelihood::Feature::streams);
+  operators_ = std::ranges::any_of(
+      features_, [](const likelihood::Feature& feature) { return feature.streams() || feature.weighs(); });
   plant_.begin(problem.runs[run].start());
 }
 
 void FeatureColumns::at(std::size_t block, likelihood::RowMatrix& acceleration) {
   const auto b = static_cast<Eigen::Index>(block);
   plant_.at_middle(block);
-  const likelihood::FeatureState state = plant_.features_at(seen_.reference[run_].nu_middle.col(b), streams_);
+  const likelihood::FeatureState state = plant_.features_at(seen_.reference[run_].nu_middle.col(b), operators_);
   const Matrix6d inverse = seen_.inverse[run_].col(b).reshaped(6, 6);
   for (std::size_t j = 0; j < features_.size(); ++j) {
     Vector6d wrench = Vector6d::Zero();

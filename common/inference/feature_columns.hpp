@@ -19,7 +19,7 @@ class FeatureColumns {
   const likelihood::Problem& problem_;
   const Seen& seen_;
   std::vector<likelihood::Feature> features_;
-  bool streams_{};
+  bool operators_{};
   std::size_t run_;
   std::vector<likelihood::Number> none_;
   likelihood::Plant plant_;

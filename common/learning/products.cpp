@@ -170,7 +170,7 @@ class Library {
       if (feature.axis == model::kHullDrag) wrench = of_drag;
       if (feature.axis == model::kAllThrust) wrench = 1.0;
       if (feature.axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
-      if (feature.axis >= model::kLever) wrench = scene_.tau_rms.segment<2>(3).norm();
+      if (feature.axis >= model::kLever && !feature.weighs()) wrench = scene_.tau_rms.segment<2>(3).norm();
       feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
       if (feature.axis == model::kEachAxis) feature.scale = 1.0;  // shares of the thrust
     }
@@ -185,7 +185,7 @@ class Library {
       for (std::size_t b = 0; b < problem_.runs[r].blocks().size(); ++b) {
         const auto at = static_cast<Eigen::Index>(b);
         plant.at_middle(b);
-        use(r, b, plant.features_at(seen_.reference[r].nu_middle.col(at), scene_.attitude),
+        use(r, b, plant.features_at(seen_.reference[r].nu_middle.col(at), true),
             Matrix6d{seen_.inverse[r].col(at).reshaped(6, 6)});
         plant.end_block(b, seen_.reference[r].nu_end.col(at));
       }

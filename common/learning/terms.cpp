@@ -101,6 +101,8 @@ class Terms {
     if (scene.attitude) world();
     if (scene.attitude) levers();
     together();
+    if (std::ranges::any_of(axes_, [](int axis) { return axis < 3; }))
+      all.push_back({"mass", model::kMass, {{}}, kMassTerm, true});
     for (const inference::ThrusterLaw& law : inference::thruster_laws(problem, seen, scene)) along_lines(law);
   }
   std::vector<Term> all;
@@ -240,7 +242,7 @@ std::vector<Modulator> modulators_of(const likelihood::Problem& problem, const m
   const unsigned still = kConstantTerm | kStreamTerm, base = kDragTerm | kThrustTerm;
   const double half = std::max(0.5 * (problem.t_high - problem.t_low), 1.0);
   const Factor ramp = of(Quantity::kRamp, 0, 0.5 * (problem.t_low + problem.t_high), half);
-  all.push_back({", growing with time", {{ramp}}, still | base | kThrusterTerm});
+  all.push_back({", growing with time", {{ramp}}, still | base | kThrusterTerm | kMassTerm});
   all.push_back({", changing with time", steps_in_time(problem, kTimeSteps), kConstantTerm, false, true});
   all.push_back(
       {", changing with time", steps_in_time(problem, kFewSteps), kStreamTerm | base | kThrusterTerm, false, true});

@@ -20,8 +20,9 @@ enum TermKind : unsigned {
   kDragTerm = 8,
   kThrustTerm = 16,
   kThrusterTerm = 32,
-  kWorldTerm = 64,  ///< a constant that is fixed in the world
-  kWholeTerm = 128  ///< the whole thrust
+  kWorldTerm = 64,   ///< a constant that is fixed in the world
+  kWholeTerm = 128,  ///< the whole thrust
+  kMassTerm = 256
 };
 
 /// Something that acts along a direction.

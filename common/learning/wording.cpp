@@ -22,6 +22,8 @@ struct Hint {
 constexpr Hint kHints[]{
     {"force toward down", "time", "water in a housing, gas, a line that is paid out, or water that becomes lighter"},
     {"force in Z", "time", "water in a housing, gas, or a line that is paid out"},
+    {"mass", "growing with time", "water that comes into a housing, or a line that is paid out"},
+    {"mass", "moment", "a load that was taken up or lost at that moment"},
     {"drag", "growing with time", "weed or fouling, or more and more line in the water"},
     {"drag", "from a moment on", "something that was caught or lost at that moment"},
     {"drag", "depth", "the surface, the bottom or a layer of other water"},

@@ -8,8 +8,7 @@
 namespace fathom::likelihood {
 namespace {
 
-constexpr double kStreamStep = 1e-4;    // m/s, m/s^2, to both sides
-constexpr double kVelocityStep = 1e-5;  // m/s, rad/s: truncation and rounding both below 1e-5 of a slope
+constexpr double kStreamStep = 1e-4;  // m/s, m/s^2, to both sides
 
 bool moves_thrust(const Hypothesis& hypothesis, const Number& number) {
   if (number.kind == NumberKind::kCommandOffset) return true;
@@ -34,6 +33,7 @@ Plant::Plant(const Hypothesis& hypothesis, const std::vector<Number>& numbers, c
   free_moves_ = std::ranges::any_of(free_.features, [](const Feature& f) { return f.moves_with_velocity(); });
   free_drags_ = free_.reads_drag();
   free_streams_ = free_.streams();
+  free_weighs_ = std::ranges::any_of(free_.features, &Feature::weighs);
   features_.allocation = &model_.allocation;
   thrust_forces(model_, run_, own_.command_offset, forces_);
   mean_over_blocks(forces_, mean_);
@@ -111,6 +111,7 @@ void Plant::show_features() {
   features_.force = force_;
   features_.tau = model_.allocation * force_;
   if (!free_.empty() && !free_moves_) free_still_ = free_.wrench(features_);
+  if (free_weighs_) motion_.m_more = free_.mass(features_);
   if (!free_streams_) return;
   const model::Stream stream = free_.stream(features_);
   v_WF_B_ = motion_.R_WB.transpose() * stream.v_WF;
@@ -150,11 +151,12 @@ Vector6d Plant::outside_wrench(const Vector6d& nu) {
   return wrench + free_.wrench(features_);
 }
 
-FeatureState Plant::features_at(const Vector6d& nu, bool with_streams) const {
+FeatureState Plant::features_at(const Vector6d& nu, bool with_operators) {
   FeatureState state = features_;
   state.nu = nu;
   state.drag = model::hull_drag(model_, nu);
-  if (!with_streams) return state;
+  if (!with_operators) return state;
+  state.by_mass = model::held_back_by_mass(acceleration(nu), nu);
   model::Load load;
   const auto pushed = [&](const Eigen::Vector3d& faster, const Eigen::Vector3d& gaining) {
     model::Motion motion = motion_;
@@ -205,114 +207,6 @@ Vector6d Plant::added_by(const model::ActiveEffect& effect, const Vector6d& nu_d
   return there - nu_dot + InertiaFactor{Matrix6d::Identity() + inverse * m}.solve(change);
 }
 
-Matrix6d Plant::slope(const Vector6d& nu, const Vector6d& nu_dot) {
-  Matrix6d slope = Matrix6d::Zero();
-  Vector6d moved = nu;
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
-    moved[i] += kVelocityStep;
-    slope.col(i) = (acceleration(moved) - nu_dot) / kVelocityStep;
-    moved[i] = nu[i];
-  }
-  return slope;
-}
-
-Matrix6d Plant::inverse_inertia(const Vector6d& nu, const Vector6d& nu_dot) {
-  Matrix6d inverse = Matrix6d::Zero();
-  motion_.nu = nu;
-  const Vector6d remembered = outside_wrench(nu);
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    if (!model_.vehicle->dof[static_cast<std::size_t>(i)]) continue;
-    set_water();
-    motion_.w_memory = remembered + Vector6d::Unit(i);
-    motion_.force = force_;
-    if (feels_) feel();
-    inverse.col(i) = model::acceleration(model_, motion_) - nu_dot;
-  }
-  motion_.w_memory = remembered;
-  return inverse;
-}
-
-void Plant::columns(std::size_t block, const Vector6d& nu, const Vector6d& nu_dot, Columns& out) {
-  const auto b = static_cast<Eigen::Index>(block);
-  const Matrix6d inverse = inverse_inertia(nu, nu_dot);
-  features_.nu = nu;
-  if (free_drags_) features_.drag = model::hull_drag(model_, nu);
-  for (std::size_t j = 0; j < numbers_.size(); ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    const Number& number = numbers_[j];
-    if (slope_of_[j] >= 0) {
-      const Eigen::VectorXd slope = slopes_[static_cast<std::size_t>(slope_of_[j])].col(b);
-      if (!feels_) {
-        out.col(column) = inverse * (model_.allocation * slope);
-      } else {  // hull effects read the thrust too; over a step that changes it by a newton at most
-        const double size = 1.0 / std::max(slope.cwiseAbs().maxCoeff(), 1e-9);
-        const model::ActuatorForces before = force_;
-        force_ += size * slope;
-        out.col(column) = (acceleration(nu) - nu_dot) / size;
-        force_ = before;
-      }
-      continue;
-    }
-    switch (number.kind) {
-      case NumberKind::kBase: {
-        double& there = model_.theta[number.index];
-        const double before = there;
-        there += number.step;
-        out.col(column) = (acceleration(nu) - nu_dot) / number.step;
-        there = before;
-        break;
-      }
-      case NumberKind::kEffect: {
-        const auto e = static_cast<std::size_t>(number.index);
-        const Vector6d* remembered = memory_.slope(j);
-        const Stage stage = stages_[e];
-        if (remembered != nullptr) {
-          out.col(column) = inverse * *remembered;
-        } else if (stage != Stage::kHull) {
-          out.col(column).setZero();
-        } else {
-          double& there = model_.effects[e].theta[static_cast<std::size_t>(number.component)];
-          const double before = there;
-          there += number.step;
-          out.col(column) = (acceleration(nu) - nu_dot) / number.step;
-          there = before;
-        }
-        break;
-      }
-      case NumberKind::kWeight: {
-        const Feature& feature = free_.features[static_cast<std::size_t>(number.index)];
-        if (feature.streams()) {
-          const double value = feature.value(features_), rate = feature.rate(features_);
-          const double size = std::abs(value) + std::abs(rate);
-          out.col(column).setZero();
-          if (size == 0.0) break;
-          const Eigen::Vector3d v = v_WF_B_, a = a_WF_B_;
-          const Eigen::Vector3d step =
-              kVelocityStep / size * motion_.R_WB.row(feature.axis - model::kStream).transpose();
-          v_WF_B_ += value * step;
-          a_WF_B_ += rate * step;
-          out.col(column) = (acceleration(nu) - nu_dot) * (size / kVelocityStep);
-          v_WF_B_ = v;
-          a_WF_B_ = a;
-          break;
-        }
-        Vector6d wrench = Vector6d::Zero();
-        feature.add(features_, 1.0, wrench);
-        out.col(column) = inverse * wrench;
-        break;
-      }
-      case NumberKind::kWorldForce:
-        out.col(column).setZero();
-        if (number.run == static_cast<int>(run_index_))
-          out.col(column) = inverse.leftCols<3>() * motion_.R_WB.row(number.index).transpose();
-        break;
-      default:
-        out.col(column).setZero();
-    }
-  }
-}
-
 void Plant::end_block(std::size_t block, const Vector6d& nu) {
   const Block& here = run_.blocks()[block];
   if (!memory_.empty()) {
@@ -331,11 +225,6 @@ void Plant::end_block(std::size_t block, const Vector6d& nu) {
   for (std::size_t b = 0; b < kUseMemories.size(); ++b)
     features_.use[b] += -std::expm1(-here.dt / kUseMemories[b]) *
                         (mean_.col(static_cast<Eigen::Index>(block)).cwiseAbs() - features_.use[b]);
-}
-
-void Plant::remember_columns(std::size_t block, const Columns& nu_columns, Columns& wrenches) {
-  wrenches.setZero();
-  if (!memory_.empty()) memory_.advance_columns(motion_, run_.blocks()[block].dt, nu_columns, wrenches);
 }
 
 }  // namespace fathom::likelihood

@@ -48,8 +48,9 @@ class Plant {
   /// Mean over every block of what is given at substeps, column after column.
   void mean_over_blocks(const Eigen::MatrixXd& forces, Eigen::MatrixXd& mean) const;
   [[nodiscard]] const Eigen::MatrixXd& mean_forces() const { return mean_; }  ///< actuators x blocks
-  /// What features read at a velocity, of the moment that was set; what streams would do only where it is asked for.
-  [[nodiscard]] FeatureState features_at(const Vector6d& nu, bool with_streams) const;
+  /// What features read at a velocity, of the moment that was set; what streams and a mass would do only where it is
+  /// asked for.
+  [[nodiscard]] FeatureState features_at(const Vector6d& nu, bool with_operators);
   [[nodiscard]] const model::Motion& motion() const { return motion_; }
 
  private:
@@ -72,6 +73,7 @@ class Plant {
   bool free_moves_{};                    // some feature goes with the velocity
   bool free_drags_{};                    // some feature acts along the hull's drag
   bool free_streams_{};                  // some feature is a velocity of the water
+  bool free_weighs_{};                   // some feature is a mass
   Eigen::MatrixXd forces_, mean_;        // actuators x substeps, x blocks
   std::vector<Eigen::MatrixXd> slopes_;  // of the mean forces, per number that has one
   std::vector<int> slope_of_;            // number -> place in slopes_, -1: none

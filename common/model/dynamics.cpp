@@ -155,7 +155,12 @@ Vector6d generalised_force(const Model& model, const Motion& motion, Load& load)
 
 Vector6d acceleration(const Model& model, const Motion& motion) {
   Load load;
-  const Vector6d force = generalised_force(model, motion, load);
+  Vector6d force = generalised_force(model, motion, load);
+  if (motion.m_more != 0.0) {
+    const Vector6d before = load.wrench;
+    load.add_mass(motion.m_more, motion.nu);
+    force += load.wrench - before;
+  }
   const Vector6d inertia = inertia_diagonal(model);
   const auto& dof = model.vehicle->dof;
   Vector6d nu_dot = Vector6d::Zero();

@@ -78,6 +78,7 @@ struct Motion {
   Eigen::Vector3d v_WF_B{Eigen::Vector3d::Zero()};  ///< m/s, water velocity seen in B; effects add to it
   Eigen::Vector3d a_WF_B{Eigen::Vector3d::Zero()};  ///< m/s^2, acceleration of the water in W, seen in B (waves)
   Vector6d w_memory{Vector6d::Zero()};              ///< N, N m: wrench of what effects remember of past motion
+  double m_more{};                                  ///< kg at Bo, besides the model's own
   ActuatorForces force{};                           ///< N, as they reach the water; effects alter it
   double voltage{};                                 ///< V; 0 when not logged
   std::span<const double> columns{};                ///< as Trial::columns has them; empty: none were measured
@@ -105,6 +106,12 @@ struct Load {
     if (!has_couplings) coupled_.setZero();
     has_couplings = true;
     return coupled_;
+  }
+  /// A mass at Bo: (m, m, m, 0, 0, 0) nu_dot = -w x m v (Newton-Euler; Fossen 2011, sec. 3.3).
+  void add_mass(double mass, const Vector6d& nu) {
+    const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
+    wrench.head<3>() -= mass * w.cross(v);
+    inertia_diagonal.head<3>().array() += mass;
   }
   [[nodiscard]] bool has_inertia() const { return has_couplings || !inertia_diagonal.isZero(0.0); }
   /// All that is added to M.

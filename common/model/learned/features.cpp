@@ -38,6 +38,13 @@ std::optional<Quantity> quantity_from(std::string_view word) {
   return static_cast<Quantity>(found - kKinds.begin());
 }
 
+Vector6d held_back_by_mass(const Vector6d& nu_dot, const Vector6d& nu) {
+  const Eigen::Vector3d v = nu.head<3>(), w = nu.tail<3>();
+  Vector6d by_mass = Vector6d::Zero();
+  by_mass.head<3>() = -(nu_dot.head<3>() + w.cross(v));
+  return by_mass;
+}
+
 std::string direction_words(int axis) {
   if (axis < kWorldAxis) return kTauNames[axis];
   if (axis < kHullDrag) return std::array{"north", "east", "down"}[static_cast<std::size_t>(axis - kWorldAxis)];
@@ -45,6 +52,7 @@ std::string direction_words(int axis) {
   if (axis == kAllThrust) return "the thrust";
   if (axis == kEachThruster) return "each thruster";
   if (axis == kEachAxis) return "each axis";
+  if (axis == kMass) return "the mass";
   if (axis >= kLever) return std::string("the lever of weight and buoyancy in ") + "xyz"[axis - kLever];
   if (axis >= kStream) return "the water's " + direction_words(axis - kStream + kWorldAxis);
   return "thruster " + std::to_string(axis - kThrusterLine + 1);
@@ -57,6 +65,7 @@ std::string direction_symbol(int axis) {
   if (axis == kAllThrust) return "tau = B f";
   if (axis == kEachThruster) return "delta f_j =";
   if (axis == kEachAxis) return "tau_i =";
+  if (axis == kMass) return "m =";
   if (axis >= kLever) return std::string("G_") + "xyz"[axis - kLever] + " =";
   if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);
@@ -123,6 +132,7 @@ double Feature::rate(const FeatureState& state) const {
 }
 
 double Feature::size(const FeatureState& state) const {
+  if (weighs()) return std::abs(value(state)) * state.by_mass.head<3>().norm();
   if (axis >= kLever)
     return std::abs(value(state)) * Eigen::Vector3d::Unit(axis - kLever).cross(state.R_WB.row(2).transpose()).norm();
   if (streams()) {
@@ -173,6 +183,8 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench += size * state.drag;
   } else if (axis == kAllThrust) {
     wrench += size * state.tau;
+  } else if (weighs()) {
+    wrench += size * state.by_mass;
   } else if (axis >= kLever) {
     const Eigen::Vector3d down_B = state.R_WB.row(2).transpose();
     wrench.tail<3>() += size * Eigen::Vector3d::Unit(axis - kLever).cross(down_B);
@@ -187,9 +199,17 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
 Vector6d FreeForce::wrench(const FeatureState& state) const {
   Vector6d sum = Vector6d::Zero();
   for (std::size_t j = 0; j < features.size(); ++j) {
-    if (!features[j].streams()) features[j].add(state, weights[j], sum);
+    if (!features[j].streams() && !features[j].weighs()) features[j].add(state, weights[j], sum);
   }
   return sum;
+}
+
+double FreeForce::mass(const FeatureState& state) const {
+  double mass = 0.0;
+  for (std::size_t j = 0; j < features.size(); ++j) {
+    if (features[j].weighs()) mass += weights[j] * features[j].value(state);
+  }
+  return mass;
 }
 
 Stream FreeForce::stream(const FeatureState& state) const {

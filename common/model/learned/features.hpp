@@ -38,9 +38,13 @@ struct FeatureState {
   /// What water does that moves toward N, E, D, N s/m and N s, and that gains speed toward there, N s^2/m and N s^2.
   Eigen::Matrix<double, 6, 3> by_stream{Eigen::Matrix<double, 6, 3>::Zero()};
   Eigen::Matrix<double, 6, 3> by_stream_rate{Eigen::Matrix<double, 6, 3>::Zero()};
-  const Allocation* allocation{};     ///< tau = B f
-  std::span<const double> columns{};  ///< as Motion::columns
+  Vector6d by_mass{Vector6d::Zero()};  ///< m/s^2: what a mass at Bo holds back, -(v_dot + w x v)
+  const Allocation* allocation{};      ///< tau = B f
+  std::span<const double> columns{};   ///< as Motion::columns
 };
+
+/// FeatureState::by_mass
+[[nodiscard]] Vector6d held_back_by_mass(const Vector6d& nu_dot, const Vector6d& nu);
 
 /// Largest sizes that a recording has shown of what features read.
 struct Visited {
@@ -79,12 +83,13 @@ struct Factor {
 /// force; all axes by one law, each reading its own thrust. Toward north, east and down as a velocity of the water,
 /// too, which hull and effects feel as they feel any stream, and with the acceleration of water that swings: no force
 /// that adds to others.
-/// Last the levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down.
+/// The levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down. Last a mass at Bo: inertia, no weight.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
 constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
 constexpr int kStream = kEachAxis + 1;
 constexpr int kLever = kStream + 3;
-constexpr int kDirections = kLever + 3;
+constexpr int kMass = kLever + 3;
+constexpr int kDirections = kMass + 1;
 /// In words of a law of all thrusters or axes, in place of an index.
 constexpr int kOwn = -1;
 [[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
@@ -96,24 +101,25 @@ struct Feature {
   int count{};  ///< of factors
   std::array<Factor, 4> factors{};
   double scale{1.0};
-  /// Scaled value: N, N m, m/s of a stream, or a share of the drag or thrust that it acts along. Of a law of all
-  /// thrusters or axes that of the one which its factors name.
+  /// Scaled value: N, N m, m/s of a stream, kg of a mass, or a share of the drag or thrust that it acts along. Of a law
+  /// of all thrusters or axes that of the one which its factors name.
   [[nodiscard]] double value(const FeatureState& state) const;
   [[nodiscard]] double rate(const FeatureState& state) const;  ///< of a swing's value, with the clock alone, per second
   /// How much it pushes, without sign: of a law of all thrusters or axes the root of their sum of squares, of a stream
-  /// the force to first order.
+  /// or a mass the force to first order.
   [[nodiscard]] double size(const FeatureState& state) const;
   /// This law for one of the thrusters or axes for which it holds; others are as they are.
   [[nodiscard]] Feature of_own(int own) const;
   /// For how many it holds: thrusters or axes; 1 for all others.
   [[nodiscard]] int owners(const FeatureState& state) const;
   [[nodiscard]] bool streams() const { return axis >= kStream && axis < kLever; }
+  [[nodiscard]] bool weighs() const { return axis == kMass; }
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
   [[nodiscard]] bool swings() const;
   [[nodiscard]] bool remembers() const;     ///< reads low passes
   [[nodiscard]] std::string words() const;  ///< its product, Fossen's notation; empty: it is constant
-  /// Of a stream what it does to first order.
+  /// Of a stream or a mass what it does to first order.
   void add(const FeatureState& state, double weight, Vector6d& wrench) const;
 
  private:
@@ -140,7 +146,8 @@ struct FreeForce {
   std::vector<FeatureGroup> groups;
   std::vector<double> weights;
   [[nodiscard]] bool empty() const { return features.empty(); }
-  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;  ///< without what streams do
+  [[nodiscard]] Vector6d wrench(const FeatureState& state) const;  ///< without what streams and masses do
+  [[nodiscard]] double mass(const FeatureState& state) const;      ///< kg
   [[nodiscard]] Stream stream(const FeatureState& state) const;
   [[nodiscard]] bool reads_drag() const;
   [[nodiscard]] bool streams() const;

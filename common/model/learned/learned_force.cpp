@@ -63,6 +63,7 @@ LearnedForm::LearnedForm(FreeForce force, Visited visited, Allocation allocation
   }
   for (const Feature& feature : force_.features) {
     part_.push_back(feature.streams()               ? Part::kStreams
+                    : feature.weighs()              ? Part::kWeighs
                     : feature.remembers()           ? Part::kRemembers
                     : feature.moves_with_velocity() ? Part::kMoves
                                                     : Part::kStill);
@@ -153,6 +154,11 @@ void LearnedForm::load(const Motion& motion, EffectTheta, Load& load) const {
   FeatureState state = state_of(motion);
   state.drag = load.drag;
   load.wrench += sum(state, Part::kStill);
+  for (std::size_t j = 0; j < force_.features.size(); ++j) {
+    if (part_[j] != Part::kWeighs) continue;
+    const Feature& feature = force_.features[j];
+    load.add_mass(fade(feature, state, believed_) * force_.weights[j] * feature.value(state), motion.nu);
+  }
   Vector6d moving = sum(state, Part::kMoves);
   const Vector6d nu_r = motion.nu_r();
   const double given = nu_r.dot(moving), taken = -nu_r.dot(load.drag);  // W

@@ -26,7 +26,7 @@ class LearnedForm final : public Form {
   [[nodiscard]] bool beyond(const Motion& motion) const;
 
  private:
-  enum class Part { kStreams, kRemembers, kMoves, kStill };
+  enum class Part { kStreams, kWeighs, kRemembers, kMoves, kStill };
   [[nodiscard]] FeatureState state_of(const Motion& motion) const;
   [[nodiscard]] FeatureState inside(const FeatureState& state) const;
   [[nodiscard]] Vector6d sum(const FeatureState& state, Part part) const;

@@ -114,3 +114,39 @@ TEST_CASE("plant: a free force's stream pushes as water does, and its columns ar
     CHECK((inverse * wrench - slope).norm() < kBend * slope.norm());
   }
 }
+
+TEST_CASE("plant: a free force's mass holds back as a load does that was taken up, and its column is its slope") {
+  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  const auto dive = test::fly(vehicle, {.duration = 20.0});
+  const RunData run{dive.trial, vehicle, {}};
+  const std::size_t block = run.blocks().size() / 2;
+  const Vector6d nu{0.4, -0.2, 0.1, 0.05, -0.1, 0.3};
+  Hypothesis plain{.model = dive.truth};
+  plain.runs.resize(1);
+  Hypothesis loaded = plain, told = plain;
+  model::Feature mass{.axis = model::kMass, .count = 1, .scale = 4.0};
+  mass.factors[0] = {.quantity = model::Quantity::kAfter, .a = 3.0, .b = 0.3};
+  loaded.force = {.features = {mass}, .groups = {{.axis = model::kMass, .count = 1}}, .weights = {0.75}};
+  told.model.add({.effect = model::find_effect("payload_change"), .theta = {3.0, 0.0, 2.5}});
+  const Vector6d here = acceleration_at(loaded, run, block, nu);
+  CHECK((here - acceleration_at(told, run, block, nu)).norm() < 1e-12);
+  CHECK((here - acceleration_at(plain, run, block, nu)).norm() > 1e-3);
+
+  const std::vector<Number> numbers{{.kind = NumberKind::kWeight, .index = 0}};
+  Plant plant{loaded, numbers, run, 0, true};
+  plant.begin(run.start());
+  plant.at_middle(block);
+  Columns columns(6, 1);
+  plant.columns(block, nu, plant.acceleration(nu), columns);
+  constexpr double kStep = 1e-3;
+  Hypothesis more = loaded, less = loaded;
+  more.force.weights[0] += kStep;
+  less.force.weights[0] -= kStep;
+  const Vector6d slope =
+      (acceleration_at(more, run, block, nu) - acceleration_at(less, run, block, nu)) / (2.0 * kStep);
+  CHECK((columns.col(0) - slope).norm() < 1e-5 * slope.norm());  // to second order of the step
+  // What a screen is told of it.
+  Vector6d wrench = Vector6d::Zero();
+  mass.add(plant.features_at(nu, true), 1.0, wrench);
+  CHECK((plant.inverse_inertia(nu, plant.acceleration(nu)) * wrench - slope).norm() < 1e-5 * slope.norm());
+}

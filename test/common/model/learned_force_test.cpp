@@ -296,6 +296,21 @@ TEST_CASE("learned force: a craft that moves with water that swings gains speed 
   }
 }
 
+TEST_CASE("learned force: a mass is inertia without weight, as a load's is") {
+  const Bench bench;
+  const Factor moment{.quantity = Quantity::kAfter, .a = 3.0, .b = 0.3};
+  const LearnedForce learned = bench.made(one(along(kMass, {moment}, 4.0), 0.75));
+  const std::vector<double> theta{3.0, 0.0, 1.0};
+  const Motion motion{.t = 9.0, .nu = {0.4, -0.2, 0.1, 0.05, -0.1, 0.3}, .force = ActuatorForces::Zero(6)};
+  Load load, told;
+  load.clear(), told.clear();
+  learned.load(motion, {}, 0, load);
+  find_effect("payload_change")->load(motion, theta, 0, told);
+  CHECK(load.wrench.isApprox(told.wrench, 1e-12));
+  CHECK(load.inertia().isApprox(told.inertia(), 1e-12));
+  CHECK(load.inertia()(2, 2) == doctest::Approx(3.0));
+}
+
 TEST_CASE("factors: every kind has a name of its own, words and a value") {
   FeatureState state{.t = 2.0,
                      .p_WB = {0.1, 0.2, 0.3},

@@ -46,11 +46,7 @@ class PayloadAtOrigin final : public Form {
     const double share = onset_share(motion.t, theta[2]);
     if (share == 0.0) return;
     load.wrench.head<3>() += share * theta[1] * motion.R_WB.row(2).transpose();
-    if (theta[0] == 0.0) return;
-    const Eigen::Vector3d v = motion.nu.head<3>();
-    const Eigen::Vector3d w = motion.nu.tail<3>();
-    load.wrench.head<3>() -= share * theta[0] * w.cross(v);
-    load.inertia_diagonal.head<3>().array() += share * theta[0];
+    if (theta[0] != 0.0) load.add_mass(share * theta[0], motion.nu);
   }
 };
 
