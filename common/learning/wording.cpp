@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
+#include "common/model/learned/factors/factor_kind.hpp"
 #include "common/model/vehicle.hpp"
 
 namespace fathom::learning {
@@ -59,6 +61,24 @@ std::string hint_for(const inference::GroupFound& group) {
   return "";
 }
 
+/// Period, length and way of the first swing.
+std::string swing_words(const CorrectionGiven& given) {
+  for (const CorrectionTerm& term : given.terms) {
+    for (const CorrectionFactor& factor : term.factors) {
+      const auto quantity = model::quantity_from(factor.quantity);
+      if (!quantity || model::kind_of(*quantity).rate == nullptr || !(factor.a > 0.0)) continue;
+      std::string words = text(" It swings with a period of %.3g s", 2.0 * std::numbers::pi / factor.a);
+      const bool travels = *quantity == model::Quantity::kTravelCosine || *quantity == model::Quantity::kTravelSine;
+      const double wave_number = travels ? std::hypot(factor.b, factor.c) : 0.0;
+      if (wave_number > 0.0)
+        words += text(", %.3g m from crest to crest, and travels toward %.0f deg", 2.0 * std::numbers::pi / wave_number,
+                      std::fmod(std::atan2(factor.c, factor.b) * 180.0 / std::numbers::pi + 360.0, 360.0));
+      return words + ".";
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string too_little(const std::string& what, double value, const std::string& how, double needed) {
@@ -72,7 +92,7 @@ std::string correction_sentence(const inference::FreeForceFound& found, const Co
                              "A force that no listed effect explains, %.1f %% of the applied force in %s, was learned "
                              "and added to the model. It goes with ",
                              100.0 * given.size, model::kAxisNames[static_cast<std::size_t>(found.size.axis)]) +
-                         with + "." + (given.formula ? " " + given.formula->words : "") +
+                         with + "." + swing_words(given) + (given.formula ? " " + given.formula->words : "") +
                          " It is a correction with arguments, not a cause.";
   if (const std::string look_for = found.groups.empty() ? "" : hint_for(found.groups.front()); !look_for.empty())
     sentence += " Look for " + look_for + ".";

@@ -95,8 +95,10 @@ std::string correction_line(const CorrectionGiven& given) {
   for (const CorrectionTerm& term : given.terms) {
     if (std::ranges::find(kinds, term.group) == kinds.end()) kinds.push_back(term.group);
   }
-  std::string with = given.formula ? given.formula->equation : kinds.empty() ? "" : kinds.front();
-  if (!given.formula && kinds.size() > 1) with += " and " + std::to_string(kinds.size() - 1) + " more";
+  constexpr std::size_t kShort = 60;  // characters: what is longer is read in the section
+  const bool told = given.formula && given.formula->equation.size() <= kShort;
+  std::string with = told ? given.formula->equation : kinds.empty() ? "" : kinds.front();
+  if (!told && kinds.size() > 1) with += " and " + std::to_string(kinds.size() - 1) + " more";
   return "<b>A correction, not a cause: a learned force, " + percent(given.size) + " of the applied force</b>" +
          (with.empty() ? "" : " (" + escape(with) + ")") + "; where its weights were not fitted, the error is " +
          percent(1.0 - given.held_out) + " lower<details><summary>what it is, and what is left</summary>" +

@@ -148,6 +148,15 @@ TEST_CASE("fathom smooth: what it lacks is said with the remedy, and nothing is 
   CHECK_MESSAGE(places.code == 0, places.text);
   std::filesystem::remove(scratch.path("smooth.lcmlog"));
 
+  // A mistake in a file is one, even where the number is not needed here.
+  test::write_bytes(scratch.path("heavy.yaml"),
+              "name: Sled\ndof: [surge, sway, heave, roll, pitch, yaw]\nmass: 12 kgs\nwater_density: 1000 kg/m^3\n");
+  const auto heavy = shell(smooth(scratch, "bare.lcmlog") + " --vehicle " + scratch.path("heavy.yaml") + " --site " +
+                           file("config/sites/tank.yaml"));
+  CHECK(heavy.code == 1);
+  CHECK_MESSAGE(heavy.says("heavy.yaml:3"), heavy.text);
+  CHECK_FALSE(written(scratch));
+
   tank.process_info = told;
   Recording wrong = tank;  // the laser's dot is another lamp's: tags and flow agree without it
   for (LaserRange& one : wrong.laser_range) one.p_CL *= 0.4;

@@ -2,6 +2,7 @@
 
 #include "common/base/config.hpp"
 #include "common/base/error.hpp"
+#include "common/model/vehicle.hpp"
 #include "common/runtime/command_line.hpp"
 
 namespace fathom::tool {
@@ -32,6 +33,8 @@ estimation::TrialFiles trial_files(const TrialFileOptions& options, const Record
     files.add(config);
   }
   if (!options.vehicle.empty()) {
+    static_cast<void>(
+        model::Vehicle::load(options.vehicle));  // a mistake anywhere in it is one, whatever is taken of it
     const Config vehicle = Config::load(options.vehicle);
     files.mounts = vehicle.is_section("sensors") ? model::Mounts::from(vehicle.section("sensors")) : model::Mounts{};
   }

@@ -78,6 +78,7 @@ TEST_CASE("taken out: waves are learned as water that swings, and foretold beyon
   test::show("wave", learned.given);
   REQUIRE(learned.given.adopted);
   CHECK(learned.given.words.find("a swing of the water") != std::string::npos);
+  CHECK(learned.given.words.find("a period of 6.76 s, 7") != std::string::npos);  // 2 pi / .93; 2 pi g / .93^2 = 71 m
   REQUIRE(learned.given.goes_on);
   const double step = dive.problem.input_step;
   const residual::Ratio over_base = residual::error_over(as_model(dive.conclusion.found.best.fit.hypothesis, step),

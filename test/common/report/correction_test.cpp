@@ -103,4 +103,9 @@ TEST_CASE("correction: the first screen has a line of it; the whole sentence fol
   CHECK(seen.find("25 % lower") != std::string::npos);
   CHECK(seen.find(given.words) == std::string::npos);
   CHECK(line.find(given.words) != std::string::npos);
+  // An equation, where it can be read at a glance.
+  given.formula = FormulaGiven{.equation = "tau_Z = c w w"};
+  CHECK(report::correction_line(given).find("tau_Z = c w w") != std::string::npos);
+  given.formula->equation = std::string(200, 'x');
+  CHECK(report::correction_line(given).find("velocity and 2 more") != std::string::npos);
 }
