@@ -183,7 +183,7 @@ bool Searching::take_best(std::vector<Fitted> fits) {
   std::ranges::sort(fits, std::greater{}, &Fitted::score);
   for (Fitted& fitted : fits) {
     if (!fitted.fit.finite || fitted.score < found_.best.score + thresholds_.name_odds) return false;
-    if (!counts(fitted)) continue;
+    if (given_up(fitted.names) || !counts(fitted)) continue;
     const std::vector<model::ActiveEffect> before = effects();
     found_.best = std::move(fitted);
     if (sought_) return true;
@@ -315,8 +315,20 @@ void Searching::drop() {
     if (best == fits.end() || !best->fit.finite) return;
     // What stands by less than a name needs is no name.
     if (small.empty() && best->score + thresholds_.name_odds <= found_.best.score) return;
+    std::vector<std::string> gone;
+    std::ranges::set_difference(found_.best.names, best->names, std::back_inserter(gone));
+    for (const std::string& name : gone) given_up_.emplace(best->names, name);
     found_.best = *best;
   }
+}
+
+bool Searching::given_up(const std::vector<std::string>& names) const {
+  for (std::size_t k = 0; k < names.size() && !given_up_.empty(); ++k) {
+    std::vector<std::string> others = names;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    if (given_up_.contains({std::move(others), names[k]})) return true;
+  }
+  return false;
 }
 
 std::vector<std::string> Searching::names_without(std::size_t effect) const {

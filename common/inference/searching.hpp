@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -89,8 +90,11 @@ class Searching {
   [[nodiscard]] bool quieten(const Seen& seen, likelihood::Fit& fit) const;
   /// Nats that the best model would lose without the effect, by Wald's test of its leading numbers: a linear guess.
   [[nodiscard]] double guessed_loss(const Seen& seen, std::size_t effect) const;
-  /// What another effect has made small or worthless, or pushed to a limit, goes.
+  /// What another effect has made small or worthless, or pushed to a limit, goes, and is not taken up beside the same
+  /// others again: a name that counts as it comes and not as it stays would come for ever.
   void drop();
+  /// One of its names went from beside the others.
+  [[nodiscard]] bool given_up(const std::vector<std::string>& names) const;
   [[nodiscard]] std::vector<std::string> names_without(std::size_t effect) const;
   /// The best model without each effect, where none has been fitted yet.
   void leave_out();
@@ -128,8 +132,9 @@ class Searching {
   std::map<std::size_t, Promise> promised_;  // by law, in the last look
   std::vector<std::pair<double, Proposal>> behind_;  // promised, in the last look: too little beside the best
   std::map<std::string, Refusal> failed_;            // what evidence alone would have named
-  std::map<std::string, Refusal> gave_way_;          // to a free force in its place
-  std::map<std::string, double> in_place_;           // nats by which a name is worth more than that
+  std::set<std::pair<std::vector<std::string>, std::string>> given_up_;  // names that stayed, and the one that went
+  std::map<std::string, Refusal> gave_way_;                              // to a free force in its place
+  std::map<std::string, double> in_place_;                               // nats by which a name is worth more than that
 };
 
 }  // namespace fathom::inference
