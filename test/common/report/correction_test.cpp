@@ -99,7 +99,7 @@ TEST_CASE("correction: the first screen has a line of it; the whole sentence fol
   const std::string line = report::correction_line(given);
   const std::string seen = line.substr(0, line.find("<details>"));
   CHECK(seen.find("12 %") != std::string::npos);
-  CHECK(seen.find("velocity and 2 more") != std::string::npos);
+  CHECK(seen.find("velocity and 3 more") != std::string::npos);
   CHECK(seen.find("25 % lower") != std::string::npos);
   CHECK(seen.find(given.words) == std::string::npos);
   CHECK(line.find(given.words) != std::string::npos);
@@ -107,5 +107,5 @@ TEST_CASE("correction: the first screen has a line of it; the whole sentence fol
   given.formula = FormulaGiven{.equation = "tau_Z = c w w"};
   CHECK(report::correction_line(given).find("tau_Z = c w w") != std::string::npos);
   given.formula->equation = std::string(200, 'x');
-  CHECK(report::correction_line(given).find("velocity and 2 more") != std::string::npos);
+  CHECK(report::correction_line(given).find("velocity and 3 more") != std::string::npos);
 }
