@@ -38,15 +38,28 @@ std::string between_rivals(const EffectFound& effect) {
          ".";
 }
 
+/// Where something acts that has no name: what separates its arguments.
+std::string for_the_unlisted(const std::string& verdict) {
+  if (verdict == "unexplained")
+    return "Fly the same steps once more, later, at another place and in another order: what goes with the motion "
+           "comes "
+           "back as it was, what goes with the place or with time does not.";
+  if (verdict == "no_model")
+    return "Drive one axis at a time, from rest, with steps of thrust ahead and astern, so that it shows which thrust "
+           "the motion does not follow.";
+  return {};
+}
+
 }  // namespace
 
 std::string next_motion(const DiagnosisResult& result) {
   if (result.wiring) return "Run each thruster alone for a second or two and see which way the vehicle goes.";
+  const std::string unlisted = for_the_unlisted(result.verdict);
   const EffectFound* weakest = nullptr;
   const NamedValue* number = nullptr;
   double share = kKnown;
   for (const EffectFound& effect : result.effects) {
-    if (!effect.alternatives.empty()) return between_rivals(effect);
+    if (!effect.alternatives.empty()) return between_rivals(effect) + (unlisted.empty() ? "" : " " + unlisted);
     for (const NamedValue& one : effect.parameters) {
       const double its = one.value != 0.0 ? one.std / std::abs(one.value) : 0.0;
       if (!(its > share) || !std::isfinite(its)) continue;
@@ -55,6 +68,7 @@ std::string next_motion(const DiagnosisResult& result) {
       share = its;
     }
   }
+  if (!unlisted.empty()) return unlisted;
   if (weakest == nullptr || motion_for(weakest->name).empty()) return {};
   char known[32];
   std::snprintf(known, sizeof known, "%.0f %%", 100.0 * share);

@@ -7,8 +7,9 @@
 
 namespace fathom::verdict {
 
-/// After thrusters that seem to be others: each alone. Else the motions that tell look-alikes apart, else the one that
-/// sharpens the number of a named effect that is known worst, where that is known badly. Empty where nothing is open.
+/// After thrusters that seem to be others: each alone. Else the motions that tell look-alikes apart, then what
+/// separates the arguments of what acts without a name, else the one that sharpens the number of a named effect that is
+/// known worst, where that is known badly. Empty where nothing is open.
 [[nodiscard]] std::string next_motion(const DiagnosisResult& result);
 
 }  // namespace fathom::verdict

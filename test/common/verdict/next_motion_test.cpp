@@ -1,5 +1,5 @@
-// What to drive next: each thruster alone, what tells rivals apart, what sharpens a number; nothing where nothing is
-// open.
+// What to drive next: each thruster alone, what tells rivals apart, what separates the arguments of what has no name,
+// what sharpens a number; nothing where nothing is open.
 #include "common/verdict/next_motion.hpp"
 
 #include <doctest/doctest.h>
@@ -37,6 +37,22 @@ TEST_CASE("next motion: the number that is known worst, where it is known badly"
   for (NamedValue& number : result.effects[0].parameters) number.std = 0.005;
   CHECK(next_motion(result).empty());
   CHECK(next_motion({}).empty());
+}
+
+TEST_CASE("next motion: where something acts that has no name, what separates its arguments; rivals first") {
+  DiagnosisResult result;
+  result.effects = {{.name = "current", .variant = "", .parameters = {{"v_N", 0.1, 0.05, "m/s"}}}};
+  result.verdict = "unexplained";
+  CHECK(says(next_motion(result), "at another place and in another order"));
+  CHECK_FALSE(says(next_motion(result), "To know current"));
+  result.effects[0].alternatives = {{.name = "steady_force", .log_odds = 1.0}};
+  CHECK(next_motion(result).starts_with("To tell current from steady_force"));
+  CHECK(says(next_motion(result), "at another place and in another order"));
+  result.effects.clear();
+  result.verdict = "no_model";
+  CHECK(says(next_motion(result), "one axis at a time"));
+  result.verdict = "adequate";
+  CHECK(next_motion(result).empty());
 }
 
 TEST_CASE("next motion: thrusters that seem to be others are tried one by one first") {
