@@ -91,7 +91,7 @@ struct Inner {
 };
 struct Slopes {
   std::vector<Inner> inner;
-  likelihood::FreeForce library;
+  likelihood::FreeForce columns;
   std::vector<std::size_t> of;  ///< which inner number a column belongs to
   std::vector<double> share;    ///< of a column in the derivative
 };
@@ -114,9 +114,9 @@ Slopes slopes_of(const likelihood::FreeForce& force, const Room& room) {
         feature.factors[static_cast<std::size_t>(feature.count++)] = room.factor(by);
         slopes.of.push_back(place);
         slopes.share.push_back(share * room.half[by] * force.weights[j]);
-        slopes.library.groups.push_back(
-            {.axis = feature.axis, .first = static_cast<int>(slopes.library.features.size()), .count = 1});
-        slopes.library.features.push_back(std::move(feature));
+        slopes.columns.groups.push_back(
+            {.axis = feature.axis, .first = static_cast<int>(slopes.columns.features.size()), .count = 1});
+        slopes.columns.features.push_back(std::move(feature));
       };
       add(true, i, is_cosine(swing->quantity) == (i == 0) ? -1.0 : 1.0);
       const double wave_number = std::hypot(swing->b, swing->c);
@@ -142,7 +142,7 @@ likelihood::Fit tuned(const likelihood::Problem& problem, likelihood::Fit fit, c
     inference::take_step(seen);
     std::vector<std::size_t> groups(slopes.of.size());
     std::iota(groups.begin(), groups.end(), std::size_t{0});
-    const inference::Screen screen = inference::screen(problem, seen, slopes.library, groups, true);
+    const inference::Screen screen = inference::screen(problem, seen, slopes.columns, groups, true);
     Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(slopes.of.size()),
                                                    static_cast<Eigen::Index>(slopes.inner.size()));
     for (std::size_t k = 0; k < slopes.of.size(); ++k)

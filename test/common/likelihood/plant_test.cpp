@@ -10,6 +10,17 @@ using namespace fathom::likelihood;
 
 namespace {
 
+/// The middle of a dive that the plain model flew.
+struct Halfway {
+  model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
+  test::VirtualDive dive = test::fly(vehicle, {.duration = 20.0});
+  RunData run{dive.trial, vehicle, {}};
+  std::size_t block = run.blocks().size() / 2;
+  Vector6d nu{0.4, -0.2, 0.1, 0.05, -0.1, 0.3};
+  Hypothesis plain{.model = dive.truth};
+  Halfway() { plain.runs.resize(1); }
+};
+
 Vector6d acceleration_at(const Hypothesis& hypothesis, const RunData& run, std::size_t block, const Vector6d& nu) {
   const std::vector<Number> none;
   Plant plant{hypothesis, none, run, 0, false};
@@ -21,14 +32,8 @@ Vector6d acceleration_at(const Hypothesis& hypothesis, const RunData& run, std::
 }  // namespace
 
 TEST_CASE("plant: what an effect on the hull adds is the difference of the accelerations with and without it") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
-  const auto dive = test::fly(vehicle, {.duration = 20.0});
-  const RunData run{dive.trial, vehicle, {}};
-  Hypothesis hypothesis{.model = dive.truth};
-  hypothesis.runs.resize(1);
+  const auto [vehicle, dive, run, block, nu, hypothesis] = Halfway{};
   const model::Scene scene = model::scene_of(vehicle, {&dive.trial, 1});
-  const std::size_t block = run.blocks().size() / 2;
-  const Vector6d nu{0.4, -0.2, 0.1, 0.05, -0.1, 0.3};
   int asked = 0;
   for (const model::Effect* effect : model::all_effects()) {
     const std::vector<std::string> forms = effect->variants(scene);
@@ -59,13 +64,7 @@ TEST_CASE("plant: what an effect on the hull adds is the difference of the accel
 }
 
 TEST_CASE("plant: a free force's stream pushes as water does, and its columns are its slopes") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
-  const auto dive = test::fly(vehicle, {.duration = 20.0});
-  const RunData run{dive.trial, vehicle, {}};
-  const std::size_t block = run.blocks().size() / 2;
-  const Vector6d nu{0.4, -0.2, 0.1, 0.05, -0.1, 0.3};
-  Hypothesis plain{.model = dive.truth};
-  plain.runs.resize(1);
+  const auto [vehicle, dive, run, block, nu, plain] = Halfway{};
   Hypothesis streams = plain;
   for (const int w : {0, 1}) {
     streams.force.features.push_back({.axis = model::kStream + w, .scale = 0.5});
@@ -116,13 +115,7 @@ TEST_CASE("plant: a free force's stream pushes as water does, and its columns ar
 }
 
 TEST_CASE("plant: a free force's mass holds back as a load does that was taken up, and its column is its slope") {
-  const model::Vehicle vehicle = test::vehicle_from_repository("bluerov2");
-  const auto dive = test::fly(vehicle, {.duration = 20.0});
-  const RunData run{dive.trial, vehicle, {}};
-  const std::size_t block = run.blocks().size() / 2;
-  const Vector6d nu{0.4, -0.2, 0.1, 0.05, -0.1, 0.3};
-  Hypothesis plain{.model = dive.truth};
-  plain.runs.resize(1);
+  const auto [vehicle, dive, run, block, nu, plain] = Halfway{};
   Hypothesis loaded = plain, told = plain;
   model::Feature mass{.axis = model::kMass, .count = 1, .scale = 4.0};
   mass.factors[0] = {.quantity = model::Quantity::kAfter, .a = 3.0, .b = 0.3};
