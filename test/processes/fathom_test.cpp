@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/tables/writer.hpp"
+#include "test/support/offline_tool.hpp"
 #include "test/support/schema.hpp"
 #include "test/support/scratch.hpp"
 #include "test/support/shell.hpp"
@@ -22,54 +23,33 @@
 namespace fathom {
 namespace {
 
-using test::program;
+using test::kOfflineTool;
+using test::kSledFile;
+using test::one_line;
 using test::Ran;
 using test::Scratch;
 using test::shell;
-
-const std::string kTool = program("fathom");
-
-const char kVehicle[] =
-    "name: Sled\ndof: [surge, yaw]\nwater_density: 1000 kg/m^3\nmass: 20 kg\ninertia: 0.5 0.8 1 kg m^2\n";
-
-/// Canonical columns, written out by hand: 30 s of a slow turn.
-std::string table(const std::string& header, const std::string& bad_cell = "0.1") {
-  std::string text = header + "\n";
-  for (int i = 0; i < 300; ++i) {
-    text += std::to_string(0.1 * i);
-    for (int k = 1; k < 13; ++k) text += "," + (i == 7 && k == 4 ? bad_cell : std::to_string(0.01 * (i % 17) + k));
-    text += "\n";
-  }
-  return text;
-}
-
-void one_line(const Ran& ran, int code, const std::string& words) {
-  CAPTURE(ran.text);
-  CHECK(ran.code == code);
-  CHECK(ran.lines() == 1);
-  CHECK(ran.text.starts_with("fathom: "));
-  CHECK(ran.says(words));
-}
+using test::table;
 
 }  // namespace
 
 TEST_CASE("fathom: a bad command line is one line and exit code 2") {
-  one_line(shell(kTool + " diagnose --trian x"), 2, "--help");
-  one_line(shell(kTool), 2, "subcommand");
-  one_line(shell(kTool + " nonsense"), 2, "nonsense is no command");
-  one_line(shell(kTool + " diganose"), 2, "diganose is no command, but diagnose is");
-  one_line(shell(kTool + " diag"), 2, "diag is no command, but diagnose is");
-  CHECK(shell(kTool + " --help").code == 0);
-  CHECK(shell(kTool + " diagnose --help").says("--validate"));
+  one_line(shell(kOfflineTool + " diagnose --trian x"), 2, "--help");
+  one_line(shell(kOfflineTool), 2, "subcommand");
+  one_line(shell(kOfflineTool + " nonsense"), 2, "nonsense is no command");
+  one_line(shell(kOfflineTool + " diganose"), 2, "diganose is no command, but diagnose is");
+  one_line(shell(kOfflineTool + " diag"), 2, "diag is no command, but diagnose is");
+  CHECK(shell(kOfflineTool + " --help").code == 0);
+  CHECK(shell(kOfflineTool + " diagnose --help").says("--validate"));
 }
 
 TEST_CASE("fathom: a wrong unit in the vehicle file names the line and both units") {
   const Scratch scratch;
-  std::string text = kVehicle;
+  std::string text = kSledFile;
   text.replace(text.find("20 kg"), 5, "20 N");
   test::write_bytes(scratch.path("v.yaml"), text);
   test::write_bytes(scratch.path("a.csv"), "");
-  one_line(shell(kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + scratch.path("a.csv") +
+  one_line(shell(kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + scratch.path("a.csv") +
                  " --out " + scratch.path("out")),
            1, "v.yaml:4");
 }
@@ -78,24 +58,25 @@ TEST_CASE("fathom: a missing column, a word among numbers, a missing file") {
   const Scratch scratch;
   const std::string header = "t,x,y,z,u,v,w,X,Y,Z,K,M,N";
   test::write_bytes(scratch.path("a.csv"), table("t,x,y,q,u,v,w,X,Y,Z,K,M,N"));
-  one_line(shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")), 1, "a.csv");
+  one_line(shell(kOfflineTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")), 1, "a.csv");
   CHECK_FALSE(std::filesystem::exists(scratch.path("a.lcmlog")));
   test::write_bytes(scratch.path("b.csv"), table(header, "fast"));
-  one_line(shell(kTool + " import " + scratch.path("b.csv") + " --out " + scratch.path("b.lcmlog")), 1, "b.csv:9");
-  one_line(shell(kTool + " import " + scratch.path("c.csv") + " --out " + scratch.path("c.lcmlog")), 1, "c.csv");
-  one_line(shell(kTool + " import " + test::file("test/data/beluga/yaw-1.csv") + " --map " + scratch.path("no.yaml") +
-                 " --out " + scratch.path("d.lcmlog")),
+  one_line(shell(kOfflineTool + " import " + scratch.path("b.csv") + " --out " + scratch.path("b.lcmlog")), 1,
+           "b.csv:9");
+  one_line(shell(kOfflineTool + " import " + scratch.path("c.csv") + " --out " + scratch.path("c.lcmlog")), 1, "c.csv");
+  one_line(shell(kOfflineTool + " import " + test::file("test/data/beluga/yaw-1.csv") + " --map " +
+                 scratch.path("no.yaml") + " --out " + scratch.path("d.lcmlog")),
            1, "no.yaml");
 }
 
 TEST_CASE("fathom: runs of one name in two folders are two, one file twice is refused, a name may end in capitals") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
   for (const char* day : {"day1", "day2"}) {
     std::filesystem::create_directories(scratch.path(day));
     test::write_bytes(scratch.path(std::string(day) + "/run.CSV"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N"));
   }
-  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
+  const std::string check = kOfflineTool + " check --vehicle " + scratch.path("v.yaml") + " ";
   const std::string first = scratch.path("day1/run.CSV"), second = scratch.path("day2/run.CSV");
   const Ran both = shell(check + first + " " + second);
   CAPTURE(both.text);
@@ -104,14 +85,14 @@ TEST_CASE("fathom: runs of one name in two folders are two, one file twice is re
 }
 
 TEST_CASE("fathom: vehicle files to begin with are listed, printed as they are, and a slip of the name is told") {
-  const Ran listed = shell(kTool + " vehicle");
+  const Ran listed = shell(kOfflineTool + " vehicle");
   CHECK(listed.code == 0);
   for (const char* name : {"bluerov2_heavy", "blueboat", "otter", "remus100", "slocum", "cybership2", "kvlcc2_l3"})
     CHECK(listed.says(name));
-  const Ran otter = shell(kTool + " vehicle otter");
+  const Ran otter = shell(kOfflineTool + " vehicle otter");
   CHECK(otter.code == 0);
   CHECK(otter.text == test::read_bytes(FATHOM_SOURCE_DIR "/config/vehicles/otter.yaml"));
-  one_line(shell(kTool + " vehicle remus_100"), 1, "did you mean remus100?");
+  one_line(shell(kOfflineTool + " vehicle remus_100"), 1, "did you mean remus100?");
 }
 
 TEST_CASE(
@@ -124,7 +105,7 @@ TEST_CASE(
                       "source: s\nlicence: l\ntime: {column: t, unit: s}\nthrusters: {inputs: "
                       "{columns: [a, b], units: [" +
                           units + "]}}\n");
-    return shell(kTool + " import --vehicle " + scratch.path("v.yaml") + " --map " + scratch.path("map.yaml") +
+    return shell(kOfflineTool + " import --vehicle " + scratch.path("v.yaml") + " --map " + scratch.path("map.yaml") +
                  " --out " + scratch.path("a.lcmlog") + " " + scratch.path("a.csv"));
   };
   CHECK(import("cc, in").code == 0);
@@ -136,107 +117,27 @@ TEST_CASE(
 
 TEST_CASE("fathom: folds need recordings to hold out, and hold them out themselves") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
   test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,phi,theta,psi,u,v,w,p,q,r"));
-  const std::string command = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " +
+  const std::string command = kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " +
                               scratch.path("a.csv") + " --out " + scratch.path("d");
   one_line(shell(command + " --folds 3"), 1, "--folds: at least two recordings are needed, 1 is given");
   one_line(shell(command + " --folds 3 --validate " + scratch.path("a.csv")), 1, "and no --validate");
 }
 
-TEST_CASE("fathom: an import that fails leaves the log that was there, and nothing beside it") {
-  const Scratch scratch;
-  const std::string header = "t,x,y,z,phi,theta,psi,u,v,w,p,q,r";
-  test::write_bytes(scratch.path("good.csv"), table(header));
-  std::string broken;  // not one depth
-  std::istringstream lines{table(header)};
-  for (std::string line; std::getline(lines, line);) broken += line + (broken.empty() ? ",depth\n" : ",\n");
-  test::write_bytes(scratch.path("bad.csv"), broken);
-  const std::string out = scratch.path("run.lcmlog");
-  REQUIRE(shell(kTool + " import " + scratch.path("good.csv") + " --out " + out).code == 0);
-  const std::string before = test::read_bytes(out);
-  CHECK(shell(kTool + " import " + scratch.path("bad.csv") + " --out " + out).code == 1);
-  CHECK(test::read_bytes(out) == before);
-  CHECK_FALSE(std::filesystem::exists(out + ".part"));
-}
-
-TEST_CASE("fathom: a NaN cell costs its sample, and is counted") {
-  const Scratch scratch;
-  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N", "nan"));
-  const Ran ran = shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog"));
-  CAPTURE(ran.text);
-  CHECK(ran.code == 0);
-  CHECK(ran.says("DVL 299"));
-  CHECK(ran.says("POSE_CAPTURE 300"));
-  CHECK(ran.says("dvl: 1 "));
-}
-
-TEST_CASE("fathom: a log cut in its last message is read with a warning, one damaged inside is refused") {
-  const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
-  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N"));
-  REQUIRE(shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")).code == 0);
-  std::string bytes = test::read_bytes(scratch.path("a.lcmlog"));
-  test::write_bytes(scratch.path("cut.lcmlog"), bytes.substr(0, bytes.size() - 20));
-  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
-  const Ran cut = shell(check + scratch.path("cut.lcmlog"));
-  CAPTURE(cut.text);
-  CHECK(cut.code == 0);
-  CHECK(cut.says("cut.lcmlog: byte"));
-  bytes[bytes.size() / 2] = 'x';
-  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 200; ++i) bytes[i] = 'x';
-  test::write_bytes(scratch.path("bad.lcmlog"), bytes);
-  one_line(shell(check + scratch.path("bad.lcmlog")), 1, "bad.lcmlog: byte");
-}
-
-TEST_CASE("fathom: logs that were joined are refused with the place, and parted into what they were") {
-  const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
-  test::write_bytes(scratch.path("a.csv"), table("t,x,y,z,u,v,w,X,Y,Z,K,M,N"));
-  REQUIRE(shell(kTool + " import " + scratch.path("a.csv") + " --out " + scratch.path("a.lcmlog")).code == 0);
-  const std::string one = test::read_bytes(scratch.path("a.lcmlog"));
-  test::write_bytes(scratch.path("joined.lcmlog"), one + one);
-  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " ";
-  one_line(shell(check + scratch.path("joined.lcmlog")), 1, "holds several recordings joined together");
-  const Ran parted =
-      shell(kTool + " repair-log " + scratch.path("joined.lcmlog") + " --out " + scratch.path("p.lcmlog"));
-  CAPTURE(parted.text);
-  CHECK(parted.code == 0);
-  CHECK(parted.says("2 recordings joined together"));
-  CHECK(test::read_bytes(scratch.path("p-1.lcmlog")) == one);
-  CHECK(test::read_bytes(scratch.path("p-2.lcmlog")) == one);
-}
-
-TEST_CASE("fathom: check writes the map as it should be, and with it the tables agree") {
-  const Scratch scratch;
-  const std::string data = test::file("test/data/conventions/enu_position.csv"), fixed = scratch.path("mended.yaml");
-  test::write_bytes(
-      scratch.path("v.yaml"),
-      "name: rov\ndof: [surge, sway, heave, roll, pitch, yaw]\nmass: 12 kg\nwater_density: 1000 kg/m^3\n");
-  const std::string check = kTool + " check --vehicle " + scratch.path("v.yaml") + " " + data;
-  const Ran wrong = shell(check + " --write-map " + fixed);
-  CAPTURE(wrong.text);
-  CHECK(wrong.code == 0);
-  CHECK(wrong.says("frame: ENU"));
-  const Ran right = shell(check + " --map " + fixed);
-  CAPTURE(right.text);
-  CHECK(right.code == 0);
-  CHECK_FALSE(right.says("corrected"));
-}
-
 TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a page") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
   const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const std::string name = "run" + std::to_string(seed);
     const auto dive = test::make_dive(vehicle, {.duration = 40.0, .seed = seed, .spread = 0.0, .wrench = true});
     tables::write_file(scratch.path(name + ".csv"), tables::to_csv(dive.trial));
     const Ran ran =
-        shell(kTool + " import " + scratch.path(name + ".csv") + " --out " + scratch.path(name + ".lcmlog"));
+        shell(kOfflineTool + " import " + scratch.path(name + ".csv") + " --out " + scratch.path(name + ".lcmlog"));
     REQUIRE_MESSAGE(ran.code == 0, ran.text);
   }
-  const std::string common = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train ";
+  const std::string common = kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train ";
   const Ran ran = shell(common + scratch.path("run1.lcmlog") + " --validate " + scratch.path("run2.csv") + " --out " +
                         scratch.path("out"));
   REQUIRE_MESSAGE(ran.code == 0, ran.text);
@@ -292,17 +193,17 @@ TEST_CASE("fathom: import, then diagnose, leaves a result with every key and a p
 
 TEST_CASE("fathom: an effect to be taken out must be listed") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
-  const std::string common = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train a.csv --out " +
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
+  const std::string common = kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train a.csv --out " +
                              scratch.path("out") + " --without ";
   one_line(shell(common + "curent"), 1, "no effect has this name; listed are");
 }
 
 TEST_CASE("fathom: a diagnosis that is refused leaves no folder behind, and takes none away") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
-  const std::string common =
-      kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + scratch.path("missing.csv") + " --out ";
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
+  const std::string common = kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " +
+                             scratch.path("missing.csv") + " --out ";
   CHECK(shell(common + scratch.path("new/deep/out")).code == 1);
   CHECK_FALSE(std::filesystem::exists(scratch.path("new")));
   std::filesystem::create_directories(scratch.path("old/empty"));
@@ -316,9 +217,9 @@ TEST_CASE("fathom: a diagnosis that is refused leaves no folder behind, and take
 TEST_CASE("fathom: what begins in the last 30 % of a run is fitted too, and other parts judge") {
   if (!test::kTimed) return;
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
   const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
-  const std::string common = kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train ";
+  const std::string common = kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train ";
   const auto diagnosed = [&](double onset) {
     auto dive = test::make_dive(vehicle, {.duration = 200.0,
                                           .seed = 7,
@@ -350,7 +251,7 @@ TEST_CASE("fathom: what begins in the last 30 % of a run is fitted too, and othe
 
 TEST_CASE("fathom: which file is named first changes nothing") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
   const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
   std::vector<std::string> runs;
   for (unsigned seed = 3; seed <= 5; ++seed) {
@@ -360,7 +261,7 @@ TEST_CASE("fathom: which file is named first changes nothing") {
   }
   std::string first;
   for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{2, 0, 1}}) {
-    const Ran ran = shell(kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + runs[a] + " " +
+    const Ran ran = shell(kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --train " + runs[a] + " " +
                           runs[b] + " " + runs[c] + " --out " + scratch.path("out"));
     REQUIRE_MESSAGE(ran.code == 0, ran.text);
     const std::string result = test::read_bytes(scratch.path("out/result.json"));
@@ -371,7 +272,7 @@ TEST_CASE("fathom: which file is named first changes nothing") {
 
 TEST_CASE("fathom: gaps of whole rows are left out and told of; where they leave nothing, one line says so") {
   const Scratch scratch;
-  test::write_bytes(scratch.path("v.yaml"), kVehicle);
+  test::write_bytes(scratch.path("v.yaml"), kSledFile);
   const model::Vehicle vehicle = model::Vehicle::load(scratch.path("v.yaml"));
   const auto dive = test::make_dive(vehicle, {.duration = 60.0, .seed = 6, .wrench = true});
   const std::string whole = tables::to_csv(dive.trial);
@@ -386,7 +287,7 @@ TEST_CASE("fathom: gaps of whole rows are left out and told of; where they leave
   test::write_bytes(scratch.path("some.csv"), torn([](double t) { return t > 20.0 && t < 28.0; }));
   test::write_bytes(scratch.path("many.csv"), torn([](double t) { return std::fmod(t, 8.0) > 6.0; }));
   const std::string common =
-      kTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --out " + scratch.path("out") + " --train ";
+      kOfflineTool + " diagnose --vehicle " + scratch.path("v.yaml") + " --out " + scratch.path("out") + " --train ";
   const Ran some = shell(common + scratch.path("some.csv"));
   REQUIRE_MESSAGE(some.code == 0, some.text);
   const auto result = nlohmann::json::parse(test::read_bytes(scratch.path("out/result.json")));
