@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -34,6 +35,16 @@ class Progress {
   }
   void done(std::string_view phase, double units = 1.0) const {
     tell({.kind = Event::Kind::kDone, .phase = phase, .units = units});
+  }
+  /// The same to listeners, of work whose phases are others by their name and whose units cost so many times as much.
+  [[nodiscard]] Progress part(std::string name, double cost) const {
+    return Progress{[whole = *this, name = std::move(name), cost](const Event& event) {
+      const std::string phase = name + std::string{event.phase};
+      Event told = event;
+      told.phase = phase;
+      told.weight *= cost;
+      whole.tell(told);
+    }};
   }
 
  private:

@@ -25,7 +25,8 @@ constexpr likelihood::FitOptions kThorough{.noise_rounds = kMostRounds, .steps =
 constexpr likelihood::FitOptions kRound{.noise_rounds = 1, .steps = 2, .enough = 0.3};
 constexpr double kStillOpen = 0.5;  // of the best one's gain
 // Rounds gain less and less: all that come after one have brought about as much as it did.
-constexpr double kToCome = 2.0;  // times the last round's gain, at most
+constexpr double kToCome = 2.0;    // times the last round's gain, at most
+constexpr double kOverdue = 0.25;  // for progress: of its rounds, what a fit that takes more than others still takes
 
 std::vector<std::string> names_of(const std::vector<model::ActiveEffect>& effects) {
   std::vector<std::string> names;
@@ -73,9 +74,25 @@ Fitted FittedModels::add(likelihood::Fit fit) {
   return fitted_.back();
 }
 
-void FittedModels::expect(double starts) {
+void FittedModels::tell(double starts, double rounds) {
   to_come_ = starts;
-  progress_.expect(kCandidateFit.phase, to_come_, kCandidateFit.weight);
+  progress_.expect(kCandidateFit.phase, starts * rounds_ / ended_ + rounds, kCandidateFit.weight);
+}
+
+void FittedModels::begin(std::size_t starts) {
+  const auto count = static_cast<double>(starts);
+  tell(std::max(0.0, to_come_ - count), count * rounds_after(0.0));
+  progress_.begin(kCandidateFit.phase, kCandidateFit.what);
+}
+
+double FittedModels::rounds_after(double rounds) const {
+  return std::max(rounds_ / ended_ - rounds, kOverdue * rounds);
+}
+
+void FittedModels::ended(double fits, double rounds) {
+  ended_ += fits;
+  rounds_ += rounds;
+  tell(to_come_, 0.0);
 }
 
 namespace {
@@ -100,22 +117,24 @@ bool at_the_same_place(const Fitted& a, const Fitted& b) {
 
 std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of) {
   if (starts.empty()) return {};
-  const auto count = static_cast<double>(starts.size());
-  expect(std::max(to_come_, count));
-  progress_.begin(kCandidateFit.phase, kCandidateFit.what);
-  // Few fits side by side, or one whose runs are.
-  likelihood::FitOptions options = kRound;
-  if (starts.size() < static_cast<std::size_t>(threads_)) options.threads = threads_;
+  begin(starts.size());
   std::vector<std::optional<likelihood::Fitting>> fits(starts.size());
   std::vector<Fitted> all(starts.size());
   std::vector<double> gained(starts.size(), 0.0);
+  double rounds = 0.0;
   const auto go_on = [&](const std::vector<std::size_t>& those) {
+    // Fits side by side, or one whose runs are.
+    likelihood::FitOptions options = kRound;
+    if (those.size() < static_cast<std::size_t>(threads_)) options.threads = threads_;
     for_each_index(those.size(), threads_, [&](std::size_t k) {
       const std::size_t i = those[k];
       if (!fits[i]) fits[i].emplace(problem_, starts[i].hypothesis, starts[i].noise, options);
+      fits[i]->use_threads(options.threads);
       gained[i] = fits[i]->round();
       all[i] = judged(fits[i]->fit());
     });
+    progress_.done(kCandidateFit.phase, static_cast<double>(those.size()));
+    rounds += static_cast<double>(those.size());
   };
   std::vector<std::size_t> open(starts.size());
   std::iota(open.begin(), open.end(), std::size_t{0});
@@ -134,6 +153,7 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
         apart.push_back(i);
     }
     open = std::move(apart);
+    tell(to_come_, static_cast<double>(open.size()) * rounds_after(round));
     go_on(open);
     std::erase_if(open, [&](std::size_t i) {
       return !all[i].fit.finite || gained[i] < kThorough.round_enough ||
@@ -146,28 +166,37 @@ std::vector<Fitted> FittedModels::race(const std::vector<Start>& starts, Odds of
     if (all[i].fit.finite && all[i].score >= best() - of.near) told.push_back(i);
   }
   for_each_index(told.size(), threads_, [&](std::size_t k) {
+    fits[told[k]]->use_threads(told.size() < static_cast<std::size_t>(threads_) ? threads_ : 1);
     fits[told[k]]->settle();
     all[told[k]] = judged(fits[told[k]]->fit());
   });
   fitted_.insert(fitted_.end(), all.begin(), all.end());
-  progress_.done(kCandidateFit.phase, count);
-  to_come_ = std::max(0.0, to_come_ - count);
+  ended(static_cast<double>(starts.size()), rounds);
   return all;
 }
 
 std::vector<Fitted> FittedModels::fit_all(const std::vector<Start>& starts) {
-  const auto count = static_cast<double>(starts.size());
-  expect(std::max(to_come_, count));
-  progress_.begin(kCandidateFit.phase, kCandidateFit.what);
+  if (starts.empty()) return {};
+  begin(starts.size());
   std::vector<Fitted> all(starts.size());
+  std::vector<double> rounds(starts.size(), 0.0);
+  const bool alone = starts.size() == 1;
   likelihood::FitOptions options = kThorough;
   if (starts.size() < static_cast<std::size_t>(threads_)) options.threads = threads_;
   for_each_index(starts.size(), threads_, [&](std::size_t i) {
-    all[i] = judged(likelihood::fit(problem_, starts[i].hypothesis, starts[i].noise, options));
+    likelihood::Fitting fitting{problem_, starts[i].hypothesis, starts[i].noise, options};
+    fitting.run([&] {
+      rounds[i] += 1.0;
+      if (!alone) return;  // listeners hear one thread
+      progress_.done(kCandidateFit.phase);
+      tell(to_come_, rounds_after(rounds[i]));
+    });
+    all[i] = judged(fitting.fit());
   });
   fitted_.insert(fitted_.end(), all.begin(), all.end());
-  progress_.done(kCandidateFit.phase, count);
-  to_come_ = std::max(0.0, to_come_ - count);
+  const double sum = std::accumulate(rounds.begin(), rounds.end(), 0.0);
+  if (!alone) progress_.done(kCandidateFit.phase, sum);
+  ended(static_cast<double>(starts.size()), sum);
   return all;
 }
 

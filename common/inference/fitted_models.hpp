@@ -18,7 +18,8 @@ struct Step {
   std::string_view phase, what;
   double weight{};  ///< guessed cost, in fits of one candidate
 };
-constexpr Step kCandidateFit{"candidates", "fitting what promises most", 1.0};
+constexpr double kRoundsOfFit = 4.0;  ///< guessed, until some have ended
+constexpr Step kCandidateFit{"candidates", "fitting what promises most", 1.0 / kRoundsOfFit};  ///< per round of a fit
 
 /// A set of effects that was fitted.
 struct Fitted {
@@ -65,7 +66,7 @@ class FittedModels {
   /// All fitted to the end.
   std::vector<Fitted> fit_all(const std::vector<Start>& starts);
   /// For progress: so many starts are still to come.
-  void expect(double starts);
+  void expect(double starts) { tell(starts, 0.0); }
 
   [[nodiscard]] std::size_t size() const { return fitted_.size(); }
   [[nodiscard]] Standing standing(const Fitted& best, double base, const std::string& name) const;
@@ -78,13 +79,20 @@ class FittedModels {
 
  private:
   [[nodiscard]] Fitted judged(likelihood::Fit fit) const;
+  /// A race or fit of so many starts begins.
+  void begin(std::size_t starts);
+  void tell(double starts, double rounds);
+  /// Rounds that a fit has still to come after so many.
+  [[nodiscard]] double rounds_after(double rounds) const;
+  void ended(double fits, double rounds);
 
   const likelihood::Problem& problem_;
   const std::vector<Law>& laws_;
   int threads_;
   const Progress& progress_;
   std::vector<Fitted> fitted_;
-  double to_come_{};
+  // For progress: starts that are still to come, and what those that have ended took.
+  double to_come_{}, ended_{1.0}, rounds_{kRoundsOfFit};
 };
 
 }  // namespace fathom::inference

@@ -5,6 +5,7 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/searching.hpp"
+#include "common/likelihood/fitting.hpp"
 
 namespace fathom::inference {
 namespace {
@@ -17,16 +18,22 @@ constexpr double kFarBehind = 0.2;
 // Sets found on stretches that are asked of whole runs too: nats, and how many.
 constexpr double kHardlyLess = 30.0;
 constexpr std::size_t kMostNear = 4;
+constexpr double kFitsOfWhole = 4.0;  // for progress, guessed: base model, what was found, what it is told from
 
 }  // namespace
 
 Found Searching::run(const Before* before) {
-  expect(kBaseFit, 1);
-  expect_rounds(2);
-  expect(kFreeForceFit, 1);
-  begin(kBaseFit);
-  found_.base = before == nullptr ? models_.add(fit_base()) : models_.fit_all({before->base}).front();
-  progress_.done(kBaseFit.phase);
+  if (before == nullptr) {
+    expect(kBaseFit, kRoundsOfBase);
+    expect_rounds(2);
+    expect(kFreeForceFit, 1);
+    begin(kBaseFit);
+    found_.base = models_.add(fit_base());
+    expect(kBaseFit, 0);
+  } else {
+    announce(progress_);
+    found_.base = models_.fit_all({before->base}).front();
+  }
   found_.best = found_.base;
   if (!found_.base.fit.finite) return std::move(found_);
   if (before != nullptr) take_up(before->sets);
@@ -43,10 +50,10 @@ Found Searching::run(const Before* before) {
   leave_out();
   judge_effects();
   // What gives way to something unlisted need not be told from other names.
-  progress_.expect(kFreeForceFit.phase, 1 + static_cast<double>(effects().size()), kFreeForceFit.weight);
+  expect(kFreeForceFit, sought_ ? 1.0 : 1.0 + static_cast<double>(effects().size()));
   found_.free_force = free_force_beside(found_.best);
   if (!sought_) give_way();
-  progress_.expect(kFreeForceFit.phase, 0);
+  expect(kFreeForceFit, 0);
   if (!sought_ && swap()) {
     drop();
     leave_out();
@@ -58,6 +65,12 @@ Found Searching::run(const Before* before) {
   found_.near = models_.near(found_.best, kHardlyLess, kMostNear);
   found_.fits = models_.size();
   return std::move(found_);
+}
+
+void Searching::announce(const Progress& progress) {
+  progress.expect(kCandidateFit.phase, kFitsOfWhole * kRoundsOfFit, kCandidateFit.weight);
+  progress.expect(kScan.phase, 1, kScan.weight);
+  progress.expect(kFreeForceFit.phase, 1, kFreeForceFit.weight);
 }
 
 likelihood::Fit Searching::fit_base() const {
@@ -76,7 +89,15 @@ likelihood::Fit Searching::fit_base() const {
   if (!ahead.finite) return ahead;
   options.noise_rounds = 20;  // at most: it ends when a round gains nothing
   options.threads = threads_;
-  likelihood::Fit on = likelihood::fit(problem_, ahead.hypothesis, ahead.noise, options);
+  progress_.done(kBaseFit.phase);
+  likelihood::Fitting fitting{problem_, ahead.hypothesis, ahead.noise, options};
+  double rounds = 1.0;
+  fitting.run([&] {
+    progress_.done(kBaseFit.phase);
+    rounds += 1.0;
+    expect(kBaseFit, std::max(kRoundsOfBase - rounds, 1.0));
+  });
+  likelihood::Fit on = fitting.fit();
   return on.finite ? on : ahead;
 }
 
@@ -85,7 +106,7 @@ void Searching::expect(const Step& step, double units) const { progress_.expect(
 void Searching::begin(const Step& step) const { progress_.begin(step.phase, step.what); }
 
 void Searching::expect_rounds(double rounds) {
-  models_.expect(rounds * (thresholds_.fits_per_round + thresholds_.pairs_per_round));
+  models_.expect(rounds * (sought_ ? 1 : thresholds_.fits_per_round + thresholds_.pairs_per_round));
   expect(kScan, rounds);
 }
 

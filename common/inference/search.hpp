@@ -11,11 +11,10 @@
 namespace fathom::inference {
 
 /// What the work tells of itself, with guessed costs in fits of one candidate.
-constexpr Step kBaseFit{"base fit", "fitting the base model", 3.0};
+constexpr double kRoundsOfBase = 8.0;                                                ///< guessed
+constexpr Step kBaseFit{"base fit", "fitting the base model", 3.0 / kRoundsOfBase};  ///< per round
 constexpr Step kScan{"scans", "asking every effect", 2.0};
 constexpr Step kFreeForceFit{"free force", "looking for a force that no list holds", 5.0};
-constexpr Step kWholeRuns{"whole runs", "fitting what was found to all of the recordings",
-                          3.0};  ///< per length of the stretches
 constexpr Step kHorizonFit{"horizon", "numbers that predict ten seconds", 4.0};
 
 /// Why a candidate was not taken, at its best.

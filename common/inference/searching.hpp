@@ -41,6 +41,8 @@ class Searching {
   /// What a search of stretches of these runs has told of names, besides its models. Forms, times and places are not
   /// sought again, nor what could stand in another's place: on more data its odds can be expected to grow.
   void know(const Searching& ahead);
+  /// What a search of whole runs after one of their stretches is expected to be.
+  static void announce(const Progress& progress);
 
  private:
   /// The better of two after a round of each: begun from the noise's prior means, and with random forces as large as

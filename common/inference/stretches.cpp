@@ -82,16 +82,13 @@ Found search(const likelihood::Problem& problem, const model::Scene& scene, cons
   };
   const std::optional<Stretches> stretches = stretches_of(problem, thresholds);
   if (!stretches) return searching(problem, progress).run();
-  progress.expect(kWholeRuns.phase, 1, kWholeRuns.weight * stretches->of_whole);
+  // The same steps on longer runs: other steps, since each takes longer.
+  const Progress on_whole = progress.part("whole runs: ", stretches->of_whole);
+  Searching::announce(on_whole);
   const likelihood::Problem few = likelihood::make_problem(*problem.vehicle, stretches->trials, problem.run_settings);
   Searching ahead = searching(few, progress);
   const Found found = ahead.run();
-  // One step of the whole work, whatever it consists of: a fit takes another time here.
-  const Progress one_step{[&](const Progress::Event& event) {
-    if (event.kind == Progress::Event::Kind::kBegin) progress.begin(kWholeRuns.phase, event.what);
-  }};
-  progress.begin(kWholeRuns.phase, kWholeRuns.what);
-  Searching whole = searching(problem, one_step);
+  Searching whole = searching(problem, on_whole);
   Before before;
   if (found.base.fit.finite) {
     const auto start = [&](const Fitted& fitted) { return on_whole_runs(fitted.fit, *stretches, problem.runs.size()); };
@@ -102,9 +99,7 @@ Found search(const likelihood::Problem& problem, const model::Scene& scene, cons
     }
     whole.know(ahead);
   }
-  Found of_all = whole.run(found.base.fit.finite ? &before : nullptr);
-  progress.done(kWholeRuns.phase);
-  return of_all;
+  return whole.run(found.base.fit.finite ? &before : nullptr);
 }
 
 }  // namespace fathom::inference

@@ -8,6 +8,7 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_columns.hpp"
+#include "common/learning/steps.hpp"
 #include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
@@ -159,7 +160,9 @@ double rms_of(const Problem& problem, const inference::Seen& seen, const Feature
 }  // namespace
 
 std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base, const model::Scene& scene,
-                                         const inference::FreeForceFound& found, int threads) {
+                                         const inference::FreeForceFound& found, int threads,
+                                         const Progress& progress) {
+  begin(progress, kClosed, 1.0 + kFitted);  // the first is to look at all of them
   // Beside the base numbers, with the noise that the learned force leaves: the random force has swallowed nothing
   // there.
   Fit quiet = base;
@@ -171,7 +174,9 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
   double paid = 0.0;  // by the learned force
   if (found.fit.finite) paid = found.fit.log_evidence - base.log_evidence - found.log_odds;
   std::optional<FormulaFound> best;
-  for (const Place& place : best_places(problem, seen, forms, threads)) {
+  const std::vector<Place> places = best_places(problem, seen, forms, threads);
+  for (const Place& place : places) {
+    progress.done(kClosed.phase);
     const Form& form = forms[place.form];
     likelihood::Hypothesis hypothesis = base.hypothesis;
     model::FreeForce& force = hypothesis.force = {};
@@ -203,6 +208,7 @@ std::optional<FormulaFound> find_formula(const Problem& problem, const Fit& base
     one.fit = std::move(fit);
     best = std::move(one);
   }
+  progress.expect(kClosed.phase, 0);
   return best;
 }
 

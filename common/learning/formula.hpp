@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "common/base/progress.hpp"
 #include "common/learning/grammar.hpp"
 #include "common/samples/correction.hpp"
 
@@ -21,7 +22,8 @@ struct FormulaFound {
 /// The best form, fitted in full; nothing where none could be. `base`: fit of the model with the listed effects alone.
 [[nodiscard]] std::optional<FormulaFound> find_formula(const likelihood::Problem& problem, const likelihood::Fit& base,
                                                        const model::Scene& scene,
-                                                       const inference::FreeForceFound& found, int threads);
+                                                       const inference::FreeForceFound& found, int threads,
+                                                       const Progress& progress);
 
 /// The learned force itself, where all of it can be written as a law of a few amplitudes.
 [[nodiscard]] std::optional<FormulaFound> as_formula(const inference::FreeForceFound& found);

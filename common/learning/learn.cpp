@@ -8,9 +8,10 @@
 #include "common/base/factors.hpp"
 #include "common/inference/stretches.hpp"
 #include "common/learning/formula.hpp"
-#include "common/learning/frequencies.hpp"
+#include "common/learning/inner_numbers.hpp"
 #include "common/learning/left_out.hpp"
 #include "common/learning/seek_force.hpp"
+#include "common/learning/steps.hpp"
 #include "common/learning/wording.hpp"
 #include "common/model/rollout.hpp"
 
@@ -123,7 +124,7 @@ model::Visited visited_by(const Problem& problem, const likelihood::Hypothesis& 
 }
 
 Learned learn(const Problem& problem, std::span<const Trial> of, const inference::Conclusion& conclusion,
-              const Settings& settings, bool judged_here, int threads) {
+              const Settings& settings, bool judged_here, int threads, const Progress& progress) {
   Learned learned;
   CorrectionGiven& given = learned.given;
   const Limits& limits = settings.limits;
@@ -135,7 +136,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   std::optional<inference::FreeForceFound> free = conclusion.found.free_force, lasting;
   // A screen of all products of an hour costs minutes: long recordings are learned by the search's broad groups alone.
   if (!conclusion.found.cut_short && !inference::stretches_of(problem, {})) {
-    Sought sought = seek_force(problem, base, scene, limits, threads);
+    Sought sought = seek_force(problem, base, scene, limits, threads, progress);
     if (sought.all.fit.finite && !(free && free->fit.finite && free->log_odds > sought.all.log_odds))
       free = std::move(sought.all);
     if (sought.lasting.fit.finite) lasting = std::move(sought.lasting);
@@ -151,11 +152,11 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
   }
   if (!given.refused.empty()) return learned;
 
-  free->fit = with_frequencies(problem, std::move(free->fit), threads);
+  free->fit = with_inner_numbers(problem, std::move(free->fit), threads);
   const model::Visited visited = visited_by(problem, free->fit.hypothesis);
   const auto adopt = [&](const Fit& with) {
     given.refused.clear();
-    const Judged judged = leave_out_in_turn(problem, of, base, with, visited, settings.leaving, threads);
+    const Judged judged = leave_out_in_turn(problem, of, base, with, visited, settings.leaving, threads, progress);
     const residual::Ratio whole = ratio_of(judged.whole), carried = ratio_of(judged.carried);
     given.held_out = whole.value;
     given.held_out_carried = carried.value;
@@ -169,7 +170,9 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
                                  "surely below", limits.error);
     }
     if (!given.refused.empty()) return false;
+    begin(progress, inference::kHorizonFit, 1);
     Fit chosen = reported(problem, of, with, visited, settings.leaving, threads);
+    progress.done(inference::kHorizonFit.phase);
     const auto here = made(chosen, chosen.hypothesis.force, visited);
     const Fit& plain = conclusion.reported.finite ? conclusion.reported : base;
     const residual::Ratio at_home =
@@ -194,7 +197,7 @@ Learned learn(const Problem& problem, std::span<const Trial> of, const inference
     return true;
   };
   // A law in closed form first, where it is as likely: it has fewer numbers to err with.
-  std::optional<FormulaFound> formula = find_formula(problem, base, scene, *free, threads);
+  std::optional<FormulaFound> formula = find_formula(problem, base, scene, *free, threads, progress);
   if (formula && (formula->over_learned < -limits.form || formula->over_base < limits.odds)) formula.reset();
   if (formula && !adopt(formula->fit)) formula.reset();
   if (!formula) (void)adopt(free->fit);

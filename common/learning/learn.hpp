@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "common/base/progress.hpp"
 #include "common/inference/infer.hpp"
 #include "common/learning/limits.hpp"
 #include "common/model/learned/learned_force.hpp"
@@ -29,7 +30,7 @@ struct Learned {
 /// `of`: the trials of `problem`. `judged_here`: on stretches of them, so that what holds there alone helps.
 [[nodiscard]] Learned learn(const likelihood::Problem& problem, std::span<const Trial> of,
                             const inference::Conclusion& conclusion, const Settings& settings, bool judged_here,
-                            int threads);
+                            int threads, const Progress& progress);
 
 /// likelihood::model_of(), with `force` where there is one, which must outlive it.
 [[nodiscard]] model::Model as_model(const likelihood::Hypothesis& hypothesis, double input_step,

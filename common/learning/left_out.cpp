@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "common/learning/frequencies.hpp"
+#include "common/learning/inner_numbers.hpp"
 #include "common/learning/learn.hpp"
+#include "common/learning/steps.hpp"
 #include "common/model/rollout.hpp"
 
 namespace fathom::learning {
@@ -116,20 +117,22 @@ void foretell(const Problem& problem, std::span<const Trial> trials, const Fit& 
   if (windows.empty()) return;
   Fit fitted = fitted_to(before, with, threads);
   if (!fitted.finite) return;
-  fitted = with_frequencies(before, std::move(fitted), threads);
+  fitted = with_inner_numbers(before, std::move(fitted), threads);
   comparing(fitted, standing_of(problem, fitted.hypothesis.force), windows, standing);
 }
 
 }  // namespace
 
 Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, const Fit& base, const Fit& with,
-                         const model::Visited& visited, const Leaving& leaving, int threads) {
+                         const model::Visited& visited, const Leaving& leaving, int threads, const Progress& progress) {
+  begin(progress, kLeftOut, leaving.folds + (model::swings(with.hypothesis.force) ? 1 : 0));
   const std::vector<Stretch> stretches = stretches_of(problem, leaving);
   const Comparing comparing{problem, base, visited, leaving};
   const double late = stands_from(problem, with.hypothesis.force);
   const bool swings = model::swings(with.hypothesis.force);
   Judged judged;
   for (int fold = 0; fold < leaving.folds; ++fold) {
+    if (fold > 0) progress.done(kLeftOut.phase);
     Problem rest = problem;
     std::vector<model::Window> windows, late_windows;
     for (const Stretch& stretch : stretches) {
@@ -150,7 +153,9 @@ Judged leave_out_in_turn(const Problem& problem, std::span<const Trial> trials, 
     if (!late_windows.empty())
       comparing(fitted, standing_of(problem, fitted.hypothesis.force), late_windows, judged.standing);
   }
+  progress.done(kLeftOut.phase);
   if (swings) foretell(problem, trials, with, leaving, threads, comparing, judged.standing);
+  progress.expect(kLeftOut.phase, 0);
   return judged;
 }
 

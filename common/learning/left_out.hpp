@@ -20,7 +20,8 @@ struct Judged {
 
 [[nodiscard]] Judged leave_out_in_turn(const likelihood::Problem& problem, std::span<const Trial> trials,
                                        const likelihood::Fit& base, const likelihood::Fit& with,
-                                       const model::Visited& visited, const Leaving& leaving, int threads);
+                                       const model::Visited& visited, const Leaving& leaving, int threads,
+                                       const Progress& progress);
 
 /// What later runs on the same clock are told: the force as it stands at the end, without what set in so late that
 /// nothing judges it.

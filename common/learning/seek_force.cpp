@@ -8,8 +8,9 @@
 #include "common/base/factors.hpp"
 #include "common/base/parallel.hpp"
 #include "common/inference/feature_screen.hpp"
-#include "common/learning/frequencies.hpp"
+#include "common/learning/inner_numbers.hpp"
 #include "common/learning/pick_groups.hpp"
+#include "common/learning/steps.hpp"
 #include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
@@ -37,12 +38,13 @@ class Seeker {
          const Limits& limits, int threads)
       : problem_{problem}, scene_{scene}, limits_{limits}, threads_{threads}, seen_{seen(base)} {}
 
-  Sought run() {
+  Sought run(const Progress& progress) {
     Sought sought;
     FreeForceFound& found = sought.all;
     double evidence = seen_.fit.log_evidence;  // prices paid
     bool begun_again = false;
     for (int round = 0; round < limits_.rounds; ++round) {
+      if (round > 0) progress.done(kSeek.phase);
       // A table over time explains anything, a swing much: what lasts has the first go, and explains what it can. Where
       // it has left no room, it may stand for something else: then all begin once more together.
       const Clock clock = round == 0 ? Clock::kLasting : round == 1 ? Clock::kSwings : Clock::kTables;
@@ -81,7 +83,7 @@ class Seeker {
       const double gained = best == nullptr ? 0.0 : worth(*best) - evidence;
       if (gained < thresholds_.group_gain) continue;
       if (first) found.at_fixed_noise = picked.log_odds;
-      found.fit = with_frequencies(problem_, *best, threads_);
+      found.fit = with_inner_numbers(problem_, *best, threads_);
       evidence = worth(found.fit);
       if (clock == Clock::kLasting) sought.lasting = found;
     }
@@ -233,8 +235,11 @@ class Seeker {
 }  // namespace
 
 Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base, const model::Scene& scene,
-                  const Limits& limits, int threads) {
-  return Seeker{problem, base, scene, limits, threads}.run();
+                  const Limits& limits, int threads, const Progress& progress) {
+  begin(progress, kSeek, limits.rounds);
+  Sought sought = Seeker{problem, base, scene, limits, threads}.run(progress);
+  progress.expect(kSeek.phase, 0);
+  return sought;
 }
 
 }  // namespace fathom::learning

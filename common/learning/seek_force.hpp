@@ -4,6 +4,7 @@
 // asks broad groups for it.
 #pragma once
 
+#include "common/base/progress.hpp"
 #include "common/inference/free_force.hpp"
 #include "common/learning/limits.hpp"
 
@@ -16,6 +17,6 @@ struct Sought {
 
 /// Beside `base`; groups in the order of what each is worth beside the others. No fit: nothing is worth its price.
 [[nodiscard]] Sought seek_force(const likelihood::Problem& problem, const likelihood::Fit& base,
-                                const model::Scene& scene, const Limits& limits, int threads);
+                                const model::Scene& scene, const Limits& limits, int threads, const Progress& progress);
 
 }  // namespace fathom::learning

@@ -61,9 +61,10 @@ double Fitting::round() {
 
 void Fitting::settle() { move_numbers(); }
 
-void Fitting::run() {
+void Fitting::run(const std::function<void()>& after_round) {
   for (int round_number = 0; round_number < std::max(1, options_.noise_rounds); ++round_number) {
     const double gained = round();
+    if (after_round) after_round();
     if (!moved_noise_ || (gained < options_.round_enough && round_number > 0)) break;
   }
   settle();

@@ -1,6 +1,8 @@
 // A hypothesis in the middle of its fit: it goes on round by round, so that several can be raced.
 #pragma once
 
+#include <functional>
+
 #include "common/likelihood/curvature.hpp"
 #include "common/likelihood/fit.hpp"
 
@@ -15,7 +17,9 @@ class Fitting {
   /// Steps of the numbers alone: what the last step of the noise has left open.
   void settle();
   /// Rounds until one gains too little, or as many as the options have, and what they leave open.
-  void run();
+  void run(const std::function<void()>& after_round = {});
+  /// From now on so many runs of the problem are looked at side by side; no number depends on it.
+  void use_threads(int threads) { options_.threads = threads; }
   [[nodiscard]] Fit fit() const;
 
  private:

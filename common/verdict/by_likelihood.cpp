@@ -8,6 +8,7 @@
 #include "common/identification/sparse.hpp"
 #include "common/learning/left_out.hpp"
 #include "common/learning/spread.hpp"
+#include "common/learning/steps.hpp"
 #include "common/learning/wording.hpp"
 #include "common/likelihood/between_runs.hpp"
 #include "common/preflight/applicability.hpp"
@@ -29,7 +30,6 @@ using inference::Conclusion;
 using inference::Verdict;
 using likelihood::NumberKind;
 
-constexpr inference::Step kLearning{"learning", "learning what no list holds", 10.0};
 constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();  // null in result.json
 constexpr double kStep = 0.04;  // s between the velocities that are predicted: short of it there is only noise
 
@@ -278,7 +278,7 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   result.train = names_of(train);
   result.validate = names_of(validate);
   result.improvement = {kNotAsked, kNotAsked, kNotAsked};
-  progress.expect(kLearning.phase, learning.learn ? 1 : 0, kLearning.weight);
+  if (learning.learn) learning::announce(progress, learning.limits, learning.leaving);
   Conclusion conclusion = inference::infer(vehicle, train, settings, progress);
   std::vector<Trial> unseen;
   double input_step = 0.0;
@@ -302,11 +302,11 @@ Answer diagnose(const model::Vehicle& vehicle, std::span<const Trial> train, std
   // none.
   const bool opposed = conclusion.verdict == Verdict::no_model && conclusion.reported.finite && !result.wiring;
   if (learning.learn && (conclusion.verdict == Verdict::unexplained || opposed)) {
-    progress.begin(kLearning.phase, kLearning.what);
-    learned = learning::learn(problem, train, conclusion, learning, judged_here(train, validate), settings.threads);
+    learned =
+        learning::learn(problem, train, conclusion, learning, judged_here(train, validate), settings.threads, progress);
     result.correction = learned.given;
   }
-  progress.expect(kLearning.phase, 0);
+  learning::call_off(progress);
   const model::LearnedForce* force = force_for(learned, train, validate);
   const likelihood::Fit& named = force != nullptr ? learned.fit : conclusion.reported;
   // Stand-ins stay where they help.

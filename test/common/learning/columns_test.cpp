@@ -50,7 +50,7 @@ TEST_CASE("columns: drag that goes with a measured column is learned as drag by 
 
   const likelihood::Fit base = likelihood::fit(problem, likelihood::nominal_hypothesis(problem),
                                                likelihood::prior_noise(problem), {.noise_rounds = 3});
-  const inference::FreeForceFound learned = learning::seek_force(problem, base, scene, {}, 1).all;
+  const inference::FreeForceFound learned = learning::seek_force(problem, base, scene, {}, 1, {}).all;
   REQUIRE(learned.fit.finite);
   REQUIRE_FALSE(learned.groups.empty());
   CHECK(learned.log_odds > learning::Limits{}.odds);

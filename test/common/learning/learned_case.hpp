@@ -45,7 +45,7 @@ struct LearnedCase {
         problem, inference::see(problem, conclusion.found.best.fit, 2), model::scene_of(bluerov(), {&trial, 1}), {}, 2);
   }
   [[nodiscard]] learning::Learned learned(bool judged_here = true) const {
-    return learning::learn(problem, {&trial, 1}, conclusion, {}, judged_here, 2);
+    return learning::learn(problem, {&trial, 1}, conclusion, {}, judged_here, 2, {});
   }
 
   VirtualDive dive;

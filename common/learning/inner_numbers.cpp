@@ -1,4 +1,4 @@
-#include "common/learning/frequencies.hpp"
+#include "common/learning/inner_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -206,7 +206,7 @@ likelihood::FreeForce joined(const likelihood::FreeForce& force, const Room& roo
 
 }  // namespace
 
-likelihood::Fit with_frequencies(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
+likelihood::Fit with_inner_numbers(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
   if (!fit.finite || !model::swings(fit.hypothesis.force)) return fit;
   const Room room{problem};
   bool any = false;

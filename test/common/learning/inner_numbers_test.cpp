@@ -1,5 +1,5 @@
 // Frequencies of swings: found where they are, from wherever a coarse search has left them.
-#include "common/learning/frequencies.hpp"
+#include "common/learning/inner_numbers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -28,15 +28,15 @@ TEST_CASE("frequencies: a swing's frequency is found within what the recording t
   }
   start.force.groups.push_back(
       {.kind = "a swing", .axis = model::kWorldAxis + 2, .count = 2, .sigma = 10.0, .closed = true});
-  const likelihood::Fit coarse = likelihood::fit(dive.problem, start, dive.conclusion.found.best.fit.noise,
-                                                 {.noise_rounds = 3, .threads = 2});
+  const likelihood::Fit coarse =
+      likelihood::fit(dive.problem, start, dive.conclusion.found.best.fit.noise, {.noise_rounds = 3, .threads = 2});
   REQUIRE(coarse.finite);
-  const likelihood::Fit fine = with_frequencies(dive.problem, coarse, 2);
+  const likelihood::Fit fine = with_inner_numbers(dive.problem, coarse, 2);
   CHECK(fine.log_evidence > coarse.log_evidence);
   const auto& features = fine.hypothesis.force.features;
   CHECK(features[0].factors[0].a == features[1].factors[0].a);  // one number
   CHECK(std::abs(features[0].factors[0].a - kOmega) < kSure);
   // And a force that does not swing stays what it is.
-  const likelihood::Fit still = with_frequencies(dive.problem, dive.conclusion.found.best.fit, 2);
+  const likelihood::Fit still = with_inner_numbers(dive.problem, dive.conclusion.found.best.fit, 2);
   CHECK(still.log_evidence == dive.conclusion.found.best.fit.log_evidence);
 }

@@ -8,6 +8,6 @@ namespace fathom::learning {
 /// The fit with the frequencies and wave numbers of its force's swings where they are most likely, weights and numbers
 /// fitted again. Swings that the recordings are too short to tell apart are one, if that is as likely. As it was where
 /// nothing swings or no step gains.
-[[nodiscard]] likelihood::Fit with_frequencies(const likelihood::Problem& problem, likelihood::Fit fit, int threads);
+[[nodiscard]] likelihood::Fit with_inner_numbers(const likelihood::Problem& problem, likelihood::Fit fit, int threads);
 
 }  // namespace fathom::learning
