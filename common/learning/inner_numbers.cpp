@@ -9,6 +9,7 @@
 
 #include "common/base/factors.hpp"
 #include "common/inference/feature_screen.hpp"
+#include "common/learning/pulls.hpp"
 #include "common/model/learned/learned_force.hpp"
 
 namespace fathom::learning {
@@ -21,6 +22,9 @@ using likelihood::Quantity;
 constexpr int kSteps = 5;
 constexpr double kSettled = 0.02;      // rad over half of the recordings, or of the room
 constexpr double kMostTurned = 0.8;    // rad of a step over those: farther lies another line
+constexpr double kStepOfPull = 0.25;   // of the room: a step of a point or a length
+constexpr double kDifference = 0.02;   // of the room, between two pulls whose difference is a derivative
+constexpr double kLeastReach = 0.5;    // m
 constexpr double kSmallestRoom = 0.1;  // m to both sides: within less no phase goes with the place
 constexpr double kOneWave = 5.0;       // nats that two swings must be worth more than one: a frequency has its price
 
@@ -74,20 +78,28 @@ struct Room {
   }
 };
 
-double& number(Factor& swing, std::size_t i) { return i == 0 ? swing.a : i == 1 ? swing.b : swing.c; }
-
-/// The same wave: frequency and wave numbers.
+/// The same wave, by frequency and wave numbers, or the same point and length.
 bool same(const Factor& one, const Factor& other) {
+  if (one.quantity == Quantity::kStretch || other.quantity == Quantity::kStretch) return one == other;
   return travels(one.quantity) == travels(other.quantity) && one.a == other.a &&
          (!travels(one.quantity) || (one.b == other.b && one.c == other.c));
 }
 
-/// An inner number of a wave, and what the force does by it as columns of features: of exp(-|k| z) cos(omega t - k p),
-/// by omega -t sin(..), by k +p sin(..) - z k / |k| cos(..). Time, place and depth about their middles: the rest is a
-/// change of the weights.
+/// The factor of a feature that has inner numbers, if one has.
+template <typename Of>
+auto inner_of(Of& feature) -> decltype(feature.factors.data()) {
+  const auto stretch = stretch_in(feature);
+  return stretch != nullptr ? stretch : swing_of(feature);
+}
+
+/// An inner number, and what the force does by it as columns of features. Of a wave exp(-|k| z) cos(omega t - k p): by
+/// omega -t sin(..), by k +p sin(..) - z k / |k| cos(..). Time, place and depth about their middles: the rest is a
+/// change of the weights. Of a pull the difference of two.
 struct Inner {
-  Factor wave;
-  std::size_t which{};  ///< 0 frequency, 1 and 2 wave numbers toward north and east
+  Factor factor;
+  std::size_t which{};  ///< 0 frequency, 1 and 2 wave numbers toward north and east; N, E, D and length
+  double unit{1.0};     ///< of its steps
+  double sigma{};       ///< how far it may be from where it is; 0: nothing is known
 };
 struct Slopes {
   std::vector<Inner> inner;
@@ -96,27 +108,53 @@ struct Slopes {
   std::vector<double> share;    ///< of a column in the derivative
 };
 
+std::size_t place_of(Slopes& slopes, const Inner& inner) {
+  const auto found = std::ranges::find_if(
+      slopes.inner, [&](const Inner& other) { return other.which == inner.which && same(other.factor, inner.factor); });
+  if (found != slopes.inner.end()) return static_cast<std::size_t>(found - slopes.inner.begin());
+  slopes.inner.push_back(inner);
+  return slopes.inner.size() - 1;
+}
+
+void add_column(Slopes& slopes, std::size_t place, Feature feature, double share) {
+  slopes.of.push_back(place);
+  slopes.share.push_back(share);
+  slopes.columns.groups.push_back(
+      {.axis = feature.axis, .first = static_cast<int>(slopes.columns.features.size()), .count = 1});
+  slopes.columns.features.push_back(std::move(feature));
+}
+
+void slopes_of_pulls(const likelihood::FreeForce& force, const Room& room, Slopes& slopes) {
+  const double reach = std::max(std::hypot(room.half[1], room.half[2], room.half[3]), kLeastReach);
+  const double off = kDifference * reach;
+  for (std::size_t j = 0; j < force.features.size(); ++j) {
+    const Feature& feature = force.features[j];
+    const Factor* stretch = stretch_in(feature);
+    for (std::size_t i = 0; i < (stretch != nullptr ? kNumbersOfStretch : 0U); ++i) {
+      const std::size_t place = place_of(slopes, {*stretch, i, kStepOfPull * reach, reach});
+      Feature beside = feature;
+      number_of(*inner_of(beside), i) += off;
+      add_column(slopes, place, beside, force.weights[j] / off);
+      add_column(slopes, place, feature, -force.weights[j] / off);
+    }
+  }
+}
+
 Slopes slopes_of(const likelihood::FreeForce& force, const Room& room) {
   Slopes slopes;
+  slopes_of_pulls(force, room, slopes);
   for (std::size_t j = 0; j < force.features.size(); ++j) {
     const Factor* swing = swing_of(force.features[j]);
     if (swing == nullptr || force.features[j].count == static_cast<int>(force.features[j].factors.size())) continue;
     for (std::size_t i = 0; i < (travels(swing->quantity) ? 3U : 1U); ++i) {
       if (i > 0 && room.half[i] < kSmallestRoom) continue;
-      auto found = std::ranges::find_if(
-          slopes.inner, [&](const Inner& inner) { return inner.which == i && same(inner.wave, *swing); });
-      if (found == slopes.inner.end()) found = slopes.inner.insert(found, {*swing, i});
-      const auto place = static_cast<std::size_t>(found - slopes.inner.begin());
+      const std::size_t place = place_of(slopes, {*swing, i, 1.0 / room.half[i]});
       const auto add = [&](bool turn, std::size_t by, double share) {
         Feature feature = force.features[j];
         Factor* own = swing_of(feature);
         if (turn) own->quantity = turned(own->quantity);
         feature.factors[static_cast<std::size_t>(feature.count++)] = room.factor(by);
-        slopes.of.push_back(place);
-        slopes.share.push_back(share * room.half[by] * force.weights[j]);
-        slopes.columns.groups.push_back(
-            {.axis = feature.axis, .first = static_cast<int>(slopes.columns.features.size()), .count = 1});
-        slopes.columns.features.push_back(std::move(feature));
+        add_column(slopes, place, std::move(feature), share * room.half[by] * force.weights[j]);
       };
       add(true, i, is_cosine(swing->quantity) == (i == 0) ? -1.0 : 1.0);
       const double wave_number = std::hypot(swing->b, swing->c);
@@ -150,19 +188,24 @@ likelihood::Fit tuned(const likelihood::Problem& problem, likelihood::Fit fit, c
     Eigen::MatrixXd information = shares.transpose() * screen.gram * shares;
     if (!(information.diagonal().minCoeff() > 0.0)) break;
     information.diagonal() *= 1.0 + 1e-9;
+    for (std::size_t k = 0; k < slopes.inner.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (slopes.inner[k].sigma > 0.0) information(at, at) += 1.0 / (slopes.inner[k].sigma * slopes.inner[k].sigma);
+    }
     const Eigen::VectorXd change = solve_symmetric(information, Eigen::VectorXd{shares.transpose() * screen.gradient});
     if (!change.allFinite()) break;
     likelihood::Hypothesis moved = fit.hypothesis;
     double most = 0.0;
     for (std::size_t k = 0; k < slopes.inner.size(); ++k) {
       const Inner& inner = slopes.inner[k];
-      const double turn = change[static_cast<Eigen::Index>(k)] * room.half[inner.which];
+      const double turn = change[static_cast<Eigen::Index>(k)] / inner.unit;
       most = std::max(most, std::abs(turn));
       for (std::size_t j = 0; j < moved.force.features.size(); ++j) {
-        const Factor* before = swing_of(fit.hypothesis.force.features[j]);
-        if (before != nullptr && same(*before, inner.wave))
-          number(*swing_of(moved.force.features[j]), inner.which) +=
-              std::clamp(turn, -kMostTurned, kMostTurned) / room.half[inner.which];
+        const Factor* before = inner_of(fit.hypothesis.force.features[j]);
+        if (before == nullptr || !same(*before, inner.factor)) continue;
+        Factor& factor = *inner_of(moved.force.features[j]);
+        number_of(factor, inner.which) += inner.unit * std::clamp(turn, -kMostTurned, kMostTurned);
+        factor.d = std::max(factor.d, 0.0);
       }
     }
     if (most < kSettled) break;
@@ -199,7 +242,7 @@ likelihood::FreeForce joined(const likelihood::FreeForce& force, const Room& roo
     });
     if (same(strongest->factor, *swing)) continue;
     any = true;
-    for (std::size_t i = 0; i < 3; ++i) number(*swing, i) = number(strongest->factor, i);
+    for (std::size_t i = 0; i < 3; ++i) number_of(*swing, i) = number_of(strongest->factor, i);
   }
   return one;
 }
@@ -207,7 +250,9 @@ likelihood::FreeForce joined(const likelihood::FreeForce& force, const Room& roo
 }  // namespace
 
 likelihood::Fit with_inner_numbers(const likelihood::Problem& problem, likelihood::Fit fit, int threads) {
-  if (!fit.finite || !model::swings(fit.hypothesis.force)) return fit;
+  if (!fit.finite ||
+      (!model::swings(fit.hypothesis.force) && std::ranges::none_of(fit.hypothesis.force.features, &Feature::pulls)))
+    return fit;
   const Room room{problem};
   bool any = false;
   likelihood::Hypothesis one = fit.hypothesis;

@@ -67,7 +67,7 @@ void describe(const Fit& fit, const model::Visited& visited, CorrectionGiven& gi
       for (int f = 0; f < feature.count; ++f) {
         const model::Factor& factor = feature.factors[static_cast<std::size_t>(f)];
         term.factors.push_back({std::string{word(factor.quantity)}, factor.index, factor.bank, factor.a, factor.b,
-                                factor.c, factor.column});
+                                factor.c, factor.d, factor.column});
       }
       given.terms.push_back(std::move(term));
     }

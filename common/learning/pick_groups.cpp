@@ -8,6 +8,7 @@
 #include "common/inference/feature_screen.hpp"
 #include "common/learning/moments.hpp"
 #include "common/learning/products.hpp"
+#include "common/learning/pulls.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -68,6 +69,18 @@ Picked pick_groups(const likelihood::Problem& problem, const Seen& seen, const m
   }
   for (const auto& [g, evidence] : profile_moments(problem, seen, begun, library, how.threads))
     alone[g] = evidence - price(library.groups[g], all, thresholds);
+  // Of pulls the one that has come to the best point: others have come to the same, or stand beside it.
+  std::vector<std::size_t> pulls;
+  for (const std::size_t g : shortlist) {
+    if (library.groups[g].axis == model::kPull) pulls.push_back(g);
+  }
+  pulls.resize(std::min(pulls.size(), kProfiled));
+  std::size_t of_pulls = all;
+  for (const auto& [g, evidence] : profile_pulls(problem, seen, scene, pulls, library, how.threads)) {
+    alone[g] = evidence - price(library.groups[g], all, thresholds);
+    if (of_pulls == all || alone[g] > alone[of_pulls]) of_pulls = g;
+  }
+  std::erase_if(shortlist, [&](std::size_t g) { return library.groups[g].axis == model::kPull && g != of_pulls; });
   best_first();
   shortlist.resize(std::min(shortlist.size(), kShortlist));
   const inference::Screen whole = inference::screen(problem, seen, library, shortlist, true);

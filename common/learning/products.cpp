@@ -30,7 +30,7 @@ class Library {
     const std::vector<double> moments = sharpest();
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const Term& term = terms_[k];
-      if (!term.held) multiply(term, {.columns = {{}}});
+      if (!term.held) multiply(term, {.columns = {{}}}, term.searched);
       for (const Modulator& modulator : modulators) {
         if (!allows(modulator)) continue;
         if ((modulator.of & term.kind) != 0) multiply(term, modulator);
@@ -170,7 +170,7 @@ class Library {
       if (feature.axis == model::kHullDrag) wrench = of_drag;
       if (feature.axis == model::kAllThrust) wrench = 1.0;
       if (feature.axis == model::kEachThruster) wrench = std::sqrt(thrust / std::max(count, 1.0));
-      if (feature.axis >= model::kLever && !feature.weighs()) wrench = scene_.tau_rms.segment<2>(3).norm();
+      if (feature.levers()) wrench = scene_.tau_rms.segment<2>(3).norm();
       feature.scale = rms > 0.0 ? std::max(wrench, 1e-6) / rms : 0.0;
       if (feature.axis == model::kEachAxis) feature.scale = 1.0;  // shares of the thrust
     }

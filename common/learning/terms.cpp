@@ -8,6 +8,7 @@
 #include "common/inference/feature_library.hpp"
 #include "common/inference/thruster_laws.hpp"
 #include "common/learning/edges.hpp"
+#include "common/learning/pulls.hpp"
 
 namespace fathom::learning {
 namespace {
@@ -100,6 +101,7 @@ class Terms {
     for (const int axis : axes_) along(axis, seen.fit.hypothesis.model.allocation);
     if (scene.attitude) world();
     if (scene.attitude) levers();
+    if (scene.attitude && scene.position && std::ranges::find(axes_, 0) != axes_.end()) pulls();
     together();
     if (std::ranges::any_of(axes_, [](int axis) { return axis < 3; }))
       all.push_back({"mass", model::kMass, {{}}, kMassTerm, true});
@@ -166,6 +168,12 @@ class Terms {
       // Along the vertical the base number of weight holds the force.
       all.push_back({"a force toward " + name, axis, {{}}, kConstantTerm | kWorldTerm, w == 2});
     }
+  }
+
+  /// Lines that end somewhere.
+  void pulls() {
+    for (const Factor& stretch : stretches_of(scene_))
+      all.push_back({.words = "a pull toward a point", .axis = model::kPull, .columns = {{stretch}}, .searched = true});
   }
 
   /// Weight and buoyancy that do not act at one point.

@@ -33,6 +33,7 @@ struct Term {
   unsigned kind{kPlainTerm};
   bool held{};  ///< base numbers hold it: only its modulations are new
   bool closed{true};
+  bool searched{false};  ///< inner numbers of it are sought in the data
 };
 
 /// What a term may go with besides.

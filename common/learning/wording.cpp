@@ -44,6 +44,7 @@ constexpr Hint kHints[]{
     {"stream", "moment", "a stream that has set in or turned"},
     {"stream", "depth", "a stream that differs with depth"},
     {"stream", "place", "an eddy or a jet in part of the site"},
+    {"a pull toward a point", "", "a tether, a mooring or a hose that is made fast there"},
     {"force toward", "place", "a tether, an outlet, or a stream in part of the site"},
     {"force toward", "", "a tether, or water in motion"},
     {"swing", "", "waves, or a pump or motor of that frequency"},

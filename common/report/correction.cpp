@@ -21,7 +21,7 @@ std::string factor_words(const CorrectionFactor& factor) {
   const auto quantity = model::quantity_from(factor.quantity);
   if (!quantity) return factor.quantity;
   return model::kind_of(*quantity).words(
-      {*quantity, factor.index, factor.bank, factor.a, factor.b, factor.c, factor.column});
+      {*quantity, factor.index, factor.bank, factor.a, factor.b, factor.c, factor.d, factor.column});
 }
 
 }  // namespace
@@ -33,6 +33,7 @@ Json correction_json(const CorrectionGiven& given) {
     for (const CorrectionFactor& f : term.factors) {
       factors.push_back(
           {{"quantity", f.quantity}, {"index", f.index}, {"bank", f.bank}, {"a", f.a}, {"b", f.b}, {"c", f.c}});
+      if (f.d != 0.0) factors.back()["d"] = f.d;
       if (!f.column.empty()) factors.back()["column"] = f.column;
     }
     terms.push_back({{"group", term.group},

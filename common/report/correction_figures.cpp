@@ -103,6 +103,7 @@ std::optional<Argument> argument_of(const Factor& f, const CorrectionGiven& give
                       .index = static_cast<int>(axis)};
     }
     case Quantity::kNorth:
+    case Quantity::kStretch:
     case Quantity::kPlanBump:
       return Argument{.name = "x",
                       .unit = "m",
@@ -170,7 +171,7 @@ std::optional<Feature> feature_of(const CorrectionTerm& term) {
     const CorrectionFactor& f = term.factors[i];
     const auto quantity = model::quantity_from(f.quantity);
     if (!quantity) return std::nullopt;
-    feature.factors[i] = {*quantity, f.index, f.bank, f.a, f.b, f.c, f.column};
+    feature.factors[i] = {*quantity, f.index, f.bank, f.a, f.b, f.c, f.d, f.column};
   }
   return feature;
 }

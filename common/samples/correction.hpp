@@ -15,7 +15,7 @@ namespace fathom {
 struct CorrectionFactor {
   std::string quantity;
   int index{}, bank{};
-  double a{}, b{}, c{};
+  double a{}, b{}, c{}, d{};
   std::string column{};  ///< of a measured column: its candidate
 };
 

@@ -26,6 +26,17 @@ bool of_owner(int axis, const Factor& factor) {
   return (axis == kEachThruster && indexed == Indexed::kThrusters) || (axis == kEachAxis && indexed == Indexed::kAxes);
 }
 
+/// In W, without a length where the point is reached.
+Eigen::Vector3d toward_point(const Feature& feature, const FeatureState& state) {
+  constexpr double kThere = 1e-9;  // m
+  const auto end = feature.factors.begin() + feature.count;
+  const auto point =
+      std::find_if(feature.factors.begin(), end, [](const Factor& f) { return f.quantity == Quantity::kStretch; });
+  if (point == end) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d way = Eigen::Vector3d{point->a, point->b, point->c} - state.p_WB;
+  return way.norm() > kThere ? Eigen::Vector3d{way.normalized()} : Eigen::Vector3d::Zero();
+}
+
 }  // namespace
 
 const FactorKind& kind_of(Quantity quantity) { return *kKinds[static_cast<std::size_t>(quantity)]; }
@@ -53,6 +64,7 @@ std::string direction_words(int axis) {
   if (axis == kEachThruster) return "each thruster";
   if (axis == kEachAxis) return "each axis";
   if (axis == kMass) return "the mass";
+  if (axis == kPull) return "the way to a point";
   if (axis >= kLever) return std::string("the lever of weight and buoyancy in ") + "xyz"[axis - kLever];
   if (axis >= kStream) return "the water's " + direction_words(axis - kStream + kWorldAxis);
   return "thruster " + std::to_string(axis - kThrusterLine + 1);
@@ -66,6 +78,7 @@ std::string direction_symbol(int axis) {
   if (axis == kEachThruster) return "delta f_j =";
   if (axis == kEachAxis) return "tau_i =";
   if (axis == kMass) return "m =";
+  if (axis == kPull) return "f toward p_A =";
   if (axis >= kLever) return std::string("G_") + "xyz"[axis - kLever] + " =";
   if (axis >= kStream) return "v_" + direction_words(axis - kStream + kWorldAxis) + " =";
   return "tau = b_" + std::to_string(axis - kThrusterLine + 1);
@@ -133,7 +146,7 @@ double Feature::rate(const FeatureState& state) const {
 
 double Feature::size(const FeatureState& state) const {
   if (weighs()) return std::abs(value(state)) * state.by_mass.head<3>().norm();
-  if (axis >= kLever)
+  if (levers())
     return std::abs(value(state)) * Eigen::Vector3d::Unit(axis - kLever).cross(state.R_WB.row(2).transpose()).norm();
   if (streams()) {
     Vector6d wrench = Vector6d::Zero();
@@ -185,7 +198,9 @@ void Feature::add(const FeatureState& state, double weight, Vector6d& wrench) co
     wrench += size * state.tau;
   } else if (weighs()) {
     wrench += size * state.by_mass;
-  } else if (axis >= kLever) {
+  } else if (pulls()) {
+    wrench.head<3>() += size * (state.R_WB.transpose() * toward_point(*this, state));
+  } else if (levers()) {
     const Eigen::Vector3d down_B = state.R_WB.row(2).transpose();
     wrench.tail<3>() += size * Eigen::Vector3d::Unit(axis - kLever).cross(down_B);
   } else if (streams()) {

@@ -73,7 +73,7 @@ struct FactorKind;  ///< factors/factor_kind.hpp
 struct Factor {
   Quantity quantity{};
   int index{}, bank{};
-  double a{}, b{1.0}, c{1.0};
+  double a{}, b{1.0}, c{1.0}, d{};
   std::string column{};  ///< what a measured column is called; others have none
   [[nodiscard]] bool operator==(const Factor&) const = default;
 };
@@ -83,13 +83,15 @@ struct Factor {
 /// force; all axes by one law, each reading its own thrust. Toward north, east and down as a velocity of the water,
 /// too, which hull and effects feel as they feel any stream, and with the acceleration of water that swings: no force
 /// that adds to others.
-/// The levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down. Last a mass at Bo: inertia, no weight.
+/// The levers G_x, G_y, G_z of weight and buoyancy, whose moment is G x down. A mass at Bo: inertia, no weight. Last a
+/// pull on Bo toward the point of the world that its factor of kStretch names.
 constexpr int kWorldAxis = 6, kHullDrag = 9, kAllThrust = 10, kThrusterLine = 11;
 constexpr int kEachThruster = kThrusterLine + kMaxActuators, kEachAxis = kEachThruster + 1;
 constexpr int kStream = kEachAxis + 1;
 constexpr int kLever = kStream + 3;
 constexpr int kMass = kLever + 3;
-constexpr int kDirections = kMass + 1;
+constexpr int kPull = kMass + 1;
+constexpr int kDirections = kPull + 1;
 /// In words of a law of all thrusters or axes, in place of an index.
 constexpr int kOwn = -1;
 [[nodiscard]] std::string direction_words(int axis);  ///< "X", "north", "the hull's drag", "thruster 2"
@@ -113,7 +115,9 @@ struct Feature {
   /// For how many it holds: thrusters or axes; 1 for all others.
   [[nodiscard]] int owners(const FeatureState& state) const;
   [[nodiscard]] bool streams() const { return axis >= kStream && axis < kLever; }
+  [[nodiscard]] bool levers() const { return axis >= kLever && axis < kMass; }
   [[nodiscard]] bool weighs() const { return axis == kMass; }
+  [[nodiscard]] bool pulls() const { return axis == kPull; }
   [[nodiscard]] bool moves_with_velocity() const;
   [[nodiscard]] bool depends_on_time() const;
   [[nodiscard]] bool swings() const;

@@ -24,6 +24,7 @@ Factor factor_of(const Config& config) {
   factor.a = config.quantity("a", "");
   factor.b = config.quantity("b", "");
   factor.c = config.quantity("c", "");
+  if (config.has("d")) factor.d = config.quantity("d", "");
   if (config.has("column")) factor.column = config.text("column");
   const FactorKind& kind = kind_of(*quantity);
   if (kind.banks > 0 && (factor.bank < 0 || factor.bank >= kind.banks))
@@ -31,7 +32,8 @@ Factor factor_of(const Config& config) {
   const bool of_six = kind.indexed != Indexed::kThrusters && kind.indexed != Indexed::kColumns;
   if (factor.index < 0 || (of_six && factor.index >= 6) || factor.index >= kMaxActuators)
     config.fail("index", "there is no such axis or thruster");
-  if (kind.rate == nullptr && (factor.b == 0.0 || factor.c == 0.0)) config.fail("b", "a width is not 0");
+  if (kind.rate == nullptr && !kind.of_point && (factor.b == 0.0 || factor.c == 0.0))
+    config.fail("b", "a width is not 0");
   return factor;
 }
 

@@ -65,6 +65,33 @@ TEST_CASE("taken out: a stream, a dead band and a loss with speed are learned as
   }
 }
 
+TEST_CASE("taken out: a tether is learned as a pull toward where it is made fast, slack up to its length") {
+  const NoisyDiveBox where = where_it_goes();
+  const Eigen::Vector3d end{where.north + 0.3 * where.width, 0.0, -1.0};
+  const double slack = 0.8 * where.width, stiffness = 8.0 / where.width;  // m, N/m
+  test::NoisyDive settings = where.settings;
+  settings.effects = {{.effect = model::find_effect("tether_tension"),
+                       .variant = 0,
+                       .theta = {stiffness, slack, end.x(), end.y(), end.z(), 0.0, 0.0, 0.0}}};
+  const test::LearnedCase dive{settings, true, 0.5};
+  const Learned learned = dive.learned();
+  test::show("tether", learned.given);
+  REQUIRE(learned.given.adopted);
+  REQUIRE(learned.given.carried);
+  CHECK(learned.given.words.find("a pull toward a point") != std::string::npos);
+  const double step = dive.problem.input_step;
+  const auto over = [&](const model::Model& other) {
+    return residual::error_over(other, as_model(learned.fit.hypothesis, step, learned.elsewhere.get()), {&dive.rest, 1},
+                                residual::OpenLoop{})
+        .value;
+  };
+  const double over_base = over(as_model(dive.conclusion.found.best.fit.hypothesis, step));
+  const double over_truth = over(dive.dive.truth);
+  MESSAGE("tether: " << over_base << " of the base model's error, " << over_truth << " of the truth's");
+  CHECK(over_base < 0.3);
+  CHECK(over_truth < 1.3);
+}
+
 TEST_CASE("taken out: waves are learned as water that swings, and foretold beyond what was fitted") {
   // Cosine, sine m/s, bearing rad, frequency rad/s; orbital.
   const test::LearnedCase dive{

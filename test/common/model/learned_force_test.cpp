@@ -311,6 +311,29 @@ TEST_CASE("learned force: a mass is inertia without weight, as a load's is") {
   CHECK(load.inertia()(2, 2) == doctest::Approx(3.0));
 }
 
+TEST_CASE("learned force: a pull toward a point is that of a tether, slack up to its length") {
+  Bench bench;
+  bench.visited.p_low.setConstant(-4.0);
+  bench.visited.p_high.setConstant(4.0);
+  const Eigen::Vector3d anchor{3.0, -2.0, 0.5};
+  const double slack = 1.5, stiffness = 4.0;
+  const Factor stretch{.quantity = Quantity::kStretch, .a = anchor.x(), .b = anchor.y(), .c = anchor.z(), .d = slack};
+  const LearnedForce learned = bench.made(one(along(kPull, {stretch}, 8.0), stiffness / 8.0));
+  const std::vector<double> theta{stiffness, slack, anchor.x(), anchor.y(), anchor.z(), 0.0, 0.0, 0.0};
+  const Eigen::Matrix3d R_WB = Eigen::AngleAxisd{0.7, Eigen::Vector3d{0.2, -0.3, 1.0}.normalized()}.toRotationMatrix();
+  int taut = 0;
+  for (const Eigen::Vector3d& p_WB : {Eigen::Vector3d{0.0, 0.0, 0.0}, {-3.0, 1.0, 2.0}, {2.5, -1.5, 0.0}, anchor}) {
+    const Motion motion{.p_WB = p_WB, .R_WB = R_WB, .force = ActuatorForces::Zero(6)};
+    Load load, told;
+    load.clear(), told.clear();
+    learned.load(motion, {}, 0, load);
+    find_effect("tether_tension")->load(motion, theta, 0, told);
+    CHECK(load.wrench.isApprox(told.wrench, 1e-12));
+    if (told.wrench.norm() > 0.0) ++taut;
+  }
+  CHECK(taut == 2);
+}
+
 TEST_CASE("factors: every kind has a name of its own, words and a value") {
   FeatureState state{.t = 2.0,
                      .p_WB = {0.1, 0.2, 0.3},

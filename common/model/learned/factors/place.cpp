@@ -73,6 +73,30 @@ constinit const FactorKind factor_near{
     .within = [](const Factor& f, const FeatureState& s,
                  const Visited&) { return fade_beyond(std::max(beyond_edge(f, s) + f.b, 0.0), f.b); }};
 
+constinit const FactorKind factor_stretch{
+    .word = "stretch",
+    .sentence = "how much farther than a length d the point (a, b, c) is: of a line that is slack before",
+    .unit = "m",
+    .of_point = true,
+    .value =
+        [](const Factor& f, const FeatureState& s) {
+          return std::max((Eigen::Vector3d{f.a, f.b, f.c} - s.p_WB).norm() - f.d, 0.0);
+        },
+    .words =
+        [](const Factor& f) {
+          const std::string point = "(" + brief_number(f.a) + ", " + brief_number(f.b) + ", " + brief_number(f.c) + ")";
+          return "max(|" + point + " - p| - " + brief_number(f.d) + " m, 0)";
+        },
+    .within =
+        [](const Factor&, const FeatureState& s, const Visited& visited) {
+          double left = 1.0;  // like a law: as far again as it has been
+          for (const int i : {0, 1, 2}) {
+            const double half = 0.5 * (visited.p_high[i] - visited.p_low[i]);
+            left *= fade_outside(s.p_WB[i], visited.p_low[i] - half, visited.p_high[i] + half);
+          }
+          return left;
+        }};
+
 constinit const FactorKind factor_heading_cosine{
     .word = "heading_cosine",
     .sentence = "the cosine of the heading",
